@@ -1,0 +1,56 @@
+# Compiler settings of the project's own targets. Nothing here reaches a project that uses realcam::optics.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+# The static libraries end up in the Python extension.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_CUDA_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_CUDA_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+add_library(realcam_settings INTERFACE)
+target_compile_definitions(realcam_settings INTERFACE REALCAM_VERSION="${PROJECT_VERSION}")
+
+# -Wconversion is left out: in code templated on float, double and lanes it reports every literal. -Wdouble-promotion
+# stays: it finds the float code that became double by accident.
+set(warnings -Wall -Wextra -Wpedantic -Wdouble-promotion -Wnon-virtual-dtor -Woverloaded-virtual
+    -Wcast-align -Wformat=2 -Wextra-semi -Wundef -Wvla -Wunused)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # A constructor's parameter may have the name of the member that it fills.
+  list(APPEND warnings -Wshadow=local -Wduplicated-cond -Wlogical-op)
+else()
+  list(APPEND warnings -Wshadow)
+endif()
+if(REALCAM_WERROR)
+  # These come from the optimiser, and change with the compiler's version and flags; they are shown, not enforced.
+  list(APPEND warnings -Werror -Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow
+       -Wno-error=restrict)
+endif()
+
+target_compile_options(realcam_settings INTERFACE
+  "$<$<COMPILE_LANGUAGE:CXX>:${warnings};-fopenmp-simd>"
+  # Nothing pedantic: what nvcc hands to the host compiler is not.
+  "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-Xcompiler=-Wall,-Wextra,-fopenmp-simd>")
+
+if(REALCAM_SANITIZE)
+  set(sanitize -fsanitize=${REALCAM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(realcam_settings INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${sanitize}>")
+  target_link_options(realcam_settings INTERFACE -fsanitize=${REALCAM_SANITIZE})
+endif()
+
+# Targets exist only where their sources do.
+function(realcam_link_if_present target scope)
+  foreach(library IN LISTS ARGN)
+    if(TARGET ${library})
+      target_link_libraries(${target} ${scope} ${library})
+    endif()
+  endforeach()
+endfunction()

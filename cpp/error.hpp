@@ -1,0 +1,58 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace realcam {
+
+/// Base of all errors that realcam raises. The message is one line for a person: what, where, and what is wanted.
+class Error : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A value that the caller gave does not make sense.
+class InputError : public Error {
+    using Error::Error;
+};
+
+/// A lens prescription that cannot be built, or its file cannot be read.
+class LensFileError : public Error {
+  public:
+    /// line and surface are 1-based; 0 where they do not apply.
+    LensFileError(const std::string& message, std::string file = {}, int line = 0, int surface = 0)
+        : Error(place(file, line, surface) + message),
+          detail(message),
+          file(std::move(file)),
+          line(line),
+          surface(surface) {}
+
+    std::string detail;  ///< the message without its place
+    std::string file;
+    int line;
+    int surface;
+
+  private:
+    static std::string place(const std::string& file, int line, int surface) {
+        std::string where = file;
+        if (line > 0) where += (where.empty() ? "line " : ":") + std::to_string(line);
+        if (surface > 0) where += (where.empty() ? "surface " : ": surface ") + std::to_string(surface);
+        return where.empty() ? where : where + ": ";
+    }
+};
+
+/// A scene that cannot be read, or that holds no geometry.
+class SceneFileError : public Error {
+    using Error::Error;
+};
+
+/// A picture that cannot be read or written.
+class ImageFileError : public Error {
+    using Error::Error;
+};
+
+/// A device or its library that fails.
+class DeviceError : public Error {
+    using Error::Error;
+};
+
+}  // namespace realcam

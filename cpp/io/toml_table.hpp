@@ -1,0 +1,88 @@
+#pragma once
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "../error.hpp"
+#include "nearest_names.hpp"
+
+namespace realcam::io {
+
+/// A table of a lens file that knows where it stands, so that every complaint names file, line and surface.
+class TomlTable {
+  public:
+    TomlTable(const toml::table& table, std::string file, int surface = 0)
+        : table_(table), file_(std::move(file)), surface_(surface) {}
+
+    [[noreturn]] void fail(const std::string& message, const toml::node* node = nullptr) const {
+        const toml::node& place = node ? *node : table_;
+        throw LensFileError(message, file_, static_cast<int>(place.source().begin.line), surface_);
+    }
+
+    /// Refuses keys that the format does not know: a misspelt one must not be ignored in silence.
+    void allow(std::initializer_list<std::string_view> keys) const {
+        for (const auto& [key, node] : table_) {
+            bool known = false;
+            for (std::string_view allowed : keys) known |= key.str() == allowed;
+            if (!known)
+                fail("unknown key \"" + std::string(key.str()) + '"' +
+                         did_you_mean(key.str(), std::vector<std::string>(keys.begin(), keys.end())),
+                     &node);
+        }
+    }
+
+    const toml::node* find(std::string_view key) const { return table_.get(key); }
+
+    std::optional<double> number(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return std::nullopt;
+        return as_number(*node, '"' + std::string(key) + '"');
+    }
+
+    double as_number(const toml::node& node, const std::string& what) const {
+        const double value = node.is_number() ? node.value_or(0.0) : std::nan("");
+        if (!std::isfinite(value)) fail(what + " must be a finite number", &node);
+        return value;
+    }
+
+    std::string text(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return {};
+        if (!node->is_string()) fail('"' + std::string(key) + "\" must be a text in quotes", node);
+        return *node->value<std::string>();
+    }
+
+    /// An array of exactly `count` numbers (any number of them where count is 0); empty where the key is absent.
+    std::vector<double> numbers(std::string_view key, std::size_t count) const {
+        const toml::node* node = find(key);
+        if (!node) return {};
+        const toml::array* array = node->as_array();
+        const std::string what = '"' + std::string(key) + '"';
+        if (!array || array->empty() || (count && array->size() != count))
+            fail(what + " must be an array of " + (count ? std::to_string(count) + " " : "") + "numbers", node);
+        std::vector<double> values;
+        for (const toml::node& item : *array) values.push_back(as_number(item, "each value of " + what));
+        return values;
+    }
+
+    std::optional<TomlTable> table(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return std::nullopt;
+        if (!node->is_table()) fail('"' + std::string(key) + "\" must be a table", node);
+        return TomlTable(*node->as_table(), file_, surface_);
+    }
+
+    const toml::table& raw() const { return table_; }
+    const std::string& file() const { return file_; }
+
+  private:
+    const toml::table& table_;
+    std::string file_;
+    int surface_;
+};
+
+}  // namespace realcam::io

@@ -1,0 +1,69 @@
+#pragma once
+#include <cmath>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+template <class T>
+struct Vec2 {
+    T x, y;
+};
+
+template <class T>
+struct Vec3 {
+    T x, y, z;
+
+    template <class U>
+    REALCAM_INLINE explicit constexpr operator Vec3<U>() const {
+        return {static_cast<U>(x), static_cast<U>(y), static_cast<U>(z)};
+    }
+};
+
+using Vec2f = Vec2<float>;
+using Vec3f = Vec3<float>;
+using Vec3d = Vec3<double>;
+
+template <class T>
+REALCAM_INLINE constexpr Vec3<T> operator+(Vec3<T> a, Vec3<T> b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class T>
+REALCAM_INLINE constexpr Vec3<T> operator-(Vec3<T> a, Vec3<T> b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class T>
+REALCAM_INLINE constexpr Vec3<T> operator-(Vec3<T> a) {
+    return {-a.x, -a.y, -a.z};
+}
+template <class T>
+REALCAM_INLINE constexpr Vec3<T> operator*(T s, Vec3<T> a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+/// Component by component: the product of two colours.
+template <class T>
+REALCAM_INLINE constexpr Vec3<T> operator*(Vec3<T> a, Vec3<T> b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+template <class T>
+REALCAM_INLINE constexpr Vec3<T>& operator+=(Vec3<T>& a, Vec3<T> b) {
+    return a = a + b;
+}
+template <class T>
+REALCAM_INLINE constexpr T dot(Vec3<T> a, Vec3<T> b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class T>
+REALCAM_INLINE constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class T>
+REALCAM_INLINE T length(Vec3<T> a) {
+    return std::sqrt(dot(a, a));
+}
+template <class T>
+REALCAM_INLINE Vec3<T> normalized(Vec3<T> a) {
+    return (T(1) / length(a)) * a;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,117 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline constexpr double kLineF_nm = 486.1327;  ///< hydrogen, blue
+inline constexpr double kLineD_nm = 587.5618;  ///< helium, yellow: the design line d
+inline constexpr double kLineC_nm = 656.2725;  ///< hydrogen, red
+
+/// An optical medium: refractive index relative to air at a wavelength in air.
+class Glass {
+  public:
+    /// n_k of the Sellmeier equation n^2 = 1 + sum B l^2 / (l^2 - C), l in um, C in um^2.
+    struct SellmeierTerm {
+        double B, C;
+    };
+    /// One measured point.
+    struct TablePoint {
+        double wavelength_nm, index;
+    };
+
+    static Glass constant(double index) { return {Formula::cauchy, {index}, {}}; }
+    static Glass air() { return constant(1.0); }
+
+    /// From the index at the d line and the Abbe number V_d = (n_d - 1) / (n_F - n_C): the two terms of Cauchy's
+    /// formula that have both.
+    static Glass from_abbe_number(double n_d, double abbe_number) {
+        const double spread = per_um2(kLineF_nm) - per_um2(kLineC_nm);
+        const double b = (n_d - 1) / (abbe_number * spread);
+        return {Formula::cauchy, {n_d - b * per_um2(kLineD_nm), b}, {}};
+    }
+    /// n = A + B / l^2 + C / l^4 + ..., l in um.
+    static Glass cauchy(std::vector<double> coefficients) { return {Formula::cauchy, std::move(coefficients), {}}; }
+
+    static Glass sellmeier(const std::vector<SellmeierTerm>& terms) {
+        Glass glass{Formula::sellmeier, {}, {}};
+        for (const SellmeierTerm& term : terms) {
+            glass.coefficients_.push_back(term.B);
+            glass.coefficients_.push_back(term.C);
+        }
+        return glass;
+    }
+    /// Interpolated in 1 / l^2 by the cubic through the four nearest points (fewer where fewer are given).
+    static Glass table(std::vector<TablePoint> points) {
+        std::sort(points.begin(), points.end(),
+                  [](const TablePoint& a, const TablePoint& b) { return a.wavelength_nm < b.wavelength_nm; });
+        return {Formula::table, {}, std::move(points)};
+    }
+
+    /// NaN where the formula has no real value.
+    double index(double wavelength_nm) const {
+        switch (formula_) {
+            case Formula::sellmeier: return sellmeier_index(1 / per_um2(wavelength_nm));
+            case Formula::table: return table_index(per_um2(wavelength_nm));
+            case Formula::cauchy: break;
+        }
+        double n = 0;
+        for (std::size_t i = coefficients_.size(); i-- > 0;) n = n * per_um2(wavelength_nm) + coefficients_[i];
+        return n;
+    }
+
+    bool is_air() const { return formula_ == Formula::cauchy && coefficients_ == std::vector<double>{1.0}; }
+
+    /// As the lens's author wrote it: a name, a number, a pair; empty for air.
+    std::string label;
+
+  private:
+    enum class Formula { cauchy, sellmeier, table };
+
+    Glass(Formula formula, std::vector<double> coefficients, std::vector<TablePoint> points)
+        : formula_(formula), coefficients_(std::move(coefficients)), points_(std::move(points)) {}
+
+    static double per_um2(double wavelength_nm) { return 1e6 / (wavelength_nm * wavelength_nm); }
+
+    double sellmeier_index(double um2) const {
+        double square = 1;
+        for (std::size_t i = 0; i + 1 < coefficients_.size(); i += 2)
+            square += coefficients_[i] * um2 / (um2 - coefficients_[i + 1]);
+        return std::sqrt(square);
+    }
+
+    double table_index(double x) const {
+        const std::size_t used = std::min<std::size_t>(4, points_.size());
+        // The points are sorted by wavelength, so x falls along them.
+        const auto next = std::lower_bound(points_.begin(), points_.end(), x, [](const TablePoint& p, double value) {
+            return per_um2(p.wavelength_nm) > value;
+        });
+        const std::ptrdiff_t half = static_cast<std::ptrdiff_t>(used / 2);
+        const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(points_.size() - used);
+        const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(next - points_.begin() - half, 0, last);
+        double n = 0;
+        for (std::size_t i = 0; i < used; ++i) {
+            const TablePoint& p = points_[static_cast<std::size_t>(first) + i];
+            double weight = 1;
+            for (std::size_t j = 0; j < used; ++j) {
+                if (j == i) continue;
+                const double other = per_um2(points_[static_cast<std::size_t>(first) + j].wavelength_nm);
+                weight *= (x - other) / (per_um2(p.wavelength_nm) - other);
+            }
+            n += weight * p.index;
+        }
+        return n;
+    }
+
+    Formula formula_;
+    std::vector<double> coefficients_;
+    std::vector<TablePoint> points_;
+};
+
+}  // namespace REALCAM_NAMESPACE

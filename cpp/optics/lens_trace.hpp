@@ -1,0 +1,158 @@
+#pragma once
+#include "asphere.hpp"
+#include "lens_view.hpp"
+#include "ray_status.hpp"
+#include "refraction.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// N rays. Origins in mm; directions of unit length; status holds RayStatus values as plain integers.
+template <class T, int N>
+struct LensRays {
+    Vec3Lanes<T, N> origin;
+    Vec3Lanes<T, N> direction;
+    alignas(64) int status[N];
+};
+
+/// What a trace may write down besides the rays. `NoRecord` is for pictures: rays that end are only marked, as
+/// vignetted whatever the cause, and their origin and direction are then undefined (NaN at worst).
+struct NoRecord {
+    static constexpr bool enabled = false;
+};
+/// `PathRecord` is for analysis: exact causes, and a ray that ends keeps its last direction and lies on the last
+/// surface that it met.
+template <class T, int N>
+struct PathRecord {
+    static constexpr bool enabled = true;
+    alignas(64) T optical_path[N];     ///< sum of index times distance, mm; from the origin to the last surface met
+    alignas(64) int surface_index[N];  ///< surface at which the ray ended, in the lens system's order
+};
+
+/// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
+template <class T, int N, class Record>
+REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays, Record& record, int lane,
+                                  Vec3<T> o, Vec3<T> d, SurfaceHit<T> hit, RayStatus failure) {
+    const Vec3<T> p = o + hit.distance * d;
+    const T r2 = p.x * p.x + p.y * p.y;
+    const Refraction<T> refracted = refract(d, hit.normal, hit.cosine, step.mu, step.sense_out);
+
+    const int before = rays.status[lane];
+    const bool alive = before == static_cast<int>(RayStatus::ok);
+    const bool clear = (r2 <= step.rim_squared) & (r2 >= step.hole_squared);
+    const bool met = alive & hit.met();
+    const bool passes = met & clear & (refracted.radicand >= T(0));
+    if constexpr (Record::enabled) {
+        const int cause = select(hit.met(), select(clear, static_cast<int>(RayStatus::total_internal_reflection),
+                                                   static_cast<int>(RayStatus::vignetted)),
+                                 static_cast<int>(failure));
+        rays.origin.set(lane, select(met, p, o));
+        rays.direction.set(lane, select(passes, refracted.direction, d));
+        rays.status[lane] = select(alive & !passes, cause, before);
+        record.optical_path[lane] += select(met, step.index_before * hit.distance, T(0));
+        record.surface_index[lane] = select(alive, step.surface_index, record.surface_index[lane]);
+    } else {
+        rays.origin.set(lane, p);
+        rays.direction.set(lane, refracted.direction);
+        rays.status[lane] = select(passes, before, static_cast<int>(RayStatus::vignetted));
+    }
+}
+
+template <class T, int N, class Record>
+REALCAM_HD inline void cross_sphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        Vec3<T> o = rays.origin[i];
+        const Vec3<T> d = rays.direction[i];
+        o.z -= step.shift;
+        const SurfaceHit<T> hit = intersect_sphere(o, d, step.curvature, step.sense_in);
+        cross_surface(step, rays, record, i, o, d, hit, RayStatus::missed);
+    }
+}
+
+template <class T, int N, class Record>
+REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        Vec3<T> o = rays.origin[i];
+        const Vec3<T> d = rays.direction[i];
+        o.z -= step.shift;
+        const SurfaceHit<T> hit = intersect_conic(o, d, step.curvature, step.conic_factor, step.sense_in);
+        cross_surface(step, rays, record, i, o, d, hit, RayStatus::missed);
+    }
+}
+
+template <class T, int N, class Record>
+REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
+    AsphereSearch<T, N> search;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        rays.origin.z[i] -= step.shift;
+        begin_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
+    }
+    for (int iteration = 0; iteration < kMaxAsphereIterations<T>; ++iteration) {
+        int searching = 0;
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            improve_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i],
+                           search.above[i], search.residual[i], search.tolerance[i]);
+            searching |= static_cast<int>(rays.status[i] == 0) &
+                         static_cast<int>(search.residual[i] > search.tolerance[i]);
+        }
+        if (searching == 0) break;
+    }
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec3<T> o = rays.origin[i];
+        const Vec3<T> d = rays.direction[i];
+        const bool converged = search.residual[i] <= search.tolerance[i];
+        const SurfaceHit<T> hit = asphere_hit(step, o, d, search.t[i], converged);
+        cross_surface(step, rays, record, i, o, d, hit,
+                      select(converged, RayStatus::missed, RayStatus::no_convergence));
+    }
+}
+
+/// Blocks rays that lie on an iris blade. The opening is what n equal arcs leave open: with the blade's edge of
+/// curvature q at distance h from the axis, a point is open where q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, a being
+/// its largest extent towards any blade.
+template <class T, int N>
+REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
+    alignas(64) T extent[N];
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) extent[i] = -std::numeric_limits<T>::max();
+    for (int blade = 0; blade < iris.blades; ++blade) {
+        const T cos = iris.cos[blade], sin = iris.sin[blade];
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            const T a = rays.origin.x[i] * cos + rays.origin.y[i] * sin;
+            extent[i] = select(a > extent[i], a, extent[i]);
+        }
+    }
+    const T h = iris.apothem, q = iris.curvature;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const T r2 = rays.origin.x[i] * rays.origin.x[i] + rays.origin.y[i] * rays.origin.y[i];
+        const bool open = q * (r2 + h * h) + T(2) * (T(1) - q * h) * extent[i] - T(2) * h <= T(0);
+        rays.status[i] = select((rays.status[i] == 0) & !open, static_cast<int>(RayStatus::vignetted),
+                                rays.status[i]);
+    }
+}
+
+/// Traces N rays through a lens, surface by surface.
+///
+/// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
+/// vertex of the last one; directions are unit vectors in the lens frame. Rays whose status is not ok on entry are
+/// left alone. Nothing here branches on a lane, so the compiler turns the loops into vector code.
+template <class T, int N, class Record = NoRecord>
+REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {}) {
+    for (int k = 0; k < lens.count; ++k) {
+        const LensStep<T> step = lens.steps[k];  // a copy: lane stores cannot alias it
+        switch (step.kind) {
+            case StepKind::sphere: cross_sphere(step, rays, record); break;
+            case StepKind::conic: cross_conic(step, rays, record); break;
+            case StepKind::asphere: cross_asphere(step, rays, record); break;
+        }
+        if (step.has_blades) cross_iris(lens.iris, rays);
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

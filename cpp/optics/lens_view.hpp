@@ -1,0 +1,49 @@
+#pragma once
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline constexpr int kMaxAsphericTerms = 8;
+inline constexpr int kMaxIrisBlades = 24;
+
+enum class StepKind : int { sphere, conic, asphere };
+
+/// One surface in the order in which the light meets it. Lengths in mm.
+template <class T>
+struct LensStep {
+    StepKind kind;
+    int surface_index;     ///< in the lens system, 0 at the front
+    bool has_blades;       ///< the stop of a lens that has an iris
+    T shift;               ///< axial distance from the vertex before this one
+    T curvature;           ///< 0: plane
+    T conic_factor;        ///< 1 + k
+    T sense_in;            ///< +1 where the ray crosses towards the film, -1 towards the scene (a mirror turns it)
+    T sense_out;
+    T mu;                  ///< refractive index before over refractive index after
+    T index_before;        ///< for the optical path
+    T rim_squared;         ///< squared clear semi-diameter
+    T hole_squared;        ///< squared radius inside which light is blocked; negative: none
+    T sag_min, sag_max;    ///< aspheres: bounds of the sag inside the search radius
+    T search_squared;      ///< aspheres: the sag is continued as constant outside this squared radius
+    T aspheric[kMaxAsphericTerms];  ///< of r^4, r^6, ...; zeros after the last
+};
+
+/// The opening of the aperture stop: n blades whose inner edges are arcs of one curvature.
+template <class T>
+struct Iris {
+    int blades;
+    T apothem;    ///< distance from the axis to the middle of a blade's edge
+    T curvature;  ///< of the edge: 0 straight, 1/apothem a circle
+    T cos[kMaxIrisBlades], sin[kMaxIrisBlades];
+};
+
+/// A lens in one state of focus and stop, at one wavelength and in one direction of the light.
+/// Trivially copyable; the steps belong to a LensPath.
+template <class T>
+struct LensView {
+    const LensStep<T>* steps;
+    int count;
+    Iris<T> iris;
+};
+
+}  // namespace REALCAM_NAMESPACE

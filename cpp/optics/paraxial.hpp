@@ -1,0 +1,77 @@
+#pragma once
+#include <cmath>
+
+#include "lens_system.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A paraxial ray at a plane: height in mm, slope = tangent of the angle to the axis.
+struct ParaxialRay {
+    double height;
+    double slope;
+};
+
+/// Traces a paraxial ray over the surfaces [first, last) in the direction of the light, from the vertex of the first
+/// to the vertex of the last one, by n' u' = n u - y c (n' - n); behind a mirror n changes its sign.
+inline ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, ParaxialRay ray, int first, int last) {
+    const std::vector<double> index = lens.indices(wavelength_nm);
+    double sign = 1;
+    for (int i = 0; i < last; ++i) {
+        const Surface& s = lens.surfaces[static_cast<std::size_t>(i)];
+        const double before = sign * index[static_cast<std::size_t>(i)];
+        if (s.type == SurfaceType::mirror) sign = -sign;
+        if (i < first) continue;
+        const double after = sign * index[static_cast<std::size_t>(i) + 1];
+        ray.slope = (before * ray.slope - ray.height * s.curvature * (after - before)) / after;
+        if (i + 1 < last) ray.height += s.thickness * ray.slope;
+    }
+    return ray;
+}
+
+/// First-order data at one wavelength. Positions in the lens frame (from the front vertex), mm.
+struct FirstOrder {
+    double effective_focal_length;
+    double back_focal_distance;   ///< last vertex to the rear focal point
+    double front_focal_distance;  ///< front vertex to the front focal point, negative in front of it
+    double f_number;              ///< focal length over entrance pupil diameter, object at infinity
+    double entrance_pupil_position, entrance_pupil_diameter;
+    double exit_pupil_position, exit_pupil_diameter;
+    double film_distance;
+};
+
+inline FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
+    const int count = static_cast<int>(lens.surfaces.size()), stop = lens.stop_index();
+    const ParaxialRay marginal = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, count);
+    const ParaxialRay inclined = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, count);
+    FirstOrder data{};
+    data.effective_focal_length = -1 / marginal.slope;
+    data.back_focal_distance = -marginal.height / marginal.slope;
+    // A ray through the front focal point, in front of the vertex by -ffd, leaves parallel to the axis.
+    data.front_focal_distance = inclined.slope / marginal.slope;
+
+    // Height and slope at the stop are linear in those at the front vertex; the ray through the middle of the stop
+    // crosses the axis in the middle of the entrance pupil.
+    const ParaxialRay height_at_stop = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, stop + 1);
+    const ParaxialRay slope_at_stop = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, stop + 1);
+    const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    data.entrance_pupil_position = slope_at_stop.height / height_at_stop.height;
+    data.entrance_pupil_diameter = 2 * radius / std::fabs(height_at_stop.height);
+    data.f_number = std::fabs(data.effective_focal_length) / data.entrance_pupil_diameter;
+
+    const ParaxialRay chief = trace_paraxial(lens, wavelength_nm, {0, 1}, stop, count);
+    const ParaxialRay edge = trace_paraxial(lens, wavelength_nm, {radius, 0}, stop, count);
+    const double from_last = -chief.height / chief.slope;  // infinite for a lens that is telecentric on the film side
+    data.exit_pupil_position = lens.last_vertex() + from_last;
+    data.exit_pupil_diameter = 2 * std::fabs(edge.height + edge.slope * from_last);
+    data.film_distance = lens.film_distance;
+    return data;
+}
+
+/// Last vertex to the paraxial image of an axial point `object_distance` mm in front of the front vertex.
+inline double paraxial_image_distance(const LensSystem& lens, double wavelength_nm, double object_distance) {
+    const ParaxialRay start = std::isinf(object_distance) ? ParaxialRay{1, 0} : ParaxialRay{object_distance, 1};
+    const ParaxialRay end = trace_paraxial(lens, wavelength_nm, start, 0, static_cast<int>(lens.surfaces.size()));
+    return -end.height / end.slope;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,54 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+struct Texture {
+    std::string name;  ///< file, for messages
+    std::int32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+/// A point light in scene coordinates, metres.
+struct PlacedPointLight {
+    Vec3d position_m;
+    Vec3f intensity;  ///< cd
+};
+
+struct Environment {
+    Vec3f constant = {0, 0, 0};  ///< cd/m^2
+    std::int32_t width = 0, height = 0;
+    std::vector<Vec3f> pixels;  ///< empty: constant
+
+    bool shines() const { return !pixels.empty() || constant.x > 0 || constant.y > 0 || constant.z > 0; }
+};
+
+/// A scene as the user gave it: one list of triangles in metres, double precision, right-handed, y up.
+/// Read by Embree and CUDA backends through PlacedScene.
+struct Scene {
+    std::vector<Vec3d> positions_m;
+    std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): flat
+    std::vector<Vec2f> uvs;      ///< empty, or one per position
+    std::vector<Triangle> triangles;
+    std::vector<Material> materials;
+    std::vector<Texture> textures;
+    std::vector<PlacedPointLight> points;
+    std::vector<SunLight> suns;
+    Environment environment;
+    std::vector<std::string> warnings;  ///< what the reader put up with (a missing texture), for the caller to show
+
+    bool has_light() const {
+        if (!points.empty() || !suns.empty() || environment.shines()) return true;
+        for (const Triangle& t : triangles) {
+            const Vec3f e = materials[t.material].emission;
+            if (e.x > 0 || e.y > 0 || e.z > 0) return true;
+        }
+        return false;
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

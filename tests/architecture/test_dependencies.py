@@ -1,0 +1,135 @@
+"""The rules of the house: which folder of cpp/ may include which, and what the core must not know."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+CPP = Path(__file__).resolve().parents[2] / "cpp"
+
+CORE = ("math", "optics", "camera", "scene", "render")
+BACKENDS = ("embree", "cuda")
+
+# Folder -> the folders that it may include, besides itself and the headers of cpp/ itself.
+MAY_INCLUDE = {
+    "": set(),
+    "math": set(),
+    "optics": {"math"},
+    "scene": {"math"},
+    "camera": {"math", "optics"},
+    "render": {"math", "optics", "scene", "camera"},
+    "embree": {*CORE},
+    "cuda": {*CORE},
+    "io": {*CORE},
+    "image_io": {*CORE, "io"},
+    # The extension links no OpenImageIO: image_io is the executable's alone.
+    "bindings": {*CORE, *BACKENDS, "io"},
+    "app": {*CORE, *BACKENDS, "io", "image_io"},
+}
+
+# Headers of the core that own memory or raise errors, and so stay on the host. The others run on every
+# device, and include none of these.
+HOST_ONLY = {
+    "error.hpp",
+    "optics/focus.hpp",
+    "optics/glass.hpp",
+    "optics/lens_path.hpp",
+    "optics/lens_system.hpp",
+    "optics/paraxial.hpp",
+    "optics/pupil.hpp",
+    "optics/surface.hpp",
+    "scene/scene.hpp",
+    "camera/film.hpp",
+    "camera/sensor.hpp",
+    "render/backend.hpp",
+}
+
+NOT_IN_CORE = {
+    "the CUDA runtime": r"\bcuda[A-Z]\w*|#\s*include\s*[<\"]cuda|<<<",
+    "Embree": r"\brtc[A-Z]\w*|\bRTC[A-Z]\w*|#\s*include\s*<embree",
+    "TBB": r"\btbb::|\boneapi::|#\s*include\s*<(tbb|oneapi)/",
+    "pybind11": r"\bpybind11\b",
+    "the console": r"#\s*include\s*<(iostream|print)>|\b(f|v)?printf\s*\(|\bputs\s*\(",
+    "files": r"#\s*include\s*<(fstream|filesystem)>|\bfopen\b|\bFILE\b",
+}
+NOT_ON_DEVICE = (
+    r"#\s*include\s*<(vector|string|map|memory|functional|stdexcept)>|\bstd::(vector|string)\b"
+    r"|\bthrow\b|\btry\s*\{|\bcatch\s*\("
+)
+
+SOURCES = sorted(path for path in CPP.rglob("*") if path.suffix in {".hpp", ".cpp", ".cu", ".cuh"})
+
+
+def name_of(path: Path) -> str:
+    return path.relative_to(CPP).as_posix()
+
+
+def folder_of(path: Path) -> str:
+    parts = path.relative_to(CPP).parts
+    return parts[0] if len(parts) > 1 else ""
+
+
+CORE_SOURCES = [path for path in SOURCES if folder_of(path) in {"", *CORE}]
+
+
+def code_of(path: Path) -> str:
+    """The text without comments; line breaks stay, so that positions keep their line."""
+    comment = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
+
+    def keep(match: re.Match[str]) -> str:
+        text = match.group()
+        return text if text.startswith('"') else "\n" * text.count("\n")
+
+    return comment.sub(keep, path.read_text(encoding="utf-8"))
+
+
+def included_by(path: Path) -> list[Path]:
+    """The files of cpp/ that `path` includes, whichever of the include folders a name starts from."""
+    found = []
+    for name in re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', code_of(path), re.MULTILINE):
+        for candidate in (path.parent / name, CPP / name, CPP / name.removeprefix("realcam/")):
+            if candidate.is_file() and CPP in candidate.resolve().parents:
+                found.append(candidate.resolve())
+                break
+    return found
+
+
+def test_there_is_something_to_check() -> None:
+    assert any(folder_of(path) == "math" for path in SOURCES)
+    assert any(included_by(path) for path in SOURCES)
+
+
+def test_every_folder_has_a_rule() -> None:
+    assert {folder_of(path) for path in SOURCES} <= set(MAY_INCLUDE)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_includes_follow_the_rules(path: Path) -> None:
+    allowed = {"", folder_of(path)} | MAY_INCLUDE[folder_of(path)]
+    wrong = [name_of(other) for other in included_by(path) if folder_of(other) not in allowed]
+    assert not wrong, f"{name_of(path)} may include {sorted(allowed - {''})} only"
+
+
+@pytest.mark.parametrize("path", CORE_SOURCES, ids=name_of)
+@pytest.mark.parametrize("what", NOT_IN_CORE)
+def test_core_does_not_know(path: Path, what: str) -> None:
+    code = code_of(path)
+    match = re.search(NOT_IN_CORE[what], code)
+    line = code.count("\n", 0, match.start()) + 1 if match else 0
+    assert not match, f"{name_of(path)}:{line} knows {what}: {match.group()}"
+
+
+@pytest.mark.parametrize("path", CORE_SOURCES, ids=name_of)
+def test_device_code_neither_allocates_nor_throws(path: Path) -> None:
+    if name_of(path) in HOST_ONLY:
+        return
+    match = re.search(NOT_ON_DEVICE, code_of(path))
+    assert not match, f"{name_of(path)} is not host-only, and uses {match.group()}"
+    wrong = [name_of(other) for other in included_by(path) if name_of(other) in HOST_ONLY]
+    assert not wrong, f"{name_of(path)} is not host-only, and includes headers that are"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_only_platform_asks_for_the_compiler(path: Path) -> None:
+    if name_of(path) != "platform.hpp":
+        assert "__CUDACC__" not in code_of(path)

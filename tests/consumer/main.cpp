@@ -1,0 +1,5 @@
+#include <realcam/math/vec3.hpp>
+
+int main() {
+    return 0;
+}

@@ -1,0 +1,42 @@
+# Every header of the core compiles alone: as C++, and as CUDA where nvcc is on the machine. The checks are targets
+# outside of `all`, which ctest builds; ninja then runs them in parallel and repeats only what a change concerns.
+set(patterns ${PROJECT_SOURCE_DIR}/cpp/*.hpp)
+foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
+  list(APPEND patterns ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.hpp)
+endforeach()
+file(GLOB headers CONFIGURE_DEPENDS ${patterns})
+
+find_program(NVCC_PROGRAM nvcc PATHS /usr/local/cuda/bin)
+set(cxx_sources "")
+set(cuda_stamps "")
+foreach(header IN LISTS headers)
+  file(RELATIVE_PATH relative ${PROJECT_SOURCE_DIR}/cpp ${header})
+  string(REPLACE "/" "_" name ${relative})
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.cpp)
+  # Twice: a header without its guard fails too.
+  file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${relative}\"\n#include \"${relative}\"\n" @ONLY)
+  list(APPEND cxx_sources ${source})
+  if(NVCC_PROGRAM)
+    set(stamp ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.ptx)
+    # PTX: both passes of nvcc's front end, and neither the assembler nor the host compiler's back end.
+    add_custom_command(OUTPUT ${stamp}
+      COMMAND ${NVCC_PROGRAM} -std=c++20 --expt-relaxed-constexpr -arch=sm_90 -ptx -x cu
+              -ccbin ${CMAKE_CXX_COMPILER} -I ${PROJECT_SOURCE_DIR}/cpp -MD -MF ${stamp}.d -MT ${stamp}
+              -o ${stamp} ${source}
+      DEPENDS ${source} DEPFILE ${stamp}.d COMMENT "CUDA: ${relative}" VERBATIM)
+    list(APPEND cuda_stamps ${stamp})
+  endif()
+endforeach()
+
+if(cxx_sources)
+  add_library(realcam_headers OBJECT EXCLUDE_FROM_ALL ${cxx_sources})
+  target_link_libraries(realcam_headers PRIVATE realcam_optics realcam_settings)
+  add_test(NAME build/headers_cxx COMMAND ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target realcam_headers)
+  # Two builds in one tree would disturb each other.
+  set_tests_properties(build/headers_cxx PROPERTIES RUN_SERIAL ON)
+endif()
+if(cuda_stamps)
+  add_custom_target(realcam_headers_cuda DEPENDS ${cuda_stamps})
+  add_test(NAME build/headers_cuda COMMAND ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target realcam_headers_cuda)
+  set_tests_properties(build/headers_cuda PROPERTIES RUN_SERIAL ON)
+endif()
