@@ -30,3 +30,18 @@
 #else
 #define REALCAM_NAMESPACE realcam
 #endif
+
+namespace REALCAM_NAMESPACE {
+
+REALCAM_INLINE unsigned reverse_bits(unsigned v) {
+#if defined(__CUDA_ARCH__)
+    return __brev(v);
+#else
+    v = ((v & 0x55555555u) << 1) | ((v >> 1) & 0x55555555u);
+    v = ((v & 0x33333333u) << 2) | ((v >> 2) & 0x33333333u);
+    v = ((v & 0x0f0f0f0fu) << 4) | ((v >> 4) & 0x0f0f0f0fu);
+    return __builtin_bswap32(v);
+#endif
+}
+
+}  // namespace REALCAM_NAMESPACE

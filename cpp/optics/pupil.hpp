@@ -237,8 +237,9 @@ class Pupil {
         const double radius = image_radius_ * position / kRows;
         const auto direction = [&](int azimuth, double reach) {
             const double angle = std::numbers::pi * azimuth / kAzimuths;
-            return Direction{node.centre + node.half_width * reach * std::cos(angle),
-                             node.half_height * reach * std::sin(angle)};
+            const double width = static_cast<double>(node.half_width), height = static_cast<double>(node.half_height);
+            return Direction{static_cast<double>(node.centre) + width * reach * std::cos(angle),
+                             height * reach * std::sin(angle)};
         };
         constexpr int kRays = kAzimuths + 1;
         int first[kRays], last[kRays];

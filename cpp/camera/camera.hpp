@@ -1,0 +1,157 @@
+#pragma once
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "../optics/focus.hpp"
+#include "../optics/pupil.hpp"
+#include "camera_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline constexpr int kMaxResolution = 32768;
+
+/// The light-sensitive rectangle and its grid of pixels.
+struct Film {
+    double width_mm = 36, height_mm = 24;
+    int width = 960, height = 640;
+};
+
+/// Where the camera stands: the middle of its film, and its axes, in the scene (metres, right-handed, y up).
+struct Pose {
+    Vec3d position_m = {0, 0, 0};
+    Vec3d look_at_m = {0, 0, -1};
+    Vec3d up = {0, 1, 0};
+};
+
+/// Lens, film, pose and the two dials.
+struct Camera {
+    LensSystem lens;
+    Film film;
+    Pose pose;
+    CameraModel model = CameraModel::full_lens;
+    double exposure_time_s = 1.0 / 125;
+    double iso = 100;
+};
+
+/// Throws InputError where the camera cannot take a picture.
+inline void validate(const Camera& camera) {
+    const Film& film = camera.film;
+    if (film.width < 1 || film.height < 1 || film.width > kMaxResolution || film.height > kMaxResolution)
+        throw InputError("the resolution is " + std::to_string(film.width) + " x " + std::to_string(film.height) +
+                         " pixels; 1 to " + std::to_string(kMaxResolution) + " each way are wanted");
+    if (!(film.width_mm > 0) || !(film.height_mm > 0) || !std::isfinite(film.width_mm * film.height_mm))
+        throw InputError("the film's width and height must be positive lengths");
+    if (!(camera.exposure_time_s > 0) || !std::isfinite(camera.exposure_time_s))
+        throw InputError("the exposure time must be a positive number of seconds");
+    if (!(camera.iso > 0) || !std::isfinite(camera.iso)) throw InputError("the ISO number must be positive");
+    if (!(camera.lens.film_distance > 0)) throw InputError("the film must lie behind the last surface of the lens");
+    const Vec3d forward = camera.pose.look_at_m - camera.pose.position_m;
+    const double length_of_cross = length(cross(forward, camera.pose.up));
+    if (!std::isfinite(length_of_cross)) throw InputError("the camera's position, look_at and up must be finite numbers");
+    if (!(length_of_cross > 1e-9 * length(forward) * length(camera.pose.up)))
+        throw InputError("the camera must look at a point other than its position, and not along its up direction");
+}
+
+namespace camera_detail {
+
+struct Axes {
+    Vec3d right, up, backward;
+};
+
+inline Axes axes_of(const Pose& pose) {
+    const Vec3d backward = normalized(pose.position_m - pose.look_at_m);
+    const Vec3d right = normalized(cross(pose.up, backward));
+    return {right, cross(backward, right), backward};
+}
+
+/// Pupil and magnification of the real lens, as an ideal lens in the entrance pupil. The film plane is paraxially
+/// conjugate to the object plane at focus_distance.
+inline ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data) {
+    ThinLens thin{};
+    thin.pupil_radius = static_cast<float>(0.5 * data.entrance_pupil_diameter);
+    thin.image_distance = static_cast<float>(std::fabs(data.effective_focal_length));
+    if (std::isfinite(lens.focus_distance)) {
+        const double object = lens.focus_distance - lens.film_position();  // in front of the first vertex
+        const double to_pupil = object + data.entrance_pupil_position;
+        const ParaxialRay end = trace_paraxial(lens, lens.wavelength_nm, {object, 1}, 0, static_cast<int>(lens.surfaces.size()));
+        thin.image_distance = static_cast<float>(std::fabs(to_pupil / end.slope));
+        thin.inverse_object_distance = static_cast<float>(1 / to_pupil);
+    }
+    return thin;
+}
+
+inline ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
+    const int count = static_cast<int>(lens.surfaces.size());
+    const ParaxialRay height = trace_paraxial(lens, lens.wavelength_nm, {1, 0}, 0, count);
+    const ParaxialRay slope = trace_paraxial(lens, lens.wavelength_nm, {0, 1}, 0, count);
+    ThickLens thick{};
+    thick.A = static_cast<float>(height.height);
+    thick.B = static_cast<float>(slope.height);
+    thick.C = static_cast<float>(height.slope);
+    thick.D = static_cast<float>(slope.slope);
+    // A pupil at infinity is replaced by one 1 km away under the same angle.
+    constexpr double kFar = 1e6;
+    const double distance = lens.film_position() - data.exit_pupil_position;
+    const bool far = !(std::fabs(distance) < kFar);
+    const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
+    const double marginal = 0.5 / data.f_number;  // of a pupil at infinity, where the quotient has no value
+    thick.exit_pupil_distance = static_cast<float>(far ? kFar : distance);
+    thick.exit_pupil_radius = static_cast<float>(far ? kFar * (std::isfinite(tangent) ? tangent : marginal)
+                                                     : 0.5 * data.exit_pupil_diameter);
+    return thick;
+}
+
+}  // namespace camera_detail
+
+/// A camera made ready: owns the tables that its view points to.
+class CameraSetup {
+  public:
+    /// Throws InputError. `tracer`: see Pupil.
+    explicit CameraSetup(const Camera& camera, PupilTracer tracer = nullptr)
+        : camera_(camera), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
+        validate(camera);
+        if (camera.model == CameraModel::full_lens)
+            pupil_ = std::make_unique<Pupil>(camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm),
+                                             std::move(tracer));
+    }
+
+    /// `origin_m`: of the placed scene.
+    CameraView view(Vec3d origin_m) const {
+        using namespace camera_detail;
+        const LensSystem& lens = camera_.lens;
+        const FirstOrder data = first_order(lens, lens.wavelength_nm);
+        const Axes axes = axes_of(camera_.pose);
+        CameraView view{};
+        view.model = camera_.model;
+        view.width = camera_.film.width;
+        view.height = camera_.film.height;
+        view.film_half_width = static_cast<float>(0.5 * camera_.film.width_mm);
+        view.film_half_height = static_cast<float>(0.5 * camera_.film.height_mm);
+        view.film_distance = static_cast<float>(lens.film_distance);
+        view.front_vertex_m = static_cast<float>(0.001 * lens.film_position());
+        view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
+        view.thin = thin_lens_of(lens, data);
+        view.thick = thick_lens_of(lens, data);
+        const double sine = camera_.model == CameraModel::thick_lens
+                                ? view.thick.exit_pupil_radius / view.thick.exit_pupil_distance
+                                : view.thin.pupil_radius / view.thin.image_distance;
+        view.axis_irradiance = static_cast<float>(std::numbers::pi * sine * sine);
+        if (pupil_) view.pupil = pupil_->view();
+        view.lens = path_.view();
+        view.position = static_cast<Vec3f>(camera_.pose.position_m - origin_m);
+        view.right = static_cast<Vec3f>(axes.right);
+        view.up = static_cast<Vec3f>(axes.up);
+        view.backward = static_cast<Vec3f>(axes.backward);
+        return view;
+    }
+
+    const Camera& camera() const { return camera_; }
+
+  private:
+    Camera camera_;
+    LensPath<float> path_;
+    std::unique_ptr<Pupil> pupil_;
+};
+
+}  // namespace REALCAM_NAMESPACE

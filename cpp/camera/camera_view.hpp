@@ -1,0 +1,45 @@
+#pragma once
+#include "../optics/lens_view.hpp"
+#include "../optics/pupil_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// How the film is lit, from the crudest to the real. All have the same film, focus and exposure on the axis.
+enum class CameraModel : int {
+    pinhole,     ///< the entrance pupil's middle: everything sharp
+    thin_lens,   ///< an ideal lens in the entrance pupil: defocus only, light falls off with cos^4
+    thick_lens,  ///< the paraxial matrix of the real lens, with its two pupils and its real film distance
+    full_lens,   ///< every surface of the prescription
+};
+
+/// An ideal lens in its entrance pupil. mm.
+struct ThinLens {
+    float image_distance;           ///< film to pupil that gives the real lens's magnification
+    float inverse_object_distance;  ///< pupil to the plane in focus; 0 at infinity
+    float pupil_radius;
+};
+
+/// The paraxial lens as a matrix from the last vertex back to the front one: h = D h' - B u', u = -C h' + A u'.
+struct ThickLens {
+    float A, B, C, D;
+    float exit_pupil_distance;  ///< film to exit pupil, positive towards the scene, mm
+    float exit_pupil_radius;
+};
+
+struct CameraView {
+    CameraModel model;
+    int width, height;                    ///< pixels
+    float film_half_width, film_half_height;  ///< mm
+    float film_distance;                  ///< last vertex to film, mm
+    float axis_irradiance;  ///< of the ideal models, for unit radiance: pi sin^2(theta')
+    float front_vertex_m;   ///< film to front vertex, metres
+    float pupil_m;          ///< film to entrance pupil, metres
+    ThinLens thin;
+    ThickLens thick;
+    PupilView pupil;
+    LensView<float> lens;
+    Vec3f position;                ///< of the film's middle, relative to the origin of the placed scene, metres
+    Vec3f right, up, backward;     ///< axes of the camera in the scene: x, y, z of the lens frame
+};
+
+}  // namespace REALCAM_NAMESPACE

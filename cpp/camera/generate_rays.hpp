@@ -1,0 +1,156 @@
+#pragma once
+#include <cstdint>
+
+#include "../math/random.hpp"
+#include "../math/sincos.hpp"
+#include "../optics/lens_trace.hpp"
+#include "camera_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Which samples a block of lanes takes. Unused lanes have used = 0 and otherwise valid numbers.
+template <int N>
+struct SampleBlock {
+    alignas(64) std::int32_t column[N], row[N];  ///< of the pixel; row 0 at the top of the picture
+    alignas(64) std::int32_t used[N];
+    alignas(64) std::uint32_t stream[N];  ///< pixel_stream() of the pixel
+    alignas(64) std::uint32_t sample[N];
+
+    REALCAM_INLINE Vec2f random(int lane, std::uint32_t dimension) const {
+        return sample_2d(stream[lane], sample[lane], dimension);
+    }
+};
+
+/// The random sequence of a pixel.
+REALCAM_INLINE std::uint32_t pixel_stream(std::int32_t pixel, std::uint32_t seed) {
+    return hash32(static_cast<std::uint32_t>(pixel), seed);
+}
+
+/// Dimension pairs of the random sequence.
+namespace dimension {
+inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
+}
+
+/// Rays in scene axes, metres, relative to the origin of the placed scene.
+template <int N>
+struct CameraRays {
+    Vec3Lanes<float, N> origin, direction;
+    alignas(64) float weight[N];        ///< times the radiance seen: the sample's irradiance on the film
+    alignas(64) std::int32_t sampled[N];  ///< 1 where a ray was sent into the lens
+    alignas(64) std::int32_t passed[N];   ///< 1 where it left the lens
+};
+
+/// Film point of a sample, mm (source paper, equation 1). The lens turns the picture upside down, so the film's axes
+/// point against the picture's.
+REALCAM_INLINE Vec2f film_point(const CameraView& camera, std::int32_t column, std::int32_t row, Vec2f offset) {
+    const float x = 2.0f * (static_cast<float>(column) + offset.x) / static_cast<float>(camera.width) - 1.0f;
+    const float y = 2.0f * (static_cast<float>(row) + offset.y) / static_cast<float>(camera.height) - 1.0f;
+    return {-x * camera.film_half_width, y * camera.film_half_height};
+}
+
+/// Uniform on the unit disc.
+REALCAM_INLINE Vec2f sample_disc(Vec2f u) {
+    const float radius = std::sqrt(u.y);
+    const Vec2f azimuth = cos_sin_of_turn(u.x);
+    return {radius * azimuth.x, radius * azimuth.y};
+}
+
+struct LensFrameRay {
+    Vec3f origin_mm;  ///< z relative to the front vertex
+    Vec3f direction;
+    float weight;
+};
+
+/// The ideal lens: pupil point P, direction to the point in focus; E = pi sin^2(theta') cos^4.
+REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, Vec2f u, float pupil_radius) {
+    const Vec2f disc = sample_disc(u);
+    const Vec2f p = {pupil_radius * disc.x, pupil_radius * disc.y};
+    const float b = camera.thin.image_distance, a = camera.thin.inverse_object_distance;
+    const float cosine2 = b * b / (b * b + film.x * film.x + film.y * film.y);
+    const Vec3f direction = normalized(Vec3f{-film.x / b - p.x * a, -film.y / b - p.y * a, -1.0f});
+    const float pupil_z = 1000.0f * (camera.front_vertex_m - camera.pupil_m);
+    return {{p.x, p.y, pupil_z}, direction, camera.axis_irradiance * cosine2 * cosine2};
+}
+
+REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film, Vec2f u) {
+    const ThickLens& lens = camera.thick;
+    const Vec2f disc = sample_disc(u);
+    const float z = lens.exit_pupil_distance;
+    // Slopes dx/dz, z growing towards the film.
+    const Vec2f slope = {(film.x - lens.exit_pupil_radius * disc.x) / z, (film.y - lens.exit_pupil_radius * disc.y) / z};
+    const Vec2f last = {film.x - camera.film_distance * slope.x, film.y - camera.film_distance * slope.y};
+    const Vec2f front = {lens.D * last.x - lens.B * slope.x, lens.D * last.y - lens.B * slope.y};
+    const Vec2f out = {lens.A * slope.x - lens.C * last.x, lens.A * slope.y - lens.C * last.y};
+    const float cosine2 = z * z / (z * z + film.x * film.x + film.y * film.y);
+    return {{front.x, front.y, 0.0f}, normalized(Vec3f{-out.x, -out.y, -1.0f}), camera.axis_irradiance * cosine2 * cosine2};
+}
+
+/// From the lens frame to the scene. Lanes without light get a ray that is valid but has no weight.
+template <int N>
+REALCAM_INLINE void place_ray(const CameraView& camera, CameraRays<N>& rays, int lane, LensFrameRay ray, bool lit) {
+    const Vec3f o = select(lit, ray.origin_mm, Vec3f{0, 0, 0});
+    const Vec3f d = select(lit, ray.direction, Vec3f{0, 0, -1});
+    const float z = 0.001f * o.z - camera.front_vertex_m;
+    rays.origin.set(lane, camera.position + (0.001f * o.x) * camera.right + (0.001f * o.y) * camera.up + z * camera.backward);
+    rays.direction.set(lane, d.x * camera.right + d.y * camera.up + d.z * camera.backward);
+    rays.weight[lane] = select(lit, ray.weight, 0.0f);
+}
+
+template <int N, class RayOf>
+REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
+                                           RayOf&& ray_of) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const bool used = block.used[i] != 0;
+        const Vec2f film = film_point(camera, block.column[i], block.row[i], block.random(i, dimension::film));
+        place_ray(camera, rays, i, ray_of(film, block.random(i, dimension::pupil)), used);
+        rays.sampled[i] = rays.passed[i] = block.used[i];
+    }
+}
+
+template <int N>
+REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+    LensRays<float, N> inside;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec2f film = film_point(camera, block.column[i], block.row[i], block.random(i, dimension::film));
+        const Vec2f u = block.random(i, dimension::pupil);
+        const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);
+        inside.origin.set(i, {film.x, film.y, camera.film_distance});
+        inside.direction.set(i, pupil.direction);
+        rays.weight[i] = pupil.weight;
+    }
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        rays.sampled[i] = select(rays.weight[i] > 0.0f, block.used[i], 0);
+        inside.status[i] = select(rays.sampled[i] == 0, static_cast<int>(RayStatus::vignetted), 0);
+    }
+    trace_lens(camera.lens, inside);
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const bool passed = inside.status[i] == 0;
+        place_ray(camera, rays, i, {inside.origin[i], inside.direction[i], rays.weight[i]}, passed);
+        rays.passed[i] = select(passed, 1, 0);
+    }
+}
+
+/// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the
+/// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis.
+template <int N>
+REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+    switch (camera.model) {
+        case CameraModel::pinhole:
+            generate_ideal_rays(camera, block, rays, [&](Vec2f film, Vec2f u) { return thin_lens_ray(camera, film, u, 0.0f); });
+            break;
+        case CameraModel::thin_lens:
+            generate_ideal_rays(camera, block, rays,
+                                [&](Vec2f film, Vec2f u) { return thin_lens_ray(camera, film, u, camera.thin.pupil_radius); });
+            break;
+        case CameraModel::thick_lens:
+            generate_ideal_rays(camera, block, rays, [&](Vec2f film, Vec2f u) { return thick_lens_ray(camera, film, u); });
+            break;
+        case CameraModel::full_lens: generate_lens_rays(camera, block, rays); break;
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,207 @@
+#include "embree_backend.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "../math/lanes.hpp"
+#include "embree_scene.hpp"
+#include "kernels.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kTileSide = 32;
+/// Samples per pixel after which a tile is left and the next begins: bounds the time until a stop takes effect.
+constexpr std::uint32_t kSamplesPerVisit = 256;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The film while it is exposed.
+struct ExposingFilm {
+    int width, height;
+    std::vector<realcam_pixel_sum> sums;
+
+    ExposingFilm(int w, int h) : width(w), height(h), sums(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+
+    Image develop(int spp, double exposure_time_s) const {
+        Image image;
+        image.width = width;
+        image.height = height;
+        image.spp = spp;
+        image.exposure.reserve(3 * sums.size());
+        image.depth.reserve(sums.size());
+        for (const realcam_pixel_sum& sum : sums) {
+            for (double e : sum.irradiance) image.exposure.push_back(static_cast<float>(e * exposure_time_s / spp));
+            image.depth.push_back(sum.hits > 0 ? static_cast<float>(sum.depth / sum.hits) : std::numeric_limits<float>::infinity());
+        }
+        return image;
+    }
+};
+
+class EmbreeBackend final : public Backend {
+  public:
+    EmbreeBackend() : device_(rtcNewDevice(nullptr)) {
+        if (!device_) throw DeviceError("Embree could not be started (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+        kernels();
+    }
+    ~EmbreeBackend() override {
+        scene_.reset();
+        rtcReleaseDevice(device_);
+    }
+
+    std::string name() const override {
+        const auto version = rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION);
+        return "CPU (Embree " + std::to_string(version / 10000) + '.' + std::to_string(version / 100 % 100) + ", x86-64-" +
+               kernels().instruction_set + ", " + std::to_string(tbb::this_task_arena::max_concurrency()) + " threads)";
+    }
+
+    Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera, const RenderSettings& settings,
+                 const Progress& progress) override {
+        const auto start = std::chrono::steady_clock::now();
+        validate(settings);
+        if (!scene || scene->triangles.empty()) throw InputError("the scene is empty; at least one triangle is wanted");
+        const CameraSetup setup(camera, fast_pupil_tracer());
+        tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+        arena.execute([&] { place(scene, camera); });
+        const SceneView scene_view = scene_->placed().view();
+        const CameraView camera_view = setup.view(scene_->placed().origin_m());
+
+        ExposingFilm film(camera.film.width, camera.film.height);
+        RenderStats stats;
+        stats.setup_seconds = seconds_since(start);
+        expose(arena, scene_view, camera_view, settings, progress, film, stats);
+        Image image = film.develop(settings.spp, camera.exposure_time_s);
+        stats.device = name();
+        stats.seconds = seconds_since(start);
+        image.stats = stats;
+        return image;
+    }
+
+  private:
+    /// The scene is moved to the camera. It stays where it is while the camera moves by little: at ten focus distances
+    /// (or 10 m) float32 still resolves a hundredth of a pixel's width at the plane in focus.
+    void place(const std::shared_ptr<const Scene>& scene, const Camera& camera) {
+        const double focus = std::isfinite(camera.lens.focus_distance) ? camera.lens.focus_distance / 1000 : 1.0;
+        const Vec3d position = camera.pose.position_m;
+        if (scene_ && scene_->scene() == scene && length(position - scene_->placed().origin_m()) <= 10 * focus) return;
+        scene_.reset();
+        scene_ = std::make_unique<EmbreeScene>(device_, scene, position);
+    }
+
+    void expose(tbb::task_arena& arena, const SceneView& scene_view, const CameraView& camera_view,
+                const RenderSettings& settings, const Progress& progress, ExposingFilm& film, RenderStats& stats) {
+        const int columns = (film.width + kTileSide - 1) / kTileSide, rows = (film.height + kTileSide - 1) / kTileSide;
+        std::atomic<bool> stop{false};
+        std::atomic<std::int64_t> done{0};
+        std::mutex stats_mutex;
+        const auto visit = [&](int index, std::uint32_t first, std::uint32_t count) {
+            if (stop) return;
+            realcam_tile tile{};
+            tile.scene_view = &scene_view;
+            tile.camera_view = &camera_view;
+            tile.embree_scene = scene_->handle();
+            tile.x = index % columns * kTileSide;
+            tile.y = index / columns * kTileSide;
+            tile.width = std::min(kTileSide, film.width - tile.x);
+            tile.height = std::min(kTileSide, film.height - tile.y);
+            tile.first_sample = first;
+            tile.sample_count = count;
+            tile.seed = settings.seed;
+            tile.max_bounces = settings.max_bounces;
+            std::vector<realcam_pixel_sum> sums(static_cast<std::size_t>(tile.width * tile.height));
+            tile.sums = sums.data();
+            kernels().render_tile(&tile);
+            for (int y = 0; y < tile.height; ++y)
+                for (int x = 0; x < tile.width; ++x) {
+                    const realcam_pixel_sum& from = sums[static_cast<std::size_t>(y * tile.width + x)];
+                    realcam_pixel_sum& to = film.sums[static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(tile.x + x)];
+                    for (int c = 0; c < 3; ++c) to.irradiance[c] += from.irradiance[c];
+                    to.depth += from.depth;
+                    to.hits += from.hits;
+                }
+            done += static_cast<std::int64_t>(count) * tile.width * tile.height;
+            const std::lock_guard lock(stats_mutex);
+            stats.lens_seconds += tile.lens_seconds;
+            stats.scene_seconds += tile.scene_seconds;
+            stats.other_seconds += tile.other_seconds;
+            stats.sampled_rays += tile.sampled_rays;
+            stats.passed_rays += tile.passed_rays;
+            stats.scene_rays += tile.scene_rays;
+        };
+        const auto all = static_cast<std::uint32_t>(settings.spp);
+        const auto work = [&] {
+            arena.execute([&] {
+                for (std::uint32_t first = 0; first < all && !stop; first += kSamplesPerVisit)
+                    tbb::parallel_for(0, columns * rows, [&](int tile) { visit(tile, first, std::min(kSamplesPerVisit, all - first)); });
+            });
+        };
+        const double total = static_cast<double>(all) * film.width * film.height;
+        run_with_progress(work, [&] { return static_cast<double>(done) / total; }, progress, stop);
+        if (stop) throw Cancelled();
+    }
+
+    /// Runs `work` on a thread of its own, so that the caller's thread is free to report and to stop it.
+    template <class Work, class Share>
+    static void run_with_progress(Work&& work, Share&& share, const Progress& progress, std::atomic<bool>& stop) {
+        if (!progress) {
+            work();
+            return;
+        }
+        std::mutex mutex;
+        std::condition_variable finished;
+        bool over = false;
+        std::exception_ptr failure;
+        std::thread worker([&] {
+            try {
+                work();
+            } catch (...) {
+                failure = std::current_exception();
+            }
+            const std::lock_guard lock(mutex);
+            over = true;
+            finished.notify_all();
+        });
+        std::exception_ptr callers_failure;
+        std::unique_lock lock(mutex);
+        while (!finished.wait_for(lock, std::chrono::milliseconds(50), [&] { return over; })) {
+            lock.unlock();
+            try {
+                if (!stop && !progress(share())) stop = true;
+            } catch (...) {
+                callers_failure = std::current_exception();
+                stop = true;
+            }
+            lock.lock();
+        }
+        lock.unlock();
+        worker.join();
+        if (callers_failure) std::rethrow_exception(callers_failure);
+        if (failure) std::rethrow_exception(failure);
+        if (!stop) progress(1.0);
+    }
+
+    RTCDevice device_;
+    std::unique_ptr<EmbreeScene> scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_embree_backend() { return std::make_unique<EmbreeBackend>(); }
+
+PupilTracer fast_pupil_tracer() {
+    const auto trace = kernels().trace_block;
+    return [trace](const LensView<float>& view, LensRays<float, 256>& rays) { trace(&view, &rays); };
+}
+
+}  // namespace realcam

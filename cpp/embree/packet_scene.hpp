@@ -1,0 +1,78 @@
+#pragma once
+#include "../render/render_samples.hpp"
+#include "embree_api.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The SceneT of render_samples on a CPU: hands the lanes to Embree in packets of 16.
+struct PacketScene {
+    RTCScene scene;
+    RayOrder order;
+    std::uint64_t rays_traced;
+
+    template <int N>
+    void intersect(const SceneRays<N>& rays, Hits<N>& hits) {
+        for (int first = 0; first < N; first += 16) {
+            RTCRayHit16 packet;
+            alignas(64) int valid[16];
+            const int used = load(rays, first, packet.ray, valid);
+            if (used == 0) continue;
+            REALCAM_LANES
+            for (int k = 0; k < 16; ++k) {
+                packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+                packet.hit.primID[k] = kNoTriangle;
+            }
+            intersect16(valid, scene, order, &packet);
+            REALCAM_LANES
+            for (int k = 0; k < 16; ++k) {
+                hits.distance[first + k] = packet.ray.tfar[k];
+                hits.triangle[first + k] = packet.hit.primID[k];
+                hits.u[first + k] = packet.hit.u[k];
+                hits.v[first + k] = packet.hit.v[k];
+            }
+            rays_traced += static_cast<std::uint64_t>(used);
+        }
+        order = RayOrder::incoherent;  // what follows the camera rays is scattered
+    }
+
+    template <int N>
+    void occluded(const SceneRays<N>& rays, std::int32_t (&hidden)[N]) {
+        for (int first = 0; first < N; first += 16) {
+            RTCRay16 packet;
+            alignas(64) int valid[16];
+            const int used = load(rays, first, packet, valid);
+            if (used == 0) continue;
+            occluded16(valid, scene, order, &packet);
+            REALCAM_LANES
+            for (int k = 0; k < 16; ++k) hidden[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;  // Embree's mark
+            rays_traced += static_cast<std::uint64_t>(used);
+        }
+    }
+
+  private:
+    template <int N>
+    static int load(const SceneRays<N>& rays, int first, RTCRay16& packet, int (&valid)[16]) {
+        int used = 0;
+        REALCAM_LANES
+        for (int k = 0; k < 16; ++k) {
+            const int i = first + k;
+            packet.org_x[k] = rays.origin.x[i];
+            packet.org_y[k] = rays.origin.y[i];
+            packet.org_z[k] = rays.origin.z[i];
+            packet.dir_x[k] = rays.direction.x[i];
+            packet.dir_y[k] = rays.direction.y[i];
+            packet.dir_z[k] = rays.direction.z[i];
+            packet.tnear[k] = 0.0f;
+            packet.tfar[k] = rays.far[i];
+            packet.time[k] = 0.0f;
+            packet.mask[k] = 0xffffffffu;
+            packet.id[k] = 0;
+            packet.flags[k] = 0;
+            valid[k] = rays.active[i] ? -1 : 0;
+            used += rays.active[i] ? 1 : 0;
+        }
+        return used;
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,184 @@
+#include "json.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+#include <utility>
+
+namespace realcam::io {
+namespace {
+
+class Parser {
+  public:
+    explicit Parser(std::string_view text) : text_(text) {}
+
+    Json document() {
+        Json value = parse_value(0);
+        skip_space();
+        if (at_ < text_.size()) fail("nothing more");
+        return value;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& wanted) const {
+        const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+        throw std::runtime_error("line " + std::to_string(line) + ": " + wanted + " is wanted");
+    }
+
+    void skip_space() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
+
+    bool take(std::string_view word) {
+        skip_space();
+        if (!text_.substr(at_).starts_with(word)) return false;
+        at_ += word.size();
+        return true;
+    }
+
+    void need(std::string_view word) {
+        if (!take(word)) fail("'" + std::string(word) + "'");
+    }
+
+    Json parse_value(int depth) {
+        if (depth > 200) fail("less nesting");
+        if (take("{")) return parse_object(depth);
+        if (take("[")) return parse_array(depth);
+        if (take("\"")) return Json(parse_string());
+        if (take("true")) return Json(true);
+        if (take("false")) return Json(false);
+        if (take("null")) return Json();
+        double value = 0;
+        const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+        if (error != std::errc()) fail("a value");
+        at_ = static_cast<std::size_t>(end - text_.data());
+        return Json(value);
+    }
+
+    Json parse_object(int depth) {
+        Json::Object members;
+        if (take("}")) return Json(std::move(members));
+        do {
+            need("\"");
+            std::string name = parse_string();
+            need(":");
+            members.insert_or_assign(std::move(name), parse_value(depth + 1));
+        } while (take(","));
+        need("}");
+        return Json(std::move(members));
+    }
+
+    Json parse_array(int depth) {
+        Json::Array elements;
+        if (take("]")) return Json(std::move(elements));
+        do {
+            elements.push_back(parse_value(depth + 1));
+        } while (take(","));
+        need("]");
+        return Json(std::move(elements));
+    }
+
+    // After the opening quote.
+    std::string parse_string() {
+        std::string out;
+        while (at_ < text_.size() && text_[at_] != '"') {
+            if (text_[at_] != '\\') {
+                // Embedded buffers are strings of megabytes.
+                const std::size_t end = std::min(text_.find_first_of("\"\\", at_), text_.size());
+                out += text_.substr(at_, end - at_);
+                at_ = end;
+            } else {
+                parse_escape(out);
+            }
+        }
+        if (at_ == text_.size()) fail("'\"'");
+        ++at_;
+        return out;
+    }
+
+    void parse_escape(std::string& out) {
+        const char code = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
+        at_ += 2;
+        constexpr std::string_view codes = "\"\\/bfnrt", characters = "\"\\/\b\f\n\r\t";
+        if (const auto i = codes.find(code); i != std::string_view::npos && code != '\0') {
+            out += characters[i];
+        } else if (code == 'u') {
+            unsigned point = hex4();
+            if (point >= 0xd800 && point < 0xdc00 && text_.substr(at_).starts_with("\\u")) {
+                at_ += 2;
+                point = 0x10000 + ((point - 0xd800) << 10) + (hex4() - 0xdc00);
+            }
+            add_utf8(out, point);
+        } else {
+            at_ = std::min(at_, text_.size());
+            fail("an escape of JSON after '\\'");
+        }
+    }
+
+    unsigned hex4() {
+        unsigned value = 0;
+        const std::string_view digits = text_.substr(std::min(at_, text_.size()), 4);
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+        if (error != std::errc() || end != digits.data() + 4) fail("four hexadecimal digits after '\\u'");
+        at_ += 4;
+        return value;
+    }
+
+    static void add_utf8(std::string& out, unsigned point) {
+        const auto add = [&](unsigned byte) { out += static_cast<char>(byte); };
+        if (point < 0x80) return add(point);
+        if (point < 0x800) {
+            add(0xc0 | (point >> 6));
+        } else {
+            if (point < 0x10000) {
+                add(0xe0 | (point >> 12));
+            } else {
+                add(0xf0 | ((point >> 18) & 7));
+                add(0x80 | ((point >> 12) & 0x3f));
+            }
+            add(0x80 | ((point >> 6) & 0x3f));
+        }
+        add(0x80 | (point & 0x3f));
+    }
+
+    std::string_view text_;
+    std::size_t at_ = 0;
+};
+
+const Json none;
+
+}  // namespace
+
+Json Json::parse(std::string_view text) { return Parser(text).document(); }
+
+const Json& Json::operator[](std::string_view name) const {
+    const auto* object = std::get_if<Object>(&value_);
+    if (!object) return none;
+    const auto found = object->find(name);
+    return found == object->end() ? none : found->second;
+}
+
+const Json& Json::operator[](std::size_t i) const {
+    const auto* array = std::get_if<Array>(&value_);
+    return array && i < array->size() ? (*array)[i] : none;
+}
+
+std::size_t Json::size() const {
+    const auto* array = std::get_if<Array>(&value_);
+    return array ? array->size() : 0;
+}
+
+double Json::number(double otherwise) const {
+    const auto* value = std::get_if<double>(&value_);
+    return value ? *value : otherwise;
+}
+
+std::size_t Json::index(std::size_t otherwise) const {
+    const auto* value = std::get_if<double>(&value_);
+    return value && *value >= 0 && *value < 4294967296.0 ? static_cast<std::size_t>(*value) : otherwise;
+}
+
+std::string Json::text() const {
+    const auto* value = std::get_if<std::string>(&value_);
+    return value ? *value : std::string();
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,47 @@
+#pragma once
+// As much JSON as a glTF file needs: reading, and asking for what may be absent.
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace realcam::io {
+
+class Json {
+  public:
+    using Array = std::vector<Json>;
+    using Object = std::map<std::string, Json, std::less<>>;
+
+    Json() = default;
+    Json(bool value) : value_(value) {}
+    Json(double value) : value_(value) {}
+    Json(std::string value) : value_(std::move(value)) {}
+    Json(Array value) : value_(std::move(value)) {}
+    Json(Object value) : value_(std::move(value)) {}
+
+    /// Throws std::runtime_error, with the line, if the text is no JSON.
+    static Json parse(std::string_view text);
+
+    /// The member or element, or null (a Json that is_null()) if there is none or this is something else.
+    const Json& operator[](std::string_view name) const;
+    const Json& operator[](const char* name) const { return (*this)[std::string_view(name)]; }
+    const Json& operator[](std::size_t index) const;
+
+    bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
+    bool is_number() const { return std::holds_alternative<double>(value_); }
+    /// Elements of an array; 0 for anything else.
+    std::size_t size() const;
+    double number(double otherwise) const;
+    /// A whole number of at least 0, as glTF counts and numbers things.
+    std::size_t index(std::size_t otherwise) const;
+    /// Empty for anything but a string.
+    std::string text() const;
+
+  private:
+    std::variant<std::monostate, bool, double, std::string, Array, Object> value_;
+};
+
+}  // namespace realcam::io

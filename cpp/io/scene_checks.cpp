@@ -1,0 +1,160 @@
+#include "scene_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../error.hpp"
+
+namespace realcam::io {
+namespace {
+
+// Squares of it are still far from the largest float.
+constexpr double farthest_m = 1e15;
+
+bool finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_light(Vec3f v) { return finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
+bool in_reach(double v) { return std::abs(v) <= farthest_m; }
+bool in_reach(Vec3d v) { return in_reach(v.x) && in_reach(v.y) && in_reach(v.z); }
+
+class Checker {
+  public:
+    Checker(const Scene& scene, const std::string& file) : scene_(scene), file_(file) {}
+
+    void check() const {
+        if (scene_.triangles.empty()) {
+            throw SceneFileError((file_.empty() ? "the scene" : file_ + ":") + std::string(" holds no triangles"));
+        }
+        check_vertices();
+        check_triangles();
+        check_materials();
+        check_textures();
+        check_lights();
+        check_environment();
+    }
+
+  private:
+    void require(bool good, const std::string& what, std::size_t index, const std::string& wanted) const {
+        if (!good) fail(what + " " + std::to_string(index) + ": " + wanted);
+    }
+    [[noreturn]] void fail(const std::string& message) const {
+        if (file_.empty()) throw InputError("scene: " + message);
+        throw SceneFileError(file_ + ": " + message);
+    }
+
+    void check_vertices() const {
+        const std::size_t count = scene_.positions_m.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            if (!in_reach(scene_.positions_m[i])) {
+                require(false, "vertex", i, "coordinates must be finite numbers of at most 1e15 m");
+            }
+        }
+        const auto one_each = [&](std::size_t size, const char* what) {
+            if (size != 0 && size != count) {
+                fail(std::to_string(size) + " " + what + " for " + std::to_string(count) +
+                     " vertices; none or one for each is wanted");
+            }
+        };
+        one_each(scene_.normals.size(), "normals");
+        one_each(scene_.uvs.size(), "texture coordinates");
+        for (std::size_t i = 0; i < scene_.normals.size(); ++i) {
+            if (!finite(scene_.normals[i])) require(false, "normal", i, "must be finite numbers");
+        }
+        for (std::size_t i = 0; i < scene_.uvs.size(); ++i) {
+            if (!std::isfinite(scene_.uvs[i].x) || !std::isfinite(scene_.uvs[i].y)) {
+                require(false, "texture coordinate", i, "must be finite numbers");
+            }
+        }
+    }
+
+    void check_triangles() const {
+        const auto out_of = [&](std::size_t t, std::uint32_t index, const char* what, std::size_t count) {
+            fail("triangle " + std::to_string(t) + ": " + what + " " + std::to_string(index) +
+                 " does not exist; there are " + std::to_string(count));
+        };
+        for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
+            const Triangle& triangle = scene_.triangles[t];
+            for (const std::uint32_t v : triangle.vertices) {
+                if (v >= scene_.positions_m.size()) out_of(t, v, "vertex", scene_.positions_m.size());
+            }
+            if (triangle.material >= scene_.materials.size()) {
+                out_of(t, triangle.material, "material", scene_.materials.size());
+            }
+        }
+    }
+
+    void check_materials() const {
+        const auto textures = static_cast<std::int64_t>(scene_.textures.size());
+        for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+            const Material& m = scene_.materials[i];
+            require(is_light(m.diffuse), "material", i, "diffuse reflectance must be finite and not negative");
+            require(is_light(m.specular), "material", i, "specular reflectance must be finite and not negative");
+            require(std::isfinite(m.shininess) && m.shininess >= 0, "material", i,
+                    "the Phong exponent must be finite and not negative");
+            require(is_light(m.emission), "material", i, "emission, in cd/m^2, must be finite and not negative");
+            require(m.diffuse_texture >= -1 && m.diffuse_texture < textures, "material", i,
+                    "texture " + std::to_string(m.diffuse_texture) + " does not exist; there are " +
+                        std::to_string(textures));
+            require(m.diffuse_texture < 0 || !scene_.uvs.empty(), "material", i,
+                    "has a texture, and the vertices have no texture coordinates");
+        }
+    }
+
+    void check_textures() const {
+        for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
+            const Texture& t = scene_.textures[i];
+            require(t.width > 0 && t.height > 0 &&
+                        t.rgba.size() == std::size_t{4} * static_cast<std::size_t>(t.width) *
+                                             static_cast<std::size_t>(t.height),
+                    "texture", i, "width x height x 4 bytes are wanted");
+        }
+    }
+
+    void check_lights() const {
+        for (std::size_t i = 0; i < scene_.points.size(); ++i) {
+            require(in_reach(scene_.points[i].position_m), "point light", i, "its position must be finite");
+            require(is_light(scene_.points[i].intensity), "point light", i,
+                    "its intensity, in cd, must be finite and not negative");
+        }
+        for (std::size_t i = 0; i < scene_.suns.size(); ++i) {
+            const Vec3f d = scene_.suns[i].direction;
+            require(finite(d) && std::abs(length(d) - 1.0f) < 1e-3f, "sun", i, "its direction must have length 1");
+            require(is_light(scene_.suns[i].illuminance), "sun", i,
+                    "its illuminance, in lux, must be finite and not negative");
+        }
+    }
+
+    void check_environment() const {
+        const Environment& e = scene_.environment;
+        if (!is_light(e.constant)) fail("environment: radiance, in cd/m^2, must be finite and not negative");
+        if (e.pixels.empty()) return;
+        if (e.width <= 0 || e.height <= 0 ||
+            e.pixels.size() != static_cast<std::size_t>(e.width) * static_cast<std::size_t>(e.height)) {
+            fail("environment: width x height pixels are wanted");
+        }
+        if (!std::all_of(e.pixels.begin(), e.pixels.end(), is_light)) {
+            fail("environment: radiance, in cd/m^2, must be finite and not negative in every pixel");
+        }
+    }
+
+    const Scene& scene_;
+    const std::string& file_;
+};
+
+}  // namespace
+
+void validate(const Scene& scene, const std::string& file) { Checker(scene, file).check(); }
+
+bool is_degenerate(const Scene& scene, const Triangle& triangle) {
+    const Vec3d a = scene.positions_m[triangle.vertices[0]], b = scene.positions_m[triangle.vertices[1]],
+                c = scene.positions_m[triangle.vertices[2]];
+    const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+    const double twice_area = length(cross(b - a, c - a));
+    // Renderers normalise the cross product in float, whose square must not underflow.
+    return !(twice_area > 2e-18) || !(twice_area > 1e-12 * longest);
+}
+
+std::size_t drop_degenerate_triangles(Scene& scene) {
+    return std::erase_if(scene.triangles, [&](const Triangle& t) { return is_degenerate(scene, t); });
+}
+
+}  // namespace realcam::io

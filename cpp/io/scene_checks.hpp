@@ -1,0 +1,22 @@
+#pragma once
+// Whether a scene makes sense, whoever built it. Here and not beside Scene, because the core throws nothing.
+
+#include <cstddef>
+#include <string>
+
+#include "../scene/scene.hpp"
+
+namespace realcam::io {
+
+/// Checks everything that a renderer relies on: sizes of lists, indices, finite numbers, no negative light or
+/// reflectance. Throws SceneFileError if there is no triangle or if `file`, for the message, is given, and InputError
+/// otherwise; the message names the element, counted from 0.
+void validate(const Scene& scene, const std::string& file = {});
+
+/// No area to speak of: less than (1 nm)^2, or thinner than 1e-12 of its length. Its indices have to be in range.
+bool is_degenerate(const Scene& scene, const Triangle& triangle);
+
+/// Returns how many triangles it dropped.
+std::size_t drop_degenerate_triangles(Scene& scene);
+
+}  // namespace realcam::io

@@ -1,0 +1,48 @@
+#pragma once
+// Scenes from files: OBJ with MTL, glTF 2.0 (.gltf, .glb) and PLY.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../scene/scene.hpp"
+
+namespace realcam::io {
+
+/// 8-bit sRGB with alpha, row 0 at the top, rows without padding: rgba.size() == 4 * width * height.
+struct DecodedImage {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+/// Decodes one picture: from the file `path`, or, where `path` is empty, from the bytes of a PNG or JPEG that the
+/// scene file carries inside. Returns nothing if it cannot; the scene then gets a stand-in and a warning.
+using ImageReader =
+    std::function<std::optional<DecodedImage>(const std::string& path, std::span<const std::uint8_t> encoded_bytes)>;
+
+struct SceneFileOptions {
+    double scale = 1.0;  ///< metres per unit of the file
+};
+
+/// Reads a scene; the suffix picks the format. Throws SceneFileError if the file cannot be used, InputError for a
+/// scale that makes no sense. What could be put up with is in Scene::warnings.
+///
+/// Geometry: nodes are flattened, transforms applied in double precision; mirrored ones keep outward faces outward.
+/// Coordinates of the file itself are taken as float: put far-away objects under a translated node. Triangles
+/// without area are dropped. glTF meshes without normals are flat, as that format demands; OBJ and PLY say nothing,
+/// and get smooth normals where faces share vertices and meet at less than 45 degrees.
+///
+/// Materials: MTL's Kd, map_Kd, Ks, Ns (Phong exponent) and Ke (radiance, cd/m^2) are taken as they are. glTF's
+/// metallic-roughness model becomes a diffuse and a Phong lobe (see scene_materials.cpp), with their sum at most 1;
+/// emissiveFactor times KHR_materials_emissive_strength is radiance in cd/m^2. Of metallic-roughness and emissive
+/// maps the average is used.
+///
+/// Lights: KHR_lights_punctual, candela and lux; a spot light shines in all directions. Cameras are ignored.
+///
+/// `scale` applies to lengths alone; light keeps its units.
+Scene read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);
+
+}  // namespace realcam::io

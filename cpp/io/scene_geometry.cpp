@@ -1,0 +1,158 @@
+#include "scene_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "../error.hpp"
+#include "affine.hpp"
+#include "scene_checks.hpp"
+#include "scene_normals.hpp"
+#include "texture_transform.hpp"
+#include "vertex_welding.hpp"
+
+namespace realcam::io {
+namespace {
+
+Vec3d as_vec3d(const aiVector3D& v) { return {double(v.x), double(v.y), double(v.z)}; }
+
+class Flattener {
+  public:
+    Flattener(Scene& scene, const ImportedScene& file, const std::string& path, double scale)
+        : scene_(scene), file_(file), path_(path), scale_(scale) {
+        const aiScene& content = file.content();
+        for (unsigned m = 0; m < content.mNumMeshes; ++m) {
+            any_normals_ |= content.mMeshes[m]->HasNormals();
+            any_uvs_ |= content.mMeshes[m]->HasTextureCoords(uv_channel(*content.mMeshes[m]));
+        }
+    }
+
+    void add_node(const aiNode& node, const Affine& parent) {
+        const Affine transform = parent * file_.transform(node);
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(node.mMeshes[i], transform);
+        for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], transform);
+    }
+
+    void finish() {
+        drop_triangles();
+        if (!smooth_.empty()) smooth_normals(scene_, smooth_);
+        weld_vertices(scene_);
+        const auto count = [&](std::size_t n, const char* what) {
+            if (n > 0) scene_.warnings.push_back(path_ + ": " + std::to_string(n) + what);
+        };
+        count(dropped_, dropped_ == 1 ? " triangle without area dropped" : " triangles without area dropped");
+        count(bad_normals_, " normals are no finite numbers; their faces are flat there");
+        count(bad_uvs_, " texture coordinates are no finite numbers, 0 taken");
+        count(uncovered_, " meshes have a texture and no coordinates for it");
+        count(coloured_, " meshes have colours at their vertices, which are not read");
+    }
+
+  private:
+    const Json& texture_info(const aiMesh& mesh) const {
+        const GltfDocument* gltf = file_.gltf();
+        return gltf ? gltf->material(mesh.mMaterialIndex)["pbrMetallicRoughness"]["baseColorTexture"] : none_;
+    }
+
+    unsigned uv_channel(const aiMesh& mesh) const {
+        const Json& moved = texture_info(mesh)["extensions"]["KHR_texture_transform"]["texCoord"];
+        if (moved.is_number()) return static_cast<unsigned>(std::min<std::size_t>(moved.index(0), 7));
+        int channel = 0;
+        file_.content().mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_UVWSRC_DIFFUSE(0), channel);
+        return channel >= 0 && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS ? static_cast<unsigned>(channel) : 0u;
+    }
+
+    void add_mesh(unsigned index, const Affine& transform) {
+        const aiMesh& mesh = *file_.content().mMeshes[index];
+        const std::size_t first = scene_.positions_m.size();
+        if (first + mesh.mNumVertices > std::numeric_limits<std::uint32_t>::max()) {
+            throw SceneFileError(path_ + ": more than 4294967295 vertices");
+        }
+        add_vertices(mesh, transform);
+
+        const bool smooth = !mesh.HasNormals() && file_.format() != SceneFormat::gltf;
+        const bool mirrored = transform.determinant() < 0;
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices != 3) continue;  // points and lines
+            Triangle t{{0, 0, 0}, mesh.mMaterialIndex};
+            for (int i = 0; i < 3; ++i) t.vertices[i] = static_cast<std::uint32_t>(first + face.mIndices[i]);
+            if (mirrored) std::swap(t.vertices[1], t.vertices[2]);
+            if (smooth) smooth_.push_back(static_cast<std::uint32_t>(scene_.triangles.size()));
+            scene_.triangles.push_back(t);
+        }
+    }
+
+    void add_vertices(const aiMesh& mesh, const Affine& transform) {
+        const aiVector3D* uvs = mesh.mTextureCoords[uv_channel(mesh)];
+        const TextureTransform move_uv(texture_info(mesh));
+        aiString texture;
+        const aiMaterial& material = *file_.content().mMaterials[mesh.mMaterialIndex];
+        if (!uvs && material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) ++uncovered_;
+        if (mesh.HasVertexColors(0)) ++coloured_;
+
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+            scene_.positions_m.push_back(scale_ * transform.point(as_vec3d(mesh.mVertices[v])));
+            if (any_normals_) scene_.normals.push_back(mesh.HasNormals() ? normal(mesh.mNormals[v], transform) : Vec3f{});
+            if (any_uvs_) scene_.uvs.push_back(uvs ? uv(uvs[v], move_uv) : Vec2f{});
+        }
+    }
+
+    Vec3f normal(const aiVector3D& given, const Affine& transform) {
+        if (!std::isfinite(given.x + given.y + given.z)) {
+            ++bad_normals_;
+            return {0, 0, 0};
+        }
+        const Vec3d n = transform.normal(as_vec3d(given));
+        const double size = length(n);
+        return size > 0 && std::isfinite(size) ? static_cast<Vec3f>((1 / size) * n) : Vec3f{0, 0, 0};
+    }
+
+    Vec2f uv(const aiVector3D& given, const TextureTransform& move) {
+        if (std::isfinite(given.x + given.y)) return move(given.x, given.y);
+        ++bad_uvs_;
+        return {0, 0};
+    }
+
+    // Like drop_degenerate_triangles, but the list of those to be smoothed has to follow.
+    void drop_triangles() {
+        std::vector<bool> is_smooth(scene_.triangles.size(), false);
+        for (const std::uint32_t t : smooth_) is_smooth[t] = true;
+        smooth_.clear();
+        std::size_t kept = 0;
+        for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
+            if (is_degenerate(scene_, scene_.triangles[t])) continue;
+            if (is_smooth[t]) smooth_.push_back(static_cast<std::uint32_t>(kept));
+            scene_.triangles[kept++] = scene_.triangles[t];
+        }
+        dropped_ = scene_.triangles.size() - kept;
+        scene_.triangles.resize(kept);
+    }
+
+    Scene& scene_;
+    const ImportedScene& file_;
+    const std::string& path_;
+    double scale_;
+    bool any_normals_ = false, any_uvs_ = false;
+    std::vector<std::uint32_t> smooth_;
+    const Json none_;
+    std::size_t dropped_ = 0, bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0, coloured_ = 0;
+};
+
+}  // namespace
+
+void read_geometry(Scene& scene, const ImportedScene& file, const std::string& path, double scale) {
+    Flattener flattener(scene, file, path, scale);
+    if (file.content().mRootNode) flattener.add_node(*file.content().mRootNode, Affine());
+    if (scene.triangles.empty()) {
+        throw SceneFileError(path + ": holds no triangles" +
+                             (scene.positions_m.empty() ? "" : ", only points or lines"));
+    }
+    flattener.finish();
+    if (scene.triangles.empty()) throw SceneFileError(path + ": all of its triangles are without area");
+    if (scene.uvs.empty()) {
+        for (Material& material : scene.materials) material.diffuse_texture = -1;
+    }
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,68 @@
+#include "vertex_welding.hpp"
+
+#include <utility>
+
+namespace realcam::io {
+namespace {
+
+std::uint64_t mix(std::uint64_t state, std::uint64_t value) {
+    state = (state ^ value) * 0x9e3779b97f4a7c15ull;
+    return state ^ (state >> 29);
+}
+
+bool same(Vec3d a, Vec3d b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+bool same(Vec3f a, Vec3f b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+bool same(Vec2f a, Vec2f b) { return a.x == b.x && a.y == b.y; }
+
+template <class T>
+void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
+    if (values.empty()) return;
+    std::vector<T> fewer;
+    fewer.reserve(kept.size());
+    for (const std::uint32_t i : kept) fewer.push_back(values[i]);
+    values = std::move(fewer);
+}
+
+}  // namespace
+
+std::uint64_t hash_of(Vec3d p) {
+    std::uint64_t state = 0;
+    // + 0.0: equal numbers have to have equal bits, and -0 has not.
+    for (const double value : {p.x, p.y, p.z}) state = mix(state, std::bit_cast<std::uint64_t>(value + 0.0));
+    return mix(state, state >> 32);
+}
+
+void weld_vertices(Scene& scene) {
+    const auto hash = [&](std::size_t i) {
+        std::uint64_t state = hash_of(scene.positions_m[i]);
+        const auto add = [&](float value) { state = mix(state, std::bit_cast<std::uint32_t>(value + 0.0f)); };
+        if (!scene.normals.empty()) add(scene.normals[i].x), add(scene.normals[i].y), add(scene.normals[i].z);
+        if (!scene.uvs.empty()) add(scene.uvs[i].x), add(scene.uvs[i].y);
+        return mix(state, state >> 32);
+    };
+    const auto equal = [&](std::size_t a, std::size_t b) {
+        return same(scene.positions_m[a], scene.positions_m[b]) &&
+               (scene.normals.empty() || same(scene.normals[a], scene.normals[b])) &&
+               (scene.uvs.empty() || same(scene.uvs[a], scene.uvs[b]));
+    };
+    const std::vector<std::uint32_t> first = first_equal(scene.positions_m.size(), hash, equal);
+
+    std::vector<bool> used(first.size(), false);
+    for (const Triangle& t : scene.triangles) {
+        for (const std::uint32_t v : t.vertices) used[first[v]] = true;
+    }
+    std::vector<std::uint32_t> kept, number(first.size(), 0);
+    for (std::uint32_t v = 0; v < first.size(); ++v) {
+        if (!used[v]) continue;
+        number[v] = static_cast<std::uint32_t>(kept.size());
+        kept.push_back(v);
+    }
+    for (Triangle& t : scene.triangles) {
+        for (std::uint32_t& v : t.vertices) v = number[first[v]];
+    }
+    keep(scene.positions_m, kept);
+    keep(scene.normals, kept);
+    keep(scene.uvs, kept);
+}
+
+}  // namespace realcam::io

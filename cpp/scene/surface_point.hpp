@@ -1,0 +1,78 @@
+#pragma once
+#include "../math/lanes.hpp"
+#include "scene_view.hpp"
+#include "texture.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+
+/// What traversal says of a ray: the nearest triangle, and where on it.
+struct Hit {
+    float distance;
+    std::uint32_t triangle;  ///< kNoTriangle: none
+    float u, v;              ///< barycentric, of the second and third corner
+};
+
+template <int N>
+struct Hits {
+    alignas(64) float distance[N];
+    alignas(64) std::uint32_t triangle[N];
+    alignas(64) float u[N], v[N];
+
+    REALCAM_INLINE Hit operator[](int lane) const { return {distance[lane], triangle[lane], u[lane], v[lane]}; }
+};
+
+/// A point on a surface, turned to the side from which the ray came.
+struct SurfacePoint {
+    Vec3f position;
+    Vec3f geometric_normal;
+    Vec3f normal;  ///< interpolated
+    Vec3f diffuse, specular;
+    float shininess;
+    Vec3f emission;     ///< radiance towards the ray's origin
+    float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
+};
+
+REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_direction) {
+    const Triangle triangle = scene.triangles[hit.triangle];
+    const std::uint32_t* corner = triangle.vertices;
+    const Vec3f a = scene.positions[corner[0]], b = scene.positions[corner[1]], c = scene.positions[corner[2]];
+    const float w = 1.0f - hit.u - hit.v;
+    const Material& material = scene.materials[triangle.material];
+
+    SurfacePoint point;
+    // From the corners, not along the ray: the error is then that of the coordinates, not of the distance.
+    point.position = w * a + hit.u * b + hit.v * c;
+    const Vec3f area = cross(b - a, c - a);
+    const float facing = dot(area, ray_direction);
+    const float length_squared = dot(area, area);
+    const float toward = facing <= 0 ? 1.0f : -1.0f;
+    point.geometric_normal = (toward / std::sqrt(length_squared)) * area;
+    point.normal = point.geometric_normal;
+    if (scene.normals) {
+        const Vec3f n = w * scene.normals[corner[0]] + hit.u * scene.normals[corner[1]] + hit.v * scene.normals[corner[2]];
+        const float n2 = dot(n, n);
+        if (n2 > 0) {
+            // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
+            const Vec3f unit = (1.0f / std::sqrt(n2)) * n;
+            point.normal = dot(unit, point.geometric_normal) < 0 ? -unit : unit;
+        }
+    }
+    point.diffuse = material.diffuse;
+    if (material.diffuse_texture >= 0 && scene.uvs) {
+        const Vec2f ua = scene.uvs[corner[0]], ub = scene.uvs[corner[1]], uc = scene.uvs[corner[2]];
+        const Vec2f uv = {w * ua.x + hit.u * ub.x + hit.v * uc.x, w * ua.y + hit.u * ub.y + hit.v * uc.y};
+        point.diffuse = point.diffuse * sample_texture(scene.textures[material.diffuse_texture], uv);
+    }
+    point.specular = material.specular;
+    point.shininess = material.shininess;
+    point.emission = facing <= 0 ? material.emission : Vec3f{0, 0, 0};
+    // Eight roundings of the largest coordinate that went into the position.
+    const float ax = std::fabs(point.position.x), ay = std::fabs(point.position.y), az = std::fabs(point.position.z);
+    const float largest = ax > ay ? (ax > az ? ax : az) : (ay > az ? ay : az);
+    point.self_offset = 1e-6f * largest + 1e-12f;
+    return point;
+}
+
+}  // namespace REALCAM_NAMESPACE
