@@ -13,14 +13,14 @@
 namespace realcam::io {
 
 class GltfDocument {
-  public:
+public:
     /// Reads the JSON of a .gltf or .glb. Throws SceneFileError: no JSON, or an extension is required that changes how
     /// geometry is stored and that assimp does not know.
     explicit GltfDocument(const std::string& path);
 
     /// Finds for every node, mesh and material that assimp made the one of the file that it comes from; assimp numbers
-    /// them anew and keeps no trace. Throws SceneFileError if a mesh lost triangles, which is how assimp answers indices
-    /// out of range.
+    /// them anew and keeps no trace. Throws SceneFileError if a mesh lost triangles, which is how assimp answers
+    /// indices out of range.
     void match(const aiScene& content);
 
     /// Null if the file does not have the node, such as the root that assimp puts above several others.
@@ -31,7 +31,7 @@ class GltfDocument {
     const Json& material(unsigned assimp_index) const;
     const Json& root() const { return root_; }
 
-  private:
+private:
     void match_node(const aiScene& content, const aiNode& made, std::size_t index);
     void check_faces(const aiMesh& made, std::size_t mesh, std::size_t primitive) const;
 

@@ -9,7 +9,7 @@ namespace realcam::io {
 namespace {
 
 class Parser {
-  public:
+public:
     explicit Parser(std::string_view text) : text_(text) {}
 
     Json document() {
@@ -19,7 +19,7 @@ class Parser {
         return value;
     }
 
-  private:
+private:
     [[noreturn]] void fail(const std::string& wanted) const {
         const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
         throw std::runtime_error("line " + std::to_string(line) + ": " + wanted + " is wanted");
@@ -147,7 +147,9 @@ const Json none;
 
 }  // namespace
 
-Json Json::parse(std::string_view text) { return Parser(text).document(); }
+Json Json::parse(std::string_view text) {
+    return Parser(text).document();
+}
 
 const Json& Json::operator[](std::string_view name) const {
     const auto* object = std::get_if<Object>(&value_);

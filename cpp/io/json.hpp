@@ -11,7 +11,7 @@
 namespace realcam::io {
 
 class Json {
-  public:
+public:
     using Array = std::vector<Json>;
     using Object = std::map<std::string, Json, std::less<>>;
 
@@ -40,7 +40,7 @@ class Json {
     /// Empty for anything but a string.
     std::string text() const;
 
-  private:
+private:
     std::variant<std::monostate, bool, double, std::string, Array, Object> value_;
 };
 

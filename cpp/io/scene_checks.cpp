@@ -11,13 +11,21 @@ namespace {
 // Squares of it are still far from the largest float.
 constexpr double farthest_m = 1e15;
 
-bool finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool is_light(Vec3f v) { return finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
-bool in_reach(double v) { return std::abs(v) <= farthest_m; }
-bool in_reach(Vec3d v) { return in_reach(v.x) && in_reach(v.y) && in_reach(v.z); }
+bool finite(Vec3f v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool is_light(Vec3f v) {
+    return finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+}
+bool in_reach(double v) {
+    return std::abs(v) <= farthest_m;
+}
+bool in_reach(Vec3d v) {
+    return in_reach(v.x) && in_reach(v.y) && in_reach(v.z);
+}
 
 class Checker {
-  public:
+public:
     Checker(const Scene& scene, const std::string& file) : scene_(scene), file_(file) {}
 
     void check() const {
@@ -32,7 +40,7 @@ class Checker {
         check_environment();
     }
 
-  private:
+private:
     void require(bool good, const std::string& what, std::size_t index, const std::string& wanted) const {
         if (!good) fail(what + " " + std::to_string(index) + ": " + wanted);
     }
@@ -103,8 +111,8 @@ class Checker {
         for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
             const Texture& t = scene_.textures[i];
             require(t.width > 0 && t.height > 0 &&
-                        t.rgba.size() == std::size_t{4} * static_cast<std::size_t>(t.width) *
-                                             static_cast<std::size_t>(t.height),
+                        t.rgba.size() ==
+                            std::size_t{4} * static_cast<std::size_t>(t.width) * static_cast<std::size_t>(t.height),
                     "texture", i, "width x height x 4 bytes are wanted");
         }
     }
@@ -142,7 +150,9 @@ class Checker {
 
 }  // namespace
 
-void validate(const Scene& scene, const std::string& file) { Checker(scene, file).check(); }
+void validate(const Scene& scene, const std::string& file) {
+    Checker(scene, file).check();
+}
 
 bool is_degenerate(const Scene& scene, const Triangle& triangle) {
     const Vec3d a = scene.positions_m[triangle.vertices[0]], b = scene.positions_m[triangle.vertices[1]],

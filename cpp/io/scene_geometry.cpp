@@ -15,10 +15,12 @@
 namespace realcam::io {
 namespace {
 
-Vec3d as_vec3d(const aiVector3D& v) { return {double(v.x), double(v.y), double(v.z)}; }
+Vec3d as_vec3d(const aiVector3D& v) {
+    return {double(v.x), double(v.y), double(v.z)};
+}
 
 class Flattener {
-  public:
+public:
     Flattener(Scene& scene, const ImportedScene& file, const std::string& path, double scale)
         : scene_(scene), file_(file), path_(path), scale_(scale) {
         const aiScene& content = file.content();
@@ -48,7 +50,7 @@ class Flattener {
         count(coloured_, " meshes have colours at their vertices, which are not read");
     }
 
-  private:
+private:
     const Json& texture_info(const aiMesh& mesh) const {
         const GltfDocument* gltf = file_.gltf();
         return gltf ? gltf->material(mesh.mMaterialIndex)["pbrMetallicRoughness"]["baseColorTexture"] : none_;
@@ -93,7 +95,8 @@ class Flattener {
 
         for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
             scene_.positions_m.push_back(scale_ * transform.point(as_vec3d(mesh.mVertices[v])));
-            if (any_normals_) scene_.normals.push_back(mesh.HasNormals() ? normal(mesh.mNormals[v], transform) : Vec3f{});
+            if (any_normals_)
+                scene_.normals.push_back(mesh.HasNormals() ? normal(mesh.mNormals[v], transform) : Vec3f{});
             if (any_uvs_) scene_.uvs.push_back(uvs ? uv(uvs[v], move_uv) : Vec2f{});
         }
     }

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "../error.hpp"
+#include "obj_numbers.hpp"
 #include "ply_length.hpp"
 
 namespace realcam::io {
@@ -49,27 +50,28 @@ std::string one_line(std::string text) {
 }
 
 class Collector final : public Assimp::LogStream {
-  public:
+public:
     explicit Collector(std::vector<std::string>& lines) : lines_(lines) {}
     void write(const char* message) override {
         std::string text = one_line(message);
         // "Warn,  T0: text"
         if (const auto prefix = text.find(": "); prefix != std::string::npos && prefix < 16) text.erase(0, prefix + 2);
         // Steps on the way to the next thing that it tries.
-        if (text.find("fallback material") != std::string::npos || text.find("No object detected") != std::string::npos) {
+        if (text.find("fallback material") != std::string::npos ||
+            text.find("No object detected") != std::string::npos) {
             return;
         }
         if (std::find(lines_.begin(), lines_.end(), text) == lines_.end()) lines_.push_back(std::move(text));
     }
 
-  private:
+private:
     std::vector<std::string>& lines_;
 };
 
 // assimp tells only its log, which is one for the whole process, that it left something out. A log that another part
 // of the process has set up stays as it is.
 class LogCapture {
-  public:
+public:
     explicit LogCapture(std::vector<std::string>& lines)
         : only_one_(mutex()), collector_(lines), created_(Assimp::DefaultLogger::isNullLogger()) {
         if (created_) Assimp::DefaultLogger::create(nullptr, Assimp::Logger::NORMAL, 0);
@@ -82,7 +84,7 @@ class LogCapture {
         if (created_) Assimp::DefaultLogger::kill();
     }
 
-  private:
+private:
     static constexpr unsigned severity = Assimp::Logger::Warn | Assimp::Logger::Err;
     static std::mutex& mutex() {
         static std::mutex the_one;
@@ -124,6 +126,7 @@ ImportedScene::ImportedScene(const std::string& path) : format_(format_of(path))
     check_readable(path);
     if (format_ == SceneFormat::gltf) gltf_.emplace(path);
     if (format_ == SceneFormat::ply) check_ply_is_whole(path);
+    if (format_ == SceneFormat::obj) mend_obj_numbers(importer_, path);
     {
         const LogCapture capture(complaints_);
         if (!importer_.ReadFile(path, 0)) {
@@ -158,7 +161,8 @@ void ImportedScene::check_meshes(const std::string& path) const {
             for (unsigned i = 0; i < face.mNumIndices; ++i) {
                 if (face.mIndices[i] < mesh.mNumVertices) continue;
                 throw SceneFileError(path + ": " + mesh_label(scene, m) + ": face " + std::to_string(f) + ": index " +
-                                     std::to_string(face.mIndices[i]) + " is not smaller than the number of vertices, " +
+                                     std::to_string(face.mIndices[i]) +
+                                     " is not smaller than the number of vertices, " +
                                      std::to_string(mesh.mNumVertices));
             }
         }

@@ -16,7 +16,7 @@ enum class SceneFormat { obj, gltf, ply };
 
 /// A file in memory, with polygons cut into triangles, finite vertices and indices in range.
 class ImportedScene {
-  public:
+public:
     /// Throws SceneFileError: another suffix, no such file, an empty one, or one that is broken.
     explicit ImportedScene(const std::string& path);
 
@@ -25,13 +25,11 @@ class ImportedScene {
     /// Null for other formats.
     const GltfDocument* gltf() const { return gltf_ ? &*gltf_ : nullptr; }
     /// Of a node relative to its parent.
-    Affine transform(const aiNode& node) const {
-        return gltf_ ? gltf_->transform(node) : Affine(node.mTransformation);
-    }
+    Affine transform(const aiNode& node) const { return gltf_ ? gltf_->transform(node) : Affine(node.mTransformation); }
     /// What assimp complained about and went on.
     const std::vector<std::string>& complaints() const { return complaints_; }
 
-  private:
+private:
     void check_meshes(const std::string& path) const;
 
     Assimp::Importer importer_;

@@ -29,11 +29,15 @@ std::optional<std::string> picture(const aiMaterial& material, aiTextureType typ
     return std::string(name.C_Str());
 }
 
-float unit_range(float v) { return std::clamp(v, 0.0f, 1.0f); }
-Vec3f unit_range(Vec3f v) { return {unit_range(v.x), unit_range(v.y), unit_range(v.z)}; }
+float unit_range(float v) {
+    return std::clamp(v, 0.0f, 1.0f);
+}
+Vec3f unit_range(Vec3f v) {
+    return {unit_range(v.x), unit_range(v.y), unit_range(v.z)};
+}
 
 class MaterialReader {
-  public:
+public:
     MaterialReader(Scene& scene, SceneTextures& textures, const aiMaterial& from, std::string label)
         : scene_(scene), textures_(textures), from_(from), label_(std::move(label)) {}
 
@@ -61,7 +65,7 @@ class MaterialReader {
         return material_;
     }
 
-  private:
+private:
     void warn(const std::string& text) { scene_.warnings.push_back(label_ + " " + text); }
 
     void read_texture() {

@@ -13,7 +13,9 @@ constexpr double cos_crease = 0.70710678118654752;
 // The work grows with the square of the faces at one vertex. The hub of so wide a fan is flat enough.
 constexpr std::size_t most_faces = 512;
 
-double angle_between(Vec3d a, Vec3d b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
+double angle_between(Vec3d a, Vec3d b) {
+    return std::atan2(length(cross(a, b)), dot(a, b));
+}
 
 }  // namespace
 

@@ -60,8 +60,8 @@ DecodedImage from_texels(const aiTexture& texture) {
 
 bool is_whole(const DecodedImage& image) {
     return image.width > 0 && image.height > 0 &&
-           image.rgba.size() == std::size_t{4} * static_cast<std::size_t>(image.width) *
-                                    static_cast<std::size_t>(image.height);
+           image.rgba.size() ==
+               std::size_t{4} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
 }
 
 DecodedImage checker() {
@@ -135,7 +135,11 @@ std::optional<Vec3f> SceneTextures::mean(const std::string& name, bool is_colour
     return means_[key] = image ? std::optional(mean_of(*image, is_colour)) : std::nullopt;
 }
 
-std::optional<Vec3f> SceneTextures::mean_value(const std::string& name) { return mean(name, false); }
-std::optional<Vec3f> SceneTextures::mean_colour(const std::string& name) { return mean(name, true); }
+std::optional<Vec3f> SceneTextures::mean_value(const std::string& name) {
+    return mean(name, false);
+}
+std::optional<Vec3f> SceneTextures::mean_colour(const std::string& name) {
+    return mean(name, true);
+}
 
 }  // namespace realcam::io

@@ -11,7 +11,7 @@ namespace realcam::io {
 
 /// The pictures of a scene file, each decoded once.
 class SceneTextures {
-  public:
+public:
     /// All arguments have to outlive it. `path`: of the scene file.
     SceneTextures(Scene& scene, const ImportedScene& file, const std::string& path, const ImageReader& read_image);
 
@@ -28,7 +28,7 @@ class SceneTextures {
     /// Mean colour of a picture, linear; nothing, and a warning, if it cannot be had.
     std::optional<Vec3f> mean_colour(const std::string& name);
 
-  private:
+private:
     std::optional<DecodedImage> decode(const std::string& name);
     std::optional<Vec3f> mean(const std::string& name, bool is_colour);
 

@@ -9,7 +9,7 @@ namespace realcam::io {
 
 /// glTF's KHR_texture_transform, to be applied to the coordinates of vertices.
 class TextureTransform {
-  public:
+public:
     /// `texture_info`: the place in a material that names a texture; identity if it is null or has no such extension.
     explicit TextureTransform(const Json& texture_info) {
         const Json& json = texture_info["extensions"]["KHR_texture_transform"];
@@ -27,7 +27,7 @@ class TextureTransform {
         return {static_cast<float>(out.x), static_cast<float>(1 - out.y)};
     }
 
-  private:
+private:
     Vec3d from_u_, from_v_, offset_;
 };
 

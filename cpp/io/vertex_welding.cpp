@@ -10,9 +10,15 @@ std::uint64_t mix(std::uint64_t state, std::uint64_t value) {
     return state ^ (state >> 29);
 }
 
-bool same(Vec3d a, Vec3d b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-bool same(Vec3f a, Vec3f b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-bool same(Vec2f a, Vec2f b) { return a.x == b.x && a.y == b.y; }
+bool same(Vec3d a, Vec3d b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+bool same(Vec3f a, Vec3f b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+bool same(Vec2f a, Vec2f b) {
+    return a.x == b.x && a.y == b.y;
+}
 
 template <class T>
 void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {

@@ -22,7 +22,7 @@ using io::DecodedImage;
 
 // The files of one test; gone with it.
 class Folder {
-  public:
+public:
     Folder() : path_(fs::temp_directory_path() / ("realcam-scene-" + std::to_string(getpid()))) {
         fs::remove_all(path_);
         fs::create_directories(path_);
@@ -37,7 +37,7 @@ class Folder {
     }
     std::string path(const std::string& name) const { return (path_ / name).string(); }
 
-  private:
+private:
     fs::path path_;
 };
 
@@ -72,7 +72,9 @@ std::string error_of(const std::string& path) {
     return "no error";
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 bool warns(const Scene& scene, const std::string& part) {
     for (const std::string& warning : scene.warnings) {
@@ -108,15 +110,19 @@ std::string gltf(const std::string& nodes, const std::string& roots, const std::
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + roots + R"(}],"nodes":)" + nodes +
            R"(,"meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0)" + attributes +
            R"(},"indices":3,"material":0}]},
-               {"primitives":[{"attributes":{"POSITION":0)" + attributes + R"(},"indices":3}]}],
+               {"primitives":[{"attributes":{"POSITION":0)" +
+           attributes + R"(},"indices":3}]}],
            "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
              {"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},
              {"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"},
-             {"bufferView":3,"componentType":5123,"count":)" + std::to_string(indices) + R"(,"type":"SCALAR"}],
+             {"bufferView":3,"componentType":5123,"count":)" +
+           std::to_string(indices) + R"(,"type":"SCALAR"}],
            "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},
              {"buffer":0,"byteOffset":72,"byteLength":24},
-             {"buffer":0,"byteOffset":96,"byteLength":)" + std::to_string(2 * indices) + R"(}],
-           "buffers":[{"byteLength":)" + std::to_string(98 + 2 * indices) + R"(,"uri":"tri.bin"}])" +
+             {"buffer":0,"byteOffset":96,"byteLength":)" +
+           std::to_string(2 * indices) + R"(}],
+           "buffers":[{"byteLength":)" +
+           std::to_string(98 + 2 * indices) + R"(,"uri":"tri.bin"}])" +
            (has(more, "\"materials\"") ? "" : R"(,"materials":[{"name":"plain"}])") + more + "}";
 }
 
@@ -137,7 +143,7 @@ TEST_CASE("OBJ: materials of the MTL as they are written, and the texture beside
     folder.write("a.mtl", "newmtl wood\nKd .1 .2 .3\nKs .4 .5 .6\nNs 50\nKe 3 4 5\nmap_Kd pics\\w.png\n");
     folder.write("w.png", "not decoded here");
     const std::string path = folder.write(
-        "a.obj", "mtllib a.mtl\nusemtl wood\nv 1 2 3\nv 2 2 3\nv 1 4 3\nvt 0 .25\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+        "a.obj", "mtllib a.mtl\nusemtl wood\nv 1 2 3\nv 2 2 3\nv 1 4 3\nvt 0 0.25\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
     Reader reader;
     const Scene scene = io::read_scene(path, {0.5}, reader.function());
 
@@ -172,13 +178,15 @@ TEST_CASE("OBJ without normals: a cube keeps its edges, a gentle fold becomes sm
 
     // Two squares that meet along x = 0 at 30 degrees, symmetric about x: on the fold the normal points along z.
     const std::string c = std::to_string(std::cos(M_PI / 12)), s = std::to_string(-std::sin(M_PI / 12));
-    const Scene fold = read(folder.write("fold.obj", "v 0 0 0\nv 0 1 0\nv " + c + " 0 " + s + "\nv " + c + " 1 " + s +
-                                                         "\nv -" + c + " 0 " + s + "\nv -" + c + " 1 " + s +
-                                                         "\nf 1 3 4 2\nf 5 1 2 6\n"));
+    const Scene fold =
+        read(folder.write("fold.obj", "v 0 0 0\nv 0 1 0\nv " + c + " 0 " + s + "\nv " + c + " 1 " + s + "\nv -" + c +
+                                          " 0 " + s + "\nv -" + c + " 1 " + s + "\nf 1 3 4 2\nf 5 1 2 6\n"));
     CHECK(fold.positions_m.size() == 6);
     for (std::size_t v = 0; v < fold.positions_m.size(); ++v) {
-        if (fold.positions_m[v].x == 0) check_vec(fold.normals[v], 0, 0, 1, 1e-5);
-        else CHECK(std::abs(double(fold.normals[v].x)) == doctest::Approx(std::sin(M_PI / 12)).epsilon(1e-4));
+        if (fold.positions_m[v].x == 0)
+            check_vec(fold.normals[v], 0, 0, 1, 1e-5);
+        else
+            CHECK(std::abs(double(fold.normals[v].x)) == doctest::Approx(std::sin(M_PI / 12)).epsilon(1e-4));
     }
 }
 
@@ -191,6 +199,15 @@ TEST_CASE("normals that a file gives are kept, and welded vertices keep the orde
     check_vec(scene.normals[scene.triangles[0].vertices[1]], .6, 0, .8);
     CHECK(scene.triangles[1].vertices[0] == scene.triangles[0].vertices[1]);
     CHECK(corner(scene, 1, 1).x + corner(scene, 1, 1).y == 2);
+}
+
+TEST_CASE("OBJ: numbers without a digit before the point") {
+    const Folder folder;
+    const Scene scene = read(folder.write("dot.obj", "v .5 0 0\nv 1 .25 -.5\nv 0 1 .125\nv 9 9 9\nf 1 2 3\n"));
+    CHECK(corner(scene, 0, 0).x == 0.5);
+    CHECK(corner(scene, 0, 1).y == 0.25);
+    CHECK(corner(scene, 0, 1).z == -0.5);
+    CHECK(corner(scene, 0, 2).z == 0.125);
 }
 
 TEST_CASE("PLY: ASCII and binary; a mesh without a material has the default one") {
@@ -276,8 +293,8 @@ TEST_CASE("glTF: metallic-roughness as diffuse and Phong lobes, emission in cd/m
     check_vec(m.emission, 2000, 1000, 0);
 
     for (const char* metallic : {"0", "0.3", "1"}) {
-        const std::string white = R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":)" + std::string(metallic) +
-                                  R"(,"baseColorFactor":[1,0.5,1,1]}}])";
+        const std::string white = R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":)" +
+                                  std::string(metallic) + R"(,"baseColorFactor":[1,0.5,1,1]}}])";
         const Scene s = read(folder.write("w.gltf", gltf(R"([{"mesh":0}])", "[0]", white)));
         const Vec3f sum = s.materials[s.triangles[0].material].diffuse + s.materials[s.triangles[0].material].specular;
         CHECK(sum.x <= 1.000001f);
@@ -296,11 +313,12 @@ TEST_CASE("glTF: pictures as files, their transform, and the mean of a metal's m
         "extensions":{"KHR_texture_transform":{"offset":[0,1],"rotation":1.57079632679,"scale":[0.5,0.25]}}}}}],
         "textures":[{"source":0}],"images":[{"uri":"my%20t.png"}])";
     Reader reader;
-    const Scene scene = io::read_scene(folder.write("u.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {},
-                                       reader.function());
+    const Scene scene =
+        io::read_scene(folder.write("u.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {}, reader.function());
     CHECK(reader.asked.front() == "my t.png");
     CHECK(scene.warnings.empty());
-    // The file's (u, v), v downwards: (0, 1), (1, 1), (0, 0). Turned by 90 degrees, (0.5 u, 0.25 v) -> (0.25 v, -0.5 u).
+    // The file's (u, v), v downwards: (0, 1), (1, 1), (0, 0). Turned by 90 degrees, (0.5 u, 0.25 v) -> (0.25 v, -0.5
+    // u).
     const double truth[][2] = {{0.25, 1}, {0.25, 0.5}, {0, 1}};
     for (int i = 0; i < 3; ++i) {
         const Vec2f uv = scene.uvs[scene.triangles[0].vertices[i]];
@@ -314,11 +332,13 @@ TEST_CASE("glTF: pictures as files, their transform, and the mean of a metal's m
 TEST_CASE("GLB: the picture inside reaches the reader as bytes, and the geometry is read") {
     const Folder folder;
     const std::string picture = "PICTURE!";
-    std::string bytes = triangle_bytes(), json = gltf(R"([{"mesh":0}])", "[0]", R"(,"materials":[{"pbrMetallicRoughness":
+    std::string bytes = triangle_bytes(),
+                json = gltf(R"([{"mesh":0}])", "[0]", R"(,"materials":[{"pbrMetallicRoughness":
         {"metallicFactor":0,"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
         "images":[{"bufferView":4,"mimeType":"image/png"}])");
     json.replace(json.find(R"(}],
-           "buffers")"), 2, R"(},{"buffer":0,"byteOffset":104,"byteLength":8}])");
+           "buffers")"),
+                 2, R"(},{"buffer":0,"byteOffset":104,"byteLength":8}])");
     json.replace(json.find(R"("byteLength":104,"uri":"tri.bin")"), 32, R"("byteLength":112)");
     while (json.size() % 4) json += ' ';
     bytes += picture;
@@ -326,8 +346,8 @@ TEST_CASE("GLB: the picture inside reaches the reader as bytes, and the geometry
         const auto v = static_cast<std::uint32_t>(value);
         return std::string(reinterpret_cast<const char*>(&v), 4);
     };
-    const std::string glb = "glTF" + word(2) + word(28 + json.size() + bytes.size()) + word(json.size()) + "JSON" + json +
-                            word(bytes.size()) + std::string("BIN\0", 4) + bytes;
+    const std::string glb = "glTF" + word(2) + word(28 + json.size() + bytes.size()) + word(json.size()) + "JSON" +
+                            json + word(bytes.size()) + std::string("BIN\0", 4) + bytes;
     Reader reader;
     const Scene scene = io::read_scene(folder.write("a.GLB", glb), {}, reader.function());
     CHECK(scene.triangles.size() == 1);
@@ -343,7 +363,8 @@ TEST_CASE("glTF: lights in candela and lux, at every node that has them") {
     const std::string more = R"(,"extensions":{"KHR_lights_punctual":{"lights":[
         {"type":"point","color":[1,0.5,0.25],"intensity":40},{"type":"directional","intensity":1000},{"type":"spot"}]}})";
     const auto light = [](int i, const std::string& rest) {
-        return R"({"name":"same",)" + rest + R"("extensions":{"KHR_lights_punctual":{"light":)" + std::to_string(i) + "}}}";
+        return R"({"name":"same",)" + rest + R"("extensions":{"KHR_lights_punctual":{"light":)" + std::to_string(i) +
+               "}}}";
     };
     const std::string nodes = "[{\"mesh\":0,\"name\":\"same\"}," + light(0, R"("translation":[1,2,3],)") + "," +
                               light(0, R"("translation":[9,9,9],)") + "," +
@@ -363,8 +384,9 @@ TEST_CASE("glTF: lights in candela and lux, at every node that has them") {
 TEST_CASE("what can be put up with is a warning") {
     const Folder folder;
     folder.write("a.mtl", "newmtl wood\nKd 0 0 0\nmap_Kd gone.png\nd 0.5\n");
-    const Scene scene = read(folder.write("a.obj", "mtllib a.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
-                                                   "f 1/1 2/1 3/1\nf 1/1 1/1 2/1\nf 1/1 2/1 2/1\n"));
+    const Scene scene = read(folder.write("a.obj",
+                                          "mtllib a.mtl\nusemtl wood\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
+                                          "f 1/1 2/1 3/1\nf 1/1 1/1 2/1\nf 1/1 2/1 2/1\n"));
     CHECK(warns(scene, "texture gone.png: no such file beside the scene; a checker in magenta and black stands in"));
     CHECK(warns(scene, "2 triangles without area dropped"));
     CHECK(warns(scene, "\"wood\" is transparent"));
@@ -416,15 +438,17 @@ TEST_CASE("bad glTF: the mesh and the vertex are named") {
     folder.write("tri.bin", triangle_bytes({0, 1, 7}));
     CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]"))), "indices smaller than its number of vertices"));
     folder.write("tri.bin", triangle_bytes({0, 1, 2, 0, 1, 3}));
-    CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]", "", "", 6))),
-              "mesh 0, primitive 0: 1 triangles of 2 have an index that is not smaller than the number of vertices, 3"));
+    CHECK(
+        has(error_of(folder.write("a.gltf", gltf(nodes, "[0]", "", "", 6))),
+            "mesh 0, primitive 0: 1 triangles of 2 have an index that is not smaller than the number of vertices, 3"));
     folder.write("tri.bin", triangle_bytes({0, 1, 2}, std::numeric_limits<float>::infinity()));
     CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]"))), "mesh 0 \"tri\": vertex 1: coordinates must be"));
     CHECK(has(error_of(folder.write("b.gltf", gltf(R"([{"name":"x"}])", "[0]"))), "holds no triangles"));
     CHECK(has(error_of(folder.write("c.gltf", "{\n\"asset\": {\n")), "line 3"));
     CHECK(has(error_of(folder.write("d.gltf", R"({"asset":{"version":"1.0"}})")), "glTF 2.0 is wanted"));
-    CHECK(has(error_of(folder.write("e.gltf", gltf(nodes, "[0]", R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"))),
-              "needs the glTF extension KHR_draco_mesh_compression"));
+    CHECK(has(
+        error_of(folder.write("e.gltf", gltf(nodes, "[0]", R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"))),
+        "needs the glTF extension KHR_draco_mesh_compression"));
     fs::remove(folder.path("tri.bin"));
     CHECK(has(error_of(folder.path("a.gltf")), "cannot be read"));
 }
@@ -450,7 +474,8 @@ TEST_CASE("validate: a scene from arrays") {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     CHECK(has(message([](Scene& s) { s.positions_m[1].y = double(nan); }), "vertex 1: coordinates"));
     CHECK(has(message([](Scene& s) { s.positions_m[2].y = 1e300; }), "vertex 2: coordinates"));
-    CHECK(has(message([](Scene& s) { s.triangles[0].vertices[2] = 3; }), "triangle 0: vertex 3 does not exist; there are 3"));
+    CHECK(has(message([](Scene& s) { s.triangles[0].vertices[2] = 3; }),
+              "triangle 0: vertex 3 does not exist; there are 3"));
     CHECK(has(message([](Scene& s) { s.triangles[0].material = 1; }), "triangle 0: material 1 does not exist"));
     CHECK(has(message([](Scene& s) { s.normals.resize(2); }), "2 normals for 3 vertices"));
     CHECK(has(message([](Scene& s) { s.uvs.resize(4); }), "4 texture coordinates for 3 vertices"));

@@ -1,0 +1,117 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <optional>
+
+#include "../embree/embree_backend.hpp"
+#include "../embree/lens_rays.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+using Triple = std::array<double, 3>;
+
+Vec3d vector_of(const Triple& v) { return {v[0], v[1], v[2]}; }
+Triple triple_of(Vec3d v) { return {v.x, v.y, v.z}; }
+
+constexpr const char* kModelNames[] = {"pinhole", "thin", "thick", "full"};
+
+CameraModel model_from(const std::string& name) {
+    for (int i = 0; i < 4; ++i)
+        if (name == kModelNames[i]) return static_cast<CameraModel>(i);
+    throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, thick or full is wanted");
+}
+
+Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution) {
+    return {width_mm, height_mm, resolution.first, resolution.second};
+}
+
+/// The lens's own film, 960 pixels wide.
+Film film_of(const LensSystem& lens) {
+    constexpr int kWidth = 960;
+    return {lens.film_width, lens.film_height, kWidth, std::max(1, static_cast<int>(std::lround(kWidth * lens.film_height / lens.film_width)))};
+}
+
+Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
+                   const Triple& up, double exposure_time_s, double iso, const std::string& model) {
+    Camera camera;
+    camera.lens = lens;
+    camera.film = film ? *film : film_of(lens);
+    camera.pose = {vector_of(position), vector_of(look_at), vector_of(up)};
+    camera.model = model_from(model);
+    camera.exposure_time_s = exposure_time_s;
+    camera.iso = iso;
+    validate(camera);
+    return camera;
+}
+
+struct CameraRaysResult {
+    py::array_t<double> origins_m;
+    py::array_t<float> directions, weights;
+    py::array_t<int> pixels;
+};
+
+CameraRaysResult rays_of(const Camera& camera, int spp, std::uint32_t seed) {
+    if (spp < 1) throw InputError("spp must be at least 1");
+    const std::int64_t count = static_cast<std::int64_t>(camera.film.width) * camera.film.height * spp;
+    CameraRaysResult rays{py::array_t<double>({count, std::int64_t{3}}), py::array_t<float>({count, std::int64_t{3}}),
+                          py::array_t<float>(count), py::array_t<int>(count)};
+    double* origins = rays.origins_m.mutable_data();
+    float *directions = rays.directions.mutable_data(), *weights = rays.weights.mutable_data();
+    int* pixels = rays.pixels.mutable_data();
+    const py::gil_scoped_release release;
+    generate_camera_rays(camera, static_cast<std::uint32_t>(spp), seed, origins, directions, weights);
+    for (std::int64_t i = 0; i < count; ++i) pixels[i] = static_cast<int>(i / spp);
+    return rays;
+}
+
+}  // namespace
+
+void bind_camera(py::module_& m) {
+    py::class_<Film>(m, "Film", "The light-sensitive rectangle and its pixels.")
+        .def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
+             "resolution: (columns, rows).")
+        .def_readonly("width_mm", &Film::width_mm)
+        .def_readonly("height_mm", &Film::height_mm)
+        .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); });
+    py::class_<CameraRaysResult>(m, "CameraRays", "The rays of a camera, spp for each pixel, row by row from the top left.")
+        .def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3), scene.")
+        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3), unit, scene.")
+        .def_readonly("weights", &CameraRaysResult::weights,
+                      "(N,): irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
+                      "radiance is its irradiance. 0: the lens blocks the ray.")
+        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,): row * columns + column.");
+    py::class_<Camera>(m, "Camera", "Lens, film, place and exposure. The camera's position is the middle of its film.")
+        .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
+             "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
+             "model"_a = "full",
+             "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
+             "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
+             "Raises InputError.")
+        .def("generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0u,
+             "The rays that render would trace, for any other renderer. Returns CameraRays.")
+        .def_readonly("lens", &Camera::lens)
+        .def_readonly("film", &Camera::film)
+        .def_property_readonly("position", [](const Camera& c) { return triple_of(c.pose.position_m); })
+        .def_property_readonly("look_at", [](const Camera& c) { return triple_of(c.pose.look_at_m); })
+        .def_property_readonly("up", [](const Camera& c) { return triple_of(c.pose.up); })
+        .def_readonly("exposure_time_s", &Camera::exposure_time_s)
+        .def_readonly("iso", &Camera::iso)
+        .def_property_readonly("model", [](const Camera& c) { return kModelNames[static_cast<int>(c.model)]; });
+    m.def(
+        "pupil_setup",
+        [](const LensSystem& lens, double film_radius_mm) {
+            const py::gil_scoped_release release;
+            return Pupil(lens, film_radius_mm, fast_pupil_tracer()).image_radius();
+        },
+        "lens"_a, "film_radius_mm"_a,
+        "Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or stop).\n"
+        "Returns the radius beyond which no light arrives, mm.");
+}
+
+}  // namespace realcam::bindings

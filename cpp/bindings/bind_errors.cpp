@@ -1,0 +1,72 @@
+#include "../error.hpp"
+
+#include "../render/backend.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+namespace {
+
+// Owned for ever: Python may translate an error while the module is torn down.
+template <class Tag>
+py::object& type_of() {
+    static auto* type = new py::object;
+    return *type;
+}
+
+template <class E>
+void define(py::module_& m, const char* name, const py::object& base, const char* doc) {
+    const std::string full = std::string("realcam.") + name;
+    type_of<E>() = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(full.c_str(), doc, base.ptr(), nullptr));
+    m.attr(name) = type_of<E>();
+}
+
+template <class E>
+void raise(const E& error) {
+    PyErr_SetString(type_of<E>().ptr(), error.what());
+}
+
+void raise(const LensFileError& error) {
+    py::object instance = type_of<LensFileError>()(error.what());
+    instance.attr("file") = error.file;
+    instance.attr("line") = error.line;
+    instance.attr("surface") = error.surface;
+    PyErr_SetObject(type_of<LensFileError>().ptr(), instance.ptr());
+}
+
+}  // namespace
+
+void bind_errors(py::module_& m) {
+    define<Error>(m, "RealcamError", py::reinterpret_borrow<py::object>(PyExc_Exception),
+                  "Base of all errors of realcam. The message is one line: what, where, and what is wanted.");
+    const py::object base = type_of<Error>();
+    const py::object value_error = py::make_tuple(base, py::reinterpret_borrow<py::object>(PyExc_ValueError));
+    define<InputError>(m, "InputError", value_error, "A value that makes no sense. Also a ValueError.");
+    define<LensFileError>(m, "LensFileError", base,
+                          "A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and "
+                          "surface (int, from 1; 0 where they do not apply).");
+    define<SceneFileError>(m, "SceneFileError", base, "A scene that cannot be read, or that holds no geometry.");
+    define<ImageFileError>(m, "ImageFileError", base, "A picture that cannot be read or written.");
+    define<DeviceError>(m, "DeviceError", base, "A device, or its library, that fails.");
+    define<Cancelled>(m, "Cancelled", base, "A render that its progress callback stopped.");
+    py::register_exception_translator([](std::exception_ptr pointer) {
+        try {
+            if (pointer) std::rethrow_exception(pointer);
+        } catch (const LensFileError& e) {
+            raise(e);
+        } catch (const InputError& e) {
+            raise<InputError>(e);
+        } catch (const SceneFileError& e) {
+            raise<SceneFileError>(e);
+        } catch (const ImageFileError& e) {
+            raise<ImageFileError>(e);
+        } catch (const DeviceError& e) {
+            raise<DeviceError>(e);
+        } catch (const Cancelled& e) {
+            raise<Cancelled>(e);
+        } catch (const Error& e) {
+            raise<Error>(e);
+        }
+    });
+}
+
+}  // namespace realcam::bindings

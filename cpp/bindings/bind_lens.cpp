@@ -1,0 +1,216 @@
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+
+#include "../optics/focus.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+Glass glass_from(const py::object& material) {
+    if (material.is_none()) return Glass::air();
+    if (py::isinstance<Glass>(material)) return material.cast<Glass>();
+    if (py::isinstance<py::str>(material)) return io::catalogue_glass(material.cast<std::string>());
+    if (py::isinstance<py::sequence>(material)) {
+        const auto pair = material.cast<std::vector<double>>();
+        if (pair.size() != 2 || !(pair[1] > 0)) throw InputError("a material given as a pair must be (n_d, V_d)");
+        Glass glass = Glass::from_abbe_number(pair[0], pair[1]);
+        glass.label = py::str(material).cast<std::string>();
+        return glass;
+    }
+    const double index = material.cast<double>();
+    Glass glass = Glass::constant(index);
+    if (index != 1) glass.label = py::str(material).cast<std::string>();
+    return glass;
+}
+
+namespace {
+
+constexpr const char* kTypeNames[] = {"refracting", "mirror", "stop", "aperture"};
+
+SurfaceType type_from(const std::string& name) {
+    for (int i = 0; i < 4; ++i)
+        if (name == kTypeNames[i]) return static_cast<SurfaceType>(i);
+    throw InputError("unknown surface type \"" + name + "\"; refracting, mirror, stop or aperture is wanted");
+}
+
+Surface make_surface(double radius_of_curvature, double thickness, const py::object& material, double clear_semi_diameter,
+                     double conic, const std::map<int, double>& aspheric, double inner_semi_diameter, const std::string& type) {
+    Surface surface;
+    surface.type = type_from(type);
+    if (radius_of_curvature == 0 || std::isnan(radius_of_curvature))
+        throw InputError("a radius of curvature of 0 is no surface; leave it out (or give inf) for a plane");
+    surface.curvature = 1 / radius_of_curvature;
+    surface.thickness = thickness;
+    surface.material = glass_from(material);
+    surface.clear_semi_diameter = clear_semi_diameter;
+    surface.inner_semi_diameter = inner_semi_diameter;
+    surface.conic = conic;
+    for (const auto& [power, value] : aspheric) {
+        if (power < 4 || power % 2 != 0 || power > 2 * kMaxAsphericTerms + 2)
+            throw InputError("aspheric coefficients have even powers from 4 to " + std::to_string(2 * kMaxAsphericTerms + 2) +
+                             " as keys; one is " + std::to_string(power));
+        const auto term = static_cast<std::size_t>(power / 2 - 2);
+        if (surface.aspheric.size() <= term) surface.aspheric.resize(term + 1, 0.0);
+        surface.aspheric[term] = value;
+    }
+    return surface;
+}
+
+std::map<int, double> aspheric_map(const Surface& surface) {
+    std::map<int, double> map;
+    for (std::size_t i = 0; i < surface.aspheric.size(); ++i)
+        if (surface.aspheric[i] != 0) map[4 + 2 * static_cast<int>(i)] = surface.aspheric[i];
+    return map;
+}
+
+LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std::optional<double> film_distance,
+                     std::pair<double, double> film, double wavelength_nm, int blades, double rounding, double rotation_deg,
+                     std::optional<std::pair<int, int>> focus_group, double nearest_focus_m) {
+    LensSystem lens;
+    lens.name = name;
+    lens.surfaces = std::move(surfaces);
+    if (!lens.surfaces.empty()) lens.surfaces.back().thickness = 0;
+    lens.wavelength_nm = wavelength_nm;
+    lens.film_width = film.first;
+    lens.film_height = film.second;
+    lens.iris = {blades, rounding, rotation_deg * std::numbers::pi / 180};
+    lens.focusing.nearest_mm = 1000 * nearest_focus_m;
+    if (focus_group) {
+        lens.focusing.group_first = focus_group->first;
+        lens.focusing.group_last = focus_group->second;
+    }
+    validate(lens);
+    lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
+    lens.film_distance = film_distance ? *film_distance : best_focus_distance(lens, wavelength_nm, kInfinity);
+    if (!(lens.film_distance > 0) || !std::isfinite(lens.film_distance))
+        throw LensFileError(film_distance ? "the film must lie behind the last surface"
+                                          : "the lens makes no real image of infinity behind its last surface; "
+                                            "film_distance_mm is wanted");
+    return lens;
+}
+
+void bind_glass(py::module_& m) {
+    py::class_<Glass>(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.")
+        .def_static("constant", &Glass::constant, "index"_a, "The same index at every wavelength.")
+        .def_static("from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
+                    "Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).")
+        .def_static("cauchy", &Glass::cauchy, "coefficients"_a, "n = A + B/l^2 + C/l^4 + ..., l in um.")
+        .def_static(
+            "sellmeier",
+            [](const std::vector<double>& b, const std::vector<double>& c) {
+                if (b.size() != c.size() || b.empty()) throw InputError("sellmeier needs equally many B and C");
+                std::vector<Glass::SellmeierTerm> terms;
+                for (std::size_t i = 0; i < b.size(); ++i) terms.push_back({b[i], c[i]});
+                return Glass::sellmeier(terms);
+            },
+            "B"_a, "C"_a, "n^2 = 1 + sum B l^2/(l^2 - C), l in um, C in um^2.")
+        .def_static(
+            "table",
+            [](const std::vector<std::pair<double, double>>& points) {
+                if (points.empty()) throw InputError("a glass table needs at least one (wavelength_nm, index)");
+                std::vector<Glass::TablePoint> list;
+                for (const auto& [wavelength, index] : points) list.push_back({wavelength, index});
+                return Glass::table(std::move(list));
+            },
+            "points"_a, "Interpolated (wavelength_nm, index) pairs.")
+        .def_static("named", &io::catalogue_glass, "name"_a,
+                    "A glass of the catalogue, \"N-BK7\" or \"schott:F4\". Raises InputError with the nearest names.")
+        .def("index", &Glass::index, "wavelength_nm"_a, "Refractive index.")
+        .def_readonly("label", &Glass::label, "As it was written: a name, a number, a pair; empty for air.")
+        .def("__repr__", [](const Glass& g) { return "Glass(" + (g.label.empty() ? std::string("air") : g.label) + ")"; });
+}
+
+void bind_surface(py::module_& m) {
+    py::class_<Surface>(m, "Surface",
+                        "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).")
+        .def(py::init(&make_surface), py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
+             "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
+             "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0, "type"_a = "refracting",
+             "radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.\n"
+             "thickness_mm: to the next surface; that of the last surface is not used.\n"
+             "material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.\n"
+             "conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.\n"
+             "inner_semi_diameter_mm: light closer to the axis is blocked.\n"
+             "type: refracting, mirror, stop or aperture (a plane that only blocks).")
+        .def_property_readonly("radius_of_curvature_mm", [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
+        .def_readonly("curvature_per_mm", &Surface::curvature)
+        .def_readonly("thickness_mm", &Surface::thickness)
+        .def_readonly("material", &Surface::material)
+        .def_readonly("clear_semi_diameter_mm", &Surface::clear_semi_diameter)
+        .def_readonly("inner_semi_diameter_mm", &Surface::inner_semi_diameter)
+        .def_readonly("conic", &Surface::conic)
+        .def_property_readonly("aspheric_coefficients", &aspheric_map)
+        .def_property_readonly("type", [](const Surface& s) { return kTypeNames[static_cast<int>(s.type)]; })
+        .def("sag_mm", &Surface::sag, "radius_mm"_a,
+             "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.");
+}
+
+void bind_first_order(py::module_& m) {
+    py::class_<FirstOrder>(m, "FirstOrder", "First-order data at one wavelength. mm; positions from the front vertex.")
+        .def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
+        .def_readonly("back_focal_distance_mm", &FirstOrder::back_focal_distance)
+        .def_readonly("front_focal_distance_mm", &FirstOrder::front_focal_distance)
+        .def_readonly("f_number", &FirstOrder::f_number)
+        .def_readonly("entrance_pupil_position_mm", &FirstOrder::entrance_pupil_position)
+        .def_readonly("entrance_pupil_diameter_mm", &FirstOrder::entrance_pupil_diameter)
+        .def_readonly("exit_pupil_position_mm", &FirstOrder::exit_pupil_position)
+        .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter);
+}
+
+}  // namespace
+
+void bind_lens(py::module_& m) {
+    bind_glass(m);
+    bind_surface(m);
+    bind_first_order(m);
+    m.def("lens_names", &io::lens_names, "Names of the bundled lenses.");
+    py::class_<LensSystem>(m, "Lens", "A lens in one state of its rings. A value: every change returns a new Lens.")
+        .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
+             "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
+             "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(), "nearest_focus_m"_a = 0.0,
+             "surfaces: from the scene to the film, exactly one of them a Stop.\n"
+             "film_distance_mm: last vertex to film; None: best focus at infinity by real rays.\n"
+             "film_mm: (width, height) used where a Camera names no film.\n"
+             "iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.\n"
+             "focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.\n"
+             "Raises LensFileError, naming the surface (from 1), where the lens cannot be built.")
+        .def_static("load", [](const py::object& name) { return io::read_lens(path_from(name)); }, "name_or_path"_a,
+                    "A bundled lens by name, or a lens file (.toml) by path. Raises LensFileError with file, line, surface.")
+        .def("first_order",
+             [](const LensSystem& lens, std::optional<double> nm) { return first_order(lens, nm.value_or(lens.wavelength_nm)); },
+             "wavelength_nm"_a = py::none(), "Paraxial data; at the design wavelength where none is given.")
+        .def("focused", [](const LensSystem& lens, double metres) { return focused(lens, 1000 * metres); }, "focus_distance_m"_a,
+             "The lens focused on a plane at this distance from the film, inf allowed: the real rays of the full aperture\n"
+             "make their smallest spot. Raises InputError where the lens cannot.")
+        .def("stopped_down", &stopped_down, "f_number"_a,
+             "The lens with its diaphragm closed to an f-number. Raises InputError where it does not open that far.")
+        .def("best_focus_mm",
+             [](const LensSystem& lens, double object_m, std::optional<double> nm) {
+                 return best_focus_distance(lens, nm.value_or(lens.wavelength_nm), 1000 * object_m);
+             },
+             "object_distance_m"_a = kInfinity, "wavelength_nm"_a = py::none(),
+             "Last vertex to the plane of the smallest RMS spot of an axial point this far in front of the front vertex.")
+        .def_readonly("name", &LensSystem::name)
+        .def_readonly("title", &LensSystem::title)
+        .def_readonly("source", &LensSystem::source)
+        .def_readonly("surfaces", &LensSystem::surfaces)
+        .def_readonly("wavelength_nm", &LensSystem::wavelength_nm)
+        .def_readonly("film_distance_mm", &LensSystem::film_distance)
+        .def_property_readonly("film_position_mm", &LensSystem::film_position, "Front vertex to film.")
+        .def_property_readonly("film_mm", [](const LensSystem& l) { return std::pair(l.film_width, l.film_height); })
+        .def_property_readonly("vertices_mm", &LensSystem::vertices, "z of each vertex.")
+        .def_property_readonly("focus_distance_m", [](const LensSystem& l) { return l.focus_distance / 1000; })
+        .def_property_readonly("nearest_focus_m", [](const LensSystem& l) { return l.focusing.nearest_mm / 1000; })
+        .def_property_readonly("stop_index", &LensSystem::stop_index)
+        .def_readonly("stop_semi_diameter_mm", &LensSystem::stop_semi_diameter)
+        .def_property_readonly("iris_blades", [](const LensSystem& l) { return l.iris.blades; })
+        .def("__repr__", [](const LensSystem& l) {
+            return "<realcam.Lens " + l.name + ", " + std::to_string(l.surfaces.size()) + " surfaces>";
+        });
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,92 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <memory>
+
+#include "../camera/develop.hpp"
+#include "../embree/embree_backend.hpp"
+#include "../render/backend.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// One backend for the process: it keeps the last scene's BVH.
+Backend& cpu() {
+    static auto* backend = new std::unique_ptr<Backend>(make_embree_backend());  // never torn down under running threads
+    return **backend;
+}
+
+Backend& backend_for(const std::string& device) {
+    if (device == "auto" || device == "cpu") return cpu();
+    throw DeviceError("there is no device \"" + device + "\"; auto or cpu is wanted");
+}
+
+/// Python's share of the progress: signals (Ctrl-C), then the caller's function.
+Progress progress_of(const py::object& callback) {
+    return [&callback](double done) {
+        const py::gil_scoped_acquire acquire;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        if (callback.is_none()) return true;
+        const py::object answer = callback(done);
+        return answer.is_none() || answer.cast<bool>();
+    };
+}
+
+py::array_t<float> copy_of(const std::vector<float>& values, std::vector<py::ssize_t> shape) {
+    py::array_t<float> array(std::move(shape));
+    std::memcpy(array.mutable_data(), values.data(), values.size() * sizeof(float));
+    return array;
+}
+
+py::tuple render(const std::shared_ptr<Scene>& scene, const Camera& camera, int spp, const std::string& device,
+                 std::uint32_t seed, int max_bounces, int threads, const py::object& progress) {
+    Backend& backend = backend_for(device);
+    const RenderSettings settings{spp, seed, max_bounces, threads};
+    const Progress report = progress_of(progress);
+    Image image;
+    {
+        const py::gil_scoped_release release;
+        image = backend.render(scene, camera, settings, report);
+    }
+    return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}), copy_of(image.depth, {image.height, image.width}),
+                          image.stats);
+}
+
+py::array_t<std::uint8_t> develop(const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure, double iso,
+                                  const std::string& tone) {
+    if (tone != "film" && tone != "linear") throw InputError("unknown tone curve \"" + tone + "\"; film or linear is wanted");
+    const ToneCurve curve = tone == "film" ? ToneCurve::film : ToneCurve::linear;
+    py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));
+    const float* from = exposure.data();
+    std::uint8_t* to = codes.mutable_data();
+    for (py::ssize_t i = 0; i < exposure.size(); ++i)
+        to[i] = srgb_code(apply_tone_curve(curve, sensor_value(static_cast<double>(from[i]), iso)));
+    return codes;
+}
+
+}  // namespace
+
+void bind_render(py::module_& m) {
+    py::class_<RenderStats>(m, "RenderStats", "What a picture cost. Stage seconds are summed over the threads.")
+        .def_readonly("seconds", &RenderStats::seconds, "Wall clock, all of it.")
+        .def_readonly("setup_seconds", &RenderStats::setup_seconds, "Pupil and scene; part of seconds.")
+        .def_readonly("lens_seconds", &RenderStats::lens_seconds)
+        .def_readonly("scene_seconds", &RenderStats::scene_seconds)
+        .def_readonly("other_seconds", &RenderStats::other_seconds)
+        .def_readonly("sampled_rays", &RenderStats::sampled_rays, "Sent into the lens.")
+        .def_readonly("passed_rays", &RenderStats::passed_rays, "That left it.")
+        .def_readonly("scene_rays", &RenderStats::scene_rays, "Camera, shadow and bounce rays.")
+        .def_readonly("device", &RenderStats::device);
+    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a, "progress"_a);
+    m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
+          "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
+          "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");
+    m.def("devices", [] { return std::vector<std::string>{"cpu: " + cpu().name()}; }, "What this machine can render with, a line each.");
+}
+
+}  // namespace realcam::bindings

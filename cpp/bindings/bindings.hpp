@@ -1,0 +1,27 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include "../io/lens_file.hpp"
+#include "../optics/lens_system.hpp"
+
+namespace realcam::bindings {
+
+namespace py = pybind11;
+
+// One function for each file of this folder.
+void bind_errors(py::module_& m);
+void bind_lens(py::module_& m);
+void bind_trace(py::module_& m);
+void bind_camera(py::module_& m);
+void bind_scene(py::module_& m);
+void bind_render(py::module_& m);
+
+/// A path as users give it: a text, or anything with __fspath__.
+inline std::string path_from(const py::object& path) {
+    return py::module_::import("os").attr("fspath")(path).cast<std::string>();
+}
+
+/// A medium as users write it: an index, (n_d, V_d), the name of a glass of the catalogue, a Glass; None is air.
+Glass glass_from(const py::object& material);
+
+}  // namespace realcam::bindings

@@ -1,0 +1,13 @@
+#include "bindings.hpp"
+
+PYBIND11_MODULE(_core, m) {
+    using namespace realcam::bindings;
+    m.doc() = "The C++ core of realcam.";
+    m.attr("__version__") = REALCAM_VERSION;
+    bind_errors(m);
+    bind_lens(m);
+    bind_trace(m);
+    bind_camera(m);
+    bind_scene(m);
+    bind_render(m);
+}

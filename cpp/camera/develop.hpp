@@ -1,0 +1,34 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// How film exposure becomes a picture for a screen.
+enum class ToneCurve : int {
+    linear,  ///< clipped at white
+    film,    ///< the same up to the middle tones, then a soft shoulder: highlights bend instead of being cut off
+};
+
+/// Screen-linear value (1: white) of an exposure in lux seconds. ISO 12232 in its standard output sensitivity form: an
+/// exposure of 10 lx s / S gives middle grey, the code value 118 of sRGB, which is 0.18 of white.
+REALCAM_HD inline double sensor_value(double exposure_lux_s, double iso) { return 0.018 * iso * exposure_lux_s; }
+
+REALCAM_HD inline double apply_tone_curve(ToneCurve curve, double value) {
+    if (!(value > 0)) return 0;
+    if (curve == ToneCurve::film) {
+        constexpr double knee = 0.3;  // above middle grey, which stays where it is
+        if (value > knee) value = 1 - (1 - knee) * std::exp(-(value - knee) / (1 - knee));
+    }
+    return value < 1 ? value : 1;
+}
+
+/// sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1], as an 8-bit code.
+REALCAM_HD inline std::uint8_t srgb_code(double linear) {
+    const double v = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(v * 255 + 0.5);
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+
+#include "../camera/camera.hpp"
+
+namespace realcam {
+
+enum class Precision { float32, float64 };
+
+/// Results of a trace, arrays of `count` rays that the caller owns.
+struct TracedRays {
+    double* origins;       ///< count x 3, mm, lens frame: on the last surface met
+    double* directions;    ///< count x 3, unit
+    double* optical_path;  ///< count, mm: sum of index times distance up to there
+    int* status;           ///< count, RayStatus
+    int* surface_index;    ///< count: the last surface met or missed, from 0; -1 for bad input
+};
+
+/// Traces rays through a lens on all cores. Origins in mm and directions (of any length) in the lens frame,
+/// count x 3. Rays with a component that is not finite, or a direction of length zero, end as bad_input with zeros.
+void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
+                std::int64_t count, const double* origins, const double* directions, const TracedRays& out);
+
+/// The camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
+/// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of width * height * spp rays.
+void generate_camera_rays(const Camera& camera, std::uint32_t spp, std::uint32_t seed, double* origins_m,
+                          float* directions, float* weights);
+
+}  // namespace realcam

@@ -1,0 +1,57 @@
+#include "image_metadata.hpp"
+
+#include <cstdio>
+
+namespace realcam::image_io {
+namespace {
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", value);
+    return text;
+}
+
+}  // namespace
+
+std::string name_of(CameraModel model) {
+    switch (model) {
+        case CameraModel::pinhole: return "pinhole";
+        case CameraModel::thin_lens: return "thin";
+        case CameraModel::thick_lens: return "thick";
+        case CameraModel::full_lens: break;
+    }
+    return "full";
+}
+
+ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) {
+    const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
+    ImageMetadata metadata;
+    metadata.lens = camera.lens.name;
+    metadata.model = name_of(camera.model);
+    metadata.focal_length_mm = data.effective_focal_length;
+    metadata.f_number = data.f_number;
+    metadata.focus_distance_m = camera.lens.focus_distance / 1000;
+    metadata.film_width_mm = camera.film.width_mm;
+    metadata.film_height_mm = camera.film.height_mm;
+    metadata.exposure_time_s = camera.exposure_time_s;
+    metadata.iso = camera.iso;
+    metadata.seed = settings.seed;
+    metadata.spp = settings.spp;
+    return metadata;
+}
+
+std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const {
+    return {{"realcam:version", REALCAM_VERSION},
+            {"realcam:lens", lens},
+            {"realcam:model", model},
+            {"realcam:focal_length_mm", number(focal_length_mm)},
+            {"realcam:f_number", number(f_number)},
+            {"realcam:focus_distance_m", number(focus_distance_m)},
+            {"realcam:film_mm", number(film_width_mm) + "x" + number(film_height_mm)},
+            {"realcam:exposure_time_s", number(exposure_time_s)},
+            {"realcam:iso", number(iso)},
+            {"realcam:seed", std::to_string(seed)},
+            {"realcam:spp", std::to_string(spp)}};
+}
+
+}  // namespace realcam::image_io

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../camera/camera.hpp"
+#include "../render/backend.hpp"
+
+namespace realcam::image_io {
+
+/// What a picture was taken with, as its file tells it.
+struct ImageMetadata {
+    std::string lens;
+    std::string model;
+    double focal_length_mm = 0;
+    double f_number = 0;
+    double focus_distance_m = 0;  ///< object plane to film; may be infinite
+    double film_width_mm = 0, film_height_mm = 0;
+    double exposure_time_s = 0;
+    double iso = 100;
+    std::uint32_t seed = 0;
+    int spp = 0;
+
+    /// Names "realcam:..." and values, as they go into every format.
+    std::vector<std::pair<std::string, std::string>> entries() const;
+};
+
+/// Names as on the command line: "full", "thick", "thin", "pinhole".
+std::string name_of(CameraModel model);
+
+ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings);
+
+}  // namespace realcam::image_io

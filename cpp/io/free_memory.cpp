@@ -1,0 +1,54 @@
+#include "free_memory.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace realcam::io {
+namespace {
+
+constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
+
+/// A file with one number, or with a word such as "max".
+std::uint64_t number_in(const std::string& path) {
+    std::uint64_t value = 0;
+    return std::ifstream(path) >> value ? value : kUnknown;
+}
+
+std::uint64_t available_on_machine() {
+    std::ifstream file("/proc/meminfo");
+    for (std::string name; file >> name;) {
+        std::uint64_t kibibytes = 0;
+        if (name == "MemAvailable:" && file >> kibibytes) return 1024 * kibibytes;
+        file.ignore(1000, '\n');
+    }
+    return kUnknown;
+}
+
+/// The limits of this process's group and of those above it. Inside a container the paths often do not exist, and the
+/// container's own limit lies at the root.
+std::uint64_t limit_of_groups() {
+    std::uint64_t limit = kUnknown;
+    std::ifstream file("/proc/self/cgroup");
+    for (std::string line; std::getline(file, line);) {
+        const auto first = line.find(':'), second = line.find(':', first + 1);
+        if (second == std::string::npos) continue;
+        const std::string controller = line.substr(first + 1, second - first - 1);
+        const bool unified = controller.empty();
+        if (!unified && controller != "memory") continue;
+        const std::string root = unified ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
+        const std::string name = unified ? "/memory.max" : "/memory.limit_in_bytes";
+        for (std::string group = line.substr(second + 1);; group.erase(group.rfind('/'))) {
+            limit = std::min(limit, number_in(root + group + name));
+            if (group.find('/') == std::string::npos) break;
+        }
+    }
+    return limit;
+}
+
+}  // namespace
+
+std::uint64_t free_memory() { return std::min(available_on_machine(), limit_of_groups()); }
+
+}  // namespace realcam::io

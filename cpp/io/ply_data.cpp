@@ -1,0 +1,121 @@
+#include "ply_data.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <sstream>
+
+#include "../error.hpp"
+
+namespace realcam::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+std::optional<PlyType> type_of(const std::string& name) {
+    struct Named {
+        const char *name, *other_name;
+        PlyType type;
+    };
+    static constexpr Named types[] = {{"char", "int8", {'i', 1}},   {"uchar", "uint8", {'u', 1}},
+                                      {"short", "int16", {'i', 2}}, {"ushort", "uint16", {'u', 2}},
+                                      {"int", "int32", {'i', 4}},   {"uint", "uint32", {'u', 4}},
+                                      {"float", "float32", {'f', 4}}, {"double", "float64", {'f', 8}}};
+    for (const Named& t : types) {
+        if (name == t.name || name == t.other_name) return t.type;
+    }
+    return std::nullopt;
+}
+
+template <class T>
+double value_of(const std::array<char, 8>& bytes) {
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return static_cast<double>(value);
+}
+
+}  // namespace
+
+PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
+    PlyHeader header;
+    std::size_t number = 0;
+    const auto fail = [&](const std::string& wanted) {
+        throw SceneFileError(path + ": line " + std::to_string(number) + ": " + wanted);
+    };
+    const auto next_type = [&](std::istringstream& words) {
+        std::string name;
+        words >> name;
+        const std::optional<PlyType> type = type_of(name);
+        if (!type) fail("a type such as float or uchar is wanted, not \"" + name + "\"");
+        return *type;
+    };
+    bool has_format = false;
+    while (header.size < text.size()) {
+        const std::size_t end = std::min(text.find('\n', header.size), text.size());
+        std::istringstream words(std::string(text.substr(header.size, end - header.size)));
+        header.size = std::min(end + 1, text.size());
+        std::string word, what;
+        words >> word;
+        if (++number == 1) {
+            if (word != "ply") fail("\"ply\" is wanted");
+        } else if (word == "format") {
+            words >> what;
+            has_format = true;
+            if (what == "binary_little_endian") header.format = PlyHeader::Format::little_endian;
+            else if (what == "binary_big_endian") header.format = PlyHeader::Format::big_endian;
+            else if (what != "ascii") fail("ascii, binary_little_endian or binary_big_endian is wanted");
+        } else if (word == "comment") {
+            if (words >> what && what == "TextureFile") std::getline(words >> std::ws, header.texture);
+            while (header.texture.ends_with('\r')) header.texture.pop_back();
+        } else if (word == "element") {
+            PlyElement& element = header.elements.emplace_back();
+            if (!(words >> element.name >> element.count)) fail("\"element\", a name and a number are wanted");
+        } else if (word == "property") {
+            if (header.elements.empty()) fail("an element is wanted before its properties");
+            PlyProperty property{{}, {}, std::nullopt};
+            const auto start = words.tellg();
+            if (words >> what; what == "list") property.count_type = next_type(words);
+            else words.seekg(start);
+            property.type = next_type(words);
+            if (!(words >> property.name)) fail("the property's name is wanted");
+            header.elements.back().properties.push_back(property);
+        } else if (word == "end_header") {
+            if (!has_format) fail("a line \"format\" is wanted before");
+            return header;
+        } else if (!word.empty() && word != "obj_info") {
+            fail("\"element\", \"property\" or \"end_header\" is wanted");
+        }
+    }
+    fail("the header has no end; a line \"end_header\" is wanted");
+    return header;
+}
+
+std::optional<double> PlyData::next(PlyType type) {
+    if (format_ == PlyHeader::Format::ascii) {
+        bytes_.remove_prefix(std::min(bytes_.find_first_not_of(" \t\r\n"), bytes_.size()));
+        if (bytes_.starts_with('+')) bytes_.remove_prefix(1);
+        double value = 0;
+        const auto [end, error] = std::from_chars(bytes_.data(), bytes_.data() + bytes_.size(), value);
+        // A number too large or too small for a double leaves value as it is.
+        if (error != std::errc()) return std::nullopt;
+        bytes_.remove_prefix(static_cast<std::size_t>(end - bytes_.data()));
+        return value;
+    }
+    if (bytes_.size() < type.bytes) return std::nullopt;
+    std::array<char, 8> bytes{};
+    std::copy_n(bytes_.begin(), type.bytes, bytes.begin());
+    if (format_ == PlyHeader::Format::big_endian) std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(type.bytes));
+    bytes_.remove_prefix(type.bytes);
+    if (type.kind == 'f') return type.bytes == 4 ? value_of<float>(bytes) : value_of<double>(bytes);
+    const bool is_signed = type.kind == 'i';
+    switch (type.bytes) {
+        case 1: return is_signed ? value_of<std::int8_t>(bytes) : value_of<std::uint8_t>(bytes);
+        case 2: return is_signed ? value_of<std::int16_t>(bytes) : value_of<std::uint16_t>(bytes);
+        default: return is_signed ? value_of<std::int32_t>(bytes) : value_of<std::uint32_t>(bytes);
+    }
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,48 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "backend.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Mean luminance exposure of a picture, lux seconds. Pixels without any light (black background) do not count, and
+/// none counts for more than eight times the mean (three stops): a lamp or the sun's mirror image is left to burn out,
+/// as on a sensor. 0 where nothing has light.
+inline double metered_exposure(const Image& image) {
+    const auto mean_up_to = [&](double limit) {
+        double sum = 0, count = 0;
+        for (std::size_t i = 0; i + 2 < image.exposure.size(); i += 3) {
+            const float* rgb = &image.exposure[i];
+            const double y = 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+                             0.0722 * static_cast<double>(rgb[2]);
+            if (!(y > 0)) continue;
+            sum += std::min(y, limit);
+            ++count;
+        }
+        return count > 0 ? sum / count : 0.0;
+    };
+    double mean = mean_up_to(1e300);
+    for (int i = 0; i < 20; ++i) mean = mean_up_to(8 * mean);
+    return mean;
+}
+
+/// Exposure time with which the camera's picture lands on middle grey on average (10 lx s / ISO), from a quick picture
+/// of at most 96 pixels each way. Throws InputError where no light reaches the film, and what Backend::render throws.
+inline double metered_exposure_time(Backend& backend, const std::shared_ptr<const Scene>& scene, Camera camera,
+                                    RenderSettings settings, const Progress& progress) {
+    constexpr double kLongSide = 96;
+    Film& film = camera.film;
+    const double scale = std::min(1.0, kLongSide / std::max(film.width, film.height));
+    film.width = std::max(1, static_cast<int>(film.width * scale));
+    film.height = std::max(1, static_cast<int>(film.height * scale));
+    camera.exposure_time_s = 1;
+    settings.spp = 16;
+    const double per_second = metered_exposure(backend.render(scene, camera, settings, progress));
+    if (!(per_second > 0) || !std::isfinite(per_second))
+        throw InputError("no light reaches the film, so that no exposure can be metered; an exposure time is wanted");
+    return 10 / (camera.iso * per_second);
+}
+
+}  // namespace REALCAM_NAMESPACE

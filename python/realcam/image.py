@@ -1,0 +1,71 @@
+"""A photograph: film exposure, depth, and how it was taken."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import _core, image_file
+from ._core import Camera, RenderStats
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """What lies on the film after the exposure, without noise.
+
+    pixels: (H, W, 3) float32, exposure in lux seconds, linear Rec. 709, row 0 at the top.
+    depth: (H, W) float32, metres along the camera's axis from the film; inf where nothing was met.
+    """
+
+    pixels: np.ndarray
+    depth: np.ndarray
+    camera: Camera
+    spp: int
+    seed: int
+    stats: RenderStats
+
+    def developed(self, tone: str = "film", iso: float | None = None) -> np.ndarray:
+        """(H, W, 3) uint8 sRGB at the camera's sensitivity, or another one.
+
+        10 / iso lux seconds become middle grey (118). tone: "film" (soft highlights) or "linear" (clipped).
+        """
+        return _core.develop(self.pixels, self.camera.iso if iso is None else iso, tone)
+
+    def save(self, path: str | os.PathLike[str], tone: str = "film") -> None:
+        """Writes .png (developed) or .exr (film exposure R, G, B in lux seconds, and depth as layer Z in metres).
+
+        Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises ImageFileError;
+        no half-written file is left.
+        """
+        image_file.check_writable(path)
+        if Path(path).suffix.lower() == ".png":
+            attributes = {**self.metadata(), "oiio:ColorSpace": "sRGB", "realcam:tone": tone}
+            image_file.write_image(path, self.developed(tone), ("R", "G", "B"), attributes)
+        else:
+            layers = np.concatenate([self.pixels, self.depth[..., None]], axis=2)
+            image_file.write_image(path, layers, ("R", "G", "B", "Z"), self.metadata())
+
+    def metadata(self) -> dict[str, str | int | float]:
+        """Name and value of what is written into picture files."""
+        lens, film = self.camera.lens, self.camera.film
+        return {
+            "Software": f"realcam {_core.__version__}",
+            "ExposureTime": float(self.camera.exposure_time_s),
+            "FNumber": float(lens.first_order().f_number),
+            "Exif:PhotographicSensitivity": round(self.camera.iso),
+            "Exif:FocalLength": float(lens.first_order().effective_focal_length_mm),
+            "Exif:LensModel": lens.name,
+            "realcam:lens": lens.name,
+            "realcam:model": self.camera.model,
+            "realcam:f_number": float(lens.first_order().f_number),
+            "realcam:focus_distance_m": float(lens.focus_distance_m),
+            "realcam:exposure_time_s": float(self.camera.exposure_time_s),
+            "realcam:iso": float(self.camera.iso),
+            "realcam:film_mm": f"{film.width_mm:g} x {film.height_mm:g}",
+            "realcam:spp": self.spp,
+            "realcam:seed": self.seed,
+            "realcam:version": _core.__version__,
+        }

@@ -1,0 +1,105 @@
+#pragma once
+// One ray at a time through a lens, in double precision and in the lens frame (z from the front vertex).
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/optics/focus.hpp"
+#include "../../cpp/optics/lens_path.hpp"
+
+namespace realcam::test {
+
+struct TracedRay {
+    Vec3d origin, direction;
+    double optical_path;
+    RayStatus status;
+    int surface_index;
+
+    bool passed() const { return status == RayStatus::ok; }
+    /// Where the ray, as a straight line, crosses the plane at z.
+    Vec3d at(double z) const { return origin + ((z - origin.z) / direction.z) * direction; }
+};
+
+class RayTracer {
+  public:
+    RayTracer(const LensSystem& lens, LightDirection direction, double wavelength_nm)
+        : path_(lens, direction, wavelength_nm) {}
+    RayTracer(const LensSystem& lens, LightDirection direction)
+        : RayTracer(lens, direction, lens.wavelength_nm) {}
+
+    TracedRay operator()(Vec3d origin, Vec3d direction) const {
+        LensRays<double, 1> ray;
+        origin.z -= path_.entry_position;
+        ray.origin.set(0, origin);
+        ray.direction.set(0, normalized(direction));
+        ray.status[0] = 0;
+        PathRecord<double, 1> record{};
+        trace_lens(path_.view(), ray, record);
+        Vec3d end = ray.origin[0];
+        end.z += path_.exit_position;
+        return {end, ray.direction[0], record.optical_path[0], static_cast<RayStatus>(ray.status[0]),
+                record.surface_index[0]};
+    }
+
+  private:
+    LensPath<double> path_;
+};
+
+/// Numbers in [0, 1), the same on every machine.
+class Random {
+  public:
+    explicit Random(unsigned seed) : engine_(seed) {}
+    double operator()() { return static_cast<double>(engine_() >> 5) * 0x1p-27; }
+    double between(double low, double high) { return low + (high - low) * (*this)(); }
+
+  private:
+    std::mt19937 engine_;
+};
+
+/// A random point of the last surface's clear aperture, lens frame, even in area as seen along the axis.
+inline Vec3d point_on_last_surface(const LensSystem& lens, Random& random) {
+    const Surface& last = lens.surfaces.back();
+    const double r = last.clear_semi_diameter * std::sqrt(random()), a = random.between(0, 2 * M_PI);
+    return {r * std::cos(a), r * std::sin(a), lens.last_vertex() + last.sag(r)};
+}
+
+inline Vec3d point_on_film(const LensSystem& lens, Random& random) {
+    return {lens.film_width * (random() - 0.5), lens.film_height * (random() - 0.5), lens.film_position()};
+}
+
+/// A focus near the lens: its nearest, or ten focal lengths.
+inline double near_focus(const LensSystem& lens) {
+    if (lens.focusing.nearest_mm > 0) return lens.focusing.nearest_mm;
+    return lens.film_position() + 10 * std::fabs(first_order(lens, lens.wavelength_nm).effective_focal_length);
+}
+
+inline Surface refracting(double radius_of_curvature, double thickness, Glass behind, double semi_diameter) {
+    Surface s;
+    s.curvature = radius_of_curvature == 0 ? 0 : 1 / radius_of_curvature;
+    s.thickness = thickness;
+    s.material = behind;
+    s.clear_semi_diameter = semi_diameter;
+    return s;
+}
+
+inline Surface stop_plane(double thickness, double semi_diameter) {
+    Surface s;
+    s.type = SurfaceType::stop;
+    s.thickness = thickness;
+    s.clear_semi_diameter = semi_diameter;
+    return s;
+}
+
+/// Surfaces as a lens that is wide open.
+inline LensSystem lens_of(std::vector<Surface> surfaces) {
+    LensSystem lens;
+    lens.name = "test";
+    lens.surfaces = std::move(surfaces);
+    if (lens.stop_index() >= 0) lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
+    return lens;
+}
+
+}  // namespace realcam::test
