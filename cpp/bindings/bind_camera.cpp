@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "../camera/default_film.hpp"
 #include "../embree/embree_backend.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
@@ -31,17 +32,11 @@ Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution
     return {width_mm, height_mm, resolution.first, resolution.second};
 }
 
-/// The lens's own film, 960 pixels wide.
-Film film_of(const LensSystem& lens) {
-    constexpr int kWidth = 960;
-    return {lens.film_width, lens.film_height, kWidth, std::max(1, static_cast<int>(std::lround(kWidth * lens.film_height / lens.film_width)))};
-}
-
 Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
                    const Triple& up, double exposure_time_s, double iso, const std::string& model) {
     Camera camera;
     camera.lens = lens;
-    camera.film = film ? *film : film_of(lens);
+    camera.film = film ? *film : default_film(lens, std::nullopt, std::nullopt);
     camera.pose = {vector_of(position), vector_of(look_at), vector_of(up)};
     camera.model = model_from(model);
     camera.exposure_time_s = exposure_time_s;

@@ -15,18 +15,18 @@ using namespace py::literals;
 
 namespace {
 
-/// One backend for the process: it keeps the last scene's BVH.
 Backend& cpu() {
     static auto* backend = new std::unique_ptr<Backend>(make_embree_backend());  // never torn down under running threads
     return **backend;
 }
+
+}  // namespace
 
 Backend& backend_for(const std::string& device) {
     if (device == "auto" || device == "cpu") return cpu();
     throw DeviceError("there is no device \"" + device + "\"; auto or cpu is wanted");
 }
 
-/// Python's share of the progress: signals (Ctrl-C), then the caller's function.
 Progress progress_of(const py::object& callback) {
     return [&callback](double done) {
         const py::gil_scoped_acquire acquire;
@@ -36,6 +36,8 @@ Progress progress_of(const py::object& callback) {
         return answer.is_none() || answer.cast<bool>();
     };
 }
+
+namespace {
 
 py::array_t<float> copy_of(const std::vector<float>& values, std::vector<py::ssize_t> shape) {
     py::array_t<float> array(std::move(shape));

@@ -27,7 +27,7 @@ std::int64_t ray_count(const Array& origins, const Array& directions) {
 }
 
 TraceResult trace(const LensSystem& lens, const Array& origins, const Array& directions, std::optional<double> wavelength_nm,
-                  const std::string& start, const py::object& dtype) {
+                  const std::string& start, const py::object& dtype, std::optional<int> surface_count) {
     const std::int64_t count = ray_count(origins, directions);
     if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
     const py::dtype type = py::dtype::from_args(dtype);
@@ -41,7 +41,7 @@ TraceResult trace(const LensSystem& lens, const Array& origins, const Array& dir
         const py::gil_scoped_release release;
         trace_rays(lens, start == "film" ? LightDirection::to_scene : LightDirection::to_film,
                    wavelength_nm.value_or(lens.wavelength_nm), type.itemsize() == 8 ? Precision::float64 : Precision::float32,
-                   count, origins.data(), directions.data(), out);
+                   surface_count.value_or(-1), count, origins.data(), directions.data(), out);
     }
     return result;
 }
@@ -68,10 +68,11 @@ void bind_trace(py::module_& m) {
         .def_readonly("surface_index", &TraceResult::surface_index, "(N,): surface at which the ray ended, from 0; -1: bad input.");
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens")).def(
         "trace", &trace, "origins_mm"_a, "directions"_a, py::kw_only(), "wavelength_nm"_a = py::none(), "start"_a = "film",
-        "dtype"_a = "float64",
+        "dtype"_a = "float64", "surface_count"_a = py::none(),
         "Traces rays surface by surface. origins_mm, directions: (N, 3), lens frame.\n"
         "start: \"film\" (towards the scene) or \"scene\" (towards the film).\n"
         "dtype: number type of the computation, float64 or float32; results are float64 arrays.\n"
+        "surface_count: cross only the first so many surfaces that the light meets; None: all.\n"
         "Returns a TraceResult. Raises InputError for wrong shapes; single bad rays end as BAD_INPUT.");
 }
 

@@ -3,6 +3,7 @@
 
 #include "../io/lens_file.hpp"
 #include "../optics/lens_system.hpp"
+#include "../render/backend.hpp"
 
 namespace realcam::bindings {
 
@@ -15,6 +16,15 @@ void bind_trace(py::module_& m);
 void bind_camera(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_render(py::module_& m);
+void bind_view(py::module_& m);
+void bind_bench(py::module_& m);
+
+/// The backend of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
+Backend& backend_for(const std::string& device);
+
+/// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without the
+/// interpreter's lock. The callback must outlive the result.
+Progress progress_of(const py::object& callback);
 
 /// A path as users give it: a text, or anything with __fspath__.
 inline std::string path_from(const py::object& path) {

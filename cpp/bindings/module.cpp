@@ -10,4 +10,6 @@ PYBIND11_MODULE(_core, m) {
     bind_camera(m);
     bind_scene(m);
     bind_render(m);
+    bind_view(m);
+    bind_bench(m);
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <vector>
 
 // What is built once for each instruction set. Only plain C functions on plain data cross this border: the core's
 // types have the same layout on both sides, but other names, so they travel as untyped pointers.
@@ -59,5 +60,8 @@ namespace realcam {
 /// The widest instruction set that was built and that this machine has. The environment variable
 /// REALCAM_INSTRUCTION_SET (v2, v3, v4) asks for a narrower one. Throws DeviceError where the machine has none.
 const realcam_kernels& kernels();
+
+/// All that were built and that this machine can run, the narrowest first.
+std::vector<const realcam_kernels*> available_kernels();
 
 }  // namespace realcam

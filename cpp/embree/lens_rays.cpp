@@ -34,9 +34,10 @@ void prepare(std::int64_t count, const double* origins, const double* directions
 }
 
 template <class T>
-void trace_with(const LensPath<T>& path, void (*kernel)(const realcam_trace*), std::int64_t count, const double* origins,
-                const double* directions, const TracedRays& out) {
-    const LensView<T> view = path.view();
+void trace_with(const LensPath<T>& path, double exit_position, int surface_count, void (*kernel)(const realcam_trace*),
+                std::int64_t count, const double* origins, const double* directions, const TracedRays& out) {
+    LensView<T> view = path.view();
+    view.count = surface_count;
     in_chunks(count, [&](std::int64_t first, std::int64_t last) {
         const std::int64_t n = last - first;
         std::vector<double> origin(static_cast<std::size_t>(3 * n)), unit(static_cast<std::size_t>(3 * n));
@@ -55,7 +56,7 @@ void trace_with(const LensPath<T>& path, void (*kernel)(const realcam_trace*), s
         kernel(&request);
         for (std::int64_t i = first; i < last; ++i) {
             const bool bad = out.status[i] == static_cast<int>(RayStatus::bad_input);
-            out.origins[3 * i + 2] = bad ? 0 : out.origins[3 * i + 2] + path.exit_position;
+            out.origins[3 * i + 2] = bad ? 0 : out.origins[3 * i + 2] + exit_position;
         }
     });
 }
@@ -63,12 +64,21 @@ void trace_with(const LensPath<T>& path, void (*kernel)(const realcam_trace*), s
 }  // namespace
 
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
-                std::int64_t count, const double* origins, const double* directions, const TracedRays& out) {
+                int surface_count, std::int64_t count, const double* origins, const double* directions,
+                const TracedRays& out) {
     if (!(wavelength_nm >= 100 && wavelength_nm <= 20000)) throw InputError("the wavelength must lie between 100 and 20000 nm");
+    const int all = static_cast<int>(lens.surfaces.size());
+    if (surface_count < 0) surface_count = all;
+    if (surface_count < 1 || surface_count > all)
+        throw InputError("the number of surfaces to trace must lie between 1 and " + std::to_string(all));
+    const int last = direction == LightDirection::to_film ? surface_count - 1 : all - surface_count;
+    const double exit_position = lens.vertices()[static_cast<std::size_t>(last)];
     if (precision == Precision::float64) {
-        trace_with(LensPath<double>(lens, direction, wavelength_nm), kernels().trace_f64, count, origins, directions, out);
+        const LensPath<double> path(lens, direction, wavelength_nm);
+        trace_with(path, exit_position, surface_count, kernels().trace_f64, count, origins, directions, out);
     } else {
-        trace_with(LensPath<float>(lens, direction, wavelength_nm), kernels().trace_f32, count, origins, directions, out);
+        const LensPath<float> path(lens, direction, wavelength_nm);
+        trace_with(path, exit_position, surface_count, kernels().trace_f32, count, origins, directions, out);
     }
 }
 

@@ -18,8 +18,10 @@ struct TracedRays {
 
 /// Traces rays through a lens on all cores. Origins in mm and directions (of any length) in the lens frame,
 /// count x 3. Rays with a component that is not finite, or a direction of length zero, end as bad_input with zeros.
+/// Only the first `surface_count` surfaces that the light meets are crossed (all where it is negative).
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
-                std::int64_t count, const double* origins, const double* directions, const TracedRays& out);
+                int surface_count, std::int64_t count, const double* origins, const double* directions,
+                const TracedRays& out);
 
 /// The camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
 /// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of width * height * spp rays.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "../error.hpp"
@@ -28,12 +29,15 @@ struct OpenPicture {
         if (path.empty()) {
             memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
             name = !bytes.empty() && bytes[0] == 0xff ? "memory.jpg" : "memory.png";
+            // As an argument of open() it is forgotten where there are wishes too (OpenImageIO 2.4).
+            OIIO::Filesystem::IOProxy* proxy = memory.get();
+            wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
         }
-        input = ImageInput::open(name, &wishes, memory.get());
+        input = ImageInput::open(name, &wishes);
         error = OIIO::geterror();
     }
 
-    /// All pixels, with the first of the channels that `wanted` allows.
+    /// All pixels, with their first channels.
     template <class Value>
     bool read(int channels, std::vector<Value>& pixels) {
         const ImageSpec& spec = input->spec();

@@ -37,6 +37,8 @@ class UnfinishedFile::Proxy final : public OIIO::Filesystem::IOFile {
 UnfinishedFile::UnfinishedFile(const std::string& path)
     : path_(path), temporary_(temporary_name(path)), file_(std::fopen(temporary_.c_str(), "wbx")) {
     if (!file_) fail(errno);
+    // A buffer could be emptied, in vain, by whoever closes the picture, and the error be lost.
+    std::setvbuf(file_, nullptr, _IONBF, 0);
     proxy_ = std::make_unique<Proxy>(file_);
 }
 
@@ -62,8 +64,8 @@ void UnfinishedFile::check_writes() const {
 
 void UnfinishedFile::finish() {
     check_writes();
-    // A full disk may show only now, in what was still in a buffer.
-    if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0) fail(errno);
+    // Some file systems find out only now that they are full.
+    if (fsync(fileno(file_)) != 0) fail(errno);
     proxy_.reset();
     const bool closed = std::fclose(file_) == 0;
     const int close_error = errno;

@@ -109,6 +109,7 @@ void GltfDocument::check_faces(const aiMesh& made, std::size_t mesh, std::size_t
     const std::size_t mode = from["mode"].index(4);
     if (mode < 4 || !from["indices"].is_number()) return;
     const std::size_t indices = root_["accessors"][from["indices"].index(no_index)]["count"].index(0);
+    if (indices < 3) return;
     const std::size_t triangles = mode == 4 ? indices / 3 : indices - 2;
     if (made.mNumFaces < triangles) {
         throw SceneFileError(path_ + ": mesh " + std::to_string(mesh) + ", primitive " + std::to_string(primitive) +

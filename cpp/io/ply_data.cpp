@@ -20,9 +20,9 @@ std::optional<PlyType> type_of(const std::string& name) {
         const char *name, *other_name;
         PlyType type;
     };
-    static constexpr Named types[] = {{"char", "int8", {'i', 1}},   {"uchar", "uint8", {'u', 1}},
-                                      {"short", "int16", {'i', 2}}, {"ushort", "uint16", {'u', 2}},
-                                      {"int", "int32", {'i', 4}},   {"uint", "uint32", {'u', 4}},
+    static constexpr Named types[] = {{"char", "int8", {'i', 1}},     {"uchar", "uint8", {'u', 1}},
+                                      {"short", "int16", {'i', 2}},   {"ushort", "uint16", {'u', 2}},
+                                      {"int", "int32", {'i', 4}},     {"uint", "uint32", {'u', 4}},
                                       {"float", "float32", {'f', 4}}, {"double", "float64", {'f', 8}}};
     for (const Named& t : types) {
         if (name == t.name || name == t.other_name) return t.type;
@@ -64,9 +64,12 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
         } else if (word == "format") {
             words >> what;
             has_format = true;
-            if (what == "binary_little_endian") header.format = PlyHeader::Format::little_endian;
-            else if (what == "binary_big_endian") header.format = PlyHeader::Format::big_endian;
-            else if (what != "ascii") fail("ascii, binary_little_endian or binary_big_endian is wanted");
+            if (what == "binary_little_endian")
+                header.format = PlyHeader::Format::little_endian;
+            else if (what == "binary_big_endian")
+                header.format = PlyHeader::Format::big_endian;
+            else if (what != "ascii")
+                fail("ascii, binary_little_endian or binary_big_endian is wanted");
         } else if (word == "comment") {
             if (words >> what && what == "TextureFile") std::getline(words >> std::ws, header.texture);
             while (header.texture.ends_with('\r')) header.texture.pop_back();
@@ -77,8 +80,10 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             if (header.elements.empty()) fail("an element is wanted before its properties");
             PlyProperty property{{}, {}, std::nullopt};
             const auto start = words.tellg();
-            if (words >> what; what == "list") property.count_type = next_type(words);
-            else words.seekg(start);
+            if (words >> what; what == "list")
+                property.count_type = next_type(words);
+            else
+                words.seekg(start);
             property.type = next_type(words);
             if (!(words >> property.name)) fail("the property's name is wanted");
             header.elements.back().properties.push_back(property);
@@ -107,7 +112,8 @@ std::optional<double> PlyData::next(PlyType type) {
     if (bytes_.size() < type.bytes) return std::nullopt;
     std::array<char, 8> bytes{};
     std::copy_n(bytes_.begin(), type.bytes, bytes.begin());
-    if (format_ == PlyHeader::Format::big_endian) std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(type.bytes));
+    if (format_ == PlyHeader::Format::big_endian)
+        std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(type.bytes));
     bytes_.remove_prefix(type.bytes);
     if (type.kind == 'f') return type.bytes == 4 ? value_of<float>(bytes) : value_of<double>(bytes);
     const bool is_signed = type.kind == 'i';

@@ -36,14 +36,14 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path);
 
 /// The numbers after the header, one after the other.
 class PlyData {
-  public:
+public:
     PlyData(std::string_view bytes, PlyHeader::Format format) : bytes_(bytes), format_(format) {}
 
     /// Nothing at the end of the data, or at what is no number.
     std::optional<double> next(PlyType type);
     std::size_t bytes_left() const { return bytes_.size(); }
 
-  private:
+private:
     std::string_view bytes_;
     PlyHeader::Format format_;
 };

@@ -32,7 +32,7 @@ Slot slot_of(std::string_view name) {
 }
 
 class PlyReader {
-  public:
+public:
     PlyReader(Scene& scene, const std::string& path, double scale, const PlyHeader& header, PlyData data)
         : scene_(scene), path_(path), scale_(scale), header_(header), data_(data) {}
 
@@ -40,8 +40,10 @@ class PlyReader {
         for (const PlyElement& element : header_.elements) {
             if (element.name == "vertex") start_vertices(element);
             for (std::size_t i = 0; i < element.count; ++i) {
-                if (element.name == "vertex") read_vertex(element, i);
-                else read_face(element, i);
+                if (element.name == "vertex")
+                    read_vertex(element, i);
+                else
+                    read_face(element, i);
             }
         }
         std::vector<std::uint32_t> smooth;
@@ -54,7 +56,7 @@ class PlyReader {
         warn_count(scene_, path_, bad_, "normals or texture coordinates are no finite numbers, 0 taken");
     }
 
-  private:
+private:
     [[noreturn]] void fail(const PlyElement& element, std::size_t i, const std::string& what) const {
         throw SceneFileError(path_ + ": " + element.name + " " + std::to_string(i) + ": " + what);
     }
@@ -80,8 +82,10 @@ class PlyReader {
     void read_vertex(const PlyElement& element, std::size_t i) {
         std::array<double, slot_count + 1> value{};
         for (const PlyProperty& p : element.properties) {
-            if (p.count_type) skip_list(element, i, p);
-            else value[slot_of(p.name)] = number(element, i, p.type);
+            if (p.count_type)
+                skip_list(element, i, p);
+            else
+                value[slot_of(p.name)] = number(element, i, p.type);
         }
         if (!std::isfinite(value[x] + value[y] + value[z])) {
             std::ostringstream text;
@@ -146,8 +150,8 @@ class PlyReader {
         for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
             for (const std::uint32_t vertex : scene_.triangles[t].vertices) {
                 if (vertex < scene_.positions_m.size()) continue;
-                throw SceneFileError(path_ + ": face " + std::to_string(faces_[t]) + ": index " + std::to_string(vertex) +
-                                     " is not smaller than the number of vertices, " +
+                throw SceneFileError(path_ + ": face " + std::to_string(faces_[t]) + ": index " +
+                                     std::to_string(vertex) + " is not smaller than the number of vertices, " +
                                      std::to_string(scene_.positions_m.size()));
             }
         }

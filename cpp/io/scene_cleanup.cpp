@@ -13,7 +13,8 @@ void warn_count(Scene& scene, const std::string& path, std::size_t n, const std:
 
 void clean_geometry(Scene& scene, const std::vector<std::uint32_t>& smooth, const std::string& path) {
     if (scene.triangles.empty()) {
-        throw SceneFileError(path + ": holds no triangles" + (scene.positions_m.empty() ? "" : ", only points or lines"));
+        throw SceneFileError(path + ": holds no triangles" +
+                             (scene.positions_m.empty() ? "" : ", only points or lines"));
     }
     // Like drop_degenerate_triangles, but the list of those to be smoothed has to follow.
     std::vector<bool> is_smooth(scene.triangles.size(), false);

@@ -31,9 +31,9 @@ struct SceneFileOptions {
 /// scale that makes no sense. What could be put up with is in Scene::warnings.
 ///
 /// Geometry: nodes are flattened, transforms applied in double precision; mirrored ones keep outward faces outward.
-/// Coordinates of the file itself are taken as float: put far-away objects under a translated node. Triangles
-/// without area are dropped. glTF meshes without normals are flat, as that format demands; OBJ and PLY say nothing,
-/// and get smooth normals where faces share vertices and meet at less than 45 degrees.
+/// Coordinates in an OBJ or in a mesh of a glTF are taken as float: put far-away objects under a translated node.
+/// Triangles without area are dropped. glTF meshes without normals are flat, as that format demands; OBJ and PLY say
+/// nothing, and get smooth normals where faces share vertices and meet at less than 45 degrees.
 ///
 /// Materials: MTL's Kd, map_Kd, Ks, Ns (Phong exponent) and Ke (radiance, cd/m^2) are taken as they are. glTF's
 /// metallic-roughness model becomes a diffuse and a Phong lobe (see scene_materials.cpp), with their sum at most 1;

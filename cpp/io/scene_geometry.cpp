@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 #include "../error.hpp"
 #include "affine.hpp"
-#include "scene_checks.hpp"
-#include "scene_normals.hpp"
+#include "scene_cleanup.hpp"
 #include "texture_transform.hpp"
-#include "vertex_welding.hpp"
 
 namespace realcam::io {
 namespace {
@@ -37,17 +34,11 @@ public:
     }
 
     void finish() {
-        drop_triangles();
-        if (!smooth_.empty()) smooth_normals(scene_, smooth_);
-        weld_vertices(scene_);
-        const auto count = [&](std::size_t n, const char* what) {
-            if (n > 0) scene_.warnings.push_back(path_ + ": " + std::to_string(n) + what);
-        };
-        count(dropped_, dropped_ == 1 ? " triangle without area dropped" : " triangles without area dropped");
-        count(bad_normals_, " normals are no finite numbers; their faces are flat there");
-        count(bad_uvs_, " texture coordinates are no finite numbers, 0 taken");
-        count(uncovered_, " meshes have a texture and no coordinates for it");
-        count(coloured_, " meshes have colours at their vertices, which are not read");
+        clean_geometry(scene_, smooth_, path_);
+        warn_count(scene_, path_, bad_normals_, "normals are no finite numbers; their faces are flat there");
+        warn_count(scene_, path_, bad_uvs_, "texture coordinates are no finite numbers, 0 taken");
+        warn_count(scene_, path_, uncovered_, "meshes have a texture and no coordinates for it");
+        warn_count(scene_, path_, coloured_, "meshes have colours at their vertices, which are not read");
     }
 
 private:
@@ -72,7 +63,7 @@ private:
         }
         add_vertices(mesh, transform);
 
-        const bool smooth = !mesh.HasNormals() && file_.format() != SceneFormat::gltf;
+        const bool smooth = !mesh.HasNormals() && file_.format() == SceneFormat::obj;
         const bool mirrored = transform.determinant() < 0;
         for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
             const aiFace& face = mesh.mFaces[f];
@@ -117,21 +108,6 @@ private:
         return {0, 0};
     }
 
-    // Like drop_degenerate_triangles, but the list of those to be smoothed has to follow.
-    void drop_triangles() {
-        std::vector<bool> is_smooth(scene_.triangles.size(), false);
-        for (const std::uint32_t t : smooth_) is_smooth[t] = true;
-        smooth_.clear();
-        std::size_t kept = 0;
-        for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
-            if (is_degenerate(scene_, scene_.triangles[t])) continue;
-            if (is_smooth[t]) smooth_.push_back(static_cast<std::uint32_t>(kept));
-            scene_.triangles[kept++] = scene_.triangles[t];
-        }
-        dropped_ = scene_.triangles.size() - kept;
-        scene_.triangles.resize(kept);
-    }
-
     Scene& scene_;
     const ImportedScene& file_;
     const std::string& path_;
@@ -139,7 +115,7 @@ private:
     bool any_normals_ = false, any_uvs_ = false;
     std::vector<std::uint32_t> smooth_;
     const Json none_;
-    std::size_t dropped_ = 0, bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0, coloured_ = 0;
+    std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0, coloured_ = 0;
 };
 
 }  // namespace
@@ -147,12 +123,7 @@ private:
 void read_geometry(Scene& scene, const ImportedScene& file, const std::string& path, double scale) {
     Flattener flattener(scene, file, path, scale);
     if (file.content().mRootNode) flattener.add_node(*file.content().mRootNode, Affine());
-    if (scene.triangles.empty()) {
-        throw SceneFileError(path + ": holds no triangles" +
-                             (scene.positions_m.empty() ? "" : ", only points or lines"));
-    }
     flattener.finish();
-    if (scene.triangles.empty()) throw SceneFileError(path + ": all of its triangles are without area");
     if (scene.uvs.empty()) {
         for (Material& material : scene.materials) material.diffuse_texture = -1;
     }

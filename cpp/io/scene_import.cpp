@@ -7,41 +7,15 @@
 #include <assimp/LogStream.hpp>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <mutex>
 #include <sstream>
 
 #include "../error.hpp"
 #include "obj_numbers.hpp"
-#include "ply_length.hpp"
 
 namespace realcam::io {
 namespace {
-
-namespace fs = std::filesystem;
-
-SceneFormat format_of(const std::string& path) {
-    std::string suffix = fs::path(path).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (suffix == ".obj") return SceneFormat::obj;
-    if (suffix == ".gltf" || suffix == ".glb") return SceneFormat::gltf;
-    if (suffix == ".ply") return SceneFormat::ply;
-    throw SceneFileError(path + ": a scene file ends in .glb, .gltf, .obj or .ply" +
-                         (suffix.empty() ? "" : ", not in " + suffix));
-}
-
-void check_readable(const std::string& path) {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw SceneFileError(path + ": no such file");
-    if (fs::is_directory(status)) throw SceneFileError(path + ": is a folder; a scene file is wanted");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw SceneFileError(path + ": cannot be opened; permission to read it is wanted");
-    if (file.peek() == std::ifstream::traits_type::eof()) {
-        throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
-    }
-}
 
 std::string one_line(std::string text) {
     std::replace_if(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
@@ -122,10 +96,8 @@ std::string mesh_label(const aiScene& content, unsigned index) {
     return label;
 }
 
-ImportedScene::ImportedScene(const std::string& path) : format_(format_of(path)) {
-    check_readable(path);
+ImportedScene::ImportedScene(const std::string& path, SceneFormat format) : format_(format) {
     if (format_ == SceneFormat::gltf) gltf_.emplace(path);
-    if (format_ == SceneFormat::ply) check_ply_is_whole(path);
     if (format_ == SceneFormat::obj) mend_obj_numbers(importer_, path);
     {
         const LogCapture capture(complaints_);

@@ -12,17 +12,17 @@
 
 namespace realcam::io {
 
-enum class SceneFormat { obj, gltf, ply };
+enum class SceneFormat { obj, gltf };
 
 /// A file in memory, with polygons cut into triangles, finite vertices and indices in range.
 class ImportedScene {
 public:
-    /// Throws SceneFileError: another suffix, no such file, an empty one, or one that is broken.
-    explicit ImportedScene(const std::string& path);
+    /// Throws SceneFileError if the file is broken.
+    ImportedScene(const std::string& path, SceneFormat format);
 
     const aiScene& content() const { return *importer_.GetScene(); }
     SceneFormat format() const { return format_; }
-    /// Null for other formats.
+    /// Null for an OBJ.
     const GltfDocument* gltf() const { return gltf_ ? &*gltf_ : nullptr; }
     /// Of a node relative to its parent.
     Affine transform(const aiNode& node) const { return gltf_ ? gltf_->transform(node) : Affine(node.mTransformation); }

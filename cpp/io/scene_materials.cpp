@@ -43,14 +43,12 @@ public:
 
     /// `json`: the material in a glTF file, null where the mesh has none.
     Material read(SceneFormat format, const Json& json) {
-        // assimp gives meshes without a material one of its own, a mirror in a PLY.
+        // assimp gives meshes without a material one of its own.
         aiString name;
         from_.Get(AI_MATKEY_NAME, name);
         if (format == SceneFormat::gltf ? json.is_null() : name == aiString(AI_DEFAULT_MATERIAL_NAME)) return material_;
-        const bool is_ply = format == SceneFormat::ply;  // a file with a texture at most; the rest is made up too
-        if (const auto c = colour(from_, AI_MATKEY_COLOR_DIFFUSE); c && !is_ply) material_.diffuse = *c;
+        if (const auto c = colour(from_, AI_MATKEY_COLOR_DIFFUSE)) material_.diffuse = *c;
         read_texture();
-        if (is_ply) return material_;
         if (format == SceneFormat::obj) {
             if (const auto c = colour(from_, AI_MATKEY_COLOR_SPECULAR)) material_.specular = *c;
             if (const auto n = number(from_, AI_MATKEY_SHININESS)) material_.shininess = *n;

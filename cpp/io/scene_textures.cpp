@@ -92,13 +92,13 @@ Vec3f mean_of(const DecodedImage& image, bool is_colour) {
 
 }  // namespace
 
-SceneTextures::SceneTextures(Scene& scene, const ImportedScene& file, const std::string& path,
+SceneTextures::SceneTextures(Scene& scene, const aiScene* content, const std::string& path,
                              const ImageReader& read_image)
-    : scene_(scene), file_(file), path_(path), read_image_(read_image) {}
+    : scene_(scene), content_(content), path_(path), read_image_(read_image) {}
 
 std::optional<DecodedImage> SceneTextures::decode(const std::string& name) {
     std::optional<DecodedImage> image;
-    if (const aiTexture* embedded = file_.content().GetEmbeddedTexture(name.c_str())) {
+    if (const aiTexture* embedded = content_ ? content_->GetEmbeddedTexture(name.c_str()) : nullptr) {
         if (embedded->mHeight > 0) {
             image = from_texels(*embedded);
         } else if (read_image_) {

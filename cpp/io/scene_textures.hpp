@@ -1,19 +1,20 @@
 #pragma once
+#include <assimp/scene.h>
+
 #include <map>
 #include <optional>
 #include <string>
 
 #include "../scene/scene.hpp"
 #include "scene_file.hpp"
-#include "scene_import.hpp"
 
 namespace realcam::io {
 
 /// The pictures of a scene file, each decoded once.
 class SceneTextures {
 public:
-    /// All arguments have to outlive it. `path`: of the scene file.
-    SceneTextures(Scene& scene, const ImportedScene& file, const std::string& path, const ImageReader& read_image);
+    /// All arguments have to outlive it. `content`: where pictures may be inside, or null. `path`: of the scene file.
+    SceneTextures(Scene& scene, const aiScene* content, const std::string& path, const ImageReader& read_image);
 
     struct Found {
         std::int32_t index;
@@ -33,7 +34,7 @@ private:
     std::optional<Vec3f> mean(const std::string& name, bool is_colour);
 
     Scene& scene_;
-    const ImportedScene& file_;
+    const aiScene* content_;
     const std::string& path_;
     const ImageReader& read_image_;
     std::map<std::string, Found> found_;

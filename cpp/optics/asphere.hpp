@@ -73,13 +73,16 @@ REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> d
     t = select(residual <= tolerance, t, next);
 }
 
+/// `slack`: by how much the search ended within its tolerance. A hit counts where that is not negative and the ray
+/// crosses in the right sense; one number says both, because gcc does not vectorise a chain of truth values here.
 template <class T>
-REALCAM_INLINE SurfaceHit<T> asphere_hit(const LensStep<T>& step, Vec3<T> o, Vec3<T> d, T t, bool converged) {
+REALCAM_INLINE SurfaceHit<T> asphere_hit(const LensStep<T>& step, Vec3<T> o, Vec3<T> d, T t, T slack) {
     const Vec3<T> p = o + t * d;
     const T slope = T(2) * asphere_sag(step, p.x * p.x + p.y * p.y).derivative;
     const Vec3<T> normal = normalized(Vec3<T>{-slope * p.x, -slope * p.y, T(1)});
     const T cosine = dot(d, normal);
-    return {t, cosine, normal, select(converged, cosine * step.sense_in, T(-1))};
+    const T crossing = cosine * step.sense_in;
+    return {t, cosine, normal, select(crossing < slack, crossing, slack)};
 }
 
 }  // namespace REALCAM_NAMESPACE

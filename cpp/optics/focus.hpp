@@ -83,12 +83,13 @@ inline double paraxial_object_distance(const LensSystem& lens, double focus_dist
     const auto object_to_film = [&](double s) {
         return s + lens.last_vertex() + paraxial_image_distance(lens, lens.wavelength_nm, s);
     };
-    // s = -ffd + f / |m| and the image f |m| behind the rear focal point, so m = -1 lies at s = f - ffd.
-    const double nearest = f - data.front_focal_distance;
+    // s = -ffd + f / |m| and the image f |m| behind the rear focal point, so m = -1 lies at s = f - ffd; inside the
+    // lens where the front focal point lies deep in it, as in a fisheye.
+    const double nearest = std::max(0.0, f - data.front_focal_distance);
     if (object_to_film(nearest) > focus_distance)
         throw InputError("cannot focus at " + metres(focus_distance) + ": the nearest object plane that lens \"" +
                          lens.name + "\" can bring to a film is " + metres(object_to_film(nearest)) + " from it");
-    double far = 2 * nearest;
+    double far = nearest + f;
     while (object_to_film(far) < focus_distance) far *= 2;
     return bisect([&](double s) { return object_to_film(s) - focus_distance; }, nearest, far);
 }

@@ -31,7 +31,7 @@ struct PathRecord {
 /// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
 template <class T, int N, class Record>
 REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays, Record& record, int lane,
-                                  Vec3<T> o, Vec3<T> d, SurfaceHit<T> hit, RayStatus failure) {
+                                  Vec3<T> o, Vec3<T> d, SurfaceHit<T> hit, int failure) {
     const Vec3<T> p = o + hit.distance * d;
     const T r2 = p.x * p.x + p.y * p.y;
     const Refraction<T> refracted = refract(d, hit.normal, hit.cosine, step.mu, step.sense_out);
@@ -44,7 +44,7 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
     if constexpr (Record::enabled) {
         const int cause = select(hit.met(), select(clear, static_cast<int>(RayStatus::total_internal_reflection),
                                                    static_cast<int>(RayStatus::vignetted)),
-                                 static_cast<int>(failure));
+                                 failure);
         rays.origin.set(lane, select(met, p, o));
         rays.direction.set(lane, select(passes, refracted.direction, d));
         rays.status[lane] = select(alive & !passes, cause, before);
@@ -65,7 +65,7 @@ REALCAM_HD inline void cross_sphere(const LensStep<T>& step, LensRays<T, N>& ray
         const Vec3<T> d = rays.direction[i];
         o.z -= step.shift;
         const SurfaceHit<T> hit = intersect_sphere(o, d, step.curvature, step.sense_in);
-        cross_surface(step, rays, record, i, o, d, hit, RayStatus::missed);
+        cross_surface(step, rays, record, i, o, d, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
@@ -77,16 +77,22 @@ REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays
         const Vec3<T> d = rays.direction[i];
         o.z -= step.shift;
         const SurfaceHit<T> hit = intersect_conic(o, d, step.curvature, step.conic_factor, step.sense_in);
-        cross_surface(step, rays, record, i, o, d, hit, RayStatus::missed);
+        cross_surface(step, rays, record, i, o, d, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
 template <class T, int N, class Record>
 REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
     AsphereSearch<T, N> search;
+    int ended = 0;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         rays.origin.z[i] -= step.shift;
+        ended += static_cast<int>(rays.status[i] != 0);
+    }
+    if (ended == N) return;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
         begin_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
     }
     for (int iteration = 0; iteration < kMaxAsphereIterations<T>; ++iteration) {
@@ -104,10 +110,11 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
     for (int i = 0; i < N; ++i) {
         const Vec3<T> o = rays.origin[i];
         const Vec3<T> d = rays.direction[i];
-        const bool converged = search.residual[i] <= search.tolerance[i];
-        const SurfaceHit<T> hit = asphere_hit(step, o, d, search.t[i], converged);
-        cross_surface(step, rays, record, i, o, d, hit,
-                      select(converged, RayStatus::missed, RayStatus::no_convergence));
+        const T slack = search.tolerance[i] - search.residual[i];
+        const SurfaceHit<T> hit = asphere_hit(step, o, d, search.t[i], slack);
+        const int failure = select(slack >= T(0), static_cast<int>(RayStatus::missed),
+                                   static_cast<int>(RayStatus::no_convergence));
+        cross_surface(step, rays, record, i, o, d, hit, failure);
     }
 }
 

@@ -33,14 +33,14 @@ class Pupil {
 
     PupilView view() const {
         const float radius = static_cast<float>(image_radius_);
-        return {nodes_.data(), outline_.data(), kRows, kSectors, radius > 0 ? kRows / radius : 0.0f, radius};
+        return {nodes_.data(), outline_.data(), kRows, kSectors, radius, radius > 0 ? 1 / radius : 0.0f};
     }
     double image_radius() const { return image_radius_; }
 
   private:
     static constexpr int kBlock = 256;
     static constexpr int kAzimuths = 64;  ///< intervals of azimuth over the half plane m >= 0
-    static constexpr int kGrid = 64;      ///< points of the search grid along l; half of them along m >= 0
+    static constexpr int kGrid = 48;      ///< points of the search grid along l; half of them along m >= 0
     /// The outline is widened by this share, for what can pass between the film radii and azimuths looked at.
     static constexpr double kMargin = 0.004;
 
@@ -119,21 +119,49 @@ class Pupil {
         return {box.l_min + a * (box.l_max - box.l_min), b * box.m_max};
     }
 
-    /// Bounding box of the passing directions inside `search`, widened by a grid cell; nothing where fewer than
+    /// Bounding box of the passing directions inside `search`; nothing where fewer than
     /// `wanted` points of the grid pass.
     std::optional<Box> passing_box(double radius, const Box& search, int wanted) const {
         Box box{1, -1, 0};
+        Direction highest{0, 0};  // the middle of the top row's passing points
+        double leftmost = 0;
         int passed = 0;
         trace(radius, kGrid * kGrid / 2, [&](int i) { return grid_point(search, i); },
               [&](int i, bool passes) {
                   if (!passes) return;
                   const Direction d = grid_point(search, i);
+                  if (d.m > highest.m) leftmost = d.l;
+                  highest = {0.5 * (leftmost + d.l), d.m};
                   box = {std::min(box.l_min, d.l), std::max(box.l_max, d.l), std::max(box.m_max, d.m)};
                   ++passed;
               });
         if (passed < wanted) return std::nullopt;
         const double cell_l = (search.l_max - search.l_min) / kGrid, cell_m = search.m_max / (kGrid / 2);
-        return Box{box.l_min - cell_l, box.l_max + cell_l, box.m_max + cell_m};
+        return refined(radius, box, highest, cell_l, cell_m);
+    }
+
+    /// Moves the box's three edges out to where the light ends, which is less than a cell away from the outermost
+    /// grid point that passes. The region is symmetric in m, so it is widest along l where m is 0.
+    Box refined(double radius, Box box, Direction highest, double cell_l, double cell_m) const {
+        constexpr int kSteps = kBlock / 3;
+        const Box from = box;
+        const auto direction = [&](int i) {
+            const double step = (i % kSteps + 1.0) / kSteps;
+            switch (i / kSteps) {
+                case 0: return Direction{from.l_min - step * cell_l, 0};
+                case 1: return Direction{from.l_max + step * cell_l, 0};
+                default: return Direction{highest.l, from.m_max + step * cell_m};
+            }
+        };
+        trace(radius, 3 * kSteps, direction, [&](int i, bool passes) {
+            if (!passes) return;
+            const Direction d = direction(i);
+            box = {std::min(box.l_min, d.l), std::max(box.l_max, d.l), std::max(box.m_max, d.m)};
+        });
+        box.l_min -= cell_l / kSteps;
+        box.l_max += cell_l / kSteps;
+        box.m_max += cell_m / kSteps;
+        return box;
     }
 
     /// A small aperture falls through any grid: where too few rays pass, goes to the ray that comes nearest to the
@@ -141,12 +169,12 @@ class Pupil {
     std::optional<Box> find_box(double radius, Box search) const {
         constexpr int kLevels = 6;
         for (int level = 0; level < kLevels; ++level) {
-            if (const auto box = passing_box(radius, search, 48)) return passing_box(radius, *box, 1);
+            if (const auto box = passing_box(radius, search, 48)) return box;
             const auto nearest = nearest_to_stop(radius, search);
             if (!nearest) break;
             const double w = search.half_width() / 6, h = search.m_max / 6;
             const auto few = passing_box(radius, search, 1);
-            search = few ? *few : Box{nearest->l - w, nearest->l + w, nearest->m + h};
+            search = few ? grown(*few, 0.2) : Box{nearest->l - w, nearest->l + w, nearest->m + h};
         }
         return passing_box(radius, search, 1);
     }
@@ -171,52 +199,64 @@ class Pupil {
         return nearest;
     }
 
+    /// The box at a film radius; starts from the box at a radius nearby where there is one.
+    std::optional<Box> look(double radius, const std::optional<Box>& nearby) const {
+        if (nearby) {
+            const Box search = grown(*nearby, 0.4);
+            const auto box = passing_box(radius, search, 48);
+            const bool whole = box && box->l_min > search.l_min && box->l_max < search.l_max && box->m_max < search.m_max;
+            if (whole) return box;
+        }
+        std::optional<Box> box = find_box(radius, box_of_last_surface(radius));
+        // Near the edge of the image circle a sliver is left, close to where the last one was.
+        if (!box && nearby) box = find_box(radius, grown(*nearby, 0.5));
+        return box;
+    }
+
     /// Finds how far out there is light, and the region's box at each node from the axis to there.
     void find_nodes() {
-        std::optional<Box> last;
-        double lit = 0;
-        const auto look = [&](double radius) {
-            std::optional<Box> box = find_box(radius, box_of_last_surface(radius));
-            // Near the edge of the image circle a sliver is left, close to where the last one was.
-            if (!box && last) box = find_box(radius, grown(*last, 0.5));
-            return box;
-        };
-        for (int i = 0; i <= kRows; ++i) {
-            const double radius = image_radius_ * i / kRows;
-            const std::optional<Box> box = look(radius);
-            if (box) {
-                last = box;
-                lit = radius;
-            } else if (last) {
-                break;
-            }
-        }
-        if (!last) {
+        std::vector<std::optional<Box>> boxes = look_from_axis();
+        const auto lit = [](const std::optional<Box>& box) { return box.has_value(); };
+        const auto last = std::find_if(boxes.rbegin(), boxes.rend(), lit);
+        if (last == boxes.rend()) {
             image_radius_ = 0;
             nodes_.assign(kRows + 1, PupilNode{});
             return;
         }
-        if (lit < image_radius_) image_radius_ = edge_of_image(lit, std::min(image_radius_, lit + image_radius_ / kRows), look);
-        Box box = *last;
-        std::vector<std::optional<Box>> boxes;
-        for (int i = 0; i <= kRows; ++i) boxes.push_back(look(image_radius_ * i / kRows));
-        for (int i = kRows; i >= 0; --i) {  // a node without light takes its inner neighbour's box
-            for (int k = i; k >= 0; --k)
-                if (boxes[static_cast<std::size_t>(k)]) {
-                    box = *boxes[static_cast<std::size_t>(k)];
-                    break;
-                }
-            boxes[static_cast<std::size_t>(i)] = box;
+        if (last != boxes.rbegin()) {
+            image_radius_ = edge_of_image(static_cast<double>(boxes.rend() - last - 1), **last);
+            boxes = look_from_axis();
         }
-        for (const auto& b : boxes)
-            nodes_.push_back({static_cast<float>(b->l()), static_cast<float>(b->half_width()), static_cast<float>(b->m_max)});
+        std::optional<Box> box = *std::find_if(boxes.begin(), boxes.end(), lit);
+        for (const auto& found : boxes) {
+            if (found) box = found;  // a node without light takes its inner neighbour's box
+            nodes_.push_back({static_cast<float>(box->l()), static_cast<float>(box->half_width()), static_cast<float>(box->m_max)});
+        }
     }
 
-    template <class Look>
-    double edge_of_image(double lit, double dark, Look&& look) const {
+    std::vector<std::optional<Box>> look_from_axis() const {
+        std::vector<std::optional<Box>> boxes;
+        std::optional<Box> last;
+        for (int i = 0; i <= kRows; ++i) {
+            boxes.push_back(look(radius_at(i), last));
+            if (boxes.back()) last = boxes.back();
+        }
+        return boxes;
+    }
+
+    /// Film radius at which a row, or a place inside one, lies.
+    double radius_at(double position) const {
+        const double inward = 1 - position / kRows;
+        return image_radius_ * (1 - inward * inward);
+    }
+
+    double edge_of_image(double last_lit_row, Box last) const {
+        double lit = radius_at(last_lit_row), dark = radius_at(last_lit_row + 1);
         for (int i = 0; i < 12; ++i) {
             const double middle = 0.5 * (lit + dark);
-            (look(middle) ? lit : dark) = middle;
+            const std::optional<Box> box = look(middle, last);
+            if (box) last = *box;
+            (box ? lit : dark) = middle;
         }
         return dark;
     }
@@ -234,7 +274,7 @@ class Pupil {
         constexpr int kSteps = 24, kHalvings = 9;
         constexpr double kReach = 1.5;  // past the corner of the box
         const PupilNode node = node_at(position);
-        const double radius = image_radius_ * position / kRows;
+        const double radius = radius_at(position);
         const auto direction = [&](int azimuth, double reach) {
             const double angle = std::numbers::pi * azimuth / kAzimuths;
             const double width = static_cast<double>(node.half_width), height = static_cast<double>(node.half_height);
@@ -259,8 +299,9 @@ class Pupil {
             open[1][a] = kReach * first[a] / kSteps;
             shut[1][a] = kReach * std::max(first[a] - 1, 0) / kSteps;
         }
+        const bool has_hole = std::any_of(first, first + kRays, [](int step) { return step > 0; });
         for (int i = 0; i < kHalvings; ++i)
-            trace(radius, 2 * kRays,
+            trace(radius, has_hole ? 2 * kRays : kRays,
                   [&](int k) { return direction(k % kRays, 0.5 * (open[k / kRays][k % kRays] + shut[k / kRays][k % kRays])); },
                   [&](int k, bool passes) {
                       const int edge = k / kRays, a = k % kRays;

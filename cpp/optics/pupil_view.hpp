@@ -25,13 +25,15 @@ struct PupilSector {
     float area_share;  ///< area times number of sectors: density one over this where the sector is chosen evenly
 };
 
-/// Rows of sectors over the film radius. Each row has `sectors` sectors for m >= 0; the others mirror them.
+/// Rows of sectors over the film radius: row = rows * (1 - sqrt(1 - radius / image_radius)), so that they lie closer and
+/// closer towards the edge, where vignetting changes the outline fastest. Each row has `sectors` sectors for m >= 0;
+/// the others mirror them.
 struct PupilView {
     const PupilNode* nodes;  ///< rows + 1
     const PupilSector* outline;
     int rows, sectors;
-    float rows_per_mm;
-    float image_radius;  ///< no light reaches film points further out, mm
+    float image_radius;         ///< no light reaches film points further out, mm
+    float inverse_image_radius;  ///< 0 where there is no light at all
 };
 
 /// A ray's start direction.
@@ -48,7 +50,7 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
     const float sin = film_y * inverse;
 
     const bool lit = radius < pupil.image_radius;
-    const float position = select(lit, radius * pupil.rows_per_mm, 0.0f);
+    const float position = static_cast<float>(pupil.rows) * (1.0f - sqrt_or_zero(1.0f - radius * pupil.inverse_image_radius));
     int row = static_cast<int>(position);
     row = select(row < pupil.rows, row, pupil.rows - 1);
     const float f = position - static_cast<float>(row);

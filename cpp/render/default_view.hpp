@@ -47,9 +47,9 @@ inline double distance_on_axis(const Scene& scene, const Pose& pose, double near
         const Vec3d v = scene.positions_m[t.vertices[2]] - pose.position_m - a;
         const Vec3d p = cross(direction, v), q = cross(u, a);
         const double determinant = dot(u, p);
-        const double first = -dot(a, p) / determinant, second = -dot(direction, q) / determinant;
+        const double first = -dot(a, p) / determinant, second = dot(direction, q) / determinant;
         if (!(first >= 0 && second >= 0 && first + second <= 1)) continue;
-        const double distance = -dot(v, q) / determinant;
+        const double distance = dot(v, q) / determinant;
         if (distance > nearest_m && distance < found) found = distance;
     }
     return found;
@@ -71,7 +71,7 @@ inline double autofocus_m(const Scene& scene, const BoundingBox& box, const Came
 }
 
 /// Entrance pupil to `target` at which every corner of the box lies in the picture. The field counts up to 90 degrees:
-/// to fill the picture of a fisheye, the camera would have to stand inside the scene.
+/// to fill the picture of a fisheye, the camera would have to stand inside the scene. No corner lies in the lens.
 inline double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d target) {
     using camera_detail::axes_of;
     const auto tangent = [&](double half_film_mm) {
@@ -80,13 +80,15 @@ inline double filling_distance(const BoundingBox& box, const Camera& camera, Vec
     };
     const double tan_x = tangent(0.5 * camera.film.width_mm), tan_y = tangent(0.5 * camera.film.height_mm);
     const auto axes = axes_of(camera.pose);
+    // Also keeps a scene without breadth, such as a plane seen edge on, in front of the camera.
+    const double pupil = first_order(camera.lens, camera.lens.wavelength_nm).entrance_pupil_position;
+    const double least = std::max(0.1 * length(box.high - box.low), std::isfinite(pupil) ? 0.0012 * pupil : 0.0);
     double distance = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3d p = Vec3d{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
                               corner & 4 ? box.high.z : box.low.z} - target;
         const double aside = std::max(std::fabs(dot(p, axes.right)) / tan_x, std::fabs(dot(p, axes.up)) / tan_y);
-        // The second term keeps a scene without breadth, such as a plane seen edge on, in front of the lens.
-        distance = std::max(distance, dot(p, axes.backward) + std::max(aside, 0.1 * length(box.high - box.low)));
+        distance = std::max(distance, dot(p, axes.backward) + std::max(aside, least));
     }
     return distance;
 }

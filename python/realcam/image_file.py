@@ -59,18 +59,31 @@ def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
     return np.ascontiguousarray(pixels, dtype=np.float32)
 
 
+def check_folder(path: str | os.PathLike[str]) -> None:
+    """Raises ImageFileError where no file of this name can be made."""
+    folder = Path(path).parent
+    if not folder.is_dir():
+        raise ImageFileError(f"{os.fspath(path)}: the folder {folder} does not exist")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise ImageFileError(f"{os.fspath(path)}: the folder {folder} is not writable")
+    if Path(path).is_dir():
+        raise ImageFileError(f"{os.fspath(path)}: is a folder; the name of a file is wanted")
+
+
 def check_writable(path: str | os.PathLike[str]) -> None:
     """Raises ImageFileError where write_image could not write: before the work, not after it."""
-    name = os.fspath(path)
-    folder = Path(name).parent
-    if Path(name).suffix.lower() not in (".png", ".exr"):
+    if Path(path).suffix.lower() not in (".png", ".exr"):
+        name = os.fspath(path)
         raise ImageFileError(f"{name}: unknown suffix; .png (for the screen) or .exr (film exposure) is wanted")
-    if not folder.is_dir():
-        raise ImageFileError(f"{name}: the folder {folder} does not exist")
-    if not os.access(folder, os.W_OK | os.X_OK):
-        raise ImageFileError(f"{name}: the folder {folder} is not writable")
-    if Path(name).is_dir():
-        raise ImageFileError(f"{name}: is a folder; the name of a file is wanted")
+    check_folder(path)
+
+
+def publish(temporary: str, path: str | os.PathLike[str]) -> None:
+    """Gives a finished temporary file its name, and the permissions that a new file gets."""
+    umask = os.umask(0)
+    os.umask(umask)
+    Path(temporary).chmod(0o666 & ~umask)  # mkstemp makes private files
+    Path(temporary).replace(path)
 
 
 def write_image(
@@ -96,9 +109,6 @@ def write_image(
             raise ImageFileError(f"{name}: {oiio.geterror()}")
         if not (output.open(temporary, spec) and output.write_image(np.ascontiguousarray(pixels)) and output.close()):
             raise ImageFileError(f"{name}: cannot be written: {output.geterror()}")
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(temporary).chmod(0o666 & ~umask)  # mkstemp makes private files
-        Path(temporary).replace(name)
+        publish(temporary, name)
     finally:
         Path(temporary).unlink(missing_ok=True)

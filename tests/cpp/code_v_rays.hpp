@@ -2,6 +2,7 @@
 // Real rays as CODE V 10.8 prints them, surface by surface (ag_dblgauss.lis of ray-optics, "Double Gauss F/2 -
 // Available Glasses", 587.6 nm, 29 June 2017).
 
+#include <string>
 #include <vector>
 
 namespace realcam::test {
@@ -13,7 +14,7 @@ struct CodeVRow {
 };
 
 struct CodeVRay {
-    const char* name;
+    std::string name;
     double field_deg;
     std::vector<CodeVRow> rows;
 };

@@ -92,7 +92,7 @@ TEST_CASE("paraxial rays of the CODE V double Gauss, surface by surface") {
 // printed digits is uncertain. Sources of the tables: the lens files.
 TEST_CASE("four classic prescriptions to the printed digits") {
     struct Printed {
-        const char* name;
+        std::string name;
         double focal_length, back_focal_distance, f_number;
     };
     for (const Printed& p : {Printed{"double-gauss-50mm", 50.3582, 36.1059, 2.03},

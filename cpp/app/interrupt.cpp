@@ -1,0 +1,32 @@
+#include "interrupt.hpp"
+
+#include <csignal>
+
+namespace realcam::app {
+namespace {
+
+volatile std::sig_atomic_t received = 0;
+
+void take_note(int signal) { received = signal; }
+
+void handle(void (*handler)(int)) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;  // a write that is under way goes on
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+}  // namespace
+
+Interrupt::Interrupt() {
+    received = 0;
+    handle(take_note);
+}
+
+Interrupt::~Interrupt() { handle(SIG_DFL); }
+
+int Interrupt::signal() { return received; }
+
+}  // namespace realcam::app

@@ -1,0 +1,18 @@
+#pragma once
+
+namespace realcam::app {
+
+/// While it lives, Ctrl-C and SIGTERM are taken note of and do not end the program, so that it can leave without half a
+/// file behind. At other times they end it, as usual.
+class Interrupt {
+  public:
+    Interrupt();
+    Interrupt(const Interrupt&) = delete;
+    Interrupt& operator=(const Interrupt&) = delete;
+    ~Interrupt();
+
+    /// The signal that came; 0: none.
+    static int signal();
+};
+
+}  // namespace realcam::app

@@ -1,0 +1,76 @@
+#include "json_writer.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace realcam::app {
+
+JsonWriter& JsonWriter::begin(char open, char close) {
+    before_value();
+    text_ += open;
+    closers_.push_back(close);
+    first_ = true;
+    return *this;
+}
+
+JsonWriter& JsonWriter::end() {
+    const char close = closers_.back();
+    closers_.pop_back();
+    if (!first_) new_line();
+    text_ += close;
+    first_ = false;
+    return *this;
+}
+
+JsonWriter& JsonWriter::key(const std::string& name) {
+    before_value();
+    quote(name);
+    text_ += ": ";
+    after_key_ = true;
+    return *this;
+}
+
+JsonWriter& JsonWriter::text(const std::string& value) {
+    before_value();
+    quote(value);
+    return *this;
+}
+
+JsonWriter& JsonWriter::number(double value) {
+    before_value();
+    char digits[32];
+    if (std::isfinite(value)) {
+        text_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+    } else {
+        text_ += "null";
+    }
+    return *this;
+}
+
+void JsonWriter::before_value() {
+    if (!after_key_ && !closers_.empty()) {
+        if (!first_) text_ += ',';
+        new_line();
+    }
+    first_ = after_key_ = false;
+}
+
+void JsonWriter::new_line() { text_ += '\n' + std::string(2 * closers_.size(), ' '); }
+
+void JsonWriter::quote(const std::string& value) {
+    text_ += '"';
+    for (const char c : value) {
+        if (static_cast<unsigned char>(c) < 0x20) {
+            char escape[8];
+            std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(c));
+            text_ += escape;
+        } else {
+            if (c == '"' || c == '\\') text_ += '\\';
+            text_ += c;
+        }
+    }
+    text_ += '"';
+}
+
+}  // namespace realcam::app

@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace realcam::app {
+
+/// Writes JSON, indented. Calls follow the text: begin_object().key("a").number(1).end().
+class JsonWriter {
+  public:
+    JsonWriter& begin_object() { return begin('{', '}'); }
+    JsonWriter& begin_array() { return begin('[', ']'); }
+    JsonWriter& end();
+    JsonWriter& key(const std::string& name);
+    JsonWriter& text(const std::string& value);
+    /// null where the number is infinite or NaN: JSON has neither.
+    JsonWriter& number(double value);
+
+    std::string finish() const { return text_; }
+
+  private:
+    JsonWriter& begin(char open, char close);
+    void before_value();
+    void new_line();
+    void quote(const std::string& value);
+
+    std::string text_;
+    std::vector<char> closers_;
+    bool first_ = true, after_key_ = false;
+};
+
+}  // namespace realcam::app

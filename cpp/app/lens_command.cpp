@@ -1,0 +1,61 @@
+#include "lens_command.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include "../io/lens_file.hpp"
+#include "../optics/focus.hpp"
+#include "json_writer.hpp"
+#include "lens_report.hpp"
+#include "values.hpp"
+
+namespace realcam::app {
+namespace {
+
+struct InfoOptions {
+    std::string lens, f_number, focus;
+    bool as_json = false;
+};
+
+void run_info(const InfoOptions& options) {
+    LensSystem lens = io::read_lens(options.lens);
+    if (!options.focus.empty()) lens = focused(lens, 1000 * parse_number("--focus", options.focus, true));
+    if (!options.f_number.empty()) lens = stopped_down(lens, parse_number("--f-number", options.f_number));
+    std::fputs((options.as_json ? lens_as_json(lens) : lens_as_text(lens)).c_str(), stdout);
+}
+
+void run_list(bool as_json) {
+    JsonWriter json;
+    json.begin_array();
+    for (const std::string& name : io::lens_names()) {
+        const LensSystem lens = io::read_lens(name);
+        if (as_json) {
+            json.begin_object().key("name").text(name).key("title").text(lens.title).end();
+        } else {
+            std::printf("%-32s %s\n", name.c_str(), lens.title.c_str());
+        }
+    }
+    if (as_json) std::puts(json.end().finish().c_str());
+}
+
+}  // namespace
+
+void add_lens_command(CLI::App& app) {
+    CLI::App* lens = app.add_subcommand("lens", "Look at lenses");
+    lens->require_subcommand(1);
+
+    CLI::App* info = lens->add_subcommand("info", "Print a lens's table of surfaces and its first-order data");
+    const auto options = std::make_shared<InfoOptions>();
+    info->add_option("lens", options->lens, "Name of a bundled lens, or path of a .toml file")->required()->type_name("NAME");
+    info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");
+    info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")->type_name("METRES");
+    info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");
+    info->callback([options] { run_info(*options); });
+
+    CLI::App* list = lens->add_subcommand("list", "Name the bundled lenses");
+    const auto list_as_json = std::make_shared<bool>(false);
+    list->add_flag("--json", *list_as_json, "Print JSON");
+    list->callback([list_as_json] { run_list(*list_as_json); });
+}
+
+}  // namespace realcam::app

@@ -1,0 +1,9 @@
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace realcam::app {
+
+/// Adds `lens info` and `lens list`.
+void add_lens_command(CLI::App& app);
+
+}  // namespace realcam::app

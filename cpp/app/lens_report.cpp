@@ -1,0 +1,180 @@
+#include "lens_report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <numbers>
+
+#include "../camera/field_of_view.hpp"
+#include "../optics/paraxial.hpp"
+#include "json_writer.hpp"
+#include "values.hpp"
+
+namespace realcam::app {
+namespace {
+
+using Row = std::array<std::string, 7>;
+
+std::string fixed(double value, int decimals = 4) {
+    if (!std::isfinite(value)) return std::isnan(value) ? "none" : value > 0 ? "inf" : "-inf";
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*f", decimals, value);
+    return text;
+}
+
+std::string type_name(SurfaceType type) {
+    switch (type) {
+        case SurfaceType::mirror: return "mirror";
+        case SurfaceType::stop: return "stop";
+        case SurfaceType::aperture: return "aperture";
+        case SurfaceType::refracting: break;
+    }
+    return "refracting";
+}
+
+std::string material_name(const Surface& surface) {
+    if (surface.type != SurfaceType::refracting) return "";
+    return surface.material.is_air() ? "air" : surface.material.label;
+}
+
+std::string shape(const Surface& surface) {
+    std::string text;
+    const auto add = [&](const std::string& mark) { text += (text.empty() ? "" : ", ") + mark; };
+    if (surface.conic != 0) add("conic " + short_number(surface.conic, 6));
+    if (surface.is_asphere()) add("asphere to r^" + std::to_string(2 * surface.aspheric.size() + 2));
+    if (surface.inner_semi_diameter > 0) add("blocked inside " + short_number(surface.inner_semi_diameter, 6) + " mm");
+    return text;
+}
+
+std::string table(const LensSystem& lens) {
+    std::vector<Row> rows{{"#", "type", "radius", "thickness", "material", "clear semi-d.", ""},
+                          {"", "", "mm", "mm", "", "mm", ""}};
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const Surface& s = lens.surfaces[i];
+        const std::string radius = s.curvature != 0 ? fixed(1 / s.curvature) : s.bends_light() ? "plane" : "";
+        const bool last = i + 1 == lens.surfaces.size();
+        const bool closed = s.type == SurfaceType::stop && !lens.is_wide_open();
+        rows.push_back({std::to_string(i + 1), type_name(s.type), radius, fixed(last ? lens.film_distance : s.thickness),
+                        material_name(s), fixed(closed ? lens.stop_semi_diameter : s.clear_semi_diameter), shape(s)});
+    }
+    rows.push_back({"", "film", "", "", "", "", ""});
+    std::array<std::size_t, 7> widths{};
+    for (const Row& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    std::string text;
+    for (const Row& row : rows) {
+        std::string line;
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            const std::string gap(widths[c] - row[c].size(), ' ');
+            const bool words = c == 1 || c == 4 || c == 6;
+            line += "  " + (words ? row[c] + gap : gap + row[c]);
+        }
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+    }
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const Surface& s = lens.surfaces[i];
+        if (!s.is_asphere()) continue;
+        text += "  asphere " + std::to_string(i + 1) + ':';
+        for (std::size_t k = 0; k < s.aspheric.size(); ++k)
+            if (s.aspheric[k] != 0) text += ' ' + short_number(s.aspheric[k], 8) + " r^" + std::to_string(2 * k + 4);
+        text += '\n';
+    }
+    return text;
+}
+
+/// Full angles across width, height and diagonal, degrees; NaN where no light reaches that far.
+std::array<double, 3> field_of_view(const LensSystem& lens) {
+    const auto full = [&](double size) { return 2 * field_angle(lens, size / 2) * 180 / std::numbers::pi; };
+    return {full(lens.film_width), full(lens.film_height), full(std::hypot(lens.film_width, lens.film_height))};
+}
+
+std::string iris_text(const IrisShape& iris) {
+    if (iris.blades == 0) return "round";
+    return std::to_string(iris.blades) + " blades, rounding " + short_number(iris.rounding) + ", rotation " +
+           short_number(iris.rotation_rad * 180 / std::numbers::pi) + " degrees";
+}
+
+}  // namespace
+
+std::string lens_as_text(const LensSystem& lens) {
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const auto view = field_of_view(lens);
+    std::string text = lens.name + (lens.title.empty() ? "" : ": " + lens.title) + '\n';
+    if (!lens.source.empty()) text += "source: " + lens.source + '\n';
+    text += '\n' + table(lens) + '\n';
+    const auto line = [&](std::string what, const std::string& value) {
+        what.resize(28, ' ');
+        text += "  " + what + value + '\n';
+    };
+    const auto mm = [](double value) {
+        const std::string number = fixed(value);
+        return std::string(number.size() < 12 ? 12 - number.size() : 0, ' ') + number + " mm";
+    };
+    text += "At " + short_number(lens.wavelength_nm, 7) + " nm; positions are measured from the front vertex.\n";
+    line("effective focal length", mm(data.effective_focal_length));
+    line("back focal distance", mm(data.back_focal_distance));
+    line("front focal distance", mm(data.front_focal_distance));
+    line("f-number", std::string(7, ' ') + "f/" + short_number(data.f_number));
+    line("entrance pupil position", mm(data.entrance_pupil_position));
+    line("entrance pupil diameter", mm(data.entrance_pupil_diameter));
+    line("exit pupil position", mm(data.exit_pupil_position));
+    line("exit pupil diameter", mm(data.exit_pupil_diameter));
+    line("length to last vertex", mm(lens.last_vertex()));
+    line("last vertex to film", mm(lens.film_distance));
+    line("focus (object to film)", "     " + distance_text(lens.focus_distance / 1000));
+    const FocusingRule& rule = lens.focusing;
+    if (rule.nearest_mm > 0) line("nearest focus", "     " + distance_text(rule.nearest_mm / 1000));
+    line("focusing moves", "     " + (rule.moves_group() ? "surfaces " + std::to_string(rule.group_first + 1) + " to " +
+                                                               std::to_string(rule.group_last + 1)
+                                                         : std::string("the whole lens")));
+    line("diaphragm", "     " + iris_text(lens.iris));
+    line("film", "     " + short_number(lens.film_width) + " x " + short_number(lens.film_height) + " mm");
+    line("field of view", "     " + fixed(view[0], 1) + " x " + fixed(view[1], 1) + " degrees, " + fixed(view[2], 1) +
+                              " across the diagonal" + (std::isfinite(view[2]) ? "" : " (its corners get no light)"));
+    return text;
+}
+
+std::string lens_as_json(const LensSystem& lens) {
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const auto view = field_of_view(lens);
+    JsonWriter json;
+    json.begin_object().key("name").text(lens.name).key("title").text(lens.title).key("source").text(lens.source);
+    json.key("surfaces").begin_array();
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const Surface& s = lens.surfaces[i];
+        json.begin_object().key("number").number(static_cast<double>(i + 1)).key("type").text(type_name(s.type));
+        json.key("radius_of_curvature_mm").number(1 / s.curvature).key("thickness_mm").number(s.thickness);
+        json.key("material").text(material_name(s)).key("clear_semi_diameter_mm").number(s.clear_semi_diameter);
+        if (s.inner_semi_diameter > 0) json.key("inner_semi_diameter_mm").number(s.inner_semi_diameter);
+        if (s.conic != 0) json.key("conic").number(s.conic);
+        if (s.is_asphere()) {
+            json.key("aspheric_coefficients").begin_object();
+            for (std::size_t k = 0; k < s.aspheric.size(); ++k)
+                if (s.aspheric[k] != 0) json.key(std::to_string(2 * k + 4)).number(s.aspheric[k]);
+            json.end();
+        }
+        json.end();
+    }
+    json.end();
+    const auto add = [&](const char* name, double value) { json.key(name).number(value); };
+    add("wavelength_nm", lens.wavelength_nm);
+    add("effective_focal_length_mm", data.effective_focal_length);
+    add("back_focal_distance_mm", data.back_focal_distance);
+    add("front_focal_distance_mm", data.front_focal_distance);
+    add("f_number", data.f_number);
+    add("entrance_pupil_position_mm", data.entrance_pupil_position);
+    add("entrance_pupil_diameter_mm", data.entrance_pupil_diameter);
+    add("exit_pupil_position_mm", data.exit_pupil_position);
+    add("exit_pupil_diameter_mm", data.exit_pupil_diameter);
+    add("film_distance_mm", lens.film_distance);
+    add("focus_distance_m", lens.focus_distance / 1000);
+    add("stop_semi_diameter_mm", lens.stop_semi_diameter);
+    add("film_width_mm", lens.film_width);
+    add("film_height_mm", lens.film_height);
+    add("field_of_view_width_deg", view[0]);
+    add("field_of_view_height_deg", view[1]);
+    add("field_of_view_diagonal_deg", view[2]);
+    return json.end().finish() + '\n';
+}
+
+}  // namespace realcam::app

@@ -1,0 +1,55 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <new>
+
+#include "devices.hpp"
+#include "lens_command.hpp"
+#include "render_command.hpp"
+
+namespace {
+
+constexpr int kFailure = 2;
+
+int fail(std::string message) {
+    // One line, whatever a library wrote.
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    std::fprintf(stderr, "realcam: error: %s\n", message.c_str());
+    return kFailure;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Photographs 3D scenes through real lenses, ray by ray.", "realcam");
+    app.set_version_flag("--version", "realcam " REALCAM_VERSION);
+    app.require_subcommand(1);
+    realcam::app::add_render_command(app);
+    realcam::app::add_lens_command(app);
+    CLI::App* devices = app.add_subcommand("devices", "List the devices that render");
+    const auto as_json = std::make_shared<bool>(false);
+    devices->add_flag("--json", *as_json, "Print JSON");
+    devices->callback([as_json] { realcam::app::list_devices(*as_json); });
+    try {
+        app.parse(argc, argv);
+        return std::fflush(stdout) == 0 ? 0 : fail("the standard output cannot be written to");
+    } catch (const CLI::Success& success) {  // --help and --version
+        return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        return fail(std::string(error.what()) + " (--help lists the options)");
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const realcam::app::Interrupted& interrupted) {
+        std::fputs("realcam: stopped\n", stderr);
+        return 128 + interrupted.signal;
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory");
+    } catch (const std::exception& error) {
+        return fail(error.what());
+    }
+}

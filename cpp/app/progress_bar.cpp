@@ -1,0 +1,35 @@
+#include "progress_bar.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace realcam::app {
+
+ProgressBar::ProgressBar(std::string what)
+    : what_(std::move(what)), is_terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
+
+ProgressBar::~ProgressBar() {
+    if (drawn_) std::fputs("\r\x1b[K", stderr);
+}
+
+void ProgressBar::show(double done) {
+    const auto now = Clock::now();
+    if (!is_terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
+    last_ = now;
+    drawn_ = true;
+    constexpr int kWidth = 30;
+    const int filled = std::clamp(static_cast<int>(done * kWidth), 0, kWidth);
+    const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                            std::string(static_cast<std::size_t>(kWidth - filled), '.');
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    std::fprintf(stderr, "\r%s [%s] %3.0f%%", what_.c_str(), bar.c_str(), 100 * done);
+    // An early guess is a wild one.
+    if (done > 0.02) std::fprintf(stderr, ", %.0f s left", elapsed * (1 - done) / done);
+    std::fputs("\x1b[K", stderr);
+    std::fflush(stderr);
+}
+
+}  // namespace realcam::app

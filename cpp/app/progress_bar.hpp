@@ -1,0 +1,26 @@
+#pragma once
+#include <chrono>
+#include <string>
+
+namespace realcam::app {
+
+/// One line on stderr that rewrites itself; silent where stderr is no terminal. It goes away when it is destroyed.
+class ProgressBar {
+  public:
+    explicit ProgressBar(std::string what);
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+    ~ProgressBar();
+
+    /// `done`: 0 to 1. Draws at most ten times a second.
+    void show(double done);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    std::string what_;
+    bool is_terminal_, drawn_ = false;
+    Clock::time_point start_, last_;
+};
+
+}  // namespace realcam::app

@@ -1,0 +1,64 @@
+#include "render_summary.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "../image_io/image_metadata.hpp"
+#include "values.hpp"
+
+namespace realcam::app {
+namespace {
+
+std::string percent(double part, double whole) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f%%", whole > 0 ? 100 * part / whole : 0.0);
+    return text;
+}
+
+/// "12.3 M".
+std::string million(double count, double seconds) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f M", seconds > 0 ? 1e-6 * count / seconds : 0.0);
+    return text;
+}
+
+}  // namespace
+
+std::string summary(const RenderRequest& request, const Image& image, double seconds) {
+    const Camera& camera = request.camera;
+    const LensSystem& lens = camera.lens;
+    const Film& film = camera.film;
+    const RenderStats& stats = image.stats;
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    std::string text;
+    const auto line = [&](std::string what, const std::string& value) {
+        what.resize(12, ' ');
+        text += what + value + '\n';
+    };
+    const std::string model = image_io::name_of(camera.model);
+    line("lens", (lens.title.empty() ? lens.name : lens.title) + (model == "full" ? "" : ", as " + model + " model"));
+    line("", "focal length " + short_number(data.effective_focal_length) + " mm, f/" + short_number(data.f_number, 3) +
+                 ", focus " + distance_text(lens.focus_distance / 1000));
+    const Vec3d from = camera.pose.position_m, to = camera.pose.look_at_m;
+    const auto point = [](Vec3d p) { return short_number(p.x) + "," + short_number(p.y) + "," + short_number(p.z); };
+    line("camera", "at " + point(from) + ", looks at " + point(to));
+    line("film", short_number(film.width_mm) + " x " + short_number(film.height_mm) + " mm, " + std::to_string(film.width) +
+                     " x " + std::to_string(film.height) + " pixels of " + std::to_string(image.spp) + " samples");
+    line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso) +
+                         (request.meters_exposure ? " (metered: the average lands on middle grey)" : ""));
+    const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
+    const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
+    line("lens rays", million(count(stats.sampled_rays), stats.seconds) + "/s; " +
+                          million(count(stats.sampled_rays), stats.lens_seconds) + "/s a core while in the lens, " +
+                          percent(stats.lens_seconds, busy) + " of the time; " +
+                          percent(count(stats.passed_rays), count(stats.sampled_rays)) + " of the sampled rays pass");
+    line("scene rays", million(count(stats.scene_rays), stats.seconds) + "/s; " +
+                           million(count(stats.scene_rays), stats.scene_seconds) + "/s a core while in the scene, " +
+                           percent(stats.scene_seconds, busy) + " of the time");
+    line("time", short_number(seconds, 3) + " s, of which " + short_number(stats.seconds, 3) + " s for the picture (set-up " +
+                     short_number(stats.setup_seconds, 2) + " s) on " + stats.device);
+    for (const std::string& path : request.outputs) line("picture", path);
+    return text;
+}
+
+}  // namespace realcam::app

@@ -1,0 +1,103 @@
+#include "values.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "../error.hpp"
+
+namespace realcam::app {
+namespace {
+
+[[noreturn]] void fail(const std::string& option, const std::string& text, const std::string& wanted) {
+    throw InputError(option + ": \"" + text + "\" is not " + wanted);
+}
+
+/// The whole text as a number; false where it is none. strtod also knows "inf" and "nan".
+bool read_number(const std::string& text, double& value) {
+    char* end = nullptr;
+    value = std::strtod(text.c_str(), &end);
+    return !text.empty() && end == text.c_str() + text.size() && !std::isspace(static_cast<unsigned char>(text[0]));
+}
+
+bool read_numbers(const std::string& text, char separator, std::size_t count, std::vector<double>& values) {
+    for (std::size_t start = 0; start <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, start), text.size());
+        double value = 0;
+        if (!read_number(text.substr(start, end - start), value) || !std::isfinite(value)) return false;
+        values.push_back(value);
+        start = end + 1;
+    }
+    return values.size() == count;
+}
+
+}  // namespace
+
+double parse_number(const std::string& option, const std::string& text, bool may_be_infinite) {
+    double value = 0;
+    if (!read_number(text, value) || std::isnan(value) || (std::isinf(value) && !may_be_infinite))
+        fail(option, text, may_be_infinite ? "a number or inf" : "a number");
+    return value;
+}
+
+double parse_fraction(const std::string& option, const std::string& text) {
+    std::vector<double> parts;
+    if (read_numbers(text, '/', 1, parts)) return parts[0];
+    parts.clear();
+    if (!read_numbers(text, '/', 2, parts) || parts[1] == 0) fail(option, text, "a number of seconds, such as 0.5 or 1/125");
+    return parts[0] / parts[1];
+}
+
+Vec3d parse_point(const std::string& option, const std::string& text) {
+    std::vector<double> v;
+    if (!read_numbers(text, ',', 3, v)) fail(option, text, "three numbers with commas, such as 0,1.5,-2");
+    return {v[0], v[1], v[2]};
+}
+
+std::array<double, 2> parse_size(const std::string& option, const std::string& text) {
+    std::vector<double> v;
+    if (!read_numbers(text, 'x', 2, v)) fail(option, text, "a width and a height in mm, such as 36x24");
+    return {v[0], v[1]};
+}
+
+std::array<int, 2> parse_resolution(const std::string& option, const std::string& text) {
+    std::vector<double> v;
+    const auto whole = [](double n) { return n == std::floor(n) && std::fabs(n) < 2e9; };
+    if (!read_numbers(text, 'x', 2, v) || !whole(v[0]) || !whole(v[1]))
+        fail(option, text, "a width and a height in pixels, such as 960x640");
+    return {static_cast<int>(v[0]), static_cast<int>(v[1])};
+}
+
+CameraModel parse_model(const std::string& text) {
+    if (text == "full") return CameraModel::full_lens;
+    if (text == "thick") return CameraModel::thick_lens;
+    if (text == "thin") return CameraModel::thin_lens;
+    if (text == "pinhole") return CameraModel::pinhole;
+    fail("--model", text, "full, thick, thin or pinhole");
+}
+
+ToneCurve parse_tone(const std::string& text) {
+    if (text == "film") return ToneCurve::film;
+    if (text == "linear") return ToneCurve::linear;
+    fail("--tone", text, "film or linear");
+}
+
+std::string short_number(double value, int digits) {
+    if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
+}
+
+std::string distance_text(double metres) { return short_number(metres) + (std::isfinite(metres) ? " m" : ""); }
+
+std::string exposure_text(double seconds) {
+    const double inverse = 1 / seconds;
+    if (inverse < 2.5) return short_number(seconds) + " s";
+    return "1/" + (inverse < 10 ? short_number(inverse, 2) : std::to_string(std::llround(inverse))) + " s";
+}
+
+}  // namespace realcam::app

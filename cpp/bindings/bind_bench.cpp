@@ -1,0 +1,79 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include "../embree/embree_backend.hpp"
+#include "../embree/kernels.hpp"
+#include "../math/random.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+constexpr int kLanes = 256;
+constexpr int kBlocks = 64;
+
+using Block = LensRays<float, kLanes>;
+
+/// Rays from all over the film into the pupil, as a picture sends them.
+std::vector<Block> rays_of_a_frame(const LensSystem& lens) {
+    const Pupil pupil(lens, 0.5 * std::hypot(lens.film_width, lens.film_height), fast_pupil_tracer());
+    std::vector<Block> blocks(kBlocks);
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+        for (int i = 0; i < kLanes; ++i) {
+            const Vec2f film = sample_2d(1, static_cast<std::uint32_t>(b) * kLanes + static_cast<std::uint32_t>(i), 0);
+            const Vec2f u = sample_2d(1, static_cast<std::uint32_t>(b) * kLanes + static_cast<std::uint32_t>(i), 1);
+            const float x = (film.x - 0.5f) * static_cast<float>(lens.film_width);
+            const float y = (film.y - 0.5f) * static_cast<float>(lens.film_height);
+            const PupilSample sample = sample_pupil(pupil.view(), x, y, u.x, u.y);
+            blocks[b].origin.set(i, {x, y, static_cast<float>(lens.film_distance)});
+            blocks[b].direction.set(i, sample.direction);
+            blocks[b].status[i] = sample.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        }
+    return blocks;
+}
+
+/// Rays per second through the lens on the calling thread, by instruction set: the best of several rounds, because
+/// other programs can only slow one down.
+std::map<std::string, double> lens_ray_rates(const LensSystem& lens, double seconds) {
+    using Clock = std::chrono::steady_clock;
+    const std::vector<Block> blocks = rays_of_a_frame(lens);
+    const LensPath<float> path(lens, LightDirection::to_scene, lens.wavelength_nm);
+    const LensView<float> view = path.view();
+    const auto scratch = std::make_unique<Block>();
+    std::map<std::string, double> rates;
+    const auto start = Clock::now();
+    while (std::chrono::duration<double>(Clock::now() - start).count() < seconds)
+        for (const realcam_kernels* kernel : available_kernels()) {
+            constexpr int kRepeats = 20;
+            const auto round = Clock::now();
+            for (int r = 0; r < kRepeats; ++r)
+                for (const Block& block : blocks) {
+                    *scratch = block;
+                    kernel->trace_block(&view, scratch.get());
+                }
+            const double rate = kRepeats * kBlocks * kLanes / std::chrono::duration<double>(Clock::now() - round).count();
+            rates[kernel->instruction_set] = std::max(rates[kernel->instruction_set], rate);
+        }
+    return rates;
+}
+
+}  // namespace
+
+void bind_bench(py::module_& m) {
+    m.def(
+        "_lens_ray_rates",
+        [](const LensSystem& lens, double seconds) {
+            const py::gil_scoped_release release;
+            return lens_ray_rates(lens, seconds);
+        },
+        "lens"_a, "seconds"_a);
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,179 @@
+"""Benchmarks: figures of the machine at hand, with ratios taken in one run."""
+
+from __future__ import annotations
+
+import math
+import platform
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from . import _core
+from ._core import Camera, Film, Lens, Material, Scene, lens_names
+from .render import render
+
+Result = dict[str, object]
+
+
+def machine() -> Result:
+    """Processor, system, version and commit: what a figure means nothing without."""
+    return {
+        "processor": _processor(),
+        "system": f"{platform.system()} {platform.release()}",
+        "devices": _core.devices(),
+        "realcam": _core.__version__,
+        "commit": _commit(),
+        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+    }
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+
+
+def _commit() -> str | None:
+    command = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty", "--abbrev=12"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return None
+
+
+def lens_rays(threads: int) -> Result:
+    """Rays per second through the 11 surfaces of the double Gauss, one core, float32, by instruction set."""
+    del threads  # one core by definition
+    rates = _core._lens_ray_rates(Lens.load("double-gauss-50mm"), 3.0)
+    return {f"x86-64-{name}" if name != "native" else name: round(rate / 1e6, 1) for name, rate in rates.items()} | {
+        "unit": "million rays a second on one core"
+    }
+
+
+def lens_setup(threads: int) -> Result:
+    """Time to find the pupil again after a change of focus or stop, one core."""
+    del threads
+    times = {}
+    for name in lens_names():
+        lens = Lens.load(name)
+        radius = 0.5 * math.hypot(*lens.film_mm)
+        f_number = lens.first_order().f_number
+        stopped = lens.stopped_down(max(11.0, f_number))
+        times[name] = {
+            "wide_open": round(1e3 * _best(lambda lens=lens, radius=radius: _core.pupil_setup(lens, radius)), 1),
+            "f/11": round(1e3 * _best(lambda lens=stopped, radius=radius: _core.pupil_setup(lens, radius)), 1),
+        }
+    worst = max(max(t.values()) for t in times.values())
+    return {"milliseconds": times, "worst": worst}
+
+
+def _best(work: Callable[[], object], rounds: int = 3) -> float:
+    """Seconds of the fastest round: other programs can only slow one down."""
+    times = []
+    for _ in range(rounds):
+        start = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def pass_share(threads: int) -> Result:
+    """Share of the sampled rays that pass the lens, whole frame, wide open."""
+    speck = Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
+    shares = {}
+    for name in lens_names():
+        lens = Lens.load(name)
+        width, height = lens.film_mm
+        film = Film(width, height, (300, max(1, round(300 * height / width))))
+        stats = render(speck, Camera(lens, film=film), spp=16, max_bounces=0, threads=threads).stats
+        shares[name] = round(stats.passed_rays / stats.sampled_rays, 4)
+    return {"share": shares, "worst": min(shares.values())}
+
+
+def frame_scene() -> Scene:
+    """50 spheres and 50 boxes on a plane, about 205 000 triangles, one area light and a constant environment."""
+    random = np.random.default_rng(1)
+    meshes = [_quad([(-50, 0, 50), (50, 0, 50), (50, 0, -50), (-50, 0, -50)])]
+    for _ in range(50):
+        x, z = random.uniform(-4, 4, 2)
+        meshes.append(_sphere((x, 0.3, z - 4), 0.3))
+    for _ in range(50):
+        x, z = random.uniform(-4, 4, 2)
+        meshes.append(_box((x, 0.25, z - 4), 0.25))
+    lamp = _quad([(-2, 6, -6), (2, 6, -6), (2, 6, -2), (-2, 6, -2)])
+    meshes.append(lamp)
+    vertices, triangles, base = [], [], 0
+    for points, faces in meshes:
+        vertices.append(points)
+        triangles.append(faces + base)
+        base += len(points)
+    faces = np.concatenate(triangles)
+    materials = np.zeros(len(faces), int)
+    materials[-len(lamp[1]) :] = 1
+    return Scene.from_arrays(
+        np.concatenate(vertices),
+        faces,
+        triangle_materials=materials,
+        materials=[Material(), Material(emission=(2000, 2000, 2000))],
+    ).with_environment(100.0)
+
+
+Mesh = tuple[np.ndarray, np.ndarray]
+
+
+def _quad(corners: list[tuple[float, float, float]]) -> Mesh:
+    return np.array(corners, float), np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def _box(centre: tuple[float, float, float], half: float) -> Mesh:
+    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float) * half + centre
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    return corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
+def _sphere(centre: tuple[float, float, float], radius: float, columns: int = 64, rows: int = 32) -> Mesh:
+    polar, azimuth = np.meshgrid(np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij")
+    points = np.stack([np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1)
+    row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
+    a = (row * (columns + 1) + column).ravel()
+    b, c, d = a + 1, a + columns + 1, a + columns + 2
+    upper, lower = np.stack([a, b, d], 1), np.stack([a, d, c], 1)
+    return points.reshape(-1, 3) * radius + centre, np.concatenate([upper[columns:], lower[:-columns]])
+
+
+def frame(threads: int) -> Result:
+    """640 x 640 pixels of 20 samples, direct light: CPU seconds by camera model, set-up included."""
+    scene = frame_scene()
+    lens = Lens.load("double-gauss-50mm").focused(5.0)
+    film = Film(24, 24, (640, 640))
+    place = {"position": (0, 1.5, 4), "look_at": (0, 0.3, -4)}
+    cameras = {m: Camera(lens, film=film, model=m, **place) for m in ("full", "thick", "thin", "pinhole")}
+    cpu: dict[str, list[float]] = {model: [] for model in cameras}
+    wall: dict[str, list[float]] = {model: [] for model in cameras}
+    render(scene, cameras["pinhole"], spp=1, threads=threads)  # builds the scene's BVH, which is no part of a picture
+    for _ in range(5):  # in turns, so that what else the machine does falls on all alike
+        for model, camera in cameras.items():
+            start = time.process_time(), time.perf_counter()
+            render(scene, camera, spp=20, max_bounces=0, threads=threads)
+            cpu[model].append(time.process_time() - start[0])
+            wall[model].append(time.perf_counter() - start[1])
+    best = {model: min(times) for model, times in cpu.items()}
+    return {
+        "triangles": scene.triangle_count,
+        "cpu_seconds": {model: round(seconds, 3) for model, seconds in best.items()},
+        "wall_seconds": {model: round(min(times), 3) for model, times in wall.items()},
+        "full_over_thin": round(best["full"] / best["thin"], 3),
+    }
+
+
+BENCHMARKS: dict[str, Callable[[int], Result]] = {
+    "lens-rays": lens_rays,
+    "lens-setup": lens_setup,
+    "pass-share": pass_share,
+    "frame": frame,
+}

@@ -1,0 +1,218 @@
+// Scenes from glTF and GLB. The truth is the numbers in the files.
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../../cpp/io/scene_materials.hpp"
+#include "scene_files.hpp"
+
+namespace {
+
+using namespace scene_files;
+
+// A triangle (0,0,0), (1,0,0), (0,1,0) that faces +z, with normals and texture coordinates, in a file tri.bin.
+std::string triangle_bytes(std::vector<std::uint16_t> indices = {0, 1, 2}, float x1 = 1) {
+    const float values[] = {0, 0, 0, x1, 0, 0, 0, 1, 0, /*normals*/ 0, 0, 1, 0, 0, 1, 0, 0, 1, /*uv*/ 0, 1, 1, 1, 0, 0};
+    std::string out(reinterpret_cast<const char*>(values), sizeof values);
+    out.append(reinterpret_cast<const char*>(indices.data()), 2 * indices.size());
+    return out + std::string(2, '\0');
+}
+
+std::string gltf(const std::string& nodes, const std::string& roots, const std::string& more = "",
+                 const std::string& attributes = R"(,"NORMAL":1,"TEXCOORD_0":2)", std::size_t indices = 3) {
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + roots + R"(}],"nodes":)" + nodes +
+           R"(,"meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0)" + attributes +
+           R"(},"indices":3,"material":0}]},
+               {"primitives":[{"attributes":{"POSITION":0)" +
+           attributes + R"(},"indices":3}]}],
+           "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+             {"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},
+             {"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"},
+             {"bufferView":3,"componentType":5123,"count":)" +
+           std::to_string(indices) + R"(,"type":"SCALAR"}],
+           "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},
+             {"buffer":0,"byteOffset":72,"byteLength":24},
+             {"buffer":0,"byteOffset":96,"byteLength":)" +
+           std::to_string(2 * indices) + R"(}],
+           "buffers":[{"byteLength":)" +
+           std::to_string(98 + 2 * indices) + R"(,"uri":"tri.bin"}])" +
+           (has(more, "\"materials\"") ? "" : R"(,"materials":[{"name":"plain"}])") + more + "}";
+}
+
+}  // namespace
+
+TEST_CASE("glTF: transforms of nested nodes, mirrored ones stay right side out") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    // 90 degrees about z, then a shift; the child is mirrored in x and twice as high.
+    const std::string nodes =
+        R"([{"translation":[10,0,0],"rotation":[0,0,0.70710678,0.70710678],"children":[1,2]},
+            {"mesh":0,"scale":[-1,2,1]}, {"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]}])";
+    const Scene scene = read(folder.write("t.gltf", gltf(nodes, "[0]")), 2.0);
+    REQUIRE(scene.triangles.size() == 2);
+    // (x, y) -> (10 - y, x), times 2.
+    const Vec3d first[] = {{20, 0, 0}, {20, -2, 0}, {16, 0, 0}};
+    for (const Vec3d& wanted : first) {
+        bool found = false;
+        for (int i = 0; i < 3; ++i) found |= length(corner(scene, 0, i) - wanted) < 1e-7;
+        CHECK(found);
+    }
+    CHECK(corner(scene, 1, 1).y == doctest::Approx(2));
+    CHECK(corner(scene, 1, 0).z == 10);
+    for (std::size_t t = 0; t < 2; ++t) {
+        CHECK(face_normal(scene, t).z == doctest::Approx(1));
+        for (const std::uint32_t v : scene.triangles[t].vertices) check_vec(scene.normals[v], 0, 0, 1);
+    }
+}
+
+TEST_CASE("glTF: normals turn with the inverse transpose of a stretched node") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    // Turned by 45 degrees about y, and then stretched by 3 along x: the plane's own normal is the truth.
+    const std::string nodes = R"([{"scale":[3,1,1],"children":[1]},{"mesh":0,"rotation":[0,0.38268343,0,0.92387953]}])";
+    const Scene scene = read(folder.write("s.gltf", gltf(nodes, "[0]")));
+    const Vec3d truth = face_normal(scene, 0);
+    CHECK(truth.x == doctest::Approx(1 / std::sqrt(10.0)));
+    check_vec(scene.normals[0], truth.x, truth.y, truth.z, 1e-6);
+}
+
+TEST_CASE("glTF: a node a million metres away keeps its shape, in double precision") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes({0, 1, 2}, 0.001f));
+    const std::string nodes =
+        R"([{"translation":[1000000.1,0,-3e6],"children":[1]},{"mesh":0,"translation":[0.0001,0,0]}])";
+    const Scene scene = read(folder.write("far.gltf", gltf(nodes, "[0]")));
+    CHECK(corner(scene, 0, 0).x == 1000000.1 + 0.0001);
+    CHECK(corner(scene, 0, 1).x - corner(scene, 0, 0).x == doctest::Approx(0.001).epsilon(1e-6));
+    CHECK(corner(scene, 0, 0).z == -3e6);
+}
+
+TEST_CASE("glTF: metallic-roughness as diffuse and Phong lobes, emission in cd/m^2") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    // Meshes in another order than the file's: assimp numbers materials by use.
+    const std::string more = R"(,"materials":[
+        {"name":"same","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,0.125,1],"metallicFactor":0,
+         "roughnessFactor":0.5},"emissiveFactor":[1,0.5,0],
+         "extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":2000}}}])";
+    const Scene scene = read(folder.write("m.gltf", gltf(R"([{"mesh":1},{"mesh":0}])", "[0,1]", more)));
+    const Material& none = scene.materials[scene.triangles[0].material];
+    check_vec(none.diffuse, .5, .5, .5);
+    check_vec(none.emission, 0, 0, 0);
+    const Material& m = scene.materials[scene.triangles[1].material];
+    check_vec(m.diffuse, .48, .24, .12);
+    check_vec(m.specular, .04, .04, .04);
+    CHECK(m.shininess == doctest::Approx((2 / 0.0625 - 2) / 4));
+    check_vec(m.emission, 2000, 1000, 0);
+
+    for (const char* metallic : {"0", "0.3", "1"}) {
+        const std::string white = R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":)" +
+                                  std::string(metallic) + R"(,"baseColorFactor":[1,0.5,1,1]}}])";
+        const Scene s = read(folder.write("w.gltf", gltf(R"([{"mesh":0}])", "[0]", white)));
+        const Vec3f sum = s.materials[s.triangles[0].material].diffuse + s.materials[s.triangles[0].material].specular;
+        CHECK(sum.x <= 1.000001f);
+        CHECK(sum.y <= 1.000001f);
+    }
+    CHECK(io::phong_exponent(1) == 0.0f);
+    CHECK(io::phong_exponent(0) == 20000.0f);
+    CHECK(io::phong_exponent(0.3f) > io::phong_exponent(0.4f));
+}
+
+TEST_CASE("glTF: pictures as files, their transform, and the mean of a metal's map") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    folder.write("my t.png", "not decoded here");
+    const std::string more = R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":1,"baseColorTexture":{"index":0,
+        "extensions":{"KHR_texture_transform":{"offset":[0,1],"rotation":1.57079632679,"scale":[0.5,0.25]}}}}}],
+        "textures":[{"source":0}],"images":[{"uri":"my%20t.png"}])";
+    Reader reader;
+    const Scene scene =
+        io::read_scene(folder.write("u.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {}, reader.function());
+    CHECK(reader.asked.front() == "my t.png");
+    CHECK(scene.warnings.empty());
+    // The file's (u, v), v downwards: (0, 1), (1, 1), (0, 0). Turned by 90 degrees, (0.5 u, 0.25 v) -> (0.25 v, -0.5
+    // u).
+    const double truth[][2] = {{0.25, 1}, {0.25, 0.5}, {0, 1}};
+    for (int i = 0; i < 3; ++i) {
+        const Vec2f uv = scene.uvs[scene.triangles[0].vertices[i]];
+        CHECK(double(uv.x) == doctest::Approx(truth[i][0]).epsilon(1e-6));
+        CHECK(1 - double(uv.y) == doctest::Approx(truth[i][1]).epsilon(1e-6));
+    }
+    // sRGB 128 is 0.2158605 in linear light.
+    check_vec(scene.materials[scene.triangles[0].material].specular, 1, 0.2158605, 0);
+}
+
+TEST_CASE("GLB: the picture inside reaches the reader as bytes, and the geometry is read") {
+    const Folder folder;
+    const std::string picture = "PICTURE!";
+    std::string bytes = triangle_bytes(),
+                json = gltf(R"([{"mesh":0}])", "[0]", R"(,"materials":[{"pbrMetallicRoughness":
+        {"metallicFactor":0,"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],
+        "images":[{"bufferView":4,"mimeType":"image/png"}])");
+    json.replace(json.find(R"(}],
+           "buffers")"),
+                 2, R"(},{"buffer":0,"byteOffset":104,"byteLength":8}])");
+    json.replace(json.find(R"("byteLength":104,"uri":"tri.bin")"), 32, R"("byteLength":112)");
+    while (json.size() % 4) json += ' ';
+    bytes += picture;
+    const auto word = [](std::size_t value) {
+        const auto v = static_cast<std::uint32_t>(value);
+        return std::string(reinterpret_cast<const char*>(&v), 4);
+    };
+    const std::string glb = "glTF" + word(2) + word(28 + json.size() + bytes.size()) + word(json.size()) + "JSON" +
+                            json + word(bytes.size()) + std::string("BIN\0", 4) + bytes;
+    Reader reader;
+    const Scene scene = io::read_scene(folder.write("a.GLB", glb), {}, reader.function());
+    CHECK(scene.triangles.size() == 1);
+    CHECK(reader.asked == std::vector<std::string>{"bytes"});
+    CHECK(std::string(reader.bytes.begin(), reader.bytes.end()) == picture);
+    CHECK(has(error_of(folder.write("short.glb", glb.substr(0, glb.size() - 20))), "is cut short"));
+    CHECK(has(error_of(folder.write("header.glb", glb.substr(0, 10))), "ends inside the header"));
+}
+
+TEST_CASE("glTF: lights in candela and lux, at every node that has them") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    const std::string more = R"(,"extensions":{"KHR_lights_punctual":{"lights":[
+        {"type":"point","color":[1,0.5,0.25],"intensity":40},{"type":"directional","intensity":1000},{"type":"spot"}]}})";
+    const auto light = [](int i, const std::string& rest) {
+        return R"({"name":"same",)" + rest + R"("extensions":{"KHR_lights_punctual":{"light":)" + std::to_string(i) +
+               "}}}";
+    };
+    const std::string nodes = "[{\"mesh\":0,\"name\":\"same\"}," + light(0, R"("translation":[1,2,3],)") + "," +
+                              light(0, R"("translation":[9,9,9],)") + "," +
+                              light(1, R"("rotation":[-0.70710678,0,0,0.70710678],)") + "," + light(2, "") + "]";
+    const Scene scene = read(folder.write("l.gltf", gltf(nodes, "[0,1,2,3,4]", more)), 0.5);
+    REQUIRE(scene.points.size() == 3);
+    CHECK(scene.points[0].position_m.y == 1.0);
+    CHECK(scene.points[1].position_m.x == 4.5);
+    check_vec(scene.points[0].intensity, 40, 20, 10);
+    check_vec(scene.points[2].intensity, 1, 1, 1);
+    CHECK(warns(scene, "light 2 is a spot"));
+    REQUIRE(scene.suns.size() == 1);
+    check_vec(scene.suns[0].illuminance, 1000, 1000, 1000);
+    CHECK(double(scene.suns[0].direction.y) == doctest::Approx(-1));
+}
+
+TEST_CASE("bad glTF: the mesh and the vertex are named") {
+    const Folder folder;
+    const std::string nodes = R"([{"mesh":0}])";
+    folder.write("tri.bin", triangle_bytes({0, 1, 7}));
+    CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]"))), "indices smaller than its number of vertices"));
+    folder.write("tri.bin", triangle_bytes({0, 1, 2, 0, 1, 3}));
+    CHECK(
+        has(error_of(folder.write("a.gltf", gltf(nodes, "[0]", "", "", 6))),
+            "mesh 0, primitive 0: 1 triangles of 2 have an index that is not smaller than the number of vertices, 3"));
+    folder.write("tri.bin", triangle_bytes({0, 1, 2}, std::numeric_limits<float>::infinity()));
+    CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]"))), "mesh 0 \"tri\": vertex 1: coordinates must be"));
+    CHECK(has(error_of(folder.write("b.gltf", gltf(R"([{"name":"x"}])", "[0]"))), "holds no triangles"));
+    CHECK(has(error_of(folder.write("c.gltf", "{\n\"asset\": {\n")), "line 3"));
+    CHECK(has(error_of(folder.write("d.gltf", R"({"asset":{"version":"1.0"}})")), "glTF 2.0 is wanted"));
+    CHECK(has(
+        error_of(folder.write("e.gltf", gltf(nodes, "[0]", R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"))),
+        "needs the glTF extension KHR_draco_mesh_compression"));
+    fs::remove(folder.path("tri.bin"));
+    CHECK(has(error_of(folder.path("a.gltf")), "cannot be read"));
+}

@@ -1,0 +1,191 @@
+// The random numbers: what they are built from, and what pictures rely on.
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "../../cpp/camera/generate_rays.hpp"
+#include "../../cpp/scene/light.hpp"
+#include "doctest/doctest.h"
+
+namespace {
+
+using namespace realcam;
+
+// Inverse of an odd factor modulo 2^32, by Newton's iteration.
+std::uint32_t inverse_of(std::uint32_t odd) {
+    std::uint32_t x = odd;
+    for (int i = 0; i < 5; ++i) x *= 2 - odd * x;
+    return x;
+}
+
+std::uint32_t undo_xorshift(std::uint32_t v, int shift) {
+    std::uint32_t x = v;
+    for (int i = 0; i < 32; i += shift) x = v ^ (x >> shift);
+    return x;
+}
+
+// Chi-square of counts that should be equal.
+double chi_square(const std::vector<int>& counts, int total) {
+    const double expected = static_cast<double>(total) / static_cast<double>(counts.size());
+    double sum = 0;
+    for (const int n : counts) sum += (n - expected) * (n - expected) / expected;
+    return sum;
+}
+
+// Where chi-square lies for even counts: mean k - 1, variance 2 (k - 1), here 5 standard deviations up. Stratified
+// numbers lie far below.
+double chi_square_limit(std::size_t bins) {
+    const double freedom = static_cast<double>(bins) - 1;
+    return freedom + 5 * std::sqrt(2 * freedom);
+}
+
+}  // namespace
+
+TEST_CASE("hash32 is a bijection: it can be undone") {
+    const std::uint32_t first = inverse_of(0x7feb352du), second = inverse_of(0x846ca68bu);
+    std::uint32_t v = 1;
+    for (int i = 0; i < 1000000; ++i) {
+        v = i < 70000 ? static_cast<std::uint32_t>(i) : v * 1664525u + 1013904223u;
+        std::uint32_t h = undo_xorshift(hash32(v), 16);
+        h = undo_xorshift(h * second, 15);
+        h = undo_xorshift(h * first, 16);
+        REQUIRE(h == v);
+    }
+}
+
+TEST_CASE("hash32 flips each bit with probability a half when one bit of its input changes") {
+    constexpr int kInputs = 20000;
+    for (int in = 0; in < 32; ++in) {
+        int flips[32] = {};
+        for (int i = 0; i < kInputs; ++i) {
+            const std::uint32_t v = static_cast<std::uint32_t>(i), d = hash32(v) ^ hash32(v ^ (1u << in));
+            for (int out = 0; out < 32; ++out) flips[out] += (d >> out) & 1;
+        }
+        // 1024 pairs of bits at 5 standard deviations of 0.0035, and the bias that the constants are known to have.
+        for (const int n : flips) CHECK(std::fabs(static_cast<double>(n) / kInputs - 0.5) < 0.025);
+    }
+}
+
+TEST_CASE("the two dimensions are Sobol's: reversed bits, and Pascal's triangle modulo 2") {
+    std::uint32_t v = 12345;
+    for (int i = 0; i < 20000; ++i) {
+        v = i < 5000 ? static_cast<std::uint32_t>(i) : v * 1664525u + 1013904223u;
+        std::uint32_t reversed = 0;
+        for (int b = 0; b < 32; ++b) reversed |= ((v >> b) & 1u) << (31 - b);
+        REQUIRE(reverse_bits(v) == reversed);
+        // Bit r of the fraction (from the top) is the sum over the index's bits c of C(c, r) mod 2; C(c, r) is odd
+        // where the bits of r are among those of c (Lucas).
+        std::uint32_t second = 0;
+        for (int r = 0; r < 32; ++r) {
+            std::uint32_t bit = 0;
+            for (int c = r; c < 32; ++c)
+                if ((c & r) == r) bit ^= (v >> c) & 1u;
+            second |= bit << (31 - r);
+        }
+        REQUIRE(sobol_second(reversed) == second);
+    }
+}
+
+TEST_CASE("the samples of a pixel are a (0,2)-sequence") {
+    for (std::uint32_t stream : {0u, 1u, 77u, 0xdeadbeefu})
+        for (std::uint32_t dimension : {0u, 1u, 5u})
+            for (int m = 0; m <= 10; ++m)
+                for (std::uint32_t block : {0u, 1u, 6u}) {
+                    // Each of the 2^m boxes of every shape 2^-a x 2^-(m-a) holds one of the next 2^m samples.
+                    const std::uint32_t count = 1u << m;
+                    for (int a = 0; a <= m; ++a) {
+                        std::set<std::uint32_t> boxes;
+                        for (std::uint32_t s = block * count; s < (block + 1) * count; ++s) {
+                            const Vec2f u = sample_2d(stream, s, dimension);
+                            REQUIRE(u.x >= 0);
+                            REQUIRE(u.x < 1);
+                            REQUIRE(u.y >= 0);
+                            REQUIRE(u.y < 1);
+                            const auto column = static_cast<std::uint32_t>(std::ldexp(u.x, a));
+                            const auto row = static_cast<std::uint32_t>(std::ldexp(u.y, m - a));
+                            boxes.insert(column << (m - a) | row);
+                        }
+                        REQUIRE(boxes.size() == count);
+                    }
+                }
+}
+
+TEST_CASE("samples of different pixels, dimensions and seeds have even means and no correlation") {
+    // Independent numbers: means within 5 standard deviations of sqrt(1/12 / n), correlations within 5 / sqrt(n).
+    constexpr int kPixels = 200000;
+    for (std::uint32_t sample : {0u, 1u, 5u})
+        for (std::uint32_t seed : {0u, 1u}) {
+            double mean[4] = {}, product[6] = {};
+            for (int p = 0; p < kPixels; ++p) {
+                const std::uint32_t here = pixel_stream(p, seed), next = pixel_stream(p + 1, seed);
+                const Vec2f a = sample_2d(here, sample, 0), b = sample_2d(here, sample, 1), c = sample_2d(next, sample, 0);
+                const Vec2f e = sample_2d(pixel_stream(p, seed + 1), sample, 0), g = sample_2d(here, sample + 1, 2);
+                const auto centred = [](float v) { return static_cast<double>(v) - 0.5; };
+                mean[0] += centred(a.x);
+                mean[1] += centred(a.y);
+                mean[2] += centred(b.x);
+                mean[3] += centred(b.y);
+                product[0] += centred(a.x) * centred(a.y);
+                product[1] += centred(a.x) * centred(b.x);
+                product[2] += centred(a.x) * centred(c.x);
+                product[3] += centred(a.y) * centred(c.y);
+                product[4] += centred(a.x) * centred(e.x);
+                product[5] += centred(a.y) * centred(g.y);
+            }
+            for (const double m : mean) CHECK(std::fabs(m / kPixels) < 5 * std::sqrt(1.0 / 12 / kPixels));
+            for (const double c : product) CHECK(std::fabs(12 * c / kPixels) < 5 / std::sqrt(kPixels));
+        }
+}
+
+TEST_CASE("cos_sin_of_turn is right to 2e-7 all the way round") {
+    double largest = 0;
+    for (std::uint32_t i = 0; i < (1u << 24); i += 5) {
+        const float turn = static_cast<float>(i) * 0x1p-24f;
+        const Vec2f v = cos_sin_of_turn(turn);
+        const double angle = 2 * M_PI * static_cast<double>(turn);
+        largest = std::max(largest, std::fabs(static_cast<double>(v.x) - std::cos(angle)));
+        largest = std::max(largest, std::fabs(static_cast<double>(v.y) - std::sin(angle)));
+    }
+    CHECK(largest < 2e-7);  // as documented
+    const Vec2f last = cos_sin_of_turn(0x1.fffffep-1f);
+    CHECK(last.x == doctest::Approx(1).epsilon(1e-6));
+}
+
+TEST_CASE("sample_disc is uniform over the disc") {
+    // In polar boxes of equal area, r^2 and angle being even; angle and radius are taken back by library functions.
+    constexpr int kSamples = 200000, kBins = 16;
+    std::vector<int> counts(kBins * kBins);
+    for (int i = 0; i < kSamples; ++i) {
+        const Vec2f p = sample_disc(sample_2d(hash32(static_cast<std::uint32_t>(i)), 3, 0));  // another pixel each
+        const double x = static_cast<double>(p.x), y = static_cast<double>(p.y), r2 = x * x + y * y;
+        REQUIRE(r2 < 1 + 1e-6);
+        const double turn = std::atan2(y, x) / (2 * M_PI) + 0.5;
+        const int ring = std::min(static_cast<int>(r2 * kBins), kBins - 1);
+        const int spoke = std::min(static_cast<int>(turn * kBins), kBins - 1);
+        ++counts[static_cast<std::size_t>(ring * kBins + spoke)];
+    }
+    CHECK(chi_square(counts, kSamples) < chi_square_limit(counts.size()));
+}
+
+TEST_CASE("sample_cosine follows the cosine law around any normal") {
+    constexpr int kSamples = 100000, kBins = 12;
+    for (const Vec3f& n : {Vec3f{0, 0, 1}, Vec3f{0, 0, -1}, Vec3f{0, 1, 0}, Vec3f{-1, 0, 0},
+                           normalized(Vec3f{0.3f, -0.8f, 0.5f}), normalized(Vec3f{1e-4f, 0, -1})}) {
+        // The law's projection on the plane of the normal is uniform: axes of that plane by Gram and Schmidt.
+        const Vec3f other = std::fabs(n.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
+        const Vec3f s = normalized(other - dot(other, n) * n), t = cross(n, s);
+        std::vector<int> counts(kBins * kBins);
+        for (int i = 0; i < kSamples; ++i) {
+            const Vec3f d = sample_cosine(n, sample_2d(hash32(static_cast<std::uint32_t>(i)), 7, 1));
+            REQUIRE(std::fabs(length(d) - 1) < 2e-6f);  // a few roundings of 24 bits
+            REQUIRE(dot(d, n) >= -1e-6f);
+            const double x = static_cast<double>(dot(d, s)), y = static_cast<double>(dot(d, t));
+            const double turn = std::atan2(y, x) / (2 * M_PI) + 0.5;
+            const int ring = std::min(static_cast<int>((x * x + y * y) * kBins), kBins - 1);
+            const int spoke = std::min(static_cast<int>(turn * kBins), kBins - 1);
+            ++counts[static_cast<std::size_t>(ring * kBins + spoke)];
+        }
+        CHECK(chi_square(counts, kSamples) < chi_square_limit(counts.size()));
+    }
+}

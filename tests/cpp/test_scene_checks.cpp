@@ -1,0 +1,59 @@
+#include <limits>
+#include <string>
+
+#include "../../cpp/error.hpp"
+#include "../../cpp/io/scene_checks.hpp"
+#include "doctest/doctest.h"
+
+using namespace realcam;
+
+namespace {
+
+bool says(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("validate: a scene from arrays") {
+    Scene good;
+    good.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    good.triangles = {{{0, 1, 2}, 0}};
+    good.materials = {Material{}};
+    CHECK_NOTHROW(io::validate(good));
+    CHECK_THROWS_AS(io::validate(Scene{}), SceneFileError);
+
+    const auto message = [&](auto change) {
+        Scene scene = good;
+        change(scene);
+        try {
+            io::validate(scene);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    CHECK(says(message([](Scene& s) { s.positions_m[1].y = double(nan); }), "vertex 1: coordinates"));
+    CHECK(says(message([](Scene& s) { s.positions_m[2].y = 1e300; }), "vertex 2: coordinates"));
+    CHECK(says(message([](Scene& s) { s.triangles[0].vertices[2] = 3; }),
+               "triangle 0: vertex 3 does not exist; there are 3"));
+    CHECK(says(message([](Scene& s) { s.triangles[0].material = 1; }), "triangle 0: material 1 does not exist"));
+    CHECK(says(message([](Scene& s) { s.normals.resize(2); }), "2 normals for 3 vertices"));
+    CHECK(says(message([](Scene& s) { s.uvs.resize(4); }), "4 texture coordinates for 3 vertices"));
+    CHECK(says(message([](Scene& s) { s.normals.assign(3, {0, nan, 0}); }), "normal 0"));
+    CHECK(says(message([](Scene& s) { s.materials[0].diffuse.x = -1; }), "material 0: diffuse"));
+    CHECK(says(message([](Scene& s) { s.materials[0].specular.x = nan; }), "material 0: specular"));
+    CHECK(says(message([](Scene& s) { s.materials[0].emission.z = -1; }), "material 0: emission"));
+    CHECK(says(message([](Scene& s) { s.materials[0].diffuse_texture = 0; }), "texture 0 does not exist"));
+    CHECK(says(message([](Scene& s) { s.textures = {{"t", 2, 2, {1, 2, 3}}}; }), "texture 0: width x height"));
+    CHECK(says(message([](Scene& s) { s.points = {{{0, 0, 0}, {-1, 0, 0}}}; }), "point light 0"));
+    CHECK(says(message([](Scene& s) { s.suns = {{{0, 0, 0}, {1, 1, 1}}}; }), "sun 0: its direction"));
+    CHECK(says(message([](Scene& s) { s.environment.constant.y = nan; }), "environment"));
+    CHECK(says(message([](Scene& s) { s.environment.pixels.resize(3); }), "environment: width x height"));
+
+    Scene thin = good;
+    thin.triangles.push_back({{0, 1, 1}, 0});
+    CHECK(io::drop_degenerate_triangles(thin) == 1);
+    CHECK(thin.triangles.size() == 1);
+}

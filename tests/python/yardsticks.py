@@ -1,0 +1,170 @@
+"""Independent optics for the tests: paraxial matrices, marginal rays, the exposure integral by force.
+
+Only Lens.trace is taken from realcam, and only where real rays are needed; tests/truth proves it against the
+listing of another program.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import realcam as rc
+
+
+def system_matrix(lens: rc.Lens, first: int = 0, last: int | None = None) -> np.ndarray:
+    """Takes (height, slope) from the front of surface `first` to the back of the one before `last`.
+
+    Refraction n' u' = n u - y c (n' - n); behind a mirror both the index and the direction of travel change
+    sign, and thicknesses are negative, so that slopes stay dy/dz.
+    """
+    matrix, index, sense = np.eye(2), 1.0, 1.0
+    for i, s in enumerate(lens.surfaces[:last]):
+        before = sense * index
+        if s.type == "mirror":
+            sense = -sense
+        elif s.type == "refracting":
+            index = s.material.index(lens.wavelength_nm)
+        after = sense * index
+        if i < first:
+            continue
+        power = s.curvature_per_mm * (after - before)
+        matrix = np.array([[1, 0], [-power / after, before / after]]) @ matrix
+        if i + 1 < len(lens.surfaces):
+            matrix = np.array([[1, s.thickness_mm], [0, 1]]) @ matrix
+    return matrix
+
+
+class Paraxial:
+    """First-order data of a lens in its present state; positions from the front vertex, mm."""
+
+    def __init__(self, lens: rc.Lens) -> None:
+        self.film = lens.film_position_mm
+        self.last_vertex = self.film - lens.film_distance_mm
+        self.whole = system_matrix(lens)
+        front = system_matrix(lens, last=lens.stop_index)
+        rear = system_matrix(lens, first=lens.stop_index + 1)
+        self.focal_length = -1 / self.whole[1, 0]
+        self.entrance_pupil = front[0, 1] / front[0, 0]
+        self.entrance_pupil_diameter = 2 * lens.stop_semi_diameter_mm / abs(front[0, 0])
+        # A ray through the middle of the stop, and one beside it along the axis, behind the lens.
+        gap = lens.surfaces[lens.stop_index].thickness_mm if lens.stop_index + 1 < len(lens.surfaces) else 0.0
+        through = rear @ (gap, 1.0)
+        self.exit_pupil = self.last_vertex - through[0] / through[1]
+        beside = rear @ (lens.stop_semi_diameter_mm, 0.0)
+        self.exit_pupil_diameter = 2 * abs(beside[0] + (self.exit_pupil - self.last_vertex) * beside[1])
+
+    def image(self, film_to_object_mm: float) -> float:
+        """Position of the image of an axial object at this distance from the film."""
+        height, slope = self.whole @ (film_to_object_mm - self.film, 1.0)
+        return self.last_vertex - height / slope
+
+    def image_scale(self, film_to_object_mm: float) -> float:
+        """Size on the film over size of an object, by rays through the middle of the entrance pupil."""
+        height, slope = self.whole @ (-self.entrance_pupil, 1.0)
+        on_film = height + slope * (self.film - self.last_vertex)
+        return abs(on_film) / (film_to_object_mm - self.film + self.entrance_pupil)
+
+    def blur_diameter(self, film_to_object_mm: float) -> float:
+        """Circle of confusion on the film: the cone from the exit pupil to the image, cut by the film."""
+        image = self.image(film_to_object_mm)
+        return self.exit_pupil_diameter * abs((self.film - image) / (image - self.exit_pupil))
+
+
+def passes(lens: rc.Lens, film_points_mm: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """Which rays from points (N, 3) on the film reach the scene, in double precision."""
+    rays = lens.trace(film_points_mm, directions, start="film", dtype="float64")
+    return rays.status == int(rc.RayStatus.OK)
+
+
+def _axial_passes(lens: rc.Lens, sines: np.ndarray) -> np.ndarray:
+    directions = np.stack([sines, np.zeros_like(sines), -np.sqrt(1 - sines**2)], axis=1)
+    return passes(lens, np.tile([0.0, 0.0, lens.film_position_mm], (len(sines), 1)), directions)
+
+
+def marginal_sines(lens: rc.Lens) -> list[float]:
+    """Sines of the angles at which rays from the film's middle begin or cease to pass, ascending.
+
+    One for an ordinary lens; two for a mirror lens, whose centre is dark.
+    """
+    grid = np.linspace(0.0, 0.9, 4001)
+    inside = _axial_passes(lens, grid)
+    edges = []
+    for i in np.flatnonzero(inside[1:] != inside[:-1]):
+        low, high = grid[i], grid[i + 1]
+        for _ in range(40):
+            middle = 0.5 * (low + high)
+            same = bool(_axial_passes(lens, np.array([middle]))[0]) == bool(inside[i])
+            low, high = (middle, high) if same else (low, middle)
+        edges.append(0.5 * (low + high))
+    return edges
+
+
+def axial_irradiance(lens: rc.Lens) -> float:
+    """pi sin^2(theta') in the film's middle, in a field of radiance 1, less a mirror lens's dark centre."""
+    squares = [s * s for s in marginal_sines(lens)]
+    assert len(squares) in (1, 2)
+    return math.pi * (squares[0] if len(squares) == 1 else squares[1] - squares[0])
+
+
+def brute_force_irradiance(lens: rc.Lens, film_radius_mm: float, steps: int = 500) -> float:
+    """The exposure integral (source paper, equations 6 and 7) at a film point, for a field of radiance 1.
+
+    E = sum of cos(theta') cos(theta'') / d^2 dA over a plane across the light's path, here the plane of the
+    paraxial exit pupil where that lies well in front of the film, else that of the last vertex. Where the
+    rays pass is first looked for on a coarse grid, whose passing part is then covered by steps x steps
+    midpoints. The error of that rule for a region with an edge falls as steps^-1.5: 1e-4 here.
+    """
+    film = lens.film_position_mm
+    pupil = Paraxial(lens)
+    clear = lens.surfaces[-1].clear_semi_diameter_mm
+    plane, reach = film - lens.film_distance_mm, 1.5 * clear
+    if 5 * lens.film_distance_mm < film - pupil.exit_pupil:
+        plane, reach = pupil.exit_pupil, 5 * pupil.exit_pupil_diameter
+    distance = film - plane
+
+    def over(low: np.ndarray, high: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        share = (np.arange(count) + 0.5) / count
+        x, y = np.meshgrid(*(low[k] + (high[k] - low[k]) * share for k in (0, 1)), indexing="ij")
+        offset = np.stack([x.ravel() - film_radius_mm, y.ravel(), np.full(x.size, -distance)], axis=1)
+        squared = (offset**2).sum(axis=1)
+        directions = offset / np.sqrt(squared)[:, None]
+        from_film = np.tile([film_radius_mm, 0.0, film], (x.size, 1))
+        # Both cosines are distance / d: the plane is parallel to the film.
+        weights = distance**2 / squared**2 * np.prod((high - low) / count)
+        return np.stack([x.ravel(), y.ravel()], axis=1), passes(lens, from_film, directions), weights
+
+    low, high = np.full(2, -reach), np.full(2, reach)
+    for _ in range(2):  # the second time over the box that the first one found
+        points, passing, _ = over(low, high, 400)
+        if not passing.any():
+            return 0.0
+        cell = (high - low) / 400
+        low, high = points[passing].min(axis=0) - 1.5 * cell, points[passing].max(axis=0) + 1.5 * cell
+    _, passing, weights = over(low, high, steps)
+    return float(weights[passing].sum())
+
+
+def chief_ray_on_film(lens: rc.Lens, angle_rad: float) -> tuple[float, float]:
+    """Height on the film and slope of the real ray from infinity through the middle of the stop; by
+    bisection.
+
+    The part of the lens in front of the stop is a lens of its own here, whose traced rays end in the stop.
+    """
+    front = rc.Lens(
+        surfaces=lens.surfaces[: lens.stop_index + 1], film_distance_mm=1.0, wavelength_nm=lens.wavelength_nm
+    )
+    direction = np.array([[0.0, math.sin(angle_rad), math.cos(angle_rad)]])
+
+    def start(height: float) -> np.ndarray:  # in the plane of the front vertex, less 50 mm along the ray
+        return np.array([[0.0, height, 0.0]]) - 50 * direction
+
+    middle = Paraxial(lens).entrance_pupil * -math.tan(angle_rad)
+    low, high = middle - 3.0, middle + 3.0
+    for _ in range(60):
+        height = 0.5 * (low + high)
+        at_stop = front.trace(start(height), direction, start="scene").origins_mm[0, 1]
+        low, high = (height, high) if at_stop < 0 else (low, height)
+    end = lens.trace(start(low), direction, start="scene")
+    slope = end.directions[0, 1] / end.directions[0, 2]
+    return end.origins_mm[0, 1] + slope * (lens.film_position_mm - end.origins_mm[0, 2]), slope
