@@ -18,6 +18,8 @@ target_link_libraries(_core PRIVATE realcam_settings)
 realcam_link_if_present(_core PRIVATE ${realcam_backends})
 set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python)
 install(TARGETS _core LIBRARY DESTINATION realcam COMPONENT python)
+install(FILES ${PROJECT_SOURCE_DIR}/scenes/demo.glb ${PROJECT_SOURCE_DIR}/scenes/demo.toml
+        DESTINATION realcam/scenes COMPONENT python)
 
 # A link in the source tree serves an editable install. It is renewed with every build, because several build trees
 # may take turns.

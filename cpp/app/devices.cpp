@@ -10,7 +10,8 @@ namespace realcam::app {
 
 std::unique_ptr<Backend> make_backend(const std::string& device) {
     if (device == "auto" || device == "cpu") return make_embree_backend();
-    throw InputError("--device: \"" + device + "\" is not known; auto or cpu is wanted (`realcam devices` lists what there is)");
+    throw InputError("--device: \"" + device +
+                     "\" is not known; auto or cpu is wanted (`realcam devices` lists what there is)");
 }
 
 void list_devices(bool as_json) {

@@ -7,10 +7,12 @@ namespace {
 
 volatile std::sig_atomic_t received = 0;
 
-void take_note(int signal) { received = signal; }
+void take_note(int signal) {
+    received = signal;
+}
 
 void handle(void (*handler)(int)) {
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = handler;
     action.sa_flags = SA_RESTART;  // a write that is under way goes on
     sigemptyset(&action.sa_mask);
@@ -25,8 +27,12 @@ Interrupt::Interrupt() {
     handle(take_note);
 }
 
-Interrupt::~Interrupt() { handle(SIG_DFL); }
+Interrupt::~Interrupt() {
+    handle(SIG_DFL);
+}
 
-int Interrupt::signal() { return received; }
+int Interrupt::signal() {
+    return received;
+}
 
 }  // namespace realcam::app

@@ -5,7 +5,7 @@ namespace realcam::app {
 /// While it lives, Ctrl-C and SIGTERM are taken note of and do not end the program, so that it can leave without half a
 /// file behind. At other times they end it, as usual.
 class Interrupt {
-  public:
+public:
     Interrupt();
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;

@@ -56,7 +56,9 @@ void JsonWriter::before_value() {
     first_ = after_key_ = false;
 }
 
-void JsonWriter::new_line() { text_ += '\n' + std::string(2 * closers_.size(), ' '); }
+void JsonWriter::new_line() {
+    text_ += '\n' + std::string(2 * closers_.size(), ' ');
+}
 
 void JsonWriter::quote(const std::string& value) {
     text_ += '"';

@@ -6,7 +6,7 @@ namespace realcam::app {
 
 /// Writes JSON, indented. Calls follow the text: begin_object().key("a").number(1).end().
 class JsonWriter {
-  public:
+public:
     JsonWriter& begin_object() { return begin('{', '}'); }
     JsonWriter& begin_array() { return begin('[', ']'); }
     JsonWriter& end();
@@ -17,7 +17,7 @@ class JsonWriter {
 
     std::string finish() const { return text_; }
 
-  private:
+private:
     JsonWriter& begin(char open, char close);
     void before_value();
     void new_line();

@@ -46,9 +46,12 @@ void add_lens_command(CLI::App& app) {
 
     CLI::App* info = lens->add_subcommand("info", "Print a lens's table of surfaces and its first-order data");
     const auto options = std::make_shared<InfoOptions>();
-    info->add_option("lens", options->lens, "Name of a bundled lens, or path of a .toml file")->required()->type_name("NAME");
+    info->add_option("lens", options->lens, "Name of a bundled lens, or path of a .toml file")
+        ->required()
+        ->type_name("NAME");
     info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");
-    info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")->type_name("METRES");
+    info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")
+        ->type_name("METRES");
     info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");
     info->callback([options] { run_info(*options); });
 

@@ -54,8 +54,9 @@ std::string table(const LensSystem& lens) {
         const std::string radius = s.curvature != 0 ? fixed(1 / s.curvature) : s.bends_light() ? "plane" : "";
         const bool last = i + 1 == lens.surfaces.size();
         const bool closed = s.type == SurfaceType::stop && !lens.is_wide_open();
-        rows.push_back({std::to_string(i + 1), type_name(s.type), radius, fixed(last ? lens.film_distance : s.thickness),
-                        material_name(s), fixed(closed ? lens.stop_semi_diameter : s.clear_semi_diameter), shape(s)});
+        rows.push_back({std::to_string(i + 1), type_name(s.type), radius,
+                        fixed(last ? lens.film_distance : s.thickness), material_name(s),
+                        fixed(closed ? lens.stop_semi_diameter : s.clear_semi_diameter), shape(s)});
     }
     rows.push_back({"", "film", "", "", "", "", ""});
     std::array<std::size_t, 7> widths{};

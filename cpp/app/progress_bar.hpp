@@ -6,7 +6,7 @@ namespace realcam::app {
 
 /// One line on stderr that rewrites itself; silent where stderr is no terminal. It goes away when it is destroyed.
 class ProgressBar {
-  public:
+public:
     explicit ProgressBar(std::string what);
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
@@ -15,7 +15,7 @@ class ProgressBar {
     /// `done`: 0 to 1. Draws at most ten times a second.
     void show(double done);
 
-  private:
+private:
     using Clock = std::chrono::steady_clock;
 
     std::string what_;

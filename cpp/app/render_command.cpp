@@ -18,7 +18,9 @@
 namespace realcam::app {
 namespace {
 
-void say(const std::string& text) { std::fprintf(stderr, "realcam: %s\n", text.c_str()); }
+void say(const std::string& text) {
+    std::fprintf(stderr, "realcam: %s\n", text.c_str());
+}
 
 /// Names what the memory was wanted for.
 template <class Work>
@@ -31,9 +33,8 @@ auto with_memory_for(const std::string& what, Work&& work) {
 }
 
 Scene read_scene(const RenderRequest& request) {
-    Scene scene = with_memory_for("while reading " + request.scene, [&] {
-        return io::read_scene(request.scene, {request.scale}, image_io::read_image);
-    });
+    Scene scene = with_memory_for("while reading " + request.scene,
+                                  [&] { return io::read_scene(request.scene, {request.scale}, image_io::read_image); });
     constexpr std::size_t kShown = 10;
     for (std::size_t i = 0; i < std::min(kShown, scene.warnings.size()); ++i) say("warning: " + scene.warnings[i]);
     if (scene.warnings.size() > kShown) say("and " + std::to_string(scene.warnings.size() - kShown) + " more warnings");
@@ -64,8 +65,9 @@ Image expose(Backend& backend, const std::shared_ptr<const Scene>& scene, Render
     }
     ProgressBar bar("rendering");
     const Film& film = camera.film;
-    return with_memory_for("for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
-                           [&] { return backend.render(scene, camera, request.settings, drawing_on(bar)); });
+    return with_memory_for(
+        "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
+        [&] { return backend.render(scene, camera, request.settings, drawing_on(bar)); });
 }
 
 void run_render(const RenderWords& words) {
@@ -77,7 +79,8 @@ void run_render(const RenderWords& words) {
     const bool chosen = request.environment_cd_m2 || !request.environment_file.empty();
     if (!scene->has_light() && !chosen) {
         add_daylight(*scene, request.camera.pose);
-        say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 cd/m^2");
+        say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
+            "cd/m^2");
     }
     const auto backend = make_backend(request.device);
     // Until here nothing is on disk, and a signal may simply end the program.

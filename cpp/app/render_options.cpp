@@ -43,7 +43,8 @@ void read_environment_word(const std::string& word, RenderRequest& request) {
         request.environment_file = word;
         return;
     }
-    if (!(value >= 0) || !(value < 1e30)) throw InputError("--environment: \"" + word + "\" is not a luminance in cd/m^2");
+    if (!(value >= 0) || !(value < 1e30))
+        throw InputError("--environment: \"" + word + "\" is not a luminance in cd/m^2");
     request.environment_cd_m2 = value;
 }
 
@@ -54,29 +55,34 @@ void add_render_options(CLI::App& command, RenderWords& w) {
         return command.add_option(name, value, help)->type_name(type);
     };
     option("scene", w.scene, "The scene: .obj (with .mtl), .gltf, .glb or .ply", "SCENE")->required();
-    option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated", "FILE")->required()->allow_extra_args(false);
+    option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated", "FILE")
+        ->required()
+        ->allow_extra_args(false);
     command.option_defaults()->group("Camera");
     option("--lens", w.lens, "Bundled lens (`realcam lens list`) or .toml file", "NAME")->capture_default_str();
     option("--film", w.film, "Film in mm [the lens's, in the shape of the resolution]", "WxH");
     option("--resolution", w.resolution, "Pixels [960 along the longer side]", "WxH");
-    option("--position", w.position, "Middle of the film, metres [in front of look-at, along +z, such that the scene fills the film]",
-           "X,Y,Z");
+    option("--position", w.position,
+           "Middle of the film, metres [in front of look-at, along +z, such that the scene fills the film]", "X,Y,Z");
     option("--look-at", w.look_at, "Point in the middle of the picture [middle of the scene]", "X,Y,Z");
     option("--up", w.up, "Direction that is up in the picture", "X,Y,Z")->capture_default_str();
     option("--focus", w.focus, "Object plane to film, or inf [the first surface on the axis]", "METRES");
     option("--f-number", w.f_number, "Close the diaphragm to f/N [wide open]", "N");
-    option("--exposure-time", w.exposure_time, "Seconds, such as 1/125 [metered: the average lands on middle grey]", "TIME");
+    option("--exposure-time", w.exposure_time, "Seconds, such as 1/125 [metered: the average lands on middle grey]",
+           "TIME");
     option("--iso", w.iso, "Sensitivity", "ISO")->capture_default_str();
     option("--model", w.model, "full, thick, thin or pinhole", "MODEL")->capture_default_str();
     command.option_defaults()->group("Scene");
     option("--scale", w.scale, "Metres per unit of the scene's file", "METRES")->capture_default_str();
-    option("--environment", w.environment,
-           "Light from all around: cd/m^2, or a latitude-longitude picture [the scene's light; daylight if it has none]",
-           "CD_M2|FILE");
+    option(
+        "--environment", w.environment,
+        "Light from all around: cd/m^2, or a latitude-longitude picture [the scene's light; daylight if it has none]",
+        "CD_M2|FILE");
     command.option_defaults()->group("Picture");
     option("--spp", w.spp, "Samples per pixel", "N")->capture_default_str();
     option("--seed", w.seed, "Of the random numbers", "N")->capture_default_str();
-    option("--max-bounces", w.max_bounces, "Light that bounces this often is seen; 0: direct light only", "N")->capture_default_str();
+    option("--max-bounces", w.max_bounces, "Light that bounces this often is seen; 0: direct light only", "N")
+        ->capture_default_str();
     option("--tone", w.tone, "Of .png: film (soft highlights) or linear (clipped)", "CURVE")->capture_default_str();
     option("--threads", w.threads, "0: all", "N")->capture_default_str();
     option("--device", w.device, "auto or cpu", "DEVICE")->capture_default_str();

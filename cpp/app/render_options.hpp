@@ -16,7 +16,8 @@ namespace realcam::app {
 /// The words of `render` as they were typed; empty: not given.
 struct RenderWords {
     std::string scene, lens = "double-gauss-50mm", film, resolution, position, look_at, up = "0,1,0", focus, f_number,
-        exposure_time, iso = "100", model = "full", scale = "1", environment, tone = "film", device = "auto";
+                       exposure_time, iso = "100", model = "full", scale = "1", environment, tone = "film",
+                       device = "auto";
     std::vector<std::string> outputs;
     int spp = 64, max_bounces = 1, threads = 0;
     std::uint32_t seed = 0;

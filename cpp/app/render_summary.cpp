@@ -42,8 +42,9 @@ std::string summary(const RenderRequest& request, const Image& image, double sec
     const Vec3d from = camera.pose.position_m, to = camera.pose.look_at_m;
     const auto point = [](Vec3d p) { return short_number(p.x) + "," + short_number(p.y) + "," + short_number(p.z); };
     line("camera", "at " + point(from) + ", looks at " + point(to));
-    line("film", short_number(film.width_mm) + " x " + short_number(film.height_mm) + " mm, " + std::to_string(film.width) +
-                     " x " + std::to_string(film.height) + " pixels of " + std::to_string(image.spp) + " samples");
+    line("film", short_number(film.width_mm) + " x " + short_number(film.height_mm) + " mm, " +
+                     std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels of " +
+                     std::to_string(image.spp) + " samples");
     line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso) +
                          (request.meters_exposure ? " (metered: the average lands on middle grey)" : ""));
     const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
@@ -55,8 +56,8 @@ std::string summary(const RenderRequest& request, const Image& image, double sec
     line("scene rays", million(count(stats.scene_rays), stats.seconds) + "/s; " +
                            million(count(stats.scene_rays), stats.scene_seconds) + "/s a core while in the scene, " +
                            percent(stats.scene_seconds, busy) + " of the time");
-    line("time", short_number(seconds, 3) + " s, of which " + short_number(stats.seconds, 3) + " s for the picture (set-up " +
-                     short_number(stats.setup_seconds, 2) + " s) on " + stats.device);
+    line("time", short_number(seconds, 3) + " s, of which " + short_number(stats.seconds, 3) +
+                     " s for the picture (set-up " + short_number(stats.setup_seconds, 2) + " s) on " + stats.device);
     for (const std::string& path : request.outputs) line("picture", path);
     return text;
 }

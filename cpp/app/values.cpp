@@ -47,7 +47,8 @@ double parse_fraction(const std::string& option, const std::string& text) {
     std::vector<double> parts;
     if (read_numbers(text, '/', 1, parts)) return parts[0];
     parts.clear();
-    if (!read_numbers(text, '/', 2, parts) || parts[1] == 0) fail(option, text, "a number of seconds, such as 0.5 or 1/125");
+    if (!read_numbers(text, '/', 2, parts) || parts[1] == 0)
+        fail(option, text, "a number of seconds, such as 0.5 or 1/125");
     return parts[0] / parts[1];
 }
 
@@ -92,7 +93,9 @@ std::string short_number(double value, int digits) {
     return text;
 }
 
-std::string distance_text(double metres) { return short_number(metres) + (std::isfinite(metres) ? " m" : ""); }
+std::string distance_text(double metres) {
+    return short_number(metres) + (std::isfinite(metres) ? " m" : "");
+}
 
 std::string exposure_text(double seconds) {
     const double inverse = 1 / seconds;

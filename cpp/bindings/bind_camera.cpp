@@ -51,8 +51,9 @@ struct CameraRaysResult {
     py::array_t<int> pixels;
 };
 
-CameraRaysResult rays_of(const Camera& camera, int spp, std::uint32_t seed) {
+CameraRaysResult rays_of(const Camera& camera, int spp, std::int64_t seed) {
     if (spp < 1) throw InputError("spp must be at least 1");
+    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     const std::int64_t count = static_cast<std::int64_t>(camera.film.width) * camera.film.height * spp;
     CameraRaysResult rays{py::array_t<double>({count, std::int64_t{3}}), py::array_t<float>({count, std::int64_t{3}}),
                           py::array_t<float>(count), py::array_t<int>(count)};
@@ -60,7 +61,7 @@ CameraRaysResult rays_of(const Camera& camera, int spp, std::uint32_t seed) {
     float *directions = rays.directions.mutable_data(), *weights = rays.weights.mutable_data();
     int* pixels = rays.pixels.mutable_data();
     const py::gil_scoped_release release;
-    generate_camera_rays(camera, static_cast<std::uint32_t>(spp), seed, origins, directions, weights);
+    generate_camera_rays(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), origins, directions, weights);
     for (std::int64_t i = 0; i < count; ++i) pixels[i] = static_cast<int>(i / spp);
     return rays;
 }
@@ -88,7 +89,7 @@ void bind_camera(py::module_& m) {
              "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
              "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
              "Raises InputError.")
-        .def("generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0u,
+        .def("generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0,
              "The rays that render would trace, for any other renderer. Returns CameraRays.")
         .def_readonly("lens", &Camera::lens)
         .def_readonly("film", &Camera::film)

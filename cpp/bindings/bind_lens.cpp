@@ -15,19 +15,35 @@ Glass glass_from(const py::object& material) {
     if (py::isinstance<Glass>(material)) return material.cast<Glass>();
     if (py::isinstance<py::str>(material)) return io::catalogue_glass(material.cast<std::string>());
     if (py::isinstance<py::sequence>(material)) {
-        const auto pair = material.cast<std::vector<double>>();
+        std::vector<double> pair;
+        try {
+            pair = material.cast<std::vector<double>>();
+        } catch (const py::cast_error&) {
+            // Named below: not two numbers.
+        }
         if (pair.size() != 2 || !(pair[1] > 0)) throw InputError("a material given as a pair must be (n_d, V_d)");
         Glass glass = Glass::from_abbe_number(pair[0], pair[1]);
         glass.label = py::str(material).cast<std::string>();
         return glass;
     }
-    const double index = material.cast<double>();
+    double index = 0;
+    try {
+        index = material.cast<double>();
+    } catch (const py::cast_error&) {
+        throw InputError("a material must be an index, (n_d, V_d), the name of a glass, a Glass or None (air)");
+    }
     Glass glass = Glass::constant(index);
     if (index != 1) glass.label = py::str(material).cast<std::string>();
     return glass;
 }
 
 namespace {
+
+/// The design wavelength where none is given. The limits are those of Lens.trace.
+double wavelength_or_design(const LensSystem& lens, std::optional<double> nm) {
+    if (nm && !(*nm >= 100 && *nm <= 20000)) throw InputError("the wavelength must lie between 100 and 20000 nm");
+    return nm.value_or(lens.wavelength_nm);
+}
 
 constexpr const char* kTypeNames[] = {"refracting", "mirror", "stop", "aperture"};
 
@@ -79,7 +95,11 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     lens.film_height = film.second;
     lens.iris = {blades, rounding, rotation_deg * std::numbers::pi / 180};
     lens.focusing.nearest_mm = 1000 * nearest_focus_m;
+    if (!(wavelength_nm >= 100 && wavelength_nm <= 20000))
+        throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
+    if (!(nearest_focus_m >= 0)) throw LensFileError("the nearest focus must be 0 (as near as the optics can) or a distance");
     if (focus_group) {
+        if (focus_group->first < 0) throw LensFileError("the focus group must be (first, last) with 0 <= first <= last");
         lens.focusing.group_first = focus_group->first;
         lens.focusing.group_last = focus_group->second;
     }
@@ -181,7 +201,7 @@ void bind_lens(py::module_& m) {
         .def_static("load", [](const py::object& name) { return io::read_lens(path_from(name)); }, "name_or_path"_a,
                     "A bundled lens by name, or a lens file (.toml) by path. Raises LensFileError with file, line, surface.")
         .def("first_order",
-             [](const LensSystem& lens, std::optional<double> nm) { return first_order(lens, nm.value_or(lens.wavelength_nm)); },
+             [](const LensSystem& lens, std::optional<double> nm) { return first_order(lens, wavelength_or_design(lens, nm)); },
              "wavelength_nm"_a = py::none(), "Paraxial data; at the design wavelength where none is given.")
         .def("focused", [](const LensSystem& lens, double metres) { return focused(lens, 1000 * metres); }, "focus_distance_m"_a,
              "The lens focused on a plane at this distance from the film, inf allowed: the real rays of the full aperture\n"
@@ -190,7 +210,8 @@ void bind_lens(py::module_& m) {
              "The lens with its diaphragm closed to an f-number. Raises InputError where it does not open that far.")
         .def("best_focus_mm",
              [](const LensSystem& lens, double object_m, std::optional<double> nm) {
-                 return best_focus_distance(lens, nm.value_or(lens.wavelength_nm), 1000 * object_m);
+                 if (!(object_m > 0)) throw InputError("the object distance must be a positive number of metres, or inf");
+                 return best_focus_distance(lens, wavelength_or_design(lens, nm), 1000 * object_m);
              },
              "object_distance_m"_a = kInfinity, "wavelength_nm"_a = py::none(),
              "Last vertex to the plane of the smallest RMS spot of an axial point this far in front of the front vertex.")

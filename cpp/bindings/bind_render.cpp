@@ -46,9 +46,10 @@ py::array_t<float> copy_of(const std::vector<float>& values, std::vector<py::ssi
 }
 
 py::tuple render(const std::shared_ptr<Scene>& scene, const Camera& camera, int spp, const std::string& device,
-                 std::uint32_t seed, int max_bounces, int threads, const py::object& progress) {
+                 std::int64_t seed, int max_bounces, int threads, const py::object& progress) {
+    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     Backend& backend = backend_for(device);
-    const RenderSettings settings{spp, seed, max_bounces, threads};
+    const RenderSettings settings{spp, static_cast<std::uint32_t>(seed), max_bounces, threads};
     const Progress report = progress_of(progress);
     Image image;
     {

@@ -42,9 +42,24 @@ void check_shape(const py::array& array, py::ssize_t columns, const char* what) 
         throw InputError(std::string(what) + " must be an array of shape (N, " + std::to_string(columns) + ")");
 }
 
-std::shared_ptr<Scene> from_arrays(const Array<double>& vertices, const Array<std::int64_t>& triangles,
+/// Whole numbers of any type. A cast from floats would cut their fractions off.
+Array<std::int64_t> indices_from(const py::object& sequence, const char* what) {
+    const py::array values = py::array::ensure(sequence);
+    if (!values) {
+        PyErr_Clear();
+        throw InputError(std::string(what) + " must be an array of integers");
+    }
+    if (values.size() > 0 && values.dtype().kind() != 'i' && values.dtype().kind() != 'u')
+        throw InputError(std::string(what) + " must hold integers");
+    return Array<std::int64_t>(values);
+}
+
+std::shared_ptr<Scene> from_arrays(const Array<double>& vertices, const py::object& triangle_corners,
                                    const std::optional<Array<float>>& normals, const std::optional<Array<float>>& uvs,
-                                   const std::optional<Array<std::int64_t>>& triangle_materials, std::vector<Material> materials) {
+                                   const py::object& material_of_triangle, std::vector<Material> materials) {
+    const Array<std::int64_t> triangles = indices_from(triangle_corners, "triangles");
+    std::optional<Array<std::int64_t>> triangle_materials;
+    if (!material_of_triangle.is_none()) triangle_materials = indices_from(material_of_triangle, "triangle_materials");
     check_shape(vertices, 3, "vertices_m");
     check_shape(triangles, 3, "triangles");
     auto scene = std::make_shared<Scene>();
@@ -79,7 +94,9 @@ std::shared_ptr<Scene> from_arrays(const Array<double>& vertices, const Array<st
         scene->triangles.push_back(triangle);
     }
     io::validate(*scene);
-    io::drop_degenerate_triangles(*scene);
+    const std::size_t dropped = io::drop_degenerate_triangles(*scene);
+    if (scene->triangles.empty()) throw InputError("all of the scene's triangles are without area");
+    if (dropped > 0) scene->warnings.push_back(std::to_string(dropped) + " triangle(s) without area dropped");
     return scene;
 }
 
@@ -89,16 +106,19 @@ std::shared_ptr<Scene> with_environment(const Scene& scene, const py::object& ra
     environment = Environment{};
     if (py::isinstance<py::array>(radiance) && radiance.cast<py::array>().ndim() == 3) {
         const auto pixels = radiance.cast<Array<float>>();
-        if (pixels.shape(2) != 3) throw InputError("an environment image must be an array of shape (H, W, 3)");
+        if (pixels.shape(2) != 3 || pixels.size() == 0) throw InputError("an environment image must be an array of shape (H, W, 3)");
         environment.height = static_cast<std::int32_t>(pixels.shape(0));
         environment.width = static_cast<std::int32_t>(pixels.shape(1));
         const float* data = pixels.data();
         for (py::ssize_t i = 0; i < pixels.size(); i += 3) environment.pixels.push_back({data[i], data[i + 1], data[i + 2]});
-    } else if (py::isinstance<py::sequence>(radiance) || py::isinstance<py::array>(radiance)) {
-        environment.constant = rgb(radiance.cast<Colour>());
     } else {
-        const float value = radiance.cast<float>();
-        environment.constant = {value, value, value};
+        try {
+            const bool several = py::isinstance<py::sequence>(radiance) || py::isinstance<py::array>(radiance);
+            const float value = several ? 0.0f : radiance.cast<float>();
+            environment.constant = several ? rgb(radiance.cast<Colour>()) : Vec3f{value, value, value};
+        } catch (const py::cast_error&) {
+            throw InputError("an environment must be a number, (r, g, b), or an image of shape (H, W, 3)");
+        }
     }
     io::validate(*copy);
     return copy;

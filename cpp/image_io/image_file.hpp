@@ -26,7 +26,8 @@ Environment read_environment(const std::string& path);
 /// appears under its name only when it is whole.
 ///
 /// - .png: 8-bit sRGB, developed at metadata.iso by the tone curve, with text for every entry of the metadata.
-/// - .exr: float R, G, B, the exposure of the film in lux seconds, and Z, the depth in metres (infinite where nothing is).
+/// - .exr: float R, G, B, the exposure of the film in lux seconds, and Z, the depth in metres (infinite where nothing
+/// is).
 ///   Z is a channel beside the colours, under the name that OpenEXR reserves for depth: compositing programs show it as
 ///   a layer of its own, and readers that know nothing of it leave it out. Many of those would not open a file with a
 ///   second part.

@@ -61,7 +61,9 @@ void spread(const Value* from, int channels, Value opaque, Value* rgba) {
     rgba[3] = channels == 2 ? from[1] : channels == 4 ? from[3] : opaque;
 }
 
-float usable_light(float v) { return v > 0 ? std::min(v, 65504.0f) : 0.0f; }
+float usable_light(float v) {
+    return v > 0 ? std::min(v, 65504.0f) : 0.0f;
+}
 
 }  // namespace
 

@@ -21,14 +21,15 @@ std::string temporary_name(const std::string& path) {
 }  // namespace
 
 class UnfinishedFile::Proxy final : public OIIO::Filesystem::IOFile {
-  public:
+public:
     explicit Proxy(std::FILE* file) : IOFile(file, Write) {}
 
     std::size_t write(const void* data, std::size_t size) override {
         errno = 0;
         const std::size_t written = IOFile::write(data, size);
         if (written != size && error == 0) error = errno != 0 ? errno : EIO;
-        return written;
+        // Encoders that notice print lines of their own, or let it pass; finish() tells it in both cases.
+        return size;
     }
 
     int error = 0;
@@ -49,21 +50,19 @@ UnfinishedFile::~UnfinishedFile() {
     std::remove(temporary_.c_str());
 }
 
-OIIO::Filesystem::IOProxy& UnfinishedFile::proxy() { return *proxy_; }
+OIIO::Filesystem::IOProxy& UnfinishedFile::proxy() {
+    return *proxy_;
+}
 
 void UnfinishedFile::fail(int error) const {
     const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
-    throw ImageFileError(path_ + ": cannot be written: " +
-                         (full ? "the disk is full, or a limit on file sizes is reached"
-                               : std::generic_category().message(error)));
-}
-
-void UnfinishedFile::check_writes() const {
-    if (proxy_->error != 0) fail(proxy_->error);
+    throw ImageFileError(
+        path_ + ": cannot be written: " +
+        (full ? "the disk is full, or a limit on file sizes is reached" : std::generic_category().message(error)));
 }
 
 void UnfinishedFile::finish() {
-    check_writes();
+    if (proxy_->error != 0) fail(proxy_->error);
     // Some file systems find out only now that they are full.
     if (fsync(fileno(file_)) != 0) fail(errno);
     proxy_.reset();

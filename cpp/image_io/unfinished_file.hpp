@@ -10,7 +10,7 @@ namespace realcam::image_io {
 /// A file under a temporary name in the folder of its final one: it gets that name when it is whole, and goes away
 /// otherwise.
 class UnfinishedFile {
-  public:
+public:
     /// Throws ImageFileError where the folder takes no file.
     explicit UnfinishedFile(const std::string& path);
     UnfinishedFile(const UnfinishedFile&) = delete;
@@ -20,13 +20,10 @@ class UnfinishedFile {
     /// Where OpenImageIO writes to.
     OIIO::Filesystem::IOProxy& proxy();
 
-    /// Throws ImageFileError where the system refused a write; encoders do not all notice, and none says why.
-    void check_writes() const;
-
-    /// Throws ImageFileError.
+    /// Gives the file its name. Throws ImageFileError where the system refused that, or a write before.
     void finish();
 
-  private:
+private:
     class Proxy;
 
     [[noreturn]] void fail(int error) const;

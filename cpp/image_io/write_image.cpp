@@ -30,7 +30,9 @@ std::string format_of(const std::string& path) {
                          "; .png (developed) or .exr (exposure and depth) is wanted");
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_line(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
 
 std::size_t pixel_count(const Image& image) {
     return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
@@ -49,15 +51,16 @@ void write_rows(const std::string& path, const std::string& format, const ImageS
     UnfinishedFile file(path);
     const auto check = [&](bool good, const ImageOutput& output) {
         const std::string why = output.geterror();
-        file.check_writes();
         if (!good || !why.empty()) throw ImageFileError(path + ": cannot be written: " + first_line(why));
     };
     {
         const auto output = ImageOutput::create(format);
-        if (!output) throw ImageFileError(path + ": OpenImageIO cannot write ." + format + ": " + first_line(OIIO::geterror()));
+        if (!output)
+            throw ImageFileError(path + ": OpenImageIO cannot write ." + format + ": " + first_line(OIIO::geterror()));
         output->set_ioproxy(&file.proxy());
         check(output->open("picture." + format, spec), *output);
-        std::vector<Value> rows(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels) * kRows);
+        std::vector<Value> rows(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels) *
+                                kRows);
         for (int y = 0; y < spec.height; y += kRows) {
             const int end = std::min(y + kRows, spec.height);
             fill(y, end, rows.data());
@@ -86,7 +89,8 @@ void write_exr(const Image& image, const std::string& path, const ImageMetadata&
     spec.channelnames = {"R", "G", "B", "Z"};
     spec.z_channel = 3;
     spec.attribute("compression", "zip");
-    spec.attribute("realcam:unit", "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis");
+    spec.attribute("realcam:unit",
+                   "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis");
     // The standard attributes of OpenEXR, in its units.
     const auto set = [&](const char* name, double value) { spec.attribute(name, static_cast<float>(value)); };
     set("expTime", metadata.exposure_time_s);
@@ -132,8 +136,8 @@ void check_image_path(const std::string& path) {
         throw ImageFileError(path + ": \"" + folder.string() + "\" is not a folder");
     if (fs::is_directory(path, ignored)) throw ImageFileError(path + ": is a folder; the name of a file is wanted");
     if (access(folder.c_str(), W_OK | X_OK) != 0)
-        throw ImageFileError(path + ": the folder \"" + folder.string() + "\" cannot be written to: " +
-                             std::generic_category().message(errno));
+        throw ImageFileError(path + ": the folder \"" + folder.string() +
+                             "\" cannot be written to: " + std::generic_category().message(errno));
 }
 
 }  // namespace realcam::image_io

@@ -49,6 +49,8 @@ std::uint64_t limit_of_groups() {
 
 }  // namespace
 
-std::uint64_t free_memory() { return std::min(available_on_machine(), limit_of_groups()); }
+std::uint64_t free_memory() {
+    return std::min(available_on_machine(), limit_of_groups());
+}
 
 }  // namespace realcam::io

@@ -28,7 +28,11 @@ class Pupil {
           tracer_(tracer ? std::move(tracer) : [](const LensView<float>& v, LensRays<float, kBlock>& r) { trace_lens(v, r); }) {
         image_radius_ = film_radius * (1 + 1e-6);
         find_nodes();
-        if (image_radius_ > 0) find_outlines();
+        if (image_radius_ > 0) {
+            find_outlines();
+        } else {
+            outline_.assign(kRows * kSectors, PupilSector{});  // no light at all; a sampler still reads the table
+        }
     }
 
     PupilView view() const {
@@ -43,6 +47,7 @@ class Pupil {
     static constexpr int kGrid = 48;      ///< points of the search grid along l; half of them along m >= 0
     /// The outline is widened by this share, for what can pass between the film radii and azimuths looked at.
     static constexpr double kMargin = 0.004;
+    static constexpr double kStep = static_cast<double>(kSectorStep);
 
     struct Box {
         double l_min, l_max, m_max;
@@ -275,13 +280,15 @@ class Pupil {
         constexpr double kReach = 1.5;  // past the corner of the box
         const PupilNode node = node_at(position);
         const double radius = radius_at(position);
-        const auto direction = [&](int azimuth, double reach) {
-            const double angle = std::numbers::pi * azimuth / kAzimuths;
-            const double width = static_cast<double>(node.half_width), height = static_cast<double>(node.half_height);
-            return Direction{static_cast<double>(node.centre) + width * reach * std::cos(angle),
-                             height * reach * std::sin(angle)};
-        };
         constexpr int kRays = kAzimuths + 1;
+        Direction spoke[kRays];
+        for (int a = 0; a < kRays; ++a) {
+            const double angle = std::numbers::pi * a / kAzimuths;
+            spoke[a] = {static_cast<double>(node.half_width) * std::cos(angle), static_cast<double>(node.half_height) * std::sin(angle)};
+        }
+        const auto direction = [&](int azimuth, double reach) {
+            return Direction{static_cast<double>(node.centre) + reach * spoke[azimuth].l, reach * spoke[azimuth].m};
+        };
         int first[kRays], last[kRays];
         std::fill(first, first + kRays, -1);
         std::fill(last, last + kRays, -1);
@@ -376,11 +383,13 @@ class Pupil {
         double scale = 1, hole = 1;
         for (std::size_t i = from; i <= to; ++i) scale = std::max(scale, outer[i] / edge(i));
         for (std::size_t i = from; i <= to; ++i) hole = std::min(hole, inner[i] / (scale * edge(i)));
-        const double hole_squared = hole * hole;
-        const double area = 0.5 * twice_area * scale * scale * (1 - hole_squared);
-        return {static_cast<float>(scale * a.l), static_cast<float>(scale * a.m), static_cast<float>(scale * (b.l - a.l)),
-                static_cast<float>(scale * (b.m - a.m)), static_cast<float>(hole_squared),
-                static_cast<float>(2 * kSectors * area)};
+        const double x = scale * a.l, y = scale * a.m;
+        return {packed(x, y), packed(scale * b.l - x, scale * b.m - y), static_cast<float>(hole * hole)};
+    }
+
+    static std::int32_t packed(double x, double y) {
+        const auto steps = [](double v) { return static_cast<std::int32_t>(std::lround(std::clamp(v / kStep, -32767.0, 32767.0))); };
+        return static_cast<std::int32_t>(static_cast<std::uint32_t>(steps(y)) << 16 | (static_cast<std::uint32_t>(steps(x)) & 0xffffu));
     }
 
     LensSystem lens_;

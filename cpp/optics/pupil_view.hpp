@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <cstdint>
 
 #include "../math/lanes.hpp"
 
@@ -16,14 +17,20 @@ struct PupilNode {
     float half_height;  ///< along m
 };
 
-/// A triangle from the middle of the region to a piece of its outline, in units of the box. Light that is blocked in
-/// the middle (a mirror lens) leaves out a smaller similar triangle.
+/// A triangle from the middle of the region to a piece of its outline, in units of the box: a corner on the outline and
+/// the way to the second one, in steps of kSectorStep. Packed, because what a sample costs is the number of its memory
+/// gathers. Light that is blocked in the middle (a mirror lens) leaves out a smaller similar triangle.
 struct PupilSector {
-    float x, y;        ///< first corner on the outline
-    float dx, dy;      ///< to the second one
+    std::int32_t corner;  ///< x in the lower 16 bits, y in the upper ones
+    std::int32_t side;    ///< the same, to the second corner
     float hole_squared;
-    float area_share;  ///< area times number of sectors: density one over this where the sector is chosen evenly
 };
+inline constexpr float kSectorStep = 1.0f / 16384;  ///< so that 16 bits reach to 2, past the corner of the box
+
+REALCAM_INLINE constexpr Vec2f unpacked(std::int32_t packed) {
+    // Shifts of signed numbers keep the sign (C++20).
+    return {static_cast<float>((packed << 16) >> 16) * kSectorStep, static_cast<float>(packed >> 16) * kSectorStep};
+}
 
 /// Rows of sectors over the film radius: row = rows * (1 - sqrt(1 - radius / image_radius)), so that they lie closer and
 /// closer towards the edge, where vignetting changes the outline fastest. Each row has `sectors` sectors for m >= 0;
@@ -67,15 +74,19 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
     const bool lower = index >= pupil.sectors;
     index = select(lower, index - pupil.sectors, index);
     const PupilSector& sector = pupil.outline[row * pupil.sectors + index];
-    const float reach = std::sqrt(sector.hole_squared + v * (1.0f - sector.hole_squared));
-    const float x = reach * (sector.x + along * sector.dx);
-    const float y = reach * (sector.y + along * sector.dy);
+    const Vec2f corner = unpacked(sector.corner), side = unpacked(sector.side);
+    const float open = 1.0f - sector.hole_squared;
+    const float reach = std::sqrt(sector.hole_squared + v * open);
+    const float x = reach * (corner.x + along * side.x);
+    const float y = reach * (corner.y + along * side.y);
+    // Sectors are chosen evenly, so the density is one over this: their number times the area of one.
+    const float area = static_cast<float>(pupil.sectors) * (corner.x * side.y - corner.y * side.x) * open;
 
     const float l = centre + width * x;
     const float m = height * select(lower, -y, y);
     const float l_film = l * cos - m * sin, m_film = l * sin + m * cos;
     const float n = sqrt_or_zero(1.0f - l * l - m * m);
-    return {{l_film, m_film, -n}, select(lit, sector.area_share * width * height, 0.0f)};
+    return {{l_film, m_film, -n}, select(lit, area * width * height, 0.0f)};
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -86,7 +86,8 @@ inline double filling_distance(const BoundingBox& box, const Camera& camera, Vec
     double distance = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3d p = Vec3d{corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                              corner & 4 ? box.high.z : box.low.z} - target;
+                              corner & 4 ? box.high.z : box.low.z} -
+                        target;
         const double aside = std::max(std::fabs(dot(p, axes.right)) / tan_x, std::fabs(dot(p, axes.up)) / tan_y);
         distance = std::max(distance, dot(p, axes.backward) + std::max(aside, least));
     }

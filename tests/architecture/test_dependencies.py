@@ -30,18 +30,24 @@ MAY_INCLUDE = {
 # Headers of the core that own memory or raise errors, and so stay on the host. The others run on every
 # device, and include none of these.
 HOST_ONLY = {
+    "camera/camera.hpp",
+    "camera/default_film.hpp",
+    "camera/field_of_view.hpp",
     "error.hpp",
     "optics/focus.hpp",
     "optics/glass.hpp",
+    "optics/iris_shape.hpp",
     "optics/lens_path.hpp",
     "optics/lens_system.hpp",
     "optics/paraxial.hpp",
     "optics/pupil.hpp",
     "optics/surface.hpp",
-    "scene/scene.hpp",
-    "camera/film.hpp",
-    "camera/sensor.hpp",
     "render/backend.hpp",
+    "render/daylight.hpp",
+    "render/default_view.hpp",
+    "render/metering.hpp",
+    "scene/placed_scene.hpp",
+    "scene/scene.hpp",
 }
 
 NOT_IN_CORE = {

@@ -47,7 +47,8 @@ TEST_CASE("The field angle is that of real rays") {
 
 TEST_CASE("The film takes the shape of the picture") {
     LensSystem lens = io::read_lens("double-gauss-50mm");
-    const auto check = [&](std::optional<std::array<double, 2>> size, std::optional<std::array<int, 2>> pixels, Film wanted) {
+    const auto check = [&](std::optional<std::array<double, 2>> size, std::optional<std::array<int, 2>> pixels,
+                           Film wanted) {
         const Film film = default_film(lens, size, pixels);
         CHECK(film.width_mm == doctest::Approx(wanted.width_mm));
         CHECK(film.height_mm == doctest::Approx(wanted.height_mm));

@@ -22,7 +22,7 @@ using namespace realcam::image_io;
 
 // The files of one test; gone with it.
 class Folder {
-  public:
+public:
     Folder() : path_(fs::temp_directory_path() / ("realcam-image-" + std::to_string(getpid()))) {
         fs::remove_all(path_);
         fs::create_directories(path_);
@@ -34,7 +34,7 @@ class Folder {
     std::string operator/(const std::string& name) const { return (path_ / name).string(); }
     std::ptrdiff_t file_count() const { return std::distance(fs::directory_iterator(path_), fs::directory_iterator()); }
 
-  private:
+private:
     fs::path path_;
 };
 
@@ -78,7 +78,9 @@ std::string message_of(const std::string& path) {
     return "written";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 void check_entries(const OIIO::ImageSpec& spec) {
     for (const auto& [name, value] : test_metadata().entries()) {

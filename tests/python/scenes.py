@@ -75,3 +75,35 @@ def sphere(radius: float, segments: int, material: rc.Material, *, inward: bool)
                 faces.append((a, c, d))
     order = [0, 2, 1] if inward else [0, 1, 2]
     return rc.Scene.from_arrays(vertices, np.array(faces)[:, order], materials=[material])
+
+
+FILM = rc.Film(24, 16, (24, 16))
+
+
+def pinhole(film: rc.Film = FILM, **pose: object) -> rc.Camera:
+    """No defocus: what a pixel sees is known to the point."""
+    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
+    return rc.Camera(lens, film=film, exposure_time_s=1, model="pinhole", **pose)
+
+
+def radiance(scene: rc.Scene, camera: rc.Camera, spp: int = 16, max_bounces: int = 0) -> np.ndarray:
+    """(H, W, 3): the picture in units of one of radiance 1 everywhere, taken with the same samples."""
+    picture = rc.render(scene, camera, spp=spp, max_bounces=max_bounces).pixels.astype(np.float64)
+    return picture / rc.render(sky(), camera, spp=spp).pixels
+
+
+def points_on_plane(
+    camera: rc.Camera, spp: int, point: Sequence[float], normal: Sequence[float]
+) -> tuple[np.ndarray, rc.CameraRays]:
+    """Where the camera's rays meet a plane, (N, 3)."""
+    rays = camera.generate_rays(spp=spp)
+    o, d, n = rays.origins_m, rays.directions.astype(np.float64), np.asarray(normal, float)
+    distance = ((np.asarray(point, float) - o) @ n) / (d @ n)
+    return o + distance[:, None] * d, rays
+
+
+def mean_over_pixels(rays: rc.CameraRays, values: np.ndarray) -> np.ndarray:
+    """(H, W): radiance of each ray, weighted as the exposure weights it; rays come pixel by pixel."""
+    shape = (FILM.resolution[1], FILM.resolution[0], -1)
+    weights = rays.weights.astype(np.float64)
+    return (weights * values).reshape(shape).mean(axis=2) / weights.reshape(shape).mean(axis=2)

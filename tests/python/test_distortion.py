@@ -130,7 +130,7 @@ def test_picture_is_neither_mirrored_nor_upside_down(model: str) -> None:
 
 
 def test_camera_that_looks_elsewhere() -> None:
-    """Looking along +x with z up: what is further along -y lies to the right, what is higher in z further up."""
+    """Looking along +x with z up: what lies along -y appears to the right, what is higher in z further up."""
     mark = scenes.quad((6, -1, 0.7), 0.2, right=(0, -1, 0), up=(0, 0, 1), emission=1e3)
     lens = rc.Lens.load("double-gauss-50mm").focused(6)
     camera = rc.Camera(lens, film=rc.Film(36, 24, (36, 24)), look_at=(1, 0, 0), up=(0, 0, 1))

@@ -1,4 +1,4 @@
-"""Direct light, reflection and shadows against closed forms and quadrature. Other subjects: test_environment.py."""
+"""Lights, shadows and diffuse reflection against closed forms."""
 
 from __future__ import annotations
 
@@ -10,40 +10,14 @@ import realcam as rc
 
 from . import scenes
 
-FILM = rc.Film(24, 16, (24, 16))
 
-
-def pinhole(film: rc.Film = FILM, **pose: object) -> rc.Camera:
-    """No defocus: what a pixel sees is known to the point."""
-    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
-    return rc.Camera(lens, film=film, exposure_time_s=1, model="pinhole", **pose)
-
-
-def radiance(scene: rc.Scene, camera: rc.Camera, spp: int = 16, max_bounces: int = 0) -> np.ndarray:
-    """(H, W, 3): the picture in units of one of radiance 1 everywhere, taken with the same samples."""
-    picture = rc.render(scene, camera, spp=spp, max_bounces=max_bounces).pixels.astype(np.float64)
-    return picture / rc.render(scenes.sky(), camera, spp=spp).pixels
-
-
-def points_on_plane(
-    camera: rc.Camera, spp: int, point: object, normal: object
-) -> tuple[np.ndarray, rc.CameraRays]:
-    """Where the camera's rays meet a plane, (N, 3)."""
-    rays = camera.generate_rays(spp=spp)
-    o, d, n = rays.origins_m, rays.directions.astype(np.float64), np.asarray(normal, float)
-    distance = ((np.asarray(point, float) - o) @ n) / (d @ n)
-    return o + distance[:, None] * d, rays
-
-
-def mean_over_pixels(rays: rc.CameraRays, values: np.ndarray) -> np.ndarray:
-    """(H, W): radiance of each ray, weighted as the exposure weights it; rays come pixel by pixel."""
-    shape = (FILM.resolution[1], FILM.resolution[0], -1)
-    weights = rays.weights.astype(np.float64)
-    return (weights * values).reshape(shape).mean(axis=2) / weights.reshape(shape).mean(axis=2)
+def large(half_m: float) -> pytest.ParameterSet:
+    reason = "the offset of leaving rays ignores the triangle's size: up to half of the light is lost"
+    return pytest.param(half_m, marks=pytest.mark.xfail(reason=reason))
 
 
 def polygon_irradiance(points: np.ndarray, normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Irradiance at points (N, 3) from a polygon of radiance 1 wholly above their horizon: Lambert's formula, 1760."""
+    """Irradiance at points (N, 3) from a polygon of radiance 1 above their horizon (Lambert, 1760)."""
     spokes = corners[None] - points[:, None]
     spokes /= np.linalg.norm(spokes, axis=2, keepdims=True)
     total = np.zeros(len(points))
@@ -60,11 +34,11 @@ def test_point_light_over_a_plane() -> None:
     scene = scenes.scene_of(scenes.quad((0, 0, -2), 3, diffuse=albedo)).with_point_light(
         tuple(place), intensity
     )
-    camera = pinhole()
-    points, rays = points_on_plane(camera, 16, (0, 0, -2), (0, 0, 1))
+    camera = scenes.pinhole()
+    points, rays = scenes.points_on_plane(camera, 16, (0, 0, -2), (0, 0, 1))
     distance = np.linalg.norm(place - points, axis=1)
-    expected = mean_over_pixels(rays, (place - points)[:, 2] / distance**3)  # cos / d^2
-    measured = radiance(scene, camera)
+    expected = scenes.mean_over_pixels(rays, (place - points)[:, 2] / distance**3)  # cos / d^2
+    measured = scenes.radiance(scene, camera)
     for c in range(3):
         # The same samples, in float32: some twenty roundings of 6e-8.
         np.testing.assert_allclose(measured[..., c], albedo[c] / math.pi * intensity[c] * expected, rtol=2e-5)
@@ -75,7 +49,9 @@ def test_sun_on_a_plane(direction: tuple[float, float, float]) -> None:
     scene = scenes.scene_of(scenes.quad((0, 0, -2), 3, diffuse=0.5)).with_sun(direction, (1e5, 1e4, 1e3))
     cosine = max(0.0, -direction[2] / math.hypot(*direction))  # the last one shines on the back
     expected = 0.5 / math.pi * cosine * np.array([1e5, 1e4, 1e3])
-    np.testing.assert_allclose(radiance(scene, pinhole()), np.broadcast_to(expected, (16, 24, 3)), rtol=2e-5)
+    np.testing.assert_allclose(
+        scenes.radiance(scene, scenes.pinhole()), np.broadcast_to(expected, (16, 24, 3)), rtol=2e-5
+    )
 
 
 @pytest.mark.parametrize("tilted", [False, True])
@@ -85,13 +61,13 @@ def test_rectangular_area_light(tilted: bool) -> None:
     up = (0, -math.sqrt(0.5), math.sqrt(0.5)) if tilted else (0, 0, 1)
     light = scenes.quad((0.4, 1, -2), 0.8, 0.5, right=(1, 0, 0), up=up, emission=1000)
     floor = scenes.quad((0, -1, 0), 10, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.7)
-    camera = pinhole(look_at=(0, -1, -2))
-    points, rays = points_on_plane(camera, 256, (0, -1, 0), (0, 1, 0))
+    camera = scenes.pinhole(look_at=(0, -1, -2))
+    points, rays = scenes.points_on_plane(camera, 256, (0, -1, 0), (0, 1, 0))
     facing = points @ np.cross((1, 0, 0), up) > light[0][0] @ np.cross((1, 0, 0), up)
     assert facing.all()
     irradiance = polygon_irradiance(points, np.array([0.0, 1.0, 0.0]), light[0])
-    expected = mean_over_pixels(rays, 0.7 / math.pi * 1000 * irradiance)
-    measured = radiance(scenes.scene_of(floor, light), camera, spp=256)[..., 0]
+    expected = scenes.mean_over_pixels(rays, 0.7 / math.pi * 1000 * irradiance)
+    measured = scenes.radiance(scenes.scene_of(floor, light), camera, spp=256)[..., 0]
     # cos cos / d^2 over this light has a relative standard deviation below 0.5: 0.5 / 16 = 3% a pixel of 256
     # samples, 0.2% for the mean of 384 pixels; four of them (the samples are stratified, which makes both
     # smaller).
@@ -102,22 +78,24 @@ def test_rectangular_area_light(tilted: bool) -> None:
 def test_area_light_shines_to_its_front_alone() -> None:
     floor = scenes.quad((0, -1, 0), 10, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.7)
     away = scenes.quad((0, 1, -2), 0.5, right=(1, 0, 0), up=(0, 0, -1), emission=1000)
-    np.testing.assert_array_equal(radiance(scenes.scene_of(floor, away), pinhole(look_at=(0, -1, -2))), 0)
+    np.testing.assert_array_equal(
+        scenes.radiance(scenes.scene_of(floor, away), scenes.pinhole(look_at=(0, -1, -2))), 0
+    )
     # Seen itself: bright from its front, dark from behind.
     front, back = (
         scenes.quad((0, 0, -2), 3, emission=7),
         scenes.quad((0, 0, -2), 3, right=(-1, 0, 0), emission=7),
     )
-    np.testing.assert_allclose(radiance(scenes.scene_of(front), pinhole()), 7, rtol=1e-6)
-    np.testing.assert_array_equal(radiance(scenes.scene_of(back), pinhole()), 0)
+    np.testing.assert_allclose(scenes.radiance(scenes.scene_of(front), scenes.pinhole()), 7, rtol=1e-6)
+    np.testing.assert_array_equal(scenes.radiance(scenes.scene_of(back), scenes.pinhole()), 0)
 
 
 def test_shadow_of_a_square() -> None:
     place = np.array([0.0, 0.0, -1.0])
     wall, blocker = scenes.quad((0, 0, -3), 5, diffuse=0.5), scenes.quad((0.1, 0.05, -2), 0.15, diffuse=0.0)
-    camera = pinhole(position=(0, 0, 1.0))
+    camera = scenes.pinhole(position=(0, 0, 1.0))
     scene = scenes.scene_of(wall, blocker).with_point_light(tuple(place), (100, 100, 100))
-    points, rays = points_on_plane(camera, 64, (0, 0, -3), (0, 0, 1))
+    points, rays = scenes.points_on_plane(camera, 64, (0, 0, -3), (0, 0, 1))
     distance = np.linalg.norm(place - points, axis=1)
     lit = 0.5 / math.pi * 100 * (place - points)[:, 2] / distance**3
 
@@ -130,30 +108,30 @@ def test_shadow_of_a_square() -> None:
         rays.origins_m
         + (points - rays.origins_m) * ((-2 - rays.origins_m[:, 2]) / (-3 - rays.origins_m[:, 2]))[:, None]
     )
-    expected = mean_over_pixels(rays, np.where(blocked | hidden, 0.0, lit))
-    measured = radiance(scene, camera, spp=64)[..., 0]
+    expected = scenes.mean_over_pixels(rays, np.where(blocked | hidden, 0.0, lit))
+    measured = scenes.radiance(scene, camera, spp=64)[..., 0]
     assert (expected == 0).sum() > 20
     assert (measured[expected == 0] == 0).all()
     # Samples within rounding of the shadow's edge may fall on either side: allow one of 64 in a pixel.
     np.testing.assert_allclose(measured, expected, rtol=2e-5, atol=lit.max() / 64)
     without = scenes.scene_of(wall).with_point_light(tuple(place), (100, 100, 100))
     np.testing.assert_allclose(
-        radiance(without, camera, spp=64)[..., 0], mean_over_pixels(rays, lit), rtol=2e-5
+        scenes.radiance(without, camera, spp=64)[..., 0], scenes.mean_over_pixels(rays, lit), rtol=2e-5
     )
 
 
 def test_several_lights_add_up() -> None:
     floor = scenes.quad((0, -1, 0), 10, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.7)
     lamp = scenes.quad((0.4, 1, -2), 0.8, 0.5, right=(1, 0, 0), up=(0, 0, 1), emission=20)
-    camera = pinhole(look_at=(0, -1, -2))
+    camera = scenes.pinhole(look_at=(0, -1, -2))
     bare, with_lamp = scenes.scene_of(floor), scenes.scene_of(floor, lamp)
     sun, point = ((0, -1, -0.5), (30, 30, 30)), ((0, 0.5, -2), (12, 12, 12))
     total = with_lamp.with_sun(*sun).with_point_light(*point)
     # The lamp throws shadows of the sun and of nothing else here: it is above the point light.
     parts = [with_lamp, with_lamp.with_sun(*sun), with_lamp.with_point_light(*point)]
-    single = [radiance(scene, camera, spp=1024)[..., 0].mean() for scene in parts]
+    single = [scenes.radiance(scene, camera, spp=1024)[..., 0].mean() for scene in parts]
     expected = single[1] + single[2] - single[0]
-    together = radiance(total, camera, spp=1024)[..., 0].mean()
+    together = scenes.radiance(total, camera, spp=1024)[..., 0].mean()
     # One of three lights is chosen for each sample, so that its relative standard deviation is sqrt(2) or
     # less times the differences of the lights: below 2 over 393216 samples, 0.3%; four of them for both
     # sides.
@@ -163,11 +141,11 @@ def test_several_lights_add_up() -> None:
 
 @pytest.mark.parametrize("bounces", [0, 1, 4, 16])
 def test_furnace(bounces: int) -> None:
-    """Inside a closed shell that shines and reflects everywhere alike: L (1 + a + a^2 + ...), whatever its shape."""
+    """Inside a closed shell that shines and reflects alike everywhere: L (1 + a + a^2 + ...)."""
     albedo = 0.7
     shell = scenes.sphere(2.0, 16, rc.Material(diffuse=(albedo,) * 3, emission=(1, 1, 1)), inward=True)
     expected = sum(albedo**n for n in range(bounces + 2))
-    measured = radiance(shell, pinhole(), spp=64, max_bounces=bounces)
+    measured = scenes.radiance(shell, scenes.pinhole(), spp=64, max_bounces=bounces)
     # In a ball each light sample brings exactly the mean; flat facets make it vary by a few percent, in the
     # mean over 24576 paths by less than 0.1%. Shadow rays and light at the facets' seams take the rest.
     assert measured.mean() == pytest.approx(expected, rel=0.003)
@@ -175,11 +153,21 @@ def test_furnace(bounces: int) -> None:
 
 @pytest.mark.parametrize("bounces", [0, 2])
 def test_convex_body_in_a_furnace(bounces: int) -> None:
-    """A ball under a constant sky reflects a L towards everywhere, and so cannot be told from its surroundings."""
-    ball = scenes.sphere(1.0, 24, rc.Material(diffuse=(0.6, 0.6, 0.6)), inward=False).with_environment(1.0)
-    camera = pinhole(rc.Film(24, 16, (48, 32)), position=(0, 0, 4))
-    measured = radiance(ball, camera, spp=16, max_bounces=bounces)
-    # A cosine-distributed sample of a constant sky has no noise: float32 roundings only, also where the ball
-    # is seen at a grazing angle. 2.4 pixels a millimetre, 50 mm / 4 m: the whole picture lies within the
-    # ball.
+    """A ball under a constant sky reflects a L towards everywhere."""
+    ball = scenes.sphere(1.3, 24, rc.Material(diffuse=(0.6, 0.6, 0.6)), inward=False).with_environment(1.0)
+    camera = scenes.pinhole(rc.Film(24, 16, (48, 32)), position=(0, 0, 4))
+    measured = scenes.radiance(ball, camera, spp=16, max_bounces=bounces)
+    # A cosine-distributed sample of a constant sky has no noise: float32 roundings only. The picture's corner
+    # sees 14.4 mm / 52 mm of 4 m aside, 1.1 m: all of it lies within the ball.
     np.testing.assert_allclose(measured, 0.6, rtol=1e-4)
+
+
+@pytest.mark.parametrize("half_m", [3.0, large(300.0), large(1000.0)])
+def test_large_sloping_plane_does_not_shadow_itself(half_m: float) -> None:
+    n = np.array([1.0, 0.5, -0.3]) / math.sqrt(1.34)
+    right = np.array([0.3, 0.0, 1.0]) / math.sqrt(1.09)
+    slope = scenes.quad((0.1, 0.2, 0.3), half_m, right=right, up=np.cross(n, right), diffuse=0.5)
+    camera = scenes.pinhole(position=tuple(2 * n))
+    measured = scenes.radiance(scenes.scene_of(slope).with_environment(1.0), camera)
+    # A constant sky has no noise; one ray of 6144 may graze an edge.
+    assert measured.mean() == pytest.approx(0.5, rel=1e-4)

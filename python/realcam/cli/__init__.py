@@ -8,7 +8,7 @@ import typer
 
 from .. import __version__
 from .._core import RealcamError, devices
-from . import bench, lens, render
+from . import bench, demo, lens, render
 
 app = typer.Typer(
     help="Photographs 3D scenes through real lenses.",
@@ -18,6 +18,7 @@ app = typer.Typer(
 )
 app.add_typer(lens.app, name="lens")
 app.command("render")(render.render)
+app.command("demo")(demo.demo)
 app.command("bench")(bench.bench)
 
 

@@ -1,0 +1,216 @@
+// How much light reaches the film, against integrals that know nothing of the sampled region.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../../cpp/math/random.hpp"
+#include "doctest/doctest.h"
+#include "pupil_region.hpp"
+
+namespace {
+
+using namespace realcam;
+using namespace realcam::test;
+
+// Irradiance of a field of radiance 1, as a picture estimates it: pupil samples, their weights, and the rays that pass.
+class SampledIrradiance {
+  public:
+    explicit SampledIrradiance(const LensSystem& lens) : pupil_(lens, half_diagonal(lens)), trace_(lens) {}
+
+    double operator()(double film_x, double film_y) const {
+        constexpr int kSamples = 1 << 15;
+        const auto sample = [&](int i) {
+            const Vec2f u = sample_2d(hash32(99), static_cast<std::uint32_t>(i), 1);
+            return sample_pupil(pupil_.view(), static_cast<float>(film_x), static_cast<float>(film_y), u.x, u.y);
+        };
+        double sum = 0;
+        trace_(static_cast<float>(film_x), static_cast<float>(film_y), kSamples,
+               [&](int i) { return sample(i).direction; },
+               [&](int i, bool passes) { sum += passes ? static_cast<double>(sample(i).weight) : 0.0; });
+        return sum / kSamples;
+    }
+
+  private:
+    Pupil pupil_;
+    FilmPointTracer trace_;
+};
+
+// The mirror lens's hole is larger than its stop from f/13.5 on: it is dark then, as it would be.
+bool is_dark(const std::string& name, double f_number) { return name == "mirror-telephoto-500mm" && f_number > 13.5; }
+
+// pi sin^2(theta') on the axis, from the edges of the light along one meridian, found by bisection with single rays in
+// double precision; a central obstruction is an edge too.
+double axial_irradiance(const LensSystem& lens) {
+    const RayTracer trace(lens, LightDirection::to_scene);
+    const auto passes = [&](double sine) {
+        return trace({0, 0, lens.film_position()}, {sine, 0, -std::sqrt(1 - sine * sine)}).passed();
+    };
+    constexpr int kSteps = 5000;  // of the sine; the narrowest beam here, f/22, is 0.02 wide
+    double sum = 0;
+    bool before = passes(0);
+    for (int i = 1; i < kSteps; ++i) {
+        const bool here = passes(static_cast<double>(i) / kSteps);
+        if (here == before) continue;
+        double low = static_cast<double>(i - 1) / kSteps, high = static_cast<double>(i) / kSteps;
+        for (int k = 0; k < 50; ++k) {
+            const double middle = 0.5 * (low + high);
+            (passes(middle) == before ? low : high) = middle;
+        }
+        sum += (before ? 1 : -1) * M_PI * low * low;
+        before = here;
+    }
+    return sum;
+}
+
+// The source paper's equations 6 and 7 over the last surface: integral of cos(theta') cos(theta'') / d^2 dA over the
+// points that see the scene. On an even grid in x and y, first of the whole surface, then of the part with light.
+double irradiance_over_last_surface(const LensSystem& lens, double film_x, double film_y) {
+    constexpr int kBlock = 128, kGrid = 256;
+    const Surface& last = lens.surfaces.back();
+    const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
+    const Vec3d film{film_x, film_y, lens.film_distance};  // from the last vertex
+    const double rim = last.clear_semi_diameter;
+    double x_min = -rim, x_max = rim, y_min = -rim, y_max = rim, integral = 0;
+    for (int level = 0; level < 5; ++level) {
+        const double dx = (x_max - x_min) / kGrid, dy = (y_max - y_min) / kGrid;
+        double left = rim, right = -rim, low = rim, high = -rim;
+        integral = 0;
+        LensRays<double, kBlock> rays;
+        for (int first = 0; first < kGrid * kGrid; first += kBlock) {
+            double factor[kBlock];
+            Vec3d points[kBlock];
+            for (int i = 0; i < kBlock; ++i) {
+                const int k = first + i;
+                const double x = x_min + (k % kGrid + 0.5) * dx, y = y_min + (k / kGrid + 0.5) * dy, r = std::hypot(x, y);
+                factor[i] = 0;
+                rays.status[i] = static_cast<int>(RayStatus::bad_input);
+                rays.origin.set(i, film);
+                rays.direction.set(i, {0, 0, -1});
+                if (r > rim) continue;
+                const double h = 1e-5 * rim, slope = (last.sag(r + h) - last.sag(std::fabs(r - h))) / (2 * h);
+                points[i] = {x, y, last.sag(r)};
+                const double radial = r > h ? slope / r : 0;
+                const Vec3d normal = normalized(Vec3d{-radial * x, -radial * y, 1});
+                const Vec3d to_surface = points[i] - film, d = normalized(to_surface);
+                const double at_surface = -dot(d, normal);  // cos(theta'')
+                if (at_surface <= 0) continue;              // seen from behind
+                const double area = dx * dy / normal.z;
+                factor[i] = -d.z * at_surface / dot(to_surface, to_surface) * area;
+                rays.direction.set(i, d);
+                rays.status[i] = 0;
+            }
+            trace_lens(path.view(), rays);
+            for (int i = 0; i < kBlock; ++i) {
+                if (rays.status[i] != 0) continue;
+                integral += factor[i];
+                left = std::min(left, points[i].x);
+                right = std::max(right, points[i].x);
+                low = std::min(low, points[i].y);
+                high = std::max(high, points[i].y);
+            }
+        }
+        if (left > right) {
+            // A surface close to the film has its light on a speck of it, smaller than a cell: look where the lines
+            // to the exit pupil cross it, with room on all sides.
+            if (level > 0 || film.z > 0.1 * rim) return 0;
+            const FirstOrder data = first_order(lens, lens.wavelength_nm);
+            const double share = film.z / (lens.film_position() - data.exit_pupil_position);
+            const double room = 1.5 * share * data.exit_pupil_diameter, x = film_x * (1 - share), y = film_y * (1 - share);
+            x_min = x - room, x_max = x + room, y_min = y - room, y_max = y + room;
+            continue;
+        }
+        const bool fills = right - left > 0.5 * (x_max - x_min) && high - low > 0.5 * (y_max - y_min);
+        if (fills) break;
+        x_min = std::max(left - 2 * dx, -rim);
+        x_max = std::min(right + 2 * dx, rim);
+        y_min = std::max(low - 2 * dy, -rim);
+        y_max = std::min(high + 2 * dy, rim);
+    }
+    return integral;
+}
+
+}  // namespace
+
+TEST_CASE("on the axis a constant field gives pi sin^2(theta')") {
+    for (const std::string& name : io::lens_names())
+        for (const double f_number : {0.0, 8.0, 22.0}) {
+            CAPTURE(name);
+            CAPTURE(f_number);
+            LensSystem lens = io::read_lens(name);
+            if (f_number > 0) lens = stopped_down(lens, f_number);
+            const double truth = axial_irradiance(lens);
+            const SampledIrradiance sampled(lens);
+            if (is_dark(name, f_number)) {
+                CHECK(truth == 0);
+                CHECK(sampled(0, 0) == 0);
+                CHECK(sampled(5, 5) == 0);
+                continue;
+            }
+            REQUIRE(truth > 0);
+            // Of 32768 stratified samples about 3% miss: 0.05%. What is asked for is 0.5%.
+            CHECK(sampled(0, 0) == doctest::Approx(truth).epsilon(0.002));
+            // The brute-force integral that the next test relies on: a grid of 256 x 256.
+            CHECK(irradiance_over_last_surface(lens, 0, 0) == doctest::Approx(truth).epsilon(0.003));
+        }
+}
+
+TEST_CASE("an unvignetted, unaberrated pupil falls off with the fourth power of the cosine") {
+    // A stop alone, 50 mm from the film: for a small opening E = E0 cos^4.
+    LensSystem lens = lens_of({stop_plane(0, 0.5)});
+    lens.film_distance = 50;
+    const SampledIrradiance sampled(lens);
+    const double on_axis = sampled(0, 0);
+    CHECK(on_axis == doctest::Approx(M_PI * 0.25 / (50 * 50 + 0.25)).epsilon(0.001));
+    for (const double r : {5.0, 12.0, 21.0}) {
+        const double cosine = 50 / std::hypot(50.0, r);
+        // The opening's size changes this by its squared ratio to the distance, 1e-4; sampling by 0.05%.
+        CHECK(sampled(r * 0.6, r * 0.8) / on_axis == doctest::Approx(std::pow(cosine, 4)).epsilon(0.001));
+    }
+}
+
+TEST_CASE("relative illumination is that of a brute-force integral over the last surface") {
+    for (const std::string& name : io::lens_names())
+        for (const double f_number : {0.0, 8.0}) {
+            CAPTURE(name);
+            CAPTURE(f_number);
+            LensSystem lens = io::read_lens(name);
+            if (f_number > 0) lens = stopped_down(focused(lens, near_focus(lens)), f_number);
+            const SampledIrradiance sampled(lens);
+            const double truth_on_axis = irradiance_over_last_surface(lens, 0, 0), on_axis = sampled(0, 0);
+            for (const double share : {0.33, 0.66, 0.95}) {
+                CAPTURE(share);
+                const double r = share * half_diagonal(lens), x = r * std::cos(0.7), y = r * std::sin(0.7);
+                const double truth = irradiance_over_last_surface(lens, x, y) / truth_on_axis;
+                const double found = sampled(x, y) / on_axis;
+                CAPTURE(truth);
+                CAPTURE(found);
+                // 1% is what is asked for; where next to nothing is left, 0.1% of the light on the axis.
+                CHECK(std::fabs(found - truth) <= std::max(0.01 * truth, 0.001));
+            }
+        }
+}
+
+TEST_CASE("blades change neither the light on the axis nor its integral") {
+    const LensSystem open = io::read_lens("double-gauss-50mm");
+    LensSystem bladed = stopped_down(open, 4);
+    const double round = axial_irradiance(bladed);
+    bladed.iris = {6, 0.2, 0.1};
+    const SampledIrradiance sampled(bladed);
+    CHECK(sampled(0, 0) == doctest::Approx(round).epsilon(0.005));
+    // A film point off the axis at an angle to the blades.
+    CHECK(sampled(9, 5) == doctest::Approx(irradiance_over_last_surface(bladed, 9, 5)).epsilon(0.005));
+}
+
+TEST_CASE("one stop halves the light") {
+    for (const std::string& name : io::lens_names()) {
+        if (is_dark(name, 16)) continue;
+        CAPTURE(name);
+        const LensSystem lens = io::read_lens(name);
+        const double at_11 = SampledIrradiance(stopped_down(lens, 11))(0, 0);
+        const double at_16 = SampledIrradiance(stopped_down(lens, 11 * std::sqrt(2.0)))(0, 0);
+        // sin^2 against the paraxial 1 / (4 N^2): 0.2% at f/11, and what pupil aberration a lens has there.
+        CHECK(at_11 / at_16 == doctest::Approx(2).epsilon(0.01));
+    }
+}

@@ -1,0 +1,201 @@
+// The sampled region of directions: it holds every ray that passes, little else, and is sampled evenly.
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "doctest/doctest.h"
+#include "pupil_region.hpp"
+
+namespace {
+
+using namespace realcam;
+using namespace realcam::test;
+
+struct Leak {
+    long passing = 0, outside = 0;
+    double worst_radius = 0;
+};
+
+// Random directions to the whole last surface, and more of them around the region itself (stopped down it is a
+// thousandth of the surface): which of those that pass lie outside the region?
+Leak find_leaks(const LensSystem& lens, unsigned seed) {
+    constexpr int kRadii = 30, kRays = 2048;
+    const Pupil pupil(lens, half_diagonal(lens));
+    const FilmPointTracer trace(lens);
+    Random random(seed);
+    Leak leak;
+    std::vector<Vec3f> directions(kRays);
+    for (int k = 0; k < kRadii; ++k) {
+        // From the axis to past the corner of the film; the table's own rows lie elsewhere.
+        double radius = half_diagonal(lens) * (k == 0 ? 0.0 : k == 1 ? 1.0 : random());
+        if (k >= 24) radius = pupil.image_radius() * (1 - std::pow(10.0, 20.0 - k));  // towards the edge of the image
+        if (k == 29) radius = pupil.image_radius() * 1.002;
+        if (radius > half_diagonal(lens)) continue;
+        const PupilRegion region(pupil.view(), radius);
+        const Vec3d film{radius, 0, lens.film_position()};
+        for (int i = 0; i < kRays; ++i) {
+            Vec3d d = normalized(point_on_last_surface(lens, random) - film);
+            if (i % 4 != 0) {
+                d.x = region.centre + region.half_width * random.between(-1.3, 1.3);
+                d.y = region.half_height * random.between(-1.3, 1.3);
+                d.z = -std::sqrt(std::max(0.0, 1 - d.x * d.x - d.y * d.y));
+                if (d.z == 0) d = {0, 0, -1};
+            }
+            directions[static_cast<std::size_t>(i)] = static_cast<Vec3f>(d);
+        }
+        trace(static_cast<float>(radius), 0, kRays, [&](int i) { return directions[static_cast<std::size_t>(i)]; },
+              [&](int i, bool passes) {
+                  if (!passes) return;
+                  ++leak.passing;
+                  const Vec3f d = directions[static_cast<std::size_t>(i)];
+                  // 1e-5 of the box, from directions with 24 bits in boxes down to 0.01 wide.
+                  if (region.contains(static_cast<double>(d.x), static_cast<double>(d.y), 1e-5)) return;
+                  ++leak.outside;
+                  leak.worst_radius = radius;
+              });
+    }
+    return leak;
+}
+
+void check_no_leaks(const LensState& state) {
+    CAPTURE(state.description);
+    const Leak leak = find_leaks(state.lens, 17);
+    CAPTURE(leak.passing);
+    CAPTURE(leak.worst_radius);
+    // The mirror lens's hole is larger than its stop at f/22: it is dark.
+    const bool dark = state.lens.name == "mirror-telephoto-500mm" && state.lens.stop_semi_diameter < 15;
+    CHECK((dark ? leak.passing == 0 : leak.passing > 2000));
+    CHECK(leak.outside == 0);
+}
+
+// Share of the sampled rays of a whole frame that pass.
+double passing_share(const LensSystem& lens) {
+    const Pupil pupil(lens, half_diagonal(lens));
+    const FilmPointTracer trace(lens);
+    Random random(23);
+    long sampled = 0, passed = 0;
+    for (int k = 0; k < 1500; ++k) {
+        const Vec3f film = static_cast<Vec3f>(point_on_film(lens, random));
+        std::vector<PupilSample> samples(128);
+        for (PupilSample& s : samples)
+            s = sample_pupil(pupil.view(), film.x, film.y, static_cast<float>(random()), static_cast<float>(random()));
+        if (!(samples[0].weight > 0)) continue;
+        trace(film.x, film.y, 128, [&](int i) { return samples[static_cast<std::size_t>(i)].direction; },
+              [&](int, bool passes) {
+                  ++sampled;
+                  passed += passes;
+              });
+    }
+    REQUIRE(sampled > 10000);
+    return static_cast<double>(passed) / static_cast<double>(sampled);
+}
+
+}  // namespace
+
+TEST_CASE("no ray that passes lies outside the sampled region, for every lens, far and near, open and closed") {
+    for (const std::string& name : io::lens_names())
+        for (const LensState& state : states_of(name)) check_no_leaks(state);
+}
+
+TEST_CASE("the same with blades, whose corners reach past the circle of their area") {
+    for (const int blades : {3, 5, 9})
+        for (const double f_number : {2.2, 2.8, 8.0}) {
+            LensSystem lens = stopped_down(focused(io::read_lens("double-gauss-50mm"), kInfinity), f_number);
+            lens.iris = {blades, 0, 0.35};
+            check_no_leaks({lens, std::to_string(blades) + " blades at f/" + std::to_string(f_number)});
+        }
+}
+
+TEST_CASE("the share of sampled rays that pass, wide open over the whole frame, is at least 95%") {
+    for (const std::string& name : io::lens_names()) {
+        CAPTURE(name);
+        const LensSystem lens = io::read_lens(name);
+        const double far = passing_share(lens), near = passing_share(focused(lens, near_focus(lens)));
+        CHECK(far >= 0.95);
+        CHECK(near >= 0.95);
+    }
+}
+
+TEST_CASE("samples are even over the region: weights times counts are areas") {
+    struct Place {
+        const char* name;
+        double share_of_image_circle, azimuth;
+    };
+    for (const Place& place : {Place{"double-gauss-50mm", 0.0, 0.0}, Place{"double-gauss-50mm", 0.71, 0.4},
+                               Place{"double-gauss-50mm", 0.99, 2.0}, Place{"fisheye-10mm", 0.9, 4.0},
+                               Place{"mirror-telephoto-500mm", 0.3, -1.0}, Place{"phone-4mm", 0.5, 3.1}}) {
+        CAPTURE(std::string(place.name));
+        CAPTURE(place.share_of_image_circle);
+        const LensSystem lens = io::read_lens(place.name);
+        const Pupil pupil(lens, half_diagonal(lens));
+        const double radius = place.share_of_image_circle * pupil.image_radius();
+        const PupilRegion region(pupil.view(), radius);
+
+        // Cells of a grid over the box in direction cosines; the area that the region has in each, by 64 x 64 points.
+        constexpr int kCells = 12, kFine = 64, kSamples = 400000;
+        const double reach = 1.1;  // in units of the box
+        std::vector<double> area(kCells * kCells), estimate(kCells * kCells);
+        const double box = 4 * reach * reach * region.half_width * region.half_height;
+        for (int j = 0; j < kCells * kFine; ++j)
+            for (int i = 0; i < kCells * kFine; ++i) {
+                const double x = reach * (2 * (i + 0.5) / (kCells * kFine) - 1), y = reach * (2 * (j + 0.5) / (kCells * kFine) - 1);
+                if (region.contains(region.centre + x * region.half_width, y * region.half_height))
+                    area[static_cast<std::size_t>(j / kFine * kCells + i / kFine)] += box / (kCells * kFine * kCells * kFine);
+            }
+        std::mt19937 engine(41);
+        const auto unit = [&] { return static_cast<float>(engine() >> 8) * 0x1p-24f; };
+        double total = 0, squares = 0;
+        const double cosine = std::cos(place.azimuth), sine = std::sin(place.azimuth);
+        for (int i = 0; i < kSamples; ++i) {
+            const PupilSample s = sample_pupil(pupil.view(), static_cast<float>(radius * cosine),
+                                               static_cast<float>(radius * sine), unit(), unit());
+            REQUIRE(std::fabs(length(s.direction) - 1) < 1e-6f);
+            const double dx = static_cast<double>(s.direction.x), dy = static_cast<double>(s.direction.y);
+            const double l = dx * cosine + dy * sine, m = dy * cosine - dx * sine, weight = static_cast<double>(s.weight);
+            REQUIRE(region.contains(l, m, 1e-5));
+            const double x = (l - region.centre) / region.half_width / reach, y = m / region.half_height / reach;
+            const int column = static_cast<int>(0.5 * kCells * (x + 1)), row = static_cast<int>(0.5 * kCells * (y + 1));
+            REQUIRE(std::min(column, row) >= 0);
+            REQUIRE(std::max(column, row) < kCells);
+            estimate[static_cast<std::size_t>(row * kCells + column)] += weight / kSamples;
+            total += weight / kSamples;
+            squares += weight * weight / kSamples;
+        }
+        double whole = 0, chi_square = 0;
+        int cells = 0;
+        for (std::size_t c = 0; c < area.size(); ++c) {
+            whole += area[c];
+            if (area[c] < 1e-4 * box) {
+                // The edge's cells have too few points for a chi-square.
+                CHECK(estimate[c] < 3e-4 * box);
+                continue;
+            }
+            // Variance of a cell's estimate: its share of the squared weights; the quadrature's error is below that.
+            const double variance = squares / total * area[c] / kSamples;
+            const double quadrature = std::pow(0.2 * box / (kCells * kCells * kFine * std::sqrt(kFine)), 2);
+            chi_square += (estimate[c] - area[c]) * (estimate[c] - area[c]) / (variance + quadrature);
+            ++cells;
+        }
+        CAPTURE(cells);
+        // 5 standard deviations of a chi-square.
+        CHECK(chi_square < cells + 5 * std::sqrt(2.0 * cells));
+        // Weights are areas of triangles here, counts of points there: 768 x 768 of them, and 400000 samples of nearly
+        // equal weight.
+        CHECK(total == doctest::Approx(whole).epsilon(0.002));
+    }
+}
+
+TEST_CASE("a film point out of the image circle gets no weight") {
+    LensSystem lens = io::read_lens("fisheye-10mm");
+    const Pupil pupil(lens, 40);
+    REQUIRE(pupil.image_radius() < 40);
+    for (const double radius : {pupil.image_radius() * 1.0001, 30.0, 39.0})
+        for (int i = 0; i < 64; ++i) {
+            const PupilSample s = sample_pupil(pupil.view(), static_cast<float>(radius), 0, static_cast<float>(i) / 64, 0.3f);
+            CHECK(s.weight == 0);
+            CHECK(std::isfinite(length(s.direction)));
+        }
+}

@@ -1,0 +1,302 @@
+"""rc.Lens, Surface, Glass and trace as a user meets them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import realcam as rc
+
+STOP = rc.Stop(clear_semi_diameter_mm=5)
+AXIS = np.array([[0.0, 0.0, -1.0]])
+
+
+def biconvex(**changes: object) -> rc.Lens:
+    front: dict[str, object] = {"radius_of_curvature_mm": 50, "thickness_mm": 2, "material": 1.5}
+    front |= {"clear_semi_diameter_mm": 6, **changes}
+    return rc.Lens(
+        surfaces=[STOP, rc.Surface(**front), rc.Surface(radius_of_curvature_mm=-50, clear_semi_diameter_mm=6)]
+    )
+
+
+def test_bundled_lenses_load_by_name() -> None:
+    names = rc.lens_names()
+    assert names == sorted(names)
+    assert {"double-gauss-50mm", "wide-22mm", "fisheye-10mm", "telephoto-250mm", "double-gauss-100mm"} <= set(
+        names
+    )
+    for name in names:
+        lens = rc.Lens.load(name)
+        assert lens.name == name
+        assert lens.source
+        assert math.isinf(lens.focus_distance_m)
+        assert lens.surfaces[lens.stop_index].type == "stop"
+        assert len(lens.vertices_mm) == len(lens.surfaces)
+        assert lens.film_position_mm == pytest.approx(lens.vertices_mm[-1] + lens.film_distance_mm)
+
+
+def test_a_lens_file_loads_from_any_kind_of_path(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        """format = 1 name = "mine" surface = [ { radius_of_curvature_mm = 50.0, thickness_mm = 2.0, material
+        = 1.5, clear_semi_diameter_mm = 6.0 }, { radius_of_curvature_mm = -50.0, thickness_mm = 0.5,
+        clear_semi_diameter_mm = 6.0 }, { type = "stop", clear_semi_diameter_mm = 5.0 }, ]
+        """
+    )
+    for form in (path, str(path)):
+        lens = rc.Lens.load(form)
+        # Lensmaker, with 2 mm between the vertices.
+        power = 0.5 * (1 / 50 + 1 / 50 - 0.5 * 2 / (1.5 * 50 * 50))
+        assert lens.first_order().effective_focal_length_mm == pytest.approx(1 / power)
+        assert lens.stop_index == 2
+
+
+HEAD = "format = 1\nname = 'x'\n[[surface]]\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "surface", "says"),
+    [
+        ("[[surface\n", 4, 0, "TOML"),
+        ("type = 'stop'\nclear_semi_diameter_mm = -5.0\n", 0, 1, "positive"),
+        ("type = 'stop'\nclear_semi_diameter_mm = nan\n", 0, 1, "finite|positive"),
+        ("type = 'stop'\nclear_semi_diameter_mm = 5.0\ncolour = 1\n", 6, 1, "colour"),
+    ],
+    ids=["syntax", "negative", "nan", "unknown key"],
+)
+def test_errors_name_file_line_and_surface(
+    tmp_path: Path, text: str, line: int, surface: int, says: str
+) -> None:
+    path = tmp_path / "x.toml"
+    path.write_text(HEAD + text)
+    with pytest.raises(rc.LensFileError, match=says) as caught:
+        rc.Lens.load(path)
+    error = caught.value
+    assert error.file == str(path)
+    assert str(path) in str(error)
+    assert "\n" not in str(error)
+    assert error.surface == surface
+    if line:
+        assert error.line == line
+        assert f"{line}" in str(error)
+
+
+def test_unknown_lens_names_the_nearest() -> None:
+    with pytest.raises(rc.LensFileError, match=r'"double-gaus".*double-gauss-50mm'):
+        rc.Lens.load("double-gaus")
+    with pytest.raises(rc.LensFileError, match=r"/nowhere/lens\.toml"):
+        rc.Lens.load(Path("/nowhere/lens.toml"))
+    with pytest.raises(TypeError):
+        rc.Lens.load(5)  # type: ignore[arg-type]
+
+
+def test_lenses_are_values() -> None:
+    lens = rc.Lens.load("double-gauss-50mm")
+    before = lens.film_distance_mm, lens.stop_semi_diameter_mm, lens.focus_distance_m
+    near, dark = lens.focused(1.0), lens.stopped_down(8)
+    assert before == (lens.film_distance_mm, lens.stop_semi_diameter_mm, lens.focus_distance_m)
+    assert near.focus_distance_m == 1.0
+    assert near.film_distance_mm > lens.film_distance_mm
+    assert near.stop_semi_diameter_mm == lens.stop_semi_diameter_mm
+    # Paraxial: the diaphragm's diameter goes with the reciprocal of the f-number.
+    assert dark.first_order().f_number == pytest.approx(8, rel=1e-12)
+    assert dark.focused(1.0).stop_semi_diameter_mm == dark.stop_semi_diameter_mm
+    for thing, name in ((lens, "name"), (lens.surfaces[0], "conic"), (lens.first_order(), "f_number")):
+        with pytest.raises(AttributeError):
+            setattr(thing, name, 1)
+    lens.surfaces.clear()  # a copy
+    assert len(lens.surfaces) == 11
+
+
+def test_focusing_and_stopping_down_say_what_is_wanted() -> None:
+    lens = rc.Lens.load("double-gauss-50mm")
+    for wrong in (0.1, 0.0, -1.0, math.nan):
+        with pytest.raises(rc.InputError, match="focus"):
+            lens.focused(wrong)
+    with pytest.raises(rc.InputError, match=r"nearest focus .*2\.5 m"):
+        rc.Lens.load("telephoto-200mm-inner-focus").focused(2.0)
+    with pytest.raises(rc.InputError, match=r"f/1 is faster than .* f/2\.03"):
+        lens.stopped_down(1.0)
+    for wrong in (0.0, -2.0, math.nan, math.inf):
+        with pytest.raises(rc.InputError, match="f-number"):
+            lens.stopped_down(wrong)
+    assert issubclass(rc.InputError, ValueError)
+    assert issubclass(rc.InputError, rc.RealcamError)
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"thickness_mm": -1}, "thickness"),
+        ({"thickness_mm": math.nan}, "thickness"),
+        ({"clear_semi_diameter_mm": -1}, "clear semi-diameter"),
+        ({"clear_semi_diameter_mm": math.nan}, "clear semi-diameter"),
+        ({"radius_of_curvature_mm": 3}, "larger than the surface"),
+        ({"material": math.nan}, "refractive index"),
+        ({"material": 0.5}, "refractive index"),
+        ({"conic": math.nan}, "conic"),
+        ({"inner_semi_diameter_mm": 6.0}, "inner"),
+    ],
+)
+def test_a_surface_that_cannot_be_is_named(changes: dict[str, float], says: str) -> None:
+    biconvex()
+    with pytest.raises(rc.LensFileError, match=f"surface 2.*{says}") as caught:
+        biconvex(**changes)
+    assert caught.value.surface == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"surfaces": []}, "no surfaces"),
+        ({"surfaces": [STOP, STOP]}, "2 surfaces of type"),
+        ({"surfaces": [rc.Surface(clear_semi_diameter_mm=5)]}, "exactly one"),
+        ({"surfaces": [STOP]}, "film_distance_mm"),
+        ({"surfaces": [STOP], "film_distance_mm": -1.0}, "behind the last surface"),
+        ({"surfaces": [STOP], "film_distance_mm": math.nan}, "behind the last surface"),
+        ({"surfaces": [STOP], "film_distance_mm": 50.0, "iris_blades": 2}, "blades"),
+        ({"surfaces": [STOP], "film_distance_mm": 50.0, "focus_group": (0, 3)}, "group"),
+        ({"surfaces": [STOP], "film_distance_mm": 50.0, "focus_group": (-1, 0)}, "group"),
+        ({"surfaces": [STOP], "film_distance_mm": 50.0, "wavelength_nm": -1.0}, "wavelength"),
+        ({"surfaces": [STOP], "film_distance_mm": 50.0, "nearest_focus_m": math.nan}, "nearest focus"),
+        ({"surfaces": [STOP], "film_distance_mm": 50.0, "film_mm": (0.0, 24.0)}, "film"),
+    ],
+)
+def test_a_lens_that_cannot_be(arguments: dict[str, object], says: str) -> None:
+    with pytest.raises(rc.LensFileError, match=says):
+        rc.Lens(**arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ({"radius_of_curvature_mm": 0}, "inf"),
+        ({"radius_of_curvature_mm": math.nan}, "radius"),
+        ({"type": "prism"}, "refracting, mirror, stop or aperture"),
+        ({"material": "N-BK77"}, "BK7"),
+        ({"material": (1.5,)}, r"\(n_d, V_d\)"),
+        ({"material": ("a", "b")}, r"\(n_d, V_d\)"),
+        ({"material": object()}, "index"),
+        ({"aspheric_coefficients": {5: 1.0}}, "even powers"),
+        ({"aspheric_coefficients": {2: 1.0}}, "even powers"),
+    ],
+)
+def test_a_surface_says_what_is_wanted(arguments: dict[str, object], says: str) -> None:
+    with pytest.raises(rc.InputError, match=says):
+        rc.Surface(clear_semi_diameter_mm=5, **arguments)  # type: ignore[arg-type]
+
+
+def test_surface_keeps_what_it_is_given() -> None:
+    s = rc.Surface(
+        radius_of_curvature_mm=20, conic=-1, aspheric_coefficients={6: 1e-6}, clear_semi_diameter_mm=4
+    )
+    assert (s.radius_of_curvature_mm, s.conic, s.type) == (20, -1, "refracting")
+    assert s.aspheric_coefficients == {6: 1e-6}
+    # A paraboloid's sag is r^2 / (2 R).
+    assert s.sag_mm(3.0) == pytest.approx(9 / 40 + 1e-6 * 3**6, rel=1e-14)
+    assert math.isinf(STOP.radius_of_curvature_mm)
+    mirror = rc.Mirror(radius_of_curvature_mm=-100, clear_semi_diameter_mm=10, thickness_mm=-40)
+    assert (mirror.type, mirror.curvature_per_mm) == ("mirror", -0.01)
+
+
+def test_glass_in_every_form() -> None:
+    # N-BK7: Schott's data sheet prints n_d = 1.51680, n_F = 1.52238, n_C = 1.51432, V_d = 64.17.
+    for glass in (rc.Glass.named("N-BK7"), rc.Surface(clear_semi_diameter_mm=1, material="N-BK7").material):
+        assert glass.index(587.5618) == pytest.approx(1.51680, abs=5e-6)
+        assert glass.index(486.1327) == pytest.approx(1.52238, abs=5e-6)
+        assert glass.index(656.2725) == pytest.approx(1.51432, abs=5e-6)
+    pair = rc.Surface(clear_semi_diameter_mm=1, material=(1.5168, 64.17)).material
+    dispersion = pair.index(486.1327) - pair.index(656.2725)
+    assert (pair.index(587.5618) - 1) / dispersion == pytest.approx(64.17, rel=1e-9)
+    assert rc.Surface(clear_semi_diameter_mm=1).material.index(500) == 1
+    assert rc.Glass.cauchy([1.5, 0.004]).index(500) == pytest.approx(1.5 + 0.004 / 0.25)
+    assert rc.Glass.table([(400, 1.6), (700, 1.5)]).index(700) == pytest.approx(1.5)
+
+
+def test_trace_shapes_types_and_status() -> None:
+    lens = rc.Lens.load("double-gauss-50mm")
+    film = lens.film_position_mm
+    origins = np.tile([0.0, 0.0, film], (5, 1))
+    directions = np.array([[0, 0, -1], [0.9, 0, -0.1], [np.nan, 0, -1], [0, 0, 0], [0.05, 0, -1]])
+    out = lens.trace(origins, directions)
+    for array, shape, kind in (
+        (out.origins_mm, (5, 3), "float64"),
+        (out.directions, (5, 3), "float64"),
+        (out.optical_path_mm, (5,), "float64"),
+        (out.status, (5,), "int32"),
+        (out.surface_index, (5,), "int32"),
+    ):
+        assert (array.shape, array.dtype) == (shape, kind)
+    status = [rc.RayStatus(s) for s in out.status]
+    assert status[0] == status[4] == rc.RayStatus.OK
+    assert status[1] in (rc.RayStatus.MISSED, rc.RayStatus.VIGNETTED)
+    assert status[2] == status[3] == rc.RayStatus.BAD_INPUT
+    assert out.surface_index.tolist()[2:4] == [-1, -1]
+    assert out.surface_index[0] == 0  # towards the scene, the last surface met is the first one
+    assert np.isfinite(out.origins_mm).all()
+    assert np.isfinite(out.directions).all()
+    good = [0, 4]
+    np.testing.assert_allclose(np.linalg.norm(out.directions[good], axis=1), 1, atol=1e-14)
+    # On the axis the optical path is the sum of index times thickness.
+    index = [s.material.index(lens.wavelength_nm) for s in lens.surfaces[:-1]]
+    path = lens.film_distance_mm + sum(n * s.thickness_mm for n, s in zip(index, lens.surfaces, strict=False))
+    assert out.optical_path_mm[0] == pytest.approx(path, abs=1e-11)
+
+
+def test_trace_takes_any_arrays() -> None:
+    lens = rc.Lens.load("tessar-50mm")
+    rng = np.random.default_rng(1)
+    directions = np.concatenate([rng.uniform(-0.1, 0.1, (40, 2)), np.full((40, 1), -1.0)], axis=1)
+    origins = np.tile([1.0, 2.0, lens.film_position_mm], (40, 1))
+    expected = lens.trace(origins, directions)
+    strided = np.zeros((40, 6))
+    strided[:, ::2] = directions
+    for o, d in (
+        (origins.tolist(), directions.tolist()),
+        (np.asfortranarray(origins), strided[:, ::2]),
+        (origins[::-1][::-1], directions * 7),  # need not be unit vectors
+    ):
+        out = lens.trace(o, d)
+        np.testing.assert_allclose(out.directions, expected.directions, atol=1e-15)
+        np.testing.assert_array_equal(out.status, expected.status)
+    single = lens.trace(origins, directions, dtype=np.float32)
+    # Tens of roundings of 6e-8 over 60 mm.
+    np.testing.assert_allclose(single.origins_mm, expected.origins_mm, atol=1e-4)
+    assert (single.origins_mm != expected.origins_mm).any()
+    empty = lens.trace(np.zeros((0, 3)), np.zeros((0, 3)))
+    assert (empty.origins_mm.shape, empty.status.shape) == ((0, 3), (0,))
+
+
+@pytest.mark.parametrize(
+    ("origins", "directions", "options", "says"),
+    [
+        ([[0, 0]], [[0, 0]], {}, r"\(N, 3\)"),
+        ([0, 0, 0], [0, 0, 1], {}, r"\(N, 3\)"),
+        (np.zeros((2, 3)), np.zeros((3, 3)), {}, r"\(N, 3\)"),
+        (AXIS, AXIS, {"start": "lens"}, '"film" or "scene"'),
+        (AXIS, AXIS, {"dtype": "int32"}, "float64"),
+        (AXIS, AXIS, {"wavelength_nm": math.nan}, "wavelength"),
+        (AXIS, AXIS, {"wavelength_nm": 0.5}, "wavelength"),
+    ],
+)
+def test_trace_says_what_is_wanted(
+    origins: object, directions: object, options: dict[str, object], says: str
+) -> None:
+    with pytest.raises(rc.InputError, match=says):
+        rc.Lens.load("tessar-50mm").trace(origins, directions, **options)  # type: ignore[arg-type]
+
+
+def test_first_order_and_best_focus_check_their_arguments() -> None:
+    lens = rc.Lens.load("achromat-75mm")
+    # Colours have their own focal lengths.
+    assert lens.first_order(486.1).effective_focal_length_mm != lens.first_order().effective_focal_length_mm
+    assert lens.best_focus_mm(2.0) > lens.best_focus_mm()
+    for wrong in (-1.0, math.nan):
+        with pytest.raises(rc.InputError, match="wavelength"):
+            lens.first_order(wrong)
+        with pytest.raises(rc.InputError, match="wavelength"):
+            lens.best_focus_mm(wavelength_nm=wrong)
+        with pytest.raises(rc.InputError, match="object distance"):
+            lens.best_focus_mm(wrong)
