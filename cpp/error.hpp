@@ -17,7 +17,7 @@ class InputError : public Error {
 
 /// A lens prescription that cannot be built, or its file cannot be read.
 class LensFileError : public Error {
-  public:
+public:
     /// line and surface are 1-based; 0 where they do not apply.
     LensFileError(const std::string& message, std::string file = {}, int line = 0, int surface = 0)
         : Error(place(file, line, surface) + message),
@@ -31,7 +31,7 @@ class LensFileError : public Error {
     int line;
     int surface;
 
-  private:
+private:
     static std::string place(const std::string& file, int line, int surface) {
         std::string where = file;
         if (line > 0) where += (where.empty() ? "line " : ":") + std::to_string(line);

@@ -13,6 +13,7 @@ Sumita publish n^2 as a power series in the wavelength; a three-term Sellmeier f
 that series over 365 to 850 nm. A glass whose fit is off by more than FIT_TOLERANCE anywhere from
 380 to 780 nm is written as a table of the series' own values.
 """
+
 import argparse
 import re
 import sys
@@ -20,14 +21,14 @@ import sys
 import numpy as np
 from scipy.optimize import least_squares
 
-FIT_TOLERANCE = 5e-6            # in index; the makers print indices to 1e-5
+FIT_TOLERANCE = 5e-6  # in index; the makers print indices to 1e-5
 D_LINE_UM = 0.5875618
-FIT_UM = np.concatenate([np.linspace(0.365, 0.85, 80), np.full(200, D_LINE_UM)])   # n_d itself is kept to 1e-6
+FIT_UM = np.concatenate([np.linspace(0.365, 0.85, 80), np.full(200, D_LINE_UM)])  # n_d itself is kept to 1e-6
 VISIBLE_UM = np.linspace(0.380, 0.780, 201)
 TABLE_NM = [365, 380, 400, 420, 440, 460, 480, 500, 530, 560, 590, 620, 660, 700, 740, 780, 850, 1014]
 STARTS = ([0.008, 0.03, 100.0], [0.01, 0.05, 110.0], [0.005, 0.02, 60.0], [0.012, 0.06, 150.0])
 
-MAKERS = [                      # catalogue, name in opticalglass, formula, edition of the data sheet
+MAKERS = [  # catalogue, name in opticalglass, formula, edition of the data sheet
     ("schott", "Schott", "sellmeier", "Schott, optical glass data sheet, 1 June 2018"),
     ("ohara", "Ohara", "sellmeier", "Ohara, recommended and low-Tg glasses, May 2018"),
     ("hoya", "Hoya", [0, 2, -2, -4, -6, -8], "Hoya, data table 15 December 2018"),
@@ -49,20 +50,26 @@ def series_index(coefficients, powers, um):
 def fit_sellmeier(coefficients, powers):
     """(B, C, largest index error from 380 to 780 nm) of the best three-term fit, or None."""
     target = series_index(coefficients, powers, FIT_UM) ** 2 - 1
-    um2 = FIT_UM ** 2
+    um2 = FIT_UM**2
 
-    def linear(log_c):          # the best B for given C: a linear problem
+    def linear(log_c):  # the best B for given C: a linear problem
         a = np.stack([um2 / (um2 - ci) for ci in np.exp(log_c)], axis=1)
         b = np.linalg.lstsq(a, target, rcond=None)[0]
         return b, a @ b - target
 
     best = None
     for start in STARTS:
-        fit = least_squares(lambda q: 1e6 * linear(q)[1], np.log(start), method="trf",
-                            bounds=(np.log([1e-4, 5e-3, 5.0]), np.log([0.03, 0.11, 1000.0])))
+        fit = least_squares(
+            lambda q: 1e6 * linear(q)[1],
+            np.log(start),
+            method="trf",
+            bounds=(np.log([1e-4, 5e-3, 5.0]), np.log([0.03, 0.11, 1000.0])),
+        )
         b, c = linear(fit.x)[0], np.exp(fit.x)
         b, c = [float(f"{v:.9g}") for v in b], [float(f"{v:.9g}") for v in c]
-        error = np.abs(sellmeier_index(b, c, VISIBLE_UM) - series_index(coefficients, powers, VISIBLE_UM)).max()
+        error = np.abs(
+            sellmeier_index(b, c, VISIBLE_UM) - series_index(coefficients, powers, VISIBLE_UM)
+        ).max()
         if np.isfinite(error) and (best is None or error < best[2]):
             best = (b, c, error)
     return best
@@ -84,7 +91,7 @@ def glasses_of_maker(name, formula):
         row = catalogue.df.loc[glass]
         try:
             coefficients = [float(v) for v in catalogue.create_glass(glass, name).coefs]
-        except ValueError:      # Hikari prints "-" for a coefficient that is zero
+        except ValueError:  # Hikari prints "-" for a coefficient that is zero
             coefficients = [0.0 if str(v) == "-" else float(v) for v in row["dispersion coefficients"]]
         yield str(glass).replace(" ", ""), coefficients, formula, float(row["refractive indices"]["d"])
 
@@ -111,7 +118,7 @@ def glass_line(coefficients, formula):
     if formula == "sellmeier":
         b, c = coefficients[:3], coefficients[3:6]
         return sellmeier_line(b, c), float(sellmeier_index(b, c, D_LINE_UM)), "copied"
-    powers = formula[:len(coefficients)]
+    powers = formula[: len(coefficients)]
     n_d = float(series_index(coefficients, powers, D_LINE_UM))
     fit = fit_sellmeier(coefficients, powers)
     if fit and fit[2] <= FIT_TOLERANCE:
@@ -122,9 +129,16 @@ def glass_line(coefficients, formula):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--opticalglass", metavar="DIR", help="folder that the package opticalglass is installed in")
-    parser.add_argument("--agf", action="append", default=[], metavar="CATALOGUE=FILE",
-                        help="a maker's AGF catalogue, for glasses that the data sheet no longer lists")
+    parser.add_argument(
+        "--opticalglass", metavar="DIR", help="folder that the package opticalglass is installed in"
+    )
+    parser.add_argument(
+        "--agf",
+        action="append",
+        default=[],
+        metavar="CATALOGUE=FILE",
+        help="a maker's AGF catalogue, for glasses that the data sheet no longer lists",
+    )
     options = parser.parse_args()
     if options.opticalglass:
         sys.path.insert(0, options.opticalglass)
@@ -134,8 +148,19 @@ def main():
     for catalogue, maker, formula, edition in MAKERS:
         sources = [(edition, glasses_of_maker(maker, formula))]
         if catalogue in extra:
-            first = open(extra[catalogue], "rb").readline().decode("latin-1").replace("\0", "").strip("CC \r\n\t!ÿþ")
-            sources.append((f"{maker}, AGF catalogue: {first}" if first else f"{maker}, AGF catalogue", glasses_of_agf(extra[catalogue])))
+            first = (
+                open(extra[catalogue], "rb")
+                .readline()
+                .decode("latin-1")
+                .replace("\0", "")
+                .strip("CC \r\n\t!ÿþ")
+            )
+            sources.append(
+                (
+                    f"{maker}, AGF catalogue: {first}" if first else f"{maker}, AGF catalogue",
+                    glasses_of_agf(extra[catalogue]),
+                )
+            )
         lines.append(f"\n[{catalogue}]")
         for title, glasses in sources:
             lines.append(f"# {title}")
@@ -144,19 +169,27 @@ def main():
                     continue
                 toml, n_d, made = glass_line(coefficients, form)
                 if not (1.3 < n_d < 2.3) or (printed and abs(printed - n_d) > 3e-5):
-                    problems.append(f"{catalogue}:{name} left out: formula gives {n_d:.6f}, the sheet prints {printed}")
+                    problems.append(
+                        f"{catalogue}:{name} left out: formula gives {n_d:.6f}, the sheet prints {printed}"
+                    )
                     continue
                 seen.add((catalogue, name.upper()))
                 counts[made] = counts.get(made, 0) + 1
                 lines.append(f'"{name}" = {{ {toml} }}')
-    print("\n".join([
-        "# Glass catalogue, written by tools/make_glass_catalogue.py; do not edit by hand.",
-        "# Indices relative to air at 20 to 25 C as the makers publish them; wavelengths in um in the formulas",
-        "# (n^2 = 1 + sum B l^2 / (l^2 - C), C in um^2) and nm in the tables.",
-        "# Schott and Ohara: the makers' own Sellmeier coefficients. Hoya, CDGM, Hikari, Sumita: Sellmeier formulas fitted",
-        f"# to the makers' power series, within {FIT_TOLERANCE:g} in index from 380 to 780 nm, else tables of the series.",
-        "# " + ", ".join(f"{v} {k}" for k, v in sorted(counts.items())) + ".",
-        "format = 1"] + lines))
+    print(
+        "\n".join(
+            [
+                "# Glass catalogue, written by tools/make_glass_catalogue.py; do not edit by hand.",
+                "# Indices relative to air at 20 to 25 C as the makers publish them; wavelengths in um in the formulas",
+                "# (n^2 = 1 + sum B l^2 / (l^2 - C), C in um^2) and nm in the tables.",
+                "# Schott and Ohara: the makers' own Sellmeier coefficients. Hoya, CDGM, Hikari, Sumita: Sellmeier formulas fitted",
+                f"# to the makers' power series, within {FIT_TOLERANCE:g} in index from 380 to 780 nm, else tables of the series.",
+                "# " + ", ".join(f"{v} {k}" for k, v in sorted(counts.items())) + ".",
+                "format = 1",
+            ]
+            + lines
+        )
+    )
     for p in problems:
         print(p, file=sys.stderr)
 

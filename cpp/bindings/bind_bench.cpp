@@ -58,7 +58,8 @@ std::map<std::string, double> lens_ray_rates(const LensSystem& lens, double seco
                     *scratch = block;
                     kernel->trace_block(&view, scratch.get());
                 }
-            const double rate = kRepeats * kBlocks * kLanes / std::chrono::duration<double>(Clock::now() - round).count();
+            const double rate =
+                kRepeats * kBlocks * kLanes / std::chrono::duration<double>(Clock::now() - round).count();
             rates[kernel->instruction_set] = std::max(rates[kernel->instruction_set], rate);
         }
     return rates;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <tuple>
 
 #include "../camera/default_film.hpp"
 #include "../embree/embree_backend.hpp"
@@ -17,8 +18,12 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-Vec3d vector_of(const Triple& v) { return {v[0], v[1], v[2]}; }
-Triple triple_of(Vec3d v) { return {v.x, v.y, v.z}; }
+Vec3d vector_of(const Triple& v) {
+    return {v[0], v[1], v[2]};
+}
+std::tuple<double, double, double> triple_of(Vec3d v) {
+    return {v.x, v.y, v.z};
+}
 
 constexpr const char* kModelNames[] = {"pinhole", "thin", "thick", "full"};
 
@@ -61,7 +66,8 @@ CameraRaysResult rays_of(const Camera& camera, int spp, std::int64_t seed) {
     float *directions = rays.directions.mutable_data(), *weights = rays.weights.mutable_data();
     int* pixels = rays.pixels.mutable_data();
     const py::gil_scoped_release release;
-    generate_camera_rays(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), origins, directions, weights);
+    generate_camera_rays(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), origins, directions,
+                         weights);
     for (std::int64_t i = 0; i < count; ++i) pixels[i] = static_cast<int>(i / spp);
     return rays;
 }
@@ -75,7 +81,8 @@ void bind_camera(py::module_& m) {
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
         .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); });
-    py::class_<CameraRaysResult>(m, "CameraRays", "The rays of a camera, spp for each pixel, row by row from the top left.")
+    py::class_<CameraRaysResult>(m, "CameraRays",
+                                 "The rays of a camera, spp for each pixel, row by row from the top left.")
         .def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3), scene.")
         .def_readonly("directions", &CameraRaysResult::directions, "(N, 3), unit, scene.")
         .def_readonly("weights", &CameraRaysResult::weights,
@@ -106,7 +113,8 @@ void bind_camera(py::module_& m) {
             return Pupil(lens, film_radius_mm, fast_pupil_tracer()).image_radius();
         },
         "lens"_a, "film_radius_mm"_a,
-        "Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or stop).\n"
+        "Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or "
+        "stop).\n"
         "Returns the radius beyond which no light arrives, mm.");
 }
 

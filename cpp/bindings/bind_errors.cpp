@@ -41,9 +41,10 @@ void bind_errors(py::module_& m) {
     const py::object base = type_of<Error>();
     const py::object value_error = py::make_tuple(base, py::reinterpret_borrow<py::object>(PyExc_ValueError));
     define<InputError>(m, "InputError", value_error, "A value that makes no sense. Also a ValueError.");
-    define<LensFileError>(m, "LensFileError", base,
-                          "A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and "
-                          "surface (int, from 1; 0 where they do not apply).");
+    define<LensFileError>(
+        m, "LensFileError", base,
+        "A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and "
+        "surface (int, from 1; 0 where they do not apply).");
     define<SceneFileError>(m, "SceneFileError", base, "A scene that cannot be read, or that holds no geometry.");
     define<ImageFileError>(m, "ImageFileError", base, "A picture that cannot be read or written.");
     define<DeviceError>(m, "DeviceError", base, "A device, or its library, that fails.");

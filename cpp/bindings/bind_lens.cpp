@@ -53,8 +53,9 @@ SurfaceType type_from(const std::string& name) {
     throw InputError("unknown surface type \"" + name + "\"; refracting, mirror, stop or aperture is wanted");
 }
 
-Surface make_surface(double radius_of_curvature, double thickness, const py::object& material, double clear_semi_diameter,
-                     double conic, const std::map<int, double>& aspheric, double inner_semi_diameter, const std::string& type) {
+Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
+                     double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
+                     double inner_semi_diameter, const std::string& type) {
     Surface surface;
     surface.type = type_from(type);
     if (radius_of_curvature == 0 || std::isnan(radius_of_curvature))
@@ -67,8 +68,8 @@ Surface make_surface(double radius_of_curvature, double thickness, const py::obj
     surface.conic = conic;
     for (const auto& [power, value] : aspheric) {
         if (power < 4 || power % 2 != 0 || power > 2 * kMaxAsphericTerms + 2)
-            throw InputError("aspheric coefficients have even powers from 4 to " + std::to_string(2 * kMaxAsphericTerms + 2) +
-                             " as keys; one is " + std::to_string(power));
+            throw InputError("aspheric coefficients have even powers from 4 to " +
+                             std::to_string(2 * kMaxAsphericTerms + 2) + " as keys; one is " + std::to_string(power));
         const auto term = static_cast<std::size_t>(power / 2 - 2);
         if (surface.aspheric.size() <= term) surface.aspheric.resize(term + 1, 0.0);
         surface.aspheric[term] = value;
@@ -84,8 +85,8 @@ std::map<int, double> aspheric_map(const Surface& surface) {
 }
 
 LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std::optional<double> film_distance,
-                     std::pair<double, double> film, double wavelength_nm, int blades, double rounding, double rotation_deg,
-                     std::optional<std::pair<int, int>> focus_group, double nearest_focus_m) {
+                     std::pair<double, double> film, double wavelength_nm, int blades, double rounding,
+                     double rotation_deg, std::optional<std::pair<int, int>> focus_group, double nearest_focus_m) {
     LensSystem lens;
     lens.name = name;
     lens.surfaces = std::move(surfaces);
@@ -97,9 +98,11 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     lens.focusing.nearest_mm = 1000 * nearest_focus_m;
     if (!(wavelength_nm >= 100 && wavelength_nm <= 20000))
         throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
-    if (!(nearest_focus_m >= 0)) throw LensFileError("the nearest focus must be 0 (as near as the optics can) or a distance");
+    if (!(nearest_focus_m >= 0))
+        throw LensFileError("the nearest focus must be 0 (as near as the optics can) or a distance");
     if (focus_group) {
-        if (focus_group->first < 0) throw LensFileError("the focus group must be (first, last) with 0 <= first <= last");
+        if (focus_group->first < 0)
+            throw LensFileError("the focus group must be (first, last) with 0 <= first <= last");
         lens.focusing.group_first = focus_group->first;
         lens.focusing.group_last = focus_group->second;
     }
@@ -116,8 +119,9 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
 void bind_glass(py::module_& m) {
     py::class_<Glass>(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.")
         .def_static("constant", &Glass::constant, "index"_a, "The same index at every wavelength.")
-        .def_static("from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
-                    "Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).")
+        .def_static(
+            "from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
+            "Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).")
         .def_static("cauchy", &Glass::cauchy, "coefficients"_a, "n = A + B/l^2 + C/l^4 + ..., l in um.")
         .def_static(
             "sellmeier",
@@ -141,22 +145,26 @@ void bind_glass(py::module_& m) {
                     "A glass of the catalogue, \"N-BK7\" or \"schott:F4\". Raises InputError with the nearest names.")
         .def("index", &Glass::index, "wavelength_nm"_a, "Refractive index.")
         .def_readonly("label", &Glass::label, "As it was written: a name, a number, a pair; empty for air.")
-        .def("__repr__", [](const Glass& g) { return "Glass(" + (g.label.empty() ? std::string("air") : g.label) + ")"; });
+        .def("__repr__",
+             [](const Glass& g) { return "Glass(" + (g.label.empty() ? std::string("air") : g.label) + ")"; });
 }
 
 void bind_surface(py::module_& m) {
-    py::class_<Surface>(m, "Surface",
-                        "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).")
+    py::class_<Surface>(
+        m, "Surface",
+        "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).")
         .def(py::init(&make_surface), py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
              "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
-             "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0, "type"_a = "refracting",
+             "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
+             "type"_a = "refracting",
              "radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.\n"
              "thickness_mm: to the next surface; that of the last surface is not used.\n"
              "material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.\n"
              "conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.\n"
              "inner_semi_diameter_mm: light closer to the axis is blocked.\n"
              "type: refracting, mirror, stop or aperture (a plane that only blocks).")
-        .def_property_readonly("radius_of_curvature_mm", [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
+        .def_property_readonly("radius_of_curvature_mm",
+                               [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
         .def_readonly("curvature_per_mm", &Surface::curvature)
         .def_readonly("thickness_mm", &Surface::thickness)
         .def_readonly("material", &Surface::material)
@@ -191,30 +199,41 @@ void bind_lens(py::module_& m) {
     py::class_<LensSystem>(m, "Lens", "A lens in one state of its rings. A value: every change returns a new Lens.")
         .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
-             "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(), "nearest_focus_m"_a = 0.0,
+             "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(),
+             "nearest_focus_m"_a = 0.0,
              "surfaces: from the scene to the film, exactly one of them a Stop.\n"
              "film_distance_mm: last vertex to film; None: best focus at infinity by real rays.\n"
              "film_mm: (width, height) used where a Camera names no film.\n"
              "iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.\n"
              "focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.\n"
              "Raises LensFileError, naming the surface (from 1), where the lens cannot be built.")
-        .def_static("load", [](const py::object& name) { return io::read_lens(path_from(name)); }, "name_or_path"_a,
-                    "A bundled lens by name, or a lens file (.toml) by path. Raises LensFileError with file, line, surface.")
-        .def("first_order",
-             [](const LensSystem& lens, std::optional<double> nm) { return first_order(lens, wavelength_or_design(lens, nm)); },
-             "wavelength_nm"_a = py::none(), "Paraxial data; at the design wavelength where none is given.")
-        .def("focused", [](const LensSystem& lens, double metres) { return focused(lens, 1000 * metres); }, "focus_distance_m"_a,
-             "The lens focused on a plane at this distance from the film, inf allowed: the real rays of the full aperture\n"
-             "make their smallest spot. Raises InputError where the lens cannot.")
+        .def_static(
+            "load", [](const py::object& name) { return io::read_lens(path_from(name)); }, "name_or_path"_a,
+            "A bundled lens by name, or a lens file (.toml) by path. Raises LensFileError with file, line, surface.")
+        .def(
+            "first_order",
+            [](const LensSystem& lens, std::optional<double> nm) {
+                return first_order(lens, wavelength_or_design(lens, nm));
+            },
+            "wavelength_nm"_a = py::none(), "Paraxial data; at the design wavelength where none is given.")
+        .def(
+            "focused", [](const LensSystem& lens, double metres) { return focused(lens, 1000 * metres); },
+            "focus_distance_m"_a,
+            "The lens focused on a plane at this distance from the film, inf allowed: the real rays of the full "
+            "aperture\n"
+            "make their smallest spot. Raises InputError where the lens cannot.")
         .def("stopped_down", &stopped_down, "f_number"_a,
              "The lens with its diaphragm closed to an f-number. Raises InputError where it does not open that far.")
-        .def("best_focus_mm",
-             [](const LensSystem& lens, double object_m, std::optional<double> nm) {
-                 if (!(object_m > 0)) throw InputError("the object distance must be a positive number of metres, or inf");
-                 return best_focus_distance(lens, wavelength_or_design(lens, nm), 1000 * object_m);
-             },
-             "object_distance_m"_a = kInfinity, "wavelength_nm"_a = py::none(),
-             "Last vertex to the plane of the smallest RMS spot of an axial point this far in front of the front vertex.")
+        .def(
+            "best_focus_mm",
+            [](const LensSystem& lens, double object_m, std::optional<double> nm) {
+                if (!(object_m > 0))
+                    throw InputError("the object distance must be a positive number of metres, or inf");
+                return best_focus_distance(lens, wavelength_or_design(lens, nm), 1000 * object_m);
+            },
+            "object_distance_m"_a = kInfinity, "wavelength_nm"_a = py::none(),
+            "Last vertex to the plane of the smallest RMS spot of an axial point this far in front of the front "
+            "vertex.")
         .def_readonly("name", &LensSystem::name)
         .def_readonly("title", &LensSystem::title)
         .def_readonly("source", &LensSystem::source)

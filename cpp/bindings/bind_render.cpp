@@ -8,6 +8,7 @@
 #include "../embree/embree_backend.hpp"
 #include "../render/backend.hpp"
 #include "bindings.hpp"
+#include "render_turn.hpp"
 
 namespace realcam::bindings {
 
@@ -16,7 +17,8 @@ using namespace py::literals;
 namespace {
 
 Backend& cpu() {
-    static auto* backend = new std::unique_ptr<Backend>(make_embree_backend());  // never torn down under running threads
+    static auto* backend =
+        new std::unique_ptr<Backend>(make_embree_backend());  // never torn down under running threads
     return **backend;
 }
 
@@ -54,15 +56,17 @@ py::tuple render(const std::shared_ptr<Scene>& scene, const Camera& camera, int 
     Image image;
     {
         const py::gil_scoped_release release;
+        const RenderTurn turn;
         image = backend.render(scene, camera, settings, report);
     }
-    return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}), copy_of(image.depth, {image.height, image.width}),
-                          image.stats);
+    return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}),
+                          copy_of(image.depth, {image.height, image.width}), image.stats);
 }
 
-py::array_t<std::uint8_t> develop(const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure, double iso,
-                                  const std::string& tone) {
-    if (tone != "film" && tone != "linear") throw InputError("unknown tone curve \"" + tone + "\"; film or linear is wanted");
+py::array_t<std::uint8_t> develop(const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure,
+                                  double iso, const std::string& tone) {
+    if (tone != "film" && tone != "linear")
+        throw InputError("unknown tone curve \"" + tone + "\"; film or linear is wanted");
     const ToneCurve curve = tone == "film" ? ToneCurve::film : ToneCurve::linear;
     py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));
     const float* from = exposure.data();
@@ -85,11 +89,14 @@ void bind_render(py::module_& m) {
         .def_readonly("passed_rays", &RenderStats::passed_rays, "That left it.")
         .def_readonly("scene_rays", &RenderStats::scene_rays, "Camera, shadow and bounce rays.")
         .def_readonly("device", &RenderStats::device);
-    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a, "progress"_a);
+    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a,
+          "progress"_a);
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");
-    m.def("devices", [] { return std::vector<std::string>{"cpu: " + cpu().name()}; }, "What this machine can render with, a line each.");
+    m.def(
+        "devices", [] { return std::vector<std::string>{"cpu: " + cpu().name()}; },
+        "What this machine can render with, a line each.");
 }
 
 }  // namespace realcam::bindings

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "../io/scene_checks.hpp"
 #include "../io/scene_file.hpp"
@@ -20,8 +21,12 @@ using Array = py::array_t<T, py::array::c_style | py::array::forcecast>;
 using Colour = std::array<float, 3>;
 using Triple = std::array<double, 3>;
 
-Vec3f rgb(const Colour& c) { return {c[0], c[1], c[2]}; }
-Vec3d vector_of(const Triple& v) { return {v[0], v[1], v[2]}; }
+Vec3f rgb(const Colour& c) {
+    return {c[0], c[1], c[2]};
+}
+Vec3d vector_of(const Triple& v) {
+    return {v[0], v[1], v[2]};
+}
 
 /// Textures are decoded in Python, by realcam.image_file: the extension links no image library.
 std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<const std::uint8_t> bytes) {
@@ -29,7 +34,8 @@ std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<
     const py::object result = py::module_::import("realcam.image_file").attr("read_texture")(path, encoded);
     if (result.is_none()) return std::nullopt;
     const auto pixels = result.cast<Array<std::uint8_t>>();
-    return io::DecodedImage{static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)),
+    return io::DecodedImage{static_cast<int>(pixels.shape(1)),
+                            static_cast<int>(pixels.shape(0)),
                             {pixels.data(), pixels.data() + pixels.size()}};
 }
 
@@ -64,7 +70,8 @@ std::shared_ptr<Scene> from_arrays(const Array<double>& vertices, const py::obje
     check_shape(triangles, 3, "triangles");
     auto scene = std::make_shared<Scene>();
     const auto points = vertices.unchecked<2>();
-    for (py::ssize_t i = 0; i < points.shape(0); ++i) scene->positions_m.push_back({points(i, 0), points(i, 1), points(i, 2)});
+    for (py::ssize_t i = 0; i < points.shape(0); ++i)
+        scene->positions_m.push_back({points(i, 0), points(i, 1), points(i, 2)});
     if (normals) {
         check_shape(*normals, 3, "normals");
         const auto n = normals->unchecked<2>();
@@ -81,8 +88,8 @@ std::shared_ptr<Scene> from_arrays(const Array<double>& vertices, const py::obje
     // Checked here, before a negative or huge index is cut down to 32 bits.
     const auto index = [](std::int64_t value, std::int64_t count, const char* what, py::ssize_t triangle) {
         if (value < 0 || value >= count)
-            throw InputError("triangle " + std::to_string(triangle) + " names " + what + ' ' + std::to_string(value) + ", but there are " +
-                             std::to_string(count) + " (counted from 0)");
+            throw InputError("triangle " + std::to_string(triangle) + " names " + what + ' ' + std::to_string(value) +
+                             ", but there are " + std::to_string(count) + " (counted from 0)");
         return static_cast<std::uint32_t>(value);
     };
     scene->materials = materials.empty() ? std::vector<Material>(1) : std::move(materials);
@@ -90,7 +97,8 @@ std::shared_ptr<Scene> from_arrays(const Array<double>& vertices, const py::obje
         Triangle triangle{};
         for (int k = 0; k < 3; ++k) triangle.vertices[k] = index(corners(i, k), points.shape(0), "vertex", i);
         if (triangle_materials)
-            triangle.material = index(triangle_materials->at(i), static_cast<std::int64_t>(scene->materials.size()), "material", i);
+            triangle.material =
+                index(triangle_materials->at(i), static_cast<std::int64_t>(scene->materials.size()), "material", i);
         scene->triangles.push_back(triangle);
     }
     io::validate(*scene);
@@ -106,11 +114,13 @@ std::shared_ptr<Scene> with_environment(const Scene& scene, const py::object& ra
     environment = Environment{};
     if (py::isinstance<py::array>(radiance) && radiance.cast<py::array>().ndim() == 3) {
         const auto pixels = radiance.cast<Array<float>>();
-        if (pixels.shape(2) != 3 || pixels.size() == 0) throw InputError("an environment image must be an array of shape (H, W, 3)");
+        if (pixels.shape(2) != 3 || pixels.size() == 0)
+            throw InputError("an environment image must be an array of shape (H, W, 3)");
         environment.height = static_cast<std::int32_t>(pixels.shape(0));
         environment.width = static_cast<std::int32_t>(pixels.shape(1));
         const float* data = pixels.data();
-        for (py::ssize_t i = 0; i < pixels.size(); i += 3) environment.pixels.push_back({data[i], data[i + 1], data[i + 2]});
+        for (py::ssize_t i = 0; i < pixels.size(); i += 3)
+            environment.pixels.push_back({data[i], data[i + 1], data[i + 2]});
     } else {
         try {
             const bool several = py::isinstance<py::sequence>(radiance) || py::isinstance<py::array>(radiance);
@@ -125,14 +135,16 @@ std::shared_ptr<Scene> with_environment(const Scene& scene, const py::object& ra
 }
 
 template <class Light>
-std::shared_ptr<Scene> with_light(const Scene& scene, std::vector<Light> Scene::*list, Light light) {
+std::shared_ptr<Scene> with_light(const Scene& scene, std::vector<Light> Scene::* list, Light light) {
     auto copy = std::make_shared<Scene>(scene);
     ((*copy).*list).push_back(light);
     io::validate(*copy);
     return copy;
 }
 
-std::pair<Triple, Triple> bounds(const Scene& scene) {
+using Corner = std::tuple<double, double, double>;
+
+std::pair<Corner, Corner> bounds(const Scene& scene) {
     Triple low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
     for (const Triangle& triangle : scene.triangles)
         for (std::uint32_t vertex : triangle.vertices) {
@@ -143,7 +155,7 @@ std::pair<Triple, Triple> bounds(const Scene& scene) {
                 high[k] = std::max(high[k], q[k]);
             }
         }
-    return {low, high};
+    return {Corner{low[0], low[1], low[2]}, Corner{high[0], high[1], high[2]}};
 }
 
 Material make_material(const Colour& diffuse, const Colour& specular, float shininess, const Colour& emission) {
@@ -159,52 +171,65 @@ Material make_material(const Colour& diffuse, const Colour& specular, float shin
 
 void bind_scene(py::module_& m) {
     py::class_<Material>(m, "Material", "How a surface reflects and shines. Colours are linear Rec. 709.")
-        .def(py::init(&make_material), py::kw_only(), "diffuse"_a = Colour{0.5f, 0.5f, 0.5f}, "specular"_a = Colour{0, 0, 0},
-             "shininess"_a = 0.0f, "emission"_a = Colour{0, 0, 0},
+        .def(py::init(&make_material), py::kw_only(), "diffuse"_a = Colour{0.5f, 0.5f, 0.5f},
+             "specular"_a = Colour{0, 0, 0}, "shininess"_a = 0.0f, "emission"_a = Colour{0, 0, 0},
              "diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess: Phong exponent;\n"
              "emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise.");
-    py::class_<Scene, std::shared_ptr<Scene>>(m, "Scene", "Triangles, materials and lights; metres, right-handed, y up. A value.")
+    py::class_<Scene, std::shared_ptr<Scene>>(m, "Scene",
+                                              "Triangles, materials and lights; metres, right-handed, y up. A value.")
         .def_static("load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0,
                     "Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file.\n"
                     "Raises SceneFileError. What could be put up with is in warnings.")
-        .def_static("from_arrays", &from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
-                    "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<Material>{},
-                    "vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);\n"
-                    "triangle_materials: (T,) indices into materials. Raises InputError or SceneFileError.")
+        .def_static(
+            "from_arrays", &from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
+            "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<Material>{},
+            "vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);\n"
+            "triangle_materials: (T,) indices into materials. Raises InputError or SceneFileError.")
         .def("with_environment", &with_environment, "radiance"_a,
-             "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude image\n"
+             "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude "
+             "image\n"
              "(row 0 up, its middle column towards -z).")
-        .def("with_sun",
-             [](const Scene& scene, const Triple& direction, const Colour& illuminance) {
-                 const Vec3d d = vector_of(direction);
-                 const double size = length(d);
-                 if (!(size > 0) || !std::isfinite(size)) throw InputError("the sun's direction must be a finite vector, not zero");
-                 return with_light(scene, &Scene::suns, SunLight{static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
-             },
-             "direction"_a, "illuminance"_a, "With parallel light that travels along direction; illuminance (r, g, b) in lux.")
-        .def("with_point_light",
-             [](const Scene& scene, const Triple& position, const Colour& intensity) {
-                 return with_light(scene, &Scene::points, PlacedPointLight{vector_of(position), rgb(intensity)});
-             },
-             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
-        .def("with_texture",
-             [](const Scene& scene, std::size_t material, const Array<std::uint8_t>& pixels) {
-                 if (material >= scene.materials.size()) throw InputError("there is no material " + std::to_string(material));
-                 if (pixels.ndim() != 3 || pixels.shape(2) != 4) throw InputError("a texture must be an (H, W, 4) array of uint8, sRGB");
-                 auto copy = std::make_shared<Scene>(scene);
-                 copy->materials[material].diffuse_texture = static_cast<std::int32_t>(copy->textures.size());
-                 copy->textures.push_back({"", static_cast<std::int32_t>(pixels.shape(1)), static_cast<std::int32_t>(pixels.shape(0)),
-                                           {pixels.data(), pixels.data() + pixels.size()}});
-                 io::validate(*copy);
-                 return copy;
-             },
-             "material"_a, "pixels"_a, "With a diffuse texture on a material: (H, W, 4) uint8, sRGB, row 0 at v = 1.")
+        .def(
+            "with_sun",
+            [](const Scene& scene, const Triple& direction, const Colour& illuminance) {
+                const Vec3d d = vector_of(direction);
+                const double size = length(d);
+                if (!(size > 0) || !std::isfinite(size))
+                    throw InputError("the sun's direction must be a finite vector, not zero");
+                return with_light(scene, &Scene::suns, SunLight{static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
+            },
+            "direction"_a, "illuminance"_a,
+            "With parallel light that travels along direction; illuminance (r, g, b) in lux.")
+        .def(
+            "with_point_light",
+            [](const Scene& scene, const Triple& position, const Colour& intensity) {
+                return with_light(scene, &Scene::points, PlacedPointLight{vector_of(position), rgb(intensity)});
+            },
+            "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
+        .def(
+            "with_texture",
+            [](const Scene& scene, std::size_t material, const Array<std::uint8_t>& pixels) {
+                if (material >= scene.materials.size())
+                    throw InputError("there is no material " + std::to_string(material));
+                if (pixels.ndim() != 3 || pixels.shape(2) != 4)
+                    throw InputError("a texture must be an (H, W, 4) array of uint8, sRGB");
+                auto copy = std::make_shared<Scene>(scene);
+                copy->materials[material].diffuse_texture = static_cast<std::int32_t>(copy->textures.size());
+                copy->textures.push_back({"",
+                                          static_cast<std::int32_t>(pixels.shape(1)),
+                                          static_cast<std::int32_t>(pixels.shape(0)),
+                                          {pixels.data(), pixels.data() + pixels.size()}});
+                io::validate(*copy);
+                return copy;
+            },
+            "material"_a, "pixels"_a, "With a diffuse texture on a material: (H, W, 4) uint8, sRGB, row 0 at v = 1.")
         .def_property_readonly("triangle_count", [](const Scene& s) { return s.triangles.size(); })
         .def_property_readonly("material_count", [](const Scene& s) { return s.materials.size(); })
         .def_property_readonly("has_light", &Scene::has_light)
         .def_property_readonly("bounds_m", &bounds, "Lowest and highest corner of the bounding box.")
         .def_readonly("warnings", &Scene::warnings, "What the reader put up with, such as a missing texture.")
-        .def("__repr__", [](const Scene& s) { return "<realcam.Scene, " + std::to_string(s.triangles.size()) + " triangles>"; });
+        .def("__repr__",
+             [](const Scene& s) { return "<realcam.Scene, " + std::to_string(s.triangles.size()) + " triangles>"; });
 }
 
 }  // namespace realcam::bindings

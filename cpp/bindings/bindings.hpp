@@ -22,8 +22,8 @@ void bind_bench(py::module_& m);
 /// The backend of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
 Backend& backend_for(const std::string& device);
 
-/// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without the
-/// interpreter's lock. The callback must outlive the result.
+/// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without
+/// the interpreter's lock. The callback must outlive the result.
 Progress progress_of(const py::object& callback);
 
 /// A path as users give it: a text, or anything with __fspath__.

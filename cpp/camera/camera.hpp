@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "../optics/exposure.hpp"
 #include "../optics/focus.hpp"
 #include "../optics/pupil.hpp"
 #include "camera_view.hpp"
@@ -48,7 +49,8 @@ inline void validate(const Camera& camera) {
     if (!(camera.lens.film_distance > 0)) throw InputError("the film must lie behind the last surface of the lens");
     const Vec3d forward = camera.pose.look_at_m - camera.pose.position_m;
     const double length_of_cross = length(cross(forward, camera.pose.up));
-    if (!std::isfinite(length_of_cross)) throw InputError("the camera's position, look_at and up must be finite numbers");
+    if (!std::isfinite(length_of_cross))
+        throw InputError("the camera's position, look_at and up must be finite numbers");
     if (!(length_of_cross > 1e-9 * length(forward) * length(camera.pose.up)))
         throw InputError("the camera must look at a point other than its position, and not along its up direction");
 }
@@ -74,7 +76,8 @@ inline ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data) {
     if (std::isfinite(lens.focus_distance)) {
         const double object = lens.focus_distance - lens.film_position();  // in front of the first vertex
         const double to_pupil = object + data.entrance_pupil_position;
-        const ParaxialRay end = trace_paraxial(lens, lens.wavelength_nm, {object, 1}, 0, static_cast<int>(lens.surfaces.size()));
+        const ParaxialRay end =
+            trace_paraxial(lens, lens.wavelength_nm, {object, 1}, 0, static_cast<int>(lens.surfaces.size()));
         thin.image_distance = static_cast<float>(std::fabs(to_pupil / end.slope));
         thin.inverse_object_distance = static_cast<float>(1 / to_pupil);
     }
@@ -97,8 +100,8 @@ inline ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
     const double marginal = 0.5 / data.f_number;  // of a pupil at infinity, where the quotient has no value
     thick.exit_pupil_distance = static_cast<float>(far ? kFar : distance);
-    thick.exit_pupil_radius = static_cast<float>(far ? kFar * (std::isfinite(tangent) ? tangent : marginal)
-                                                     : 0.5 * data.exit_pupil_diameter);
+    thick.exit_pupil_radius =
+        static_cast<float>(far ? kFar * (std::isfinite(tangent) ? tangent : marginal) : 0.5 * data.exit_pupil_diameter);
     return thick;
 }
 
@@ -106,7 +109,7 @@ inline ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
 
 /// A camera made ready: owns the tables that its view points to.
 class CameraSetup {
-  public:
+public:
     /// Throws InputError. `tracer`: see Pupil.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = nullptr)
         : camera_(camera), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
@@ -114,6 +117,10 @@ class CameraSetup {
         if (camera.model == CameraModel::full_lens)
             pupil_ = std::make_unique<Pupil>(camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm),
                                              std::move(tracer));
+        if (pupil_ && !(pupil_->image_radius() > 0))
+            throw InputError("no light passes lens \"" + camera.lens.name +
+                             "\" in this state: what it blocks in the middle is "
+                             "larger than what its stop leaves open, or a surface is out of reach");
     }
 
     /// `origin_m`: of the placed scene.
@@ -133,10 +140,7 @@ class CameraSetup {
         view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
         view.thin = thin_lens_of(lens, data);
         view.thick = thick_lens_of(lens, data);
-        const double sine = camera_.model == CameraModel::thick_lens
-                                ? view.thick.exit_pupil_radius / view.thick.exit_pupil_distance
-                                : view.thin.pupil_radius / view.thin.image_distance;
-        view.axis_irradiance = static_cast<float>(std::numbers::pi * sine * sine);
+        if (!pupil_) view.axis_irradiance = static_cast<float>(axis_irradiance(lens));
         if (pupil_) view.pupil = pupil_->view();
         view.lens = path_.view();
         view.position = static_cast<Vec3f>(camera_.pose.position_m - origin_m);
@@ -148,7 +152,7 @@ class CameraSetup {
 
     const Camera& camera() const { return camera_; }
 
-  private:
+private:
     Camera camera_;
     LensPath<float> path_;
     std::unique_ptr<Pupil> pupil_;

@@ -31,7 +31,7 @@ struct CameraView {
     int width, height;                    ///< pixels
     float film_half_width, film_half_height;  ///< mm
     float film_distance;                  ///< last vertex to film, mm
-    float axis_irradiance;  ///< of the ideal models, for unit radiance: pi sin^2(theta')
+    float axis_irradiance;  ///< of the real lens on the axis for unit radiance; the ideal models take it over
     float front_vertex_m;   ///< film to front vertex, metres
     float pupil_m;          ///< film to entrance pupil, metres
     ThinLens thin;

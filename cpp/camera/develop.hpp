@@ -14,7 +14,9 @@ enum class ToneCurve : int {
 
 /// Screen-linear value (1: white) of an exposure in lux seconds. ISO 12232 in its standard output sensitivity form: an
 /// exposure of 10 lx s / S gives middle grey, the code value 118 of sRGB, which is 0.18 of white.
-REALCAM_HD inline double sensor_value(double exposure_lux_s, double iso) { return 0.018 * iso * exposure_lux_s; }
+REALCAM_HD inline double sensor_value(double exposure_lux_s, double iso) {
+    return 0.018 * iso * exposure_lux_s;
+}
 
 REALCAM_HD inline double apply_tone_curve(ToneCurve curve, double value) {
     if (!(value > 0)) return 0;

@@ -61,7 +61,7 @@ struct LensFrameRay {
     float weight;
 };
 
-/// The ideal lens: pupil point P, direction to the point in focus; E = pi sin^2(theta') cos^4.
+/// The ideal lens: pupil point P, direction to the point in focus; off the axis E falls with cos^4.
 REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, Vec2f u, float pupil_radius) {
     const Vec2f disc = sample_disc(u);
     const Vec2f p = {pupil_radius * disc.x, pupil_radius * disc.y};
@@ -77,12 +77,14 @@ REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film,
     const Vec2f disc = sample_disc(u);
     const float z = lens.exit_pupil_distance;
     // Slopes dx/dz, z growing towards the film.
-    const Vec2f slope = {(film.x - lens.exit_pupil_radius * disc.x) / z, (film.y - lens.exit_pupil_radius * disc.y) / z};
+    const Vec2f slope = {(film.x - lens.exit_pupil_radius * disc.x) / z,
+                         (film.y - lens.exit_pupil_radius * disc.y) / z};
     const Vec2f last = {film.x - camera.film_distance * slope.x, film.y - camera.film_distance * slope.y};
     const Vec2f front = {lens.D * last.x - lens.B * slope.x, lens.D * last.y - lens.B * slope.y};
     const Vec2f out = {lens.A * slope.x - lens.C * last.x, lens.A * slope.y - lens.C * last.y};
     const float cosine2 = z * z / (z * z + film.x * film.x + film.y * film.y);
-    return {{front.x, front.y, 0.0f}, normalized(Vec3f{-out.x, -out.y, -1.0f}), camera.axis_irradiance * cosine2 * cosine2};
+    return {
+        {front.x, front.y, 0.0f}, normalized(Vec3f{-out.x, -out.y, -1.0f}), camera.axis_irradiance * cosine2 * cosine2};
 }
 
 /// From the lens frame to the scene. Lanes without light get a ray that is valid but has no weight.
@@ -91,7 +93,8 @@ REALCAM_INLINE void place_ray(const CameraView& camera, CameraRays<N>& rays, int
     const Vec3f o = select(lit, ray.origin_mm, Vec3f{0, 0, 0});
     const Vec3f d = select(lit, ray.direction, Vec3f{0, 0, -1});
     const float z = 0.001f * o.z - camera.front_vertex_m;
-    rays.origin.set(lane, camera.position + (0.001f * o.x) * camera.right + (0.001f * o.y) * camera.up + z * camera.backward);
+    rays.origin.set(lane,
+                    camera.position + (0.001f * o.x) * camera.right + (0.001f * o.y) * camera.up + z * camera.backward);
     rays.direction.set(lane, d.x * camera.right + d.y * camera.up + d.z * camera.backward);
     rays.weight[lane] = select(lit, ray.weight, 0.0f);
 }
@@ -140,14 +143,17 @@ template <int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     switch (camera.model) {
         case CameraModel::pinhole:
-            generate_ideal_rays(camera, block, rays, [&](Vec2f film, Vec2f u) { return thin_lens_ray(camera, film, u, 0.0f); });
+            generate_ideal_rays(camera, block, rays,
+                                [&](Vec2f film, Vec2f u) { return thin_lens_ray(camera, film, u, 0.0f); });
             break;
         case CameraModel::thin_lens:
-            generate_ideal_rays(camera, block, rays,
-                                [&](Vec2f film, Vec2f u) { return thin_lens_ray(camera, film, u, camera.thin.pupil_radius); });
+            generate_ideal_rays(camera, block, rays, [&](Vec2f film, Vec2f u) {
+                return thin_lens_ray(camera, film, u, camera.thin.pupil_radius);
+            });
             break;
         case CameraModel::thick_lens:
-            generate_ideal_rays(camera, block, rays, [&](Vec2f film, Vec2f u) { return thick_lens_ray(camera, film, u); });
+            generate_ideal_rays(camera, block, rays,
+                                [&](Vec2f film, Vec2f u) { return thick_lens_ray(camera, film, u); });
             break;
         case CameraModel::full_lens: generate_lens_rays(camera, block, rays); break;
     }

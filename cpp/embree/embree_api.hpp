@@ -21,7 +21,8 @@ inline void intersect16(const int* valid, RTCScene scene, RayOrder order, RTCRay
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = order == RayOrder::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags =
+        order == RayOrder::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, &context, rays);
 #endif
 }
@@ -35,7 +36,8 @@ inline void occluded16(const int* valid, RTCScene scene, RayOrder order, RTCRay1
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = order == RayOrder::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags =
+        order == RayOrder::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcOccluded16(valid, scene, &context, rays);
 #endif
 }

@@ -43,16 +43,18 @@ struct ExposingFilm {
         image.depth.reserve(sums.size());
         for (const realcam_pixel_sum& sum : sums) {
             for (double e : sum.irradiance) image.exposure.push_back(static_cast<float>(e * exposure_time_s / spp));
-            image.depth.push_back(sum.hits > 0 ? static_cast<float>(sum.depth / sum.hits) : std::numeric_limits<float>::infinity());
+            image.depth.push_back(sum.hits > 0 ? static_cast<float>(sum.depth / sum.hits)
+                                               : std::numeric_limits<float>::infinity());
         }
         return image;
     }
 };
 
 class EmbreeBackend final : public Backend {
-  public:
+public:
     EmbreeBackend() : device_(rtcNewDevice(nullptr)) {
-        if (!device_) throw DeviceError("Embree could not be started (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+        if (!device_)
+            throw DeviceError("Embree could not be started (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
         kernels();
     }
     ~EmbreeBackend() override {
@@ -62,8 +64,9 @@ class EmbreeBackend final : public Backend {
 
     std::string name() const override {
         const auto version = rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION);
-        return "CPU (Embree " + std::to_string(version / 10000) + '.' + std::to_string(version / 100 % 100) + ", x86-64-" +
-               kernels().instruction_set + ", " + std::to_string(tbb::this_task_arena::max_concurrency()) + " threads)";
+        return "CPU (Embree " + std::to_string(version / 10000) + '.' + std::to_string(version / 100 % 100) +
+               ", x86-64-" + kernels().instruction_set + ", " +
+               std::to_string(tbb::this_task_arena::max_concurrency()) + " threads)";
     }
 
     Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera, const RenderSettings& settings,
@@ -88,7 +91,7 @@ class EmbreeBackend final : public Backend {
         return image;
     }
 
-  private:
+private:
     /// The scene is moved to the camera. It stays where it is while the camera moves by little: at ten focus distances
     /// (or 10 m) float32 still resolves a hundredth of a pixel's width at the plane in focus.
     void place(const std::shared_ptr<const Scene>& scene, const Camera& camera) {
@@ -125,7 +128,9 @@ class EmbreeBackend final : public Backend {
             for (int y = 0; y < tile.height; ++y)
                 for (int x = 0; x < tile.width; ++x) {
                     const realcam_pixel_sum& from = sums[static_cast<std::size_t>(y * tile.width + x)];
-                    realcam_pixel_sum& to = film.sums[static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(tile.x + x)];
+                    realcam_pixel_sum& to =
+                        film.sums[static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(film.width) +
+                                  static_cast<std::size_t>(tile.x + x)];
                     for (int c = 0; c < 3; ++c) to.irradiance[c] += from.irradiance[c];
                     to.depth += from.depth;
                     to.hits += from.hits;
@@ -143,7 +148,8 @@ class EmbreeBackend final : public Backend {
         const auto work = [&] {
             arena.execute([&] {
                 for (std::uint32_t first = 0; first < all && !stop; first += kSamplesPerVisit)
-                    tbb::parallel_for(0, columns * rows, [&](int tile) { visit(tile, first, std::min(kSamplesPerVisit, all - first)); });
+                    tbb::parallel_for(0, columns * rows,
+                                      [&](int tile) { visit(tile, first, std::min(kSamplesPerVisit, all - first)); });
             });
         };
         const double total = static_cast<double>(all) * film.width * film.height;
@@ -197,7 +203,9 @@ class EmbreeBackend final : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_embree_backend() { return std::make_unique<EmbreeBackend>(); }
+std::unique_ptr<Backend> make_embree_backend() {
+    return std::make_unique<EmbreeBackend>();
+}
 
 PupilTracer fast_pupil_tracer() {
     const auto trace = kernels().trace_block;

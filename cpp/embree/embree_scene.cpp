@@ -44,6 +44,8 @@ EmbreeScene::EmbreeScene(RTCDevice device, std::shared_ptr<const Scene> scene, V
     }
 }
 
-EmbreeScene::~EmbreeScene() { rtcReleaseScene(handle_); }
+EmbreeScene::~EmbreeScene() {
+    rtcReleaseScene(handle_);
+}
 
 }  // namespace realcam

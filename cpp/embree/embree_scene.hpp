@@ -8,7 +8,7 @@ namespace realcam {
 
 /// A placed scene with its Embree BVH.
 class EmbreeScene {
-  public:
+public:
     /// Throws DeviceError (out of memory, for one).
     EmbreeScene(RTCDevice device, std::shared_ptr<const Scene> scene, Vec3d origin_m);
     ~EmbreeScene();
@@ -19,7 +19,7 @@ class EmbreeScene {
     const PlacedScene& placed() const { return placed_; }
     RTCScene handle() const { return handle_; }
 
-  private:
+private:
     std::shared_ptr<const Scene> scene_;
     PlacedScene placed_;
     RTCScene handle_;

@@ -146,8 +146,10 @@ void trace_recorded(const realcam_trace* request) {
         for (int k = 0; k < kBlock; ++k) {
             const double* o = request->origins + 3 * (first + (k < used ? k : 0));
             const double* d = request->directions + 3 * (first + (k < used ? k : 0));
-            rays.origin.set(k, {static_cast<T>(o[0]), static_cast<T>(o[1]), static_cast<T>(o[2] - request->entry_position)});
-            rays.direction.set(k, {static_cast<T>(d[0]), static_cast<T>(d[1]), static_cast<T>(d[2])});
+            rays.origin.set(
+                k, {static_cast<T>(o[0]), static_cast<T>(o[1]), static_cast<T>(o[2] - request->entry_position)});
+            const double n = request->entry_index;
+            rays.direction.set(k, {static_cast<T>(n * d[0]), static_cast<T>(n * d[1]), static_cast<T>(n * d[2])});
             rays.status[k] = request->status[first + (k < used ? k : 0)];
             record.optical_path[k] = 0;
             record.surface_index[k] = -1;
@@ -157,7 +159,9 @@ void trace_recorded(const realcam_trace* request) {
             double* o = request->out_origins + 3 * (first + k);
             double* d = request->out_directions + 3 * (first + k);
             o[0] = rays.origin.x[k], o[1] = rays.origin.y[k], o[2] = rays.origin.z[k];
-            d[0] = rays.direction.x[k], d[1] = rays.direction.y[k], d[2] = rays.direction.z[k];
+            const Vec3d optical = static_cast<Vec3d>(rays.direction[k]);
+            const double size = length(optical), unit = size > 0 ? 1 / size : 0.0;
+            d[0] = unit * optical.x, d[1] = unit * optical.y, d[2] = unit * optical.z;
             request->optical_path[first + k] = record.optical_path[k];
             request->status[first + k] = rays.status[k];
             request->surface_index[first + k] = record.surface_index[k];
@@ -179,5 +183,5 @@ void trace_block(const void* lens_view, void* rays) {
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile, realcam::generate_rays_of, realcam::trace_block,
+    REALCAM_TEXT(REALCAM_ISA),       realcam::render_tile,          realcam::generate_rays_of, realcam::trace_block,
     realcam::trace_recorded<double>, realcam::trace_recorded<float>};

@@ -38,6 +38,7 @@ struct realcam_ray_request {
 struct realcam_trace {
     const void* lens_view;
     double entry_position;  // z of the vertex to which the first step is relative
+    double entry_index;       // of the medium from which the rays enter
     const double *origins, *directions;     // count x 3, lens frame, unit directions
     double *out_origins, *out_directions;   // z relative to the vertex of the last step
     double* optical_path;

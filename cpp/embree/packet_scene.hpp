@@ -49,7 +49,7 @@ struct PacketScene {
         }
     }
 
-  private:
+private:
     template <int N>
     static int load(const SceneRays<N>& rays, int first, RTCRay16& packet, int (&valid)[16]) {
         int used = 0;

@@ -91,7 +91,8 @@ Glass catalogue_glass(const std::string& name) {
         if (std::next(first) != last) {
             std::string choices;
             for (auto it = first; it != last; ++it) choices += (choices.empty() ? "\"" : ", \"") + it->second + '"';
-            throw InputError("the glass name \"" + name + "\" stands in several catalogues; one of " + choices + " is wanted");
+            throw InputError("the glass name \"" + name + "\" stands in several catalogues; one of " + choices +
+                             " is wanted");
         }
         full = first->second;
     }

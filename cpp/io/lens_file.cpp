@@ -71,7 +71,8 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
         const int largest = 2 * kMaxAsphericTerms + 2;
         if (power < 4 || power > largest || power % 2)
             coefficients->fail("aspheric coefficients have even powers from 4 to " + std::to_string(largest) +
-                                   " as keys; this one is \"" + power_text + '"', &node);
+                                   " as keys; this one is \"" + power_text + '"',
+                               &node);
         const auto term = static_cast<std::size_t>(power / 2 - 2);
         if (values.size() <= term) values.resize(term + 1, 0.0);
         values[term] = coefficients->as_number(node, "the coefficient of r^" + power_text);
@@ -90,14 +91,17 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     }
     if (const auto radius = table.number("radius_of_curvature_mm")) {
         if (*radius == 0)
-            table.fail("a radius of curvature of 0 is no surface; leave it out for a plane, and give the aperture "
-                       "stop as type = \"stop\"", table.find("radius_of_curvature_mm"));
+            table.fail(
+                "a radius of curvature of 0 is no surface; leave it out for a plane, and give the aperture "
+                "stop as type = \"stop\"",
+                table.find("radius_of_curvature_mm"));
         surface.curvature = 1 / *radius;
     }
     surface.conic = table.number("conic").value_or(0);
     surface.aspheric = read_aspheric_coefficients(table);
     if (surface.type == SurfaceType::mirror && table.find("material"))
-        table.fail("a mirror has no material of its own; what lies before it lies behind it too", table.find("material"));
+        table.fail("a mirror has no material of its own; what lies before it lies behind it too",
+                   table.find("material"));
     surface.material = read_material(table, glasses);
     const auto thickness = table.number("thickness_mm");
     if (!thickness && !is_last) table.fail("\"thickness_mm\" is missing: the axial distance to the next surface");
@@ -148,7 +152,8 @@ int line_of_surface(const toml::array& surfaces, int number) {
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
     const auto distance = file.number("film_distance_mm");
     if (distance && !(*distance > 0))
-        file.fail("\"film_distance_mm\" must be positive: the film lies behind the last surface", file.find("film_distance_mm"));
+        file.fail("\"film_distance_mm\" must be positive: the film lies behind the last surface",
+                  file.find("film_distance_mm"));
     const double at_infinity = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
     if (!distance && !(at_infinity > 0))
         file.fail("the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is wanted");
@@ -177,7 +182,8 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     }
     const auto glasses = top.table("glass");
     const toml::array* surfaces = root["surface"].as_array();
-    if (!surfaces || !surfaces->is_array_of_tables()) top.fail("the lens has no surfaces; tables [[surface]] are wanted");
+    if (!surfaces || !surfaces->is_array_of_tables())
+        top.fail("the lens has no surfaces; tables [[surface]] are wanted");
     for (std::size_t i = 0; i < surfaces->size(); ++i) {
         const TomlTable table(*(*surfaces)[i].as_table(), file, static_cast<int>(i) + 1);
         lens.surfaces.push_back(read_surface(table, glasses, i + 1 == surfaces->size()));
@@ -221,7 +227,8 @@ LensSystem parse_lens(std::string_view text, const std::string& file) {
 LensSystem read_lens(const std::string& name_or_path) {
     if (name_or_path.find_first_of("/.") == std::string::npos)
         return parse_lens(bundled_lens_text(name_or_path), name_or_path);
-    if (std::filesystem::is_directory(name_or_path)) throw LensFileError("is a folder; a lens file is wanted", name_or_path);
+    if (std::filesystem::is_directory(name_or_path))
+        throw LensFileError("is a folder; a lens file is wanted", name_or_path);
     std::ifstream stream(name_or_path, std::ios::binary);
     if (!stream) throw LensFileError("cannot be opened; a readable lens file (.toml) is wanted", name_or_path);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};

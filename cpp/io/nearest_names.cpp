@@ -8,7 +8,9 @@
 namespace realcam::io {
 namespace {
 
-char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+char lower(char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
 
 /// Levenshtein distance without regard to case.
 std::size_t edit_distance(std::string_view a, std::string_view b) {

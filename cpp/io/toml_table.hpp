@@ -14,7 +14,7 @@ namespace realcam::io {
 
 /// A table of a lens file that knows where it stands, so that every complaint names file, line and surface.
 class TomlTable {
-  public:
+public:
     TomlTable(const toml::table& table, std::string file, int surface = 0)
         : table_(table), file_(std::move(file)), surface_(surface) {}
 
@@ -79,7 +79,7 @@ class TomlTable {
     const toml::table& raw() const { return table_; }
     const std::string& file() const { return file_; }
 
-  private:
+private:
     const toml::table& table_;
     std::string file_;
     int surface_;

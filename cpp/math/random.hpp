@@ -19,7 +19,9 @@ REALCAM_INLINE std::uint32_t hash32(std::uint32_t v) {
     return v;
 }
 
-REALCAM_INLINE std::uint32_t hash32(std::uint32_t a, std::uint32_t b) { return hash32(a ^ hash32(b + 0x9e3779b9u)); }
+REALCAM_INLINE std::uint32_t hash32(std::uint32_t a, std::uint32_t b) {
+    return hash32(a ^ hash32(b + 0x9e3779b9u));
+}
 
 /// Owen's scrambling of a number whose bits stand in reverse order, as a hash in which each bit depends on the lower
 /// ones only (Laine and Karras 2011; constants of Vegdahl 2021).

@@ -44,24 +44,25 @@ template <class T>
 inline constexpr int kMaxAsphereIterations = std::numeric_limits<T>::digits + 8;
 
 template <class T>
-REALCAM_INLINE void begin_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> d, T& t, T& below, T& above) {
-    const SurfaceHit<T> conic = intersect_conic(o, d, step.curvature, step.conic_factor, step.sense_in);
-    const T dz = select(d.z >= T(0), select(d.z > T(1e-6), d.z, T(1e-6)), select(d.z < T(-1e-6), d.z, T(-1e-6)));
-    below = (step.sag_min - o.z) / dz;
-    above = (step.sag_max - o.z) / dz;
-    const bool inside = (conic.distance - below) * (above - conic.distance) >= T(0);
-    t = select(conic.met() & inside, conic.distance, T(0.5) * (below + above));
+REALCAM_INLINE void begin_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
+    const SurfaceHit<T> conic =
+        intersect_conic(o, p, step.curvature, step.conic_factor, step.index_squared, step.sense_in);
+    const T pz = select(p.z >= T(0), select(p.z > T(1e-6), p.z, T(1e-6)), select(p.z < T(-1e-6), p.z, T(-1e-6)));
+    below = (step.sag_min - o.z) / pz;
+    above = (step.sag_max - o.z) / pz;
+    const bool inside = (conic.parameter - below) * (above - conic.parameter) >= T(0);
+    t = select(conic.met() & inside, conic.parameter, T(0.5) * (below + above));
 }
 
 /// One safeguarded Newton step on f(t) = z(t) - sag(r^2(t)).
 template <class T>
-REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> d, T& t, T& below, T& above,
-                                   T& residual, T& tolerance) {
+REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above, T& residual,
+                                   T& tolerance) {
     constexpr T eps = std::numeric_limits<T>::epsilon();
-    const Vec3<T> p = o + t * d;
-    const Sag<T> sag = asphere_sag(step, p.x * p.x + p.y * p.y);
-    const T f = p.z - sag.height;
-    const T slope = d.z - T(2) * sag.derivative * (p.x * d.x + p.y * d.y);
+    const Vec3<T> at = o + t * p;
+    const Sag<T> sag = asphere_sag(step, at.x * at.x + at.y * at.y);
+    const T f = at.z - sag.height;
+    const T slope = p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y);
     residual = std::fabs(f);
     // What rounding alone can leave in f: the terms of z(t), the sag, and the sag's change with r.
     tolerance = T(4) * eps * (std::fabs(o.z) + std::fabs(t) + std::fabs(sag.height));
@@ -76,13 +77,13 @@ REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> d
 /// `slack`: by how much the search ended within its tolerance. A hit counts where that is not negative and the ray
 /// crosses in the right sense; one number says both, because gcc does not vectorise a chain of truth values here.
 template <class T>
-REALCAM_INLINE SurfaceHit<T> asphere_hit(const LensStep<T>& step, Vec3<T> o, Vec3<T> d, T t, T slack) {
-    const Vec3<T> p = o + t * d;
-    const T slope = T(2) * asphere_sag(step, p.x * p.x + p.y * p.y).derivative;
-    const Vec3<T> normal = normalized(Vec3<T>{-slope * p.x, -slope * p.y, T(1)});
-    const T cosine = dot(d, normal);
-    const T crossing = cosine * step.sense_in;
-    return {t, cosine, normal, select(crossing < slack, crossing, slack)};
+REALCAM_INLINE SurfaceHit<T> asphere_hit(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T t, T slack) {
+    const Vec3<T> at = o + t * p;
+    const T slope = T(2) * asphere_sag(step, at.x * at.x + at.y * at.y).derivative;
+    const Vec3<T> normal = normalized(Vec3<T>{-slope * at.x, -slope * at.y, T(1)});
+    const T along_normal = dot(p, normal);
+    const T crossing = along_normal * step.sense_in;
+    return {t, along_normal, normal, select(crossing < slack, crossing, slack)};
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -150,8 +150,8 @@ inline LensSystem focused(const LensSystem& lens, double focus_distance) {
                          "\" is " + metres(lens.focusing.nearest_mm));
     LensSystem open = lens;
     open.stop_semi_diameter = lens.stop().clear_semi_diameter;
-    LensSystem result = open.focusing.moves_group() ? moved_by_group(open, focus_distance)
-                                                    : moved_as_a_whole(open, focus_distance);
+    LensSystem result =
+        open.focusing.moves_group() ? moved_by_group(open, focus_distance) : moved_as_a_whole(open, focus_distance);
     result.stop_semi_diameter = lens.stop_semi_diameter;
     result.focus_distance = focus_distance;
     if (!std::isfinite(result.film_distance))

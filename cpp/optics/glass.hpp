@@ -16,7 +16,7 @@ inline constexpr double kLineC_nm = 656.2725;  ///< hydrogen, red
 
 /// An optical medium: refractive index relative to air at a wavelength in air.
 class Glass {
-  public:
+public:
     /// n_k of the Sellmeier equation n^2 = 1 + sum B l^2 / (l^2 - C), l in um, C in um^2.
     struct SellmeierTerm {
         double B, C;
@@ -71,7 +71,7 @@ class Glass {
     /// As the lens's author wrote it: a name, a number, a pair; empty for air.
     std::string label;
 
-  private:
+private:
     enum class Formula { cauchy, sellmeier, table };
 
     Glass(Formula formula, std::vector<double> coefficients, std::vector<TablePoint> points)

@@ -12,9 +12,8 @@ enum class LightDirection { to_film, to_scene };
 /// The surfaces of a lens in the order in which light of one wavelength meets them. Owns the memory of its view.
 template <class T>
 class LensPath {
-  public:
-    LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm)
-        : iris_(iris_of(lens)) {
+public:
+    LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm) : iris_(iris_of(lens)) {
         const int count = static_cast<int>(lens.surfaces.size());
         const std::vector<double> n = lens.indices(wavelength_nm);
         const std::vector<double> z = lens.vertices();
@@ -37,16 +36,18 @@ class LensPath {
             sense = sense_behind;
         }
         if (direction == LightDirection::to_scene) std::reverse(steps_.begin(), steps_.end());
+        entry_index = direction == LightDirection::to_film ? n.front() : n.back();
         entry_position = direction == LightDirection::to_film ? z.front() : z.back();
         exit_position = direction == LightDirection::to_film ? z.back() : z.front();
     }
 
     LensView<T> view() const { return {steps_.data(), static_cast<int>(steps_.size()), iris_}; }
 
+    double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by
     double entry_position = 0;  ///< z of the vertex to which the origins of entering rays are relative
-    double exit_position = 0;   ///< the same for leaving rays
+    double exit_position = 0;  ///< the same for leaving rays
 
-  private:
+private:
     static LensStep<T> shape_of(const Surface& surface) {
         LensStep<T> step{};
         step.kind = surface.is_asphere() ? StepKind::asphere : surface.conic != 0 ? StepKind::conic : StepKind::sphere;
@@ -80,8 +81,8 @@ class LensPath {
     }
 
     static void set_media(LensStep<T>& step, double before, double after, double sense_in, double sense_out) {
-        step.mu = static_cast<T>(before / after);
-        step.index_before = static_cast<T>(before);
+        step.index_squared = static_cast<T>(before * before);
+        step.index_step = static_cast<T>((after - before) * (after + before));
         step.sense_in = static_cast<T>(sense_in);
         step.sense_out = static_cast<T>(sense_out);
     }

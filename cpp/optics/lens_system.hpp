@@ -97,13 +97,14 @@ inline void validate(const LensSystem& lens) {
         if (!std::isfinite(s.thickness)) fail(i, "the thickness is not a finite number");
         if (s.type == SurfaceType::mirror) direction = -direction;
         if (s.thickness * direction < 0)
-            fail(i, direction > 0 ? "the thickness is negative; light travels to the film here, so 0 or more is wanted"
-                                  : "the thickness is positive; light travels back behind a mirror, so 0 or less is wanted");
+            fail(i, direction > 0
+                        ? "the thickness is negative; light travels to the film here, so 0 or more is wanted"
+                        : "the thickness is positive; light travels back behind a mirror, so 0 or less is wanted");
         const double edge = s.sag(s.clear_semi_diameter);
         if (!std::isfinite(edge)) {
             const double limit = 1 / (std::fabs(s.curvature) * std::sqrt(1 + s.conic));
-            fail(i, "the clear semi-diameter of " + mm(s.clear_semi_diameter) + " is larger than the surface, which ends at " +
-                        mm(limit) + " from the axis");
+            fail(i, "the clear semi-diameter of " + mm(s.clear_semi_diameter) +
+                        " is larger than the surface, which ends at " + mm(limit) + " from the axis");
         }
         for (double wavelength : {380.0, lens.wavelength_nm, 780.0}) {
             const double n = s.material.index(wavelength);
@@ -114,8 +115,10 @@ inline void validate(const LensSystem& lens) {
         stops += s.type == SurfaceType::stop;
     }
     if (stops != 1)
-        throw LensFileError("the lens has " + std::to_string(stops) + " surfaces of type \"stop\"; exactly one is wanted");
-    if (direction < 0) throw LensFileError("the lens has an odd number of mirrors, so its light never reaches a film behind it");
+        throw LensFileError("the lens has " + std::to_string(stops) +
+                            " surfaces of type \"stop\"; exactly one is wanted");
+    if (direction < 0)
+        throw LensFileError("the lens has an odd number of mirrors, so its light never reaches a film behind it");
     if (lens.iris.blades != 0 && (lens.iris.blades < 3 || lens.iris.blades > kMaxIrisBlades))
         throw LensFileError("the iris has " + std::to_string(lens.iris.blades) + " blades; 0 (round) or 3 to " +
                             std::to_string(kMaxIrisBlades) + " are wanted");

@@ -6,7 +6,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// N rays. Origins in mm; directions of unit length; status holds RayStatus values as plain integers.
+/// N rays. Origins in mm; optical directions (unit vectors times the index of the medium that the ray is in); status
+/// holds RayStatus values as plain integers.
 template <class T, int N>
 struct LensRays {
     Vec3Lanes<T, N> origin;
@@ -30,11 +31,11 @@ struct PathRecord {
 
 /// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
 template <class T, int N, class Record>
-REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays, Record& record, int lane,
-                                  Vec3<T> o, Vec3<T> d, SurfaceHit<T> hit, int failure) {
-    const Vec3<T> p = o + hit.distance * d;
-    const T r2 = p.x * p.x + p.y * p.y;
-    const Refraction<T> refracted = refract(d, hit.normal, hit.cosine, step.mu, step.sense_out);
+REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays, Record& record, int lane, Vec3<T> o,
+                                  Vec3<T> p, SurfaceHit<T> hit, int failure) {
+    const Vec3<T> at = o + hit.parameter * p;
+    const T r2 = at.x * at.x + at.y * at.y;
+    const Refraction<T> refracted = refract(p, hit.normal, hit.along_normal, step.index_step, step.sense_out);
 
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
@@ -42,16 +43,17 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
     const bool met = alive & hit.met();
     const bool passes = met & clear & (refracted.radicand >= T(0));
     if constexpr (Record::enabled) {
-        const int cause = select(hit.met(), select(clear, static_cast<int>(RayStatus::total_internal_reflection),
-                                                   static_cast<int>(RayStatus::vignetted)),
+        const int cause = select(hit.met(),
+                                 select(clear, static_cast<int>(RayStatus::total_internal_reflection),
+                                        static_cast<int>(RayStatus::vignetted)),
                                  failure);
-        rays.origin.set(lane, select(met, p, o));
-        rays.direction.set(lane, select(passes, refracted.direction, d));
+        rays.origin.set(lane, select(met, at, o));
+        rays.direction.set(lane, select(passes, refracted.direction, p));
         rays.status[lane] = select(alive & !passes, cause, before);
-        record.optical_path[lane] += select(met, step.index_before * hit.distance, T(0));
+        record.optical_path[lane] += select(met, step.index_squared * hit.parameter, T(0));
         record.surface_index[lane] = select(alive, step.surface_index, record.surface_index[lane]);
     } else {
-        rays.origin.set(lane, p);
+        rays.origin.set(lane, at);
         rays.direction.set(lane, refracted.direction);
         rays.status[lane] = select(passes, before, static_cast<int>(RayStatus::vignetted));
     }
@@ -62,10 +64,10 @@ REALCAM_HD inline void cross_sphere(const LensStep<T>& step, LensRays<T, N>& ray
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         Vec3<T> o = rays.origin[i];
-        const Vec3<T> d = rays.direction[i];
+        const Vec3<T> p = rays.direction[i];
         o.z -= step.shift;
-        const SurfaceHit<T> hit = intersect_sphere(o, d, step.curvature, step.sense_in);
-        cross_surface(step, rays, record, i, o, d, hit, static_cast<int>(RayStatus::missed));
+        const SurfaceHit<T> hit = intersect_sphere(o, p, step.curvature, step.index_squared, step.sense_in);
+        cross_surface(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
@@ -74,10 +76,11 @@ REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         Vec3<T> o = rays.origin[i];
-        const Vec3<T> d = rays.direction[i];
+        const Vec3<T> p = rays.direction[i];
         o.z -= step.shift;
-        const SurfaceHit<T> hit = intersect_conic(o, d, step.curvature, step.conic_factor, step.sense_in);
-        cross_surface(step, rays, record, i, o, d, hit, static_cast<int>(RayStatus::missed));
+        const SurfaceHit<T> hit =
+            intersect_conic(o, p, step.curvature, step.conic_factor, step.index_squared, step.sense_in);
+        cross_surface(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
@@ -99,22 +102,22 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
         int searching = 0;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            improve_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i],
-                           search.above[i], search.residual[i], search.tolerance[i]);
-            searching |= static_cast<int>(rays.status[i] == 0) &
-                         static_cast<int>(search.residual[i] > search.tolerance[i]);
+            improve_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i],
+                           search.residual[i], search.tolerance[i]);
+            searching |=
+                static_cast<int>(rays.status[i] == 0) & static_cast<int>(search.residual[i] > search.tolerance[i]);
         }
         if (searching == 0) break;
     }
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec3<T> o = rays.origin[i];
-        const Vec3<T> d = rays.direction[i];
+        const Vec3<T> p = rays.direction[i];
         const T slack = search.tolerance[i] - search.residual[i];
-        const SurfaceHit<T> hit = asphere_hit(step, o, d, search.t[i], slack);
-        const int failure = select(slack >= T(0), static_cast<int>(RayStatus::missed),
-                                   static_cast<int>(RayStatus::no_convergence));
-        cross_surface(step, rays, record, i, o, d, hit, failure);
+        const SurfaceHit<T> hit = asphere_hit(step, o, p, search.t[i], slack);
+        const int failure =
+            select(slack >= T(0), static_cast<int>(RayStatus::missed), static_cast<int>(RayStatus::no_convergence));
+        cross_surface(step, rays, record, i, o, p, hit, failure);
     }
 }
 
@@ -139,16 +142,16 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
     for (int i = 0; i < N; ++i) {
         const T r2 = rays.origin.x[i] * rays.origin.x[i] + rays.origin.y[i] * rays.origin.y[i];
         const bool open = q * (r2 + h * h) + T(2) * (T(1) - q * h) * extent[i] - T(2) * h <= T(0);
-        rays.status[i] = select((rays.status[i] == 0) & !open, static_cast<int>(RayStatus::vignetted),
-                                rays.status[i]);
+        rays.status[i] = select((rays.status[i] == 0) & !open, static_cast<int>(RayStatus::vignetted), rays.status[i]);
     }
 }
 
 /// Traces N rays through a lens, surface by surface.
 ///
 /// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
-/// vertex of the last one; directions are unit vectors in the lens frame. Rays whose status is not ok on entry are
-/// left alone. Nothing here branches on a lane, so the compiler turns the loops into vector code.
+/// vertex of the last one; directions are optical ones in the lens frame, before and after (LensPath::entry_index).
+/// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
+/// loops into vector code.
 template <class T, int N, class Record = NoRecord>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {}) {
     for (int k = 0; k < lens.count; ++k) {

@@ -19,8 +19,8 @@ struct LensStep {
     T conic_factor;        ///< 1 + k
     T sense_in;            ///< +1 where the ray crosses towards the film, -1 towards the scene (a mirror turns it)
     T sense_out;
-    T mu;                  ///< refractive index before over refractive index after
-    T index_before;        ///< for the optical path
+    T index_squared;       ///< n^2 of the medium before the surface
+    T index_step;          ///< n'^2 - n^2
     T rim_squared;         ///< squared clear semi-diameter
     T hole_squared;        ///< squared radius inside which light is blocked; negative: none
     T sag_min, sag_max;    ///< aspheres: bounds of the sag inside the search radius

@@ -42,25 +42,26 @@ using Progress = std::function<bool(double done)>;
 
 /// Thrown by render where Progress asked to stop.
 class Cancelled : public Error {
-  public:
+public:
     Cancelled() : Error("stopped") {}
 };
 
 /// A device that takes pictures.
 class Backend {
-  public:
+public:
     virtual ~Backend() = default;
     virtual std::string name() const = 0;
 
     /// Throws InputError for a camera, scene or settings that make no picture, Cancelled, and DeviceError.
-    virtual Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera, const RenderSettings& settings,
-                         const Progress& progress) = 0;
+    virtual Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera,
+                         const RenderSettings& settings, const Progress& progress) = 0;
 };
 
 /// Throws InputError where the settings make no sense.
 inline void validate(const RenderSettings& settings) {
     if (settings.spp < 1 || settings.spp > (1 << 24)) throw InputError("spp must lie between 1 and 16777216");
-    if (settings.max_bounces < 0 || settings.max_bounces > 64) throw InputError("max_bounces must lie between 0 and 64");
+    if (settings.max_bounces < 0 || settings.max_bounces > 64)
+        throw InputError("max_bounces must lie between 0 and 64");
     if (settings.threads < 0) throw InputError("threads must be 0 (all) or a positive number");
 }
 

@@ -58,7 +58,8 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
         scene.intersect(rays, hits);
         probe.enter(RenderStage::other);
         const bool last = bounce == max_bounces;
-        const std::uint32_t dimension = dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
+        const std::uint32_t dimension =
+            dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
         int alive = 0;
         for (int i = 0; i < N; ++i) {
             shadow.active[i] = 0;

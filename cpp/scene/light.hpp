@@ -47,7 +47,8 @@ REALCAM_INLINE Vec3f sample_cosine(Vec3f n, Vec2f u) {
 REALCAM_INLINE Vec3f environment_radiance(const EnvironmentView& environment, Vec3f direction) {
     if (!environment.pixels) return environment.constant;
     const float u = 0.5f + std::atan2(direction.x, -direction.z) * 0.1591549431f;
-    const float v = std::acos(select(direction.y > 1.0f, 1.0f, select(direction.y < -1.0f, -1.0f, direction.y))) * 0.3183098862f;
+    const float v =
+        std::acos(select(direction.y > 1.0f, 1.0f, select(direction.y < -1.0f, -1.0f, direction.y))) * 0.3183098862f;
     int column = static_cast<int>(u * static_cast<float>(environment.width));
     int row = static_cast<int>(v * static_cast<float>(environment.height));
     column = column < environment.width ? column : environment.width - 1;
@@ -71,7 +72,8 @@ REALCAM_INLINE LightSample sample_environment_image(const EnvironmentView& envir
     const float density = row_share * column_share * static_cast<float>(width) * static_cast<float>(height) /
                           (19.7392088f * sine);  // 2 pi^2: the map's area in azimuth and polar angle
     const Vec3f radiance = environment.pixels[static_cast<std::int64_t>(row) * width + column];
-    return {{sine * std::sin(azimuth), std::cos(polar), -sine * std::cos(azimuth)}, kFarAway, (1.0f / density) * radiance};
+    return {
+        {sine * std::sin(azimuth), std::cos(polar), -sine * std::cos(azimuth)}, kFarAway, (1.0f / density) * radiance};
 }
 
 REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, Vec3f position, Vec2f u) {

@@ -10,11 +10,12 @@ namespace REALCAM_NAMESPACE {
 /// A scene as kernels read it: float, relative to an origin near the camera, so that a scene far from its own origin
 /// loses nothing. Owns the memory of its view; the Scene must outlive it.
 class PlacedScene {
-  public:
+public:
     PlacedScene(const Scene& scene, Vec3d origin_m) : scene_(scene), origin_(origin_m) {
         positions_.reserve(scene.positions_m.size());
         for (const Vec3d& p : scene.positions_m) positions_.push_back(static_cast<Vec3f>(p - origin_m));
-        for (const PlacedPointLight& p : scene.points) points_.push_back({static_cast<Vec3f>(p.position_m - origin_m), p.intensity});
+        for (const PlacedPointLight& p : scene.points)
+            points_.push_back({static_cast<Vec3f>(p.position_m - origin_m), p.intensity});
         for (const Texture& t : scene.textures) textures_.push_back({t.rgba.data(), t.width, t.height});
         add_area_lights();
         if (!scene.environment.pixels.empty()) add_environment_cdf();
@@ -36,10 +37,10 @@ class PlacedScene {
         view.sun_count = static_cast<std::int32_t>(scene_.suns.size());
         view.area_count = static_cast<std::int32_t>(areas_.size());
         view.has_environment = scene_.environment.shines();
-        view.environment = {scene_.environment.constant,
-                            scene_.environment.pixels.empty() ? nullptr : scene_.environment.pixels.data(),
-                            marginal_cdf_.data(), conditional_cdf_.data(), scene_.environment.width,
-                            scene_.environment.height};
+        view.environment = {
+            scene_.environment.constant, scene_.environment.pixels.empty() ? nullptr : scene_.environment.pixels.data(),
+            marginal_cdf_.data(),        conditional_cdf_.data(),
+            scene_.environment.width,    scene_.environment.height};
         return view;
     }
 
@@ -47,7 +48,7 @@ class PlacedScene {
     Vec3d origin_m() const { return origin_; }
     const std::vector<Vec3f>& positions() const { return positions_; }
 
-  private:
+private:
     static double luminance(Vec3f rgb) {
         const Vec3d c = static_cast<Vec3d>(rgb);
         return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
@@ -59,7 +60,9 @@ class PlacedScene {
         for (double w : weights) total += w;
         double sum = 0;
         cdf.push_back(0.0f);
-        for (double w : weights) cdf.push_back(static_cast<float>((sum += total > 0 ? w / total : 1.0 / static_cast<double>(weights.size()))));
+        for (double w : weights)
+            cdf.push_back(
+                static_cast<float>((sum += total > 0 ? w / total : 1.0 / static_cast<double>(weights.size()))));
         cdf.back() = 1.0f;
         return total;
     }
@@ -69,7 +72,8 @@ class PlacedScene {
         for (const Triangle& t : scene_.triangles) {
             const Vec3f emission = scene_.materials[t.material].emission;
             if (!(luminance(emission) > 0)) continue;
-            const Vec3f a = positions_[t.vertices[0]], u = positions_[t.vertices[1]] - a, v = positions_[t.vertices[2]] - a;
+            const Vec3f a = positions_[t.vertices[0]], u = positions_[t.vertices[1]] - a,
+                        v = positions_[t.vertices[2]] - a;
             const Vec3f normal = cross(u, v);
             const float twice_area = length(normal);
             if (!(twice_area > 0)) continue;
@@ -89,7 +93,9 @@ class PlacedScene {
             std::vector<double> weights;
             const double sine = std::sin(3.141592653589793 * (row + 0.5) / e.height);
             for (std::int32_t column = 0; column < e.width; ++column)
-                weights.push_back(sine * luminance(e.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(e.width) + static_cast<std::size_t>(column)]));
+                weights.push_back(sine *
+                                  luminance(e.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(e.width) +
+                                                     static_cast<std::size_t>(column)]));
             rows.push_back(accumulate(weights, conditional_cdf_));
         }
         accumulate(rows, marginal_cdf_);

@@ -34,6 +34,11 @@ struct SurfacePoint {
     float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
 };
 
+REALCAM_INLINE float largest_coordinate(Vec3f p) {
+    const float x = std::fabs(p.x), y = std::fabs(p.y), z = std::fabs(p.z);
+    return x > y ? (x > z ? x : z) : (y > z ? y : z);
+}
+
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_direction) {
     const Triangle triangle = scene.triangles[hit.triangle];
     const std::uint32_t* corner = triangle.vertices;
@@ -51,7 +56,8 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
     point.geometric_normal = (toward / std::sqrt(length_squared)) * area;
     point.normal = point.geometric_normal;
     if (scene.normals) {
-        const Vec3f n = w * scene.normals[corner[0]] + hit.u * scene.normals[corner[1]] + hit.v * scene.normals[corner[2]];
+        const Vec3f n =
+            w * scene.normals[corner[0]] + hit.u * scene.normals[corner[1]] + hit.v * scene.normals[corner[2]];
         const float n2 = dot(n, n);
         if (n2 > 0) {
             // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
@@ -68,10 +74,9 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
     point.specular = material.specular;
     point.shininess = material.shininess;
     point.emission = facing <= 0 ? material.emission : Vec3f{0, 0, 0};
-    // Eight roundings of the largest coordinate that went into the position.
-    const float ax = std::fabs(point.position.x), ay = std::fabs(point.position.y), az = std::fabs(point.position.z);
-    const float largest = ax > ay ? (ax > az ? ax : az) : (ay > az ? ay : az);
-    point.self_offset = 1e-6f * largest + 1e-12f;
+    // Some roundings of the largest coordinate that went into the position: the corners of a large triangle may lie far
+    // from a point on it.
+    point.self_offset = 5e-7f * (largest_coordinate(a) + largest_coordinate(b) + largest_coordinate(c)) + 1e-12f;
     return point;
 }
 

@@ -7,6 +7,7 @@ import platform
 import subprocess
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,9 @@ def _processor() -> str:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
         return platform.processor()
-    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+    return next(
+        (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine()
+    )
 
 
 def _commit() -> str | None:
@@ -50,9 +53,9 @@ def lens_rays(threads: int) -> Result:
     """Rays per second through the 11 surfaces of the double Gauss, one core, float32, by instruction set."""
     del threads  # one core by definition
     rates = _core._lens_ray_rates(Lens.load("double-gauss-50mm"), 3.0)
-    return {f"x86-64-{name}" if name != "native" else name: round(rate / 1e6, 1) for name, rate in rates.items()} | {
-        "unit": "million rays a second on one core"
-    }
+    return {
+        f"x86-64-{name}" if name != "native" else name: round(rate / 1e6, 1) for name, rate in rates.items()
+    } | {"unit": "million rays a second on one core"}
 
 
 def lens_setup(threads: int) -> Result:
@@ -65,8 +68,8 @@ def lens_setup(threads: int) -> Result:
         f_number = lens.first_order().f_number
         stopped = lens.stopped_down(max(11.0, f_number))
         times[name] = {
-            "wide_open": round(1e3 * _best(lambda lens=lens, radius=radius: _core.pupil_setup(lens, radius)), 1),
-            "f/11": round(1e3 * _best(lambda lens=stopped, radius=radius: _core.pupil_setup(lens, radius)), 1),
+            "wide_open": round(1e3 * _best(partial(_core.pupil_setup, lens, radius)), 1),
+            "f/11": round(1e3 * _best(partial(_core.pupil_setup, stopped, radius)), 1),
         }
     worst = max(max(t.values()) for t in times.values())
     return {"milliseconds": times, "worst": worst}
@@ -84,7 +87,9 @@ def _best(work: Callable[[], object], rounds: int = 3) -> float:
 
 def pass_share(threads: int) -> Result:
     """Share of the sampled rays that pass the lens, whole frame, wide open."""
-    speck = Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
+    speck = Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(
+        1.0
+    )
     shares = {}
     for name in lens_names():
         lens = Lens.load(name)
@@ -137,8 +142,12 @@ def _box(centre: tuple[float, float, float], half: float) -> Mesh:
 
 
 def _sphere(centre: tuple[float, float, float], radius: float, columns: int = 64, rows: int = 32) -> Mesh:
-    polar, azimuth = np.meshgrid(np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij")
-    points = np.stack([np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1)
+    polar, azimuth = np.meshgrid(
+        np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij"
+    )
+    points = np.stack(
+        [np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1
+    )
     row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
     a = (row * (columns + 1) + column).ravel()
     b, c, d = a + 1, a + columns + 1, a + columns + 2
@@ -151,11 +160,15 @@ def frame(threads: int) -> Result:
     scene = frame_scene()
     lens = Lens.load("double-gauss-50mm").focused(5.0)
     film = Film(24, 24, (640, 640))
-    place = {"position": (0, 1.5, 4), "look_at": (0, 0.3, -4)}
-    cameras = {m: Camera(lens, film=film, model=m, **place) for m in ("full", "thick", "thin", "pinhole")}
+    cameras = {
+        m: Camera(lens, film=film, model=m, position=(0, 1.5, 4), look_at=(0, 0.3, -4))
+        for m in ("full", "thick", "thin", "pinhole")
+    }
     cpu: dict[str, list[float]] = {model: [] for model in cameras}
     wall: dict[str, list[float]] = {model: [] for model in cameras}
-    render(scene, cameras["pinhole"], spp=1, threads=threads)  # builds the scene's BVH, which is no part of a picture
+    render(
+        scene, cameras["pinhole"], spp=1, threads=threads
+    )  # builds the scene's BVH, which is no part of a picture
     for _ in range(5):  # in turns, so that what else the machine does falls on all alike
         for model, camera in cameras.items():
             start = time.process_time(), time.perf_counter()

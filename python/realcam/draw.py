@@ -55,7 +55,9 @@ def draw_cross_section(lens: Lens, axes: Axes, rays: int = 7) -> None:
     half = 0.5 * float(np.hypot(*lens.film_mm))
     axes.plot([lens.film_position_mm] * 2, [-half, half], color="black", linewidth=2)
     data = lens.first_order()
-    axes.set_title(f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}")
+    axes.set_title(
+        f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}"
+    )
     axes.set_xlabel("z / mm")
     axes.set_ylabel("y / mm")
     axes.set_aspect("equal")
@@ -77,7 +79,14 @@ def _draw_glass(lens: Lens, axes: Axes) -> None:
         rim = max(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm)
         for profile in (a, b):
             profile[[0, -1], 1] = (-rim, rim)
-        axes.fill(*np.concatenate([a, b[::-1]]).T, facecolor=GLASS, edgecolor=EDGE, linewidth=0.8, zorder=2, alpha=0.8)
+        axes.fill(
+            *np.concatenate([a, b[::-1]]).T,
+            facecolor=GLASS,
+            edgecolor=EDGE,
+            linewidth=0.8,
+            zorder=2,
+            alpha=0.8,
+        )
 
 
 def _draw_surface(axes: Axes, position: float, surface: Surface) -> None:
@@ -85,7 +94,13 @@ def _draw_surface(axes: Axes, position: float, surface: Surface) -> None:
     inner = surface.inner_semi_diameter_mm
     mirror = surface.type == "mirror"
     for part in (profile[profile[:, 1] >= inner], profile[profile[:, 1] <= -inner]) if inner else (profile,):
-        axes.plot(part[:, 0], part[:, 1], color="black" if mirror else EDGE, linewidth=2 if mirror else 0.8, zorder=3)
+        axes.plot(
+            part[:, 0],
+            part[:, 1],
+            color="black" if mirror else EDGE,
+            linewidth=2 if mirror else 0.8,
+            zorder=3,
+        )
 
 
 def _draw_stop(axes: Axes, position: float, surface: Surface, lens: Lens) -> None:
@@ -111,9 +126,10 @@ def _passing_slopes(lens: Lens, height: float, count: int = 2001) -> np.ndarray:
     """Angles in the meridional plane under which rays from a film point leave the lens."""
     last = lens.surfaces[-1].clear_semi_diameter_mm
     angles = np.arctan2(np.array([-last, last]) * 1.05 - height, lens.film_distance_mm)
-    angle = np.linspace(*angles, count)
+    angle = np.linspace(angles[0], angles[1], count)
     out = lens.trace(*_film_rays(lens, height, angle), start="film")
-    return angle[out.status == RayStatus.OK]
+    passing: np.ndarray = angle[out.status == RayStatus.OK]
+    return passing
 
 
 def _film_rays(lens: Lens, height: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -125,7 +141,11 @@ def _film_rays(lens: Lens, height: float, angle: np.ndarray) -> tuple[np.ndarray
 def _ray_paths(lens: Lens, height: float, count: int, reach: float) -> list[np.ndarray]:
     """Points of each ray, from the film to `reach` mm past the front surface: (surfaces + 2, 3) mm each."""
     passing = _passing_slopes(lens, height)
-    angle = np.linspace(passing[0], passing[-1], count) if count > 1 else passing[len(passing) // 2 : len(passing) // 2 + 1]
+    angle = (
+        np.linspace(passing[0], passing[-1], count)
+        if count > 1
+        else passing[len(passing) // 2 : len(passing) // 2 + 1]
+    )
     origins, directions = _film_rays(lens, height, angle)
     points = [origins]
     for surfaces in range(1, len(lens.surfaces) + 1):

@@ -49,23 +49,28 @@ class Image:
             image_file.write_image(path, layers, ("R", "G", "B", "Z"), self.metadata())
 
     def metadata(self) -> dict[str, str | int | float]:
-        """Name and value of what is written into picture files."""
+        """Name and value of what is written into picture files.
+
+        Values of realcam's own entries are texts, as the executable writes them: PNG keeps no other kind.
+        """
         lens, film = self.camera.lens, self.camera.film
+        first_order = lens.first_order()
         return {
             "Software": f"realcam {_core.__version__}",
             "ExposureTime": float(self.camera.exposure_time_s),
-            "FNumber": float(lens.first_order().f_number),
+            "FNumber": float(first_order.f_number),
             "Exif:PhotographicSensitivity": round(self.camera.iso),
-            "Exif:FocalLength": float(lens.first_order().effective_focal_length_mm),
+            "Exif:FocalLength": float(first_order.effective_focal_length_mm),
             "Exif:LensModel": lens.name,
             "realcam:lens": lens.name,
             "realcam:model": self.camera.model,
-            "realcam:f_number": float(lens.first_order().f_number),
-            "realcam:focus_distance_m": float(lens.focus_distance_m),
-            "realcam:exposure_time_s": float(self.camera.exposure_time_s),
-            "realcam:iso": float(self.camera.iso),
-            "realcam:film_mm": f"{film.width_mm:g} x {film.height_mm:g}",
-            "realcam:spp": self.spp,
-            "realcam:seed": self.seed,
+            "realcam:focal_length_mm": f"{first_order.effective_focal_length_mm:.9g}",
+            "realcam:f_number": f"{first_order.f_number:.9g}",
+            "realcam:focus_distance_m": f"{lens.focus_distance_m:.9g}",
+            "realcam:film_mm": f"{film.width_mm:.9g}x{film.height_mm:.9g}",
+            "realcam:exposure_time_s": f"{self.camera.exposure_time_s:.9g}",
+            "realcam:iso": f"{self.camera.iso:.9g}",
+            "realcam:seed": str(self.seed),
+            "realcam:spp": str(self.spp),
             "realcam:version": _core.__version__,
         }

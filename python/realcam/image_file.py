@@ -48,7 +48,9 @@ def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
     """A latitude-longitude image as (H, W, 3) float32, linear. Raises ImageFileError."""
     name = os.fspath(path)
     if not Path(name).is_file():
-        raise ImageFileError(f"{name}: there is no such file; an environment image (.exr, .hdr, .png) is wanted")
+        raise ImageFileError(
+            f"{name}: there is no such file; an environment image (.exr, .hdr, .png) is wanted"
+        )
     buffer = oiio.ImageBuf(name)
     pixels = buffer.get_pixels(oiio.FLOAT)
     if buffer.has_error or pixels is None:
@@ -74,7 +76,9 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     """Raises ImageFileError where write_image could not write: before the work, not after it."""
     if Path(path).suffix.lower() not in (".png", ".exr"):
         name = os.fspath(path)
-        raise ImageFileError(f"{name}: unknown suffix; .png (for the screen) or .exr (film exposure) is wanted")
+        raise ImageFileError(
+            f"{name}: unknown suffix; .png (for the screen) or .exr (film exposure) is wanted"
+        )
     check_folder(path)
 
 
@@ -96,7 +100,10 @@ def write_image(
     name = os.fspath(path)
     check_writable(name)
     spec = oiio.ImageSpec(
-        pixels.shape[1], pixels.shape[0], pixels.shape[2], oiio.UINT8 if pixels.dtype == np.uint8 else oiio.FLOAT
+        pixels.shape[1],
+        pixels.shape[0],
+        pixels.shape[2],
+        oiio.UINT8 if pixels.dtype == np.uint8 else oiio.FLOAT,
     )
     spec.channelnames = channels
     for key, value in attributes.items():
@@ -107,7 +114,11 @@ def write_image(
         output = oiio.ImageOutput.create(temporary)
         if output is None:
             raise ImageFileError(f"{name}: {oiio.geterror()}")
-        if not (output.open(temporary, spec) and output.write_image(np.ascontiguousarray(pixels)) and output.close()):
+        if not (
+            output.open(temporary, spec)
+            and output.write_image(np.ascontiguousarray(pixels))
+            and output.close()
+        ):
             raise ImageFileError(f"{name}: cannot be written: {output.geterror()}")
         publish(temporary, name)
     finally:

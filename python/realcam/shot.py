@@ -19,7 +19,16 @@ else:
     import tomli as tomllib
 
 FORMAT = 1
-NUMBERS = {"focus_m": 1, "f_number": 1, "exposure_time_s": 1, "iso": 1, "scale": 1, "position_m": 3, "look_at_m": 3, "up": 3}
+NUMBERS = {
+    "focus_m": 1,
+    "f_number": 1,
+    "exposure_time_s": 1,
+    "iso": 1,
+    "scale": 1,
+    "position_m": 3,
+    "look_at_m": 3,
+    "up": 3,
+}
 NUMBERS |= {"film_mm": 2, "resolution": 2}
 KEYS = {"format", "scene", "lens", "model", "environment_cd_m2", "environment", "texture", *NUMBERS}
 
@@ -54,7 +63,7 @@ def read_shot(path: str | os.PathLike[str]) -> Shot:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
+        values: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -75,8 +84,8 @@ def _check(path: Path, key: str, value: object) -> None:
     if count is None:
         return
     items = [value] if count == 1 else value
-    good = isinstance(items, list) and len(items) == count
-    if not good or not all(isinstance(v, (int, float)) and not math.isnan(v) for v in items):
+    numbers = items if isinstance(items, list) and len(items) == count else [None]
+    if not all(isinstance(v, (int, float)) and not math.isnan(v) for v in numbers):
         wanted = "a number" if count == 1 else f"an array of {count} numbers"
         raise InputError(f"{path}: {key} must be {wanted}")
 
@@ -97,7 +106,9 @@ def _shot(scene: Scene, values: Mapping[str, Any]) -> Shot:
     resolution = values.get("resolution")
     camera = Camera(
         lens,
-        film=_core.default_film(lens, values.get("film_mm"), resolution and tuple(int(v) for v in resolution)),
+        film=_core.default_film(
+            lens, values.get("film_mm"), resolution and tuple(int(v) for v in resolution)
+        ),
         iso=values.get("iso", 100),
         model=values.get("model", "full"),
         exposure_time_s=values.get("exposure_time_s", 1.0),

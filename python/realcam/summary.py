@@ -19,7 +19,10 @@ def summary(image: Image) -> str:
         ("lens", f"{lens.title or lens.name}{model}"),
         ("", f"focal length {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}, focus {focus}"),
         ("camera", f"at {_point(camera.position)}, looks at {_point(camera.look_at)}"),
-        ("film", f"{film.width_mm:.4g} x {film.height_mm:.4g} mm, {width} x {height} pixels of {image.spp} samples"),
+        (
+            "film",
+            f"{film.width_mm:.4g} x {film.height_mm:.4g} mm, {width} x {height} pixels of {image.spp} samples",
+        ),
         ("exposure", f"{_exposure(camera.exposure_time_s)}, ISO {camera.iso:.4g}"),
         (
             "lens rays",

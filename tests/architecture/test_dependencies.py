@@ -34,6 +34,7 @@ HOST_ONLY = {
     "camera/default_film.hpp",
     "camera/field_of_view.hpp",
     "error.hpp",
+    "optics/exposure.hpp",
     "optics/focus.hpp",
     "optics/glass.hpp",
     "optics/iris_shape.hpp",

@@ -16,7 +16,9 @@ struct LensState {
     std::string description;
 };
 
-inline double half_diagonal(const LensSystem& lens) { return 0.5 * std::hypot(lens.film_width, lens.film_height); }
+inline double half_diagonal(const LensSystem& lens) {
+    return 0.5 * std::hypot(lens.film_width, lens.film_height);
+}
 
 /// A bundled lens far and near, wide open, at f/5.6 (where it is faster) and at f/22.
 inline std::vector<LensState> states_of(const std::string& name) {
@@ -33,10 +35,10 @@ inline std::vector<LensState> states_of(const std::string& name) {
     return states;
 }
 
-/// The directions that a PupilView describes for one film radius: its row of triangles (less their holes), between the
-/// boxes of the row's two nodes. Film point on the +x axis.
+/// The directions that a PupilView describes for one film radius: its row of triangles (less their holes),
+/// between the boxes of the row's two nodes. Film point on the +x axis.
 class PupilRegion {
-  public:
+public:
     PupilRegion(const PupilView& pupil, double radius)
         : pupil_(pupil), lit_(radius < static_cast<double>(pupil.image_radius)) {
         const double inside = lit_ ? 1 - radius / static_cast<double>(pupil.image_radius) : 0;
@@ -44,7 +46,9 @@ class PupilRegion {
         row_ = std::min(static_cast<int>(position), pupil.rows - 1);
         const double f = position - row_;
         const PupilNode &a = pupil.nodes[row_], &b = pupil.nodes[row_ + 1];
-        const auto between = [&](float x, float y) { return static_cast<double>(x) * (1 - f) + static_cast<double>(y) * f; };
+        const auto between = [&](float x, float y) {
+            return static_cast<double>(x) * (1 - f) + static_cast<double>(y) * f;
+        };
         centre = between(a.centre, b.centre);
         half_width = between(a.half_width, b.half_width);
         half_height = between(a.half_height, b.half_height);
@@ -69,7 +73,7 @@ class PupilRegion {
 
     double centre, half_width, half_height;
 
-  private:
+private:
     PupilView pupil_;
     bool lit_;
     int row_;
@@ -77,7 +81,7 @@ class PupilRegion {
 
 /// Traces rays in single precision, as pictures do, from one film point: position from the last vertex.
 class FilmPointTracer {
-  public:
+public:
     explicit FilmPointTracer(const LensSystem& lens)
         : film_distance_(static_cast<float>(lens.film_distance)),
           path_(lens, LightDirection::to_scene, lens.wavelength_nm) {}
@@ -99,7 +103,7 @@ class FilmPointTracer {
         }
     }
 
-  private:
+private:
     float film_distance_;
     LensPath<float> path_;
 };

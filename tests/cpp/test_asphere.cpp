@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "traced_ray.hpp"
 
@@ -26,8 +27,8 @@ struct Crossing {
     int count = 0;  // of crossings inside the rim
 };
 
-// All crossings of a ray inside the rim, by a scan of its whole length for changes of sign and bisection; the first is
-// kept. The normal comes from central differences of the sag.
+// All crossings of a ray inside the rim, by a scan of its whole length for changes of sign and bisection; the
+// first is kept. The normal comes from central differences of the sag.
 Crossing first_crossing(const Surface& s, Vec3d o, Vec3d d) {
     const Real rim = s.clear_semi_diameter;
     const auto height = [&](Real t, Real& r) {
@@ -87,7 +88,8 @@ TEST_CASE("rays meet the aspheres of the phone lens where an independent search 
         Surface surface = phone.surfaces[i];
         if (!surface.is_asphere()) continue;
         CAPTURE(i + 1);
-        const double before = 1, after = n[i + 1] > 1 ? n[i + 1] : n[i];  // each surface alone, air in front of it
+        const double before = 1,
+                     after = n[i + 1] > 1 ? n[i + 1] : n[i];  // each surface alone, air in front of it
         surface.material = Glass::constant(after);
         const RayTracer trace(lens_of({surface}), LightDirection::to_film);
         int compared = 0;
@@ -99,16 +101,17 @@ TEST_CASE("rays meet the aspheres of the phone lens where an independent search 
             if (std::hypot(truth.x, truth.y) > 0.999L * surface.clear_semi_diameter) return;
             REQUIRE(ray.passed());
             ++compared;
-            // The search stops within 4 roundings of its lengths, a few mm, along the axis; a grazing ray turns that
-            // into more along the surface.
+            // The search stops within 4 roundings of its lengths, a few mm, along the axis; a grazing ray
+            // turns that into more along the surface.
             const Real tolerance = 1e-14L / cosine;
             CHECK(std::fabs(ray.origin.x - truth.x) < tolerance);
             CHECK(std::fabs(ray.origin.y - truth.y) < tolerance);
             CHECK(std::fabs(ray.origin.z - truth.z) < tolerance);
             // n d x N is the same on both sides. Central differences over 1e-5 of the rim are right to 1e-9.
-            const Vec3d normal{static_cast<double>(truth.nx), static_cast<double>(truth.ny), static_cast<double>(truth.nz)};
+            const Vec3d normal{static_cast<double>(truth.nx), static_cast<double>(truth.ny),
+                               static_cast<double>(truth.nz)};
             CHECK(length(before * cross(d, normal) - after * cross(ray.direction, normal)) < 1e-8);
-            CHECK(length(ray.direction) == doctest::Approx(1).epsilon(1e-14));
+            CHECK(length(ray.direction) == about(1, 1e-14));
         });
         CHECK(compared > 100);
     }
@@ -124,9 +127,10 @@ TEST_CASE("every power of the polynomial counts, up to r^18") {
         for (const double r : {0.5, 1.0, 1.7, 1.95}) {
             const TracedRay ray = trace({0, r, -1}, {0, 0, 1});
             REQUIRE(ray.passed());
-            const double z = 0.025 * r * r / (1 + std::sqrt(1 - 0.025 * 0.025 * r * r)) + 0.3 * std::pow(r / 2, 4 + 2 * term);
-            CHECK(ray.origin.z == doctest::Approx(z).epsilon(1e-13));
-            CHECK(surface.sag(r) == doctest::Approx(z).epsilon(1e-13));
+            const double z =
+                0.025 * r * r / (1 + std::sqrt(1 - 0.025 * 0.025 * r * r)) + 0.3 * std::pow(r / 2, 4 + 2 * term);
+            CHECK(ray.origin.z == about(z, 1e-13));
+            CHECK(surface.sag(r) == about(z, 1e-13));
         }
     }
 }
@@ -154,7 +158,7 @@ TEST_CASE("an absurd asphere ends rays with a status, and lets none through that
             CHECK(r <= surface.clear_semi_diameter * (1 + 1e-14));
             // Terms of up to 20 mm that nearly cancel; the sag is as steep as 300 here.
             CHECK(std::fabs(ray.origin.z - static_cast<double>(sag(surface, r))) < 1e-11);
-            CHECK(length(ray.direction) == doctest::Approx(1).epsilon(1e-12));
+            CHECK(length(ray.direction) == about(1, 1e-12));
         });
     }
     CHECK(passed > 1000);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../../cpp/math/random.hpp"
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "pupil_region.hpp"
 
@@ -14,9 +15,10 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-// Irradiance of a field of radiance 1, as a picture estimates it: pupil samples, their weights, and the rays that pass.
+// Irradiance of a field of radiance 1, as a picture estimates it: pupil samples, their weights, and the rays
+// that pass.
 class SampledIrradiance {
-  public:
+public:
     explicit SampledIrradiance(const LensSystem& lens) : pupil_(lens, half_diagonal(lens)), trace_(lens) {}
 
     double operator()(double film_x, double film_y) const {
@@ -26,22 +28,25 @@ class SampledIrradiance {
             return sample_pupil(pupil_.view(), static_cast<float>(film_x), static_cast<float>(film_y), u.x, u.y);
         };
         double sum = 0;
-        trace_(static_cast<float>(film_x), static_cast<float>(film_y), kSamples,
-               [&](int i) { return sample(i).direction; },
-               [&](int i, bool passes) { sum += passes ? static_cast<double>(sample(i).weight) : 0.0; });
+        trace_(
+            static_cast<float>(film_x), static_cast<float>(film_y), kSamples,
+            [&](int i) { return sample(i).direction; },
+            [&](int i, bool passes) { sum += passes ? static_cast<double>(sample(i).weight) : 0.0; });
         return sum / kSamples;
     }
 
-  private:
+private:
     Pupil pupil_;
     FilmPointTracer trace_;
 };
 
 // The mirror lens's hole is larger than its stop from f/13.5 on: it is dark then, as it would be.
-bool is_dark(const std::string& name, double f_number) { return name == "mirror-telephoto-500mm" && f_number > 13.5; }
+bool is_dark(const std::string& name, double f_number) {
+    return name == "mirror-telephoto-500mm" && f_number > 13.5;
+}
 
-// pi sin^2(theta') on the axis, from the edges of the light along one meridian, found by bisection with single rays in
-// double precision; a central obstruction is an edge too.
+// pi sin^2(theta') on the axis, from the edges of the light along one meridian, found by bisection with
+// single rays in double precision; a central obstruction is an edge too.
 double axial_irradiance(const LensSystem& lens) {
     const RayTracer trace(lens, LightDirection::to_scene);
     const auto passes = [&](double sine) {
@@ -64,8 +69,9 @@ double axial_irradiance(const LensSystem& lens) {
     return sum;
 }
 
-// The source paper's equations 6 and 7 over the last surface: integral of cos(theta') cos(theta'') / d^2 dA over the
-// points that see the scene. On an even grid in x and y, first of the whole surface, then of the part with light.
+// The source paper's equations 6 and 7 over the last surface: integral of cos(theta') cos(theta'') / d^2 dA
+// over the points that see the scene. On an even grid in x and y, first of the whole surface, then of the
+// part with light.
 double irradiance_over_last_surface(const LensSystem& lens, double film_x, double film_y) {
     constexpr int kBlock = 128, kGrid = 256;
     const Surface& last = lens.surfaces.back();
@@ -83,7 +89,8 @@ double irradiance_over_last_surface(const LensSystem& lens, double film_x, doubl
             Vec3d points[kBlock];
             for (int i = 0; i < kBlock; ++i) {
                 const int k = first + i;
-                const double x = x_min + (k % kGrid + 0.5) * dx, y = y_min + (k / kGrid + 0.5) * dy, r = std::hypot(x, y);
+                const double x = x_min + (k % kGrid + 0.5) * dx, y = y_min + (k / kGrid + 0.5) * dy,
+                             r = std::hypot(x, y);
                 factor[i] = 0;
                 rays.status[i] = static_cast<int>(RayStatus::bad_input);
                 rays.origin.set(i, film);
@@ -112,12 +119,13 @@ double irradiance_over_last_surface(const LensSystem& lens, double film_x, doubl
             }
         }
         if (left > right) {
-            // A surface close to the film has its light on a speck of it, smaller than a cell: look where the lines
-            // to the exit pupil cross it, with room on all sides.
+            // A surface close to the film has its light on a speck of it, smaller than a cell: look where the
+            // lines to the exit pupil cross it, with room on all sides.
             if (level > 0 || film.z > 0.1 * rim) return 0;
             const FirstOrder data = first_order(lens, lens.wavelength_nm);
             const double share = film.z / (lens.film_position() - data.exit_pupil_position);
-            const double room = 1.5 * share * data.exit_pupil_diameter, x = film_x * (1 - share), y = film_y * (1 - share);
+            const double room = 1.5 * share * data.exit_pupil_diameter, x = film_x * (1 - share),
+                         y = film_y * (1 - share);
             x_min = x - room, x_max = x + room, y_min = y - room, y_max = y + room;
             continue;
         }
@@ -150,9 +158,9 @@ TEST_CASE("on the axis a constant field gives pi sin^2(theta')") {
             }
             REQUIRE(truth > 0);
             // Of 32768 stratified samples about 3% miss: 0.05%. What is asked for is 0.5%.
-            CHECK(sampled(0, 0) == doctest::Approx(truth).epsilon(0.002));
+            CHECK(sampled(0, 0) == about(truth, 0.002));
             // The brute-force integral that the next test relies on: a grid of 256 x 256.
-            CHECK(irradiance_over_last_surface(lens, 0, 0) == doctest::Approx(truth).epsilon(0.003));
+            CHECK(irradiance_over_last_surface(lens, 0, 0) == about(truth, 0.003));
         }
 }
 
@@ -162,11 +170,11 @@ TEST_CASE("an unvignetted, unaberrated pupil falls off with the fourth power of 
     lens.film_distance = 50;
     const SampledIrradiance sampled(lens);
     const double on_axis = sampled(0, 0);
-    CHECK(on_axis == doctest::Approx(M_PI * 0.25 / (50 * 50 + 0.25)).epsilon(0.001));
+    CHECK(on_axis == about(M_PI * 0.25 / (50 * 50 + 0.25), 0.001));
     for (const double r : {5.0, 12.0, 21.0}) {
         const double cosine = 50 / std::hypot(50.0, r);
         // The opening's size changes this by its squared ratio to the distance, 1e-4; sampling by 0.05%.
-        CHECK(sampled(r * 0.6, r * 0.8) / on_axis == doctest::Approx(std::pow(cosine, 4)).epsilon(0.001));
+        CHECK(sampled(r * 0.6, r * 0.8) / on_axis == about(std::pow(cosine, 4), 0.001));
     }
 }
 
@@ -198,9 +206,9 @@ TEST_CASE("blades change neither the light on the axis nor its integral") {
     const double round = axial_irradiance(bladed);
     bladed.iris = {6, 0.2, 0.1};
     const SampledIrradiance sampled(bladed);
-    CHECK(sampled(0, 0) == doctest::Approx(round).epsilon(0.005));
+    CHECK(sampled(0, 0) == about(round, 0.005));
     // A film point off the axis at an angle to the blades.
-    CHECK(sampled(9, 5) == doctest::Approx(irradiance_over_last_surface(bladed, 9, 5)).epsilon(0.005));
+    CHECK(sampled(9, 5) == about(irradiance_over_last_surface(bladed, 9, 5), 0.005));
 }
 
 TEST_CASE("one stop halves the light") {
@@ -211,6 +219,6 @@ TEST_CASE("one stop halves the light") {
         const double at_11 = SampledIrradiance(stopped_down(lens, 11))(0, 0);
         const double at_16 = SampledIrradiance(stopped_down(lens, 11 * std::sqrt(2.0)))(0, 0);
         // sin^2 against the paraxial 1 / (4 N^2): 0.2% at f/11, and what pupil aberration a lens has there.
-        CHECK(at_11 / at_16 == doctest::Approx(2).epsilon(0.01));
+        CHECK(at_11 / at_16 == about(2, 0.01));
     }
 }

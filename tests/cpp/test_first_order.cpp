@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../../cpp/optics/paraxial.hpp"
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "traced_ray.hpp"
 
@@ -16,8 +17,8 @@ using namespace realcam::test;
 // Half a unit of the last printed digit.
 constexpr double kFourDigits = 0.5e-4;
 
-// The lens file has the indices that the listing prints, with six decimals: each may be off by half a unit of the
-// last. This is what all of them together can change in a first-order figure.
+// The lens file has the indices that the listing prints, with six decimals: each may be off by half a unit of
+// the last. This is what all of them together can change in a first-order figure.
 template <class Figure>
 double effect_of_printed_indices(const LensSystem& lens, double wavelength_nm, Figure&& figure) {
     const double value = figure(first_order(lens, wavelength_nm));
@@ -56,11 +57,12 @@ TEST_CASE("first-order data of the CODE V double Gauss to the printed digits") {
     check_printed(lens, [](const FirstOrder& d) { return d.entrance_pupil_position; }, 57.9120, kFourDigits);
     check_printed(lens, [](const FirstOrder& d) { return d.exit_pupil_diameter; }, 57.3201, kFourDigits);
     const double last = lens.last_vertex();
-    CHECK(last == doctest::Approx(77.9674).epsilon(kFourDigits / 78));
+    CHECK(last == about(77.9674, kFourDigits / 78));
     check_printed(lens, [&](const FirstOrder& d) { return d.exit_pupil_position - last; }, -53.1569, kFourDigits);
 }
 
-// The same listing, command FIO: marginal ray (height 25) and chief ray (slope 0.249328 at the entrance pupil).
+// The same listing, command FIO: marginal ray (height 25) and chief ray (slope 0.249328 at the entrance
+// pupil).
 TEST_CASE("paraxial rays of the CODE V double Gauss, surface by surface") {
     struct Row {
         double marginal_height, marginal_slope, chief_height, chief_slope;
@@ -79,8 +81,8 @@ TEST_CASE("paraxial rays of the CODE V double Gauss, surface by surface") {
         const int last = static_cast<int>(i) + 1;
         const ParaxialRay marginal = trace_paraxial(lens, lens.wavelength_nm, {25, 0}, 0, last);
         const ParaxialRay chief = trace_paraxial(lens, lens.wavelength_nm, {-14.439084, 0.249328}, 0, last);
-        // Indices with six decimals change slopes by up to 1e-6, and heights by that over the 78 mm of the lens; the
-        // chief ray starts from printed figures too.
+        // Indices with six decimals change slopes by up to 1e-6, and heights by that over the 78 mm of the
+        // lens; the chief ray starts from printed figures too.
         CHECK(std::fabs(marginal.height - rows[i].marginal_height) < 4e-5);
         CHECK(std::fabs(marginal.slope - rows[i].marginal_slope) < 1e-6);
         CHECK(std::fabs(chief.height - rows[i].chief_height) < 4e-5);
@@ -88,17 +90,16 @@ TEST_CASE("paraxial rays of the CODE V double Gauss, surface by surface") {
     }
 }
 
-// Computed from the published tables by two programs that agree; lenses with one index a glass, so nothing but the
-// printed digits is uncertain. Sources of the tables: the lens files.
+// Computed from the published tables by two programs that agree; lenses with one index a glass, so nothing
+// but the printed digits is uncertain. Sources of the tables: the lens files.
 TEST_CASE("four classic prescriptions to the printed digits") {
     struct Printed {
         std::string name;
         double focal_length, back_focal_distance, f_number;
     };
-    for (const Printed& p : {Printed{"double-gauss-50mm", 50.3582, 36.1059, 2.03},
-                             Printed{"wide-22mm", 22.0235, 14.3183, 2.68},
-                             Printed{"fisheye-10mm", 9.9914, 23.1605, 3.95},
-                             Printed{"telephoto-250mm", 249.5666, 105.0704, 5.42}}) {
+    for (const Printed& p :
+         {Printed{"double-gauss-50mm", 50.3582, 36.1059, 2.03}, Printed{"wide-22mm", 22.0235, 14.3183, 2.68},
+          Printed{"fisheye-10mm", 9.9914, 23.1605, 3.95}, Printed{"telephoto-250mm", 249.5666, 105.0704, 5.42}}) {
         CAPTURE(p.name);
         const FirstOrder data = first_order(io::read_lens(p.name), kLineD_nm);
         CHECK(std::fabs(data.effective_focal_length - p.focal_length) <= kFourDigits);
@@ -121,11 +122,12 @@ TEST_CASE("the double Gauss at f/5 and the singlet as OpticStudio has them") {
     check_printed(at_f5, [&](const FirstOrder& d) { return d.exit_pupil_position - image; }, -114.6444, kFourDigits);
 
     const FirstOrder singlet = first_order(io::read_lens("singlet-100mm"), kLineD_nm);
-    // The index is a fit of the maker's power series, within 5e-6 as the catalogue states: 1e-5 of n - 1 = 0.69.
-    CHECK(singlet.effective_focal_length == doctest::Approx(101.501826).epsilon(1e-5));
-    CHECK(singlet.f_number == doctest::Approx(4.060073).epsilon(1e-5));
+    // The index is a fit of the maker's power series, within 5e-6 as the catalogue states: 1e-5 of n - 1 =
+    // 0.69.
+    CHECK(singlet.effective_focal_length == about(101.501826, 1e-5));
+    CHECK(singlet.f_number == about(4.060073, 1e-5));
     // The stop is the last plane, so it is the exit pupil itself; its radius is given with six digits.
-    CHECK(singlet.exit_pupil_diameter == doctest::Approx(23.39711).epsilon(5e-6));
+    CHECK(singlet.exit_pupil_diameter == about(23.39711, 5e-6));
 }
 
 TEST_CASE("a thick lens has the lensmaker's focal length and focal distances") {
@@ -137,25 +139,26 @@ TEST_CASE("a thick lens has the lensmaker's focal length and focal distances") {
                                                      refracting(r2, 0, Glass::air(), 5), stop_plane(0, 5)});
                     const double power = (n - 1) * (1 / r1 - 1 / r2 + (n - 1) * d / (n * r1 * r2));
                     const FirstOrder data = first_order(lens, kLineD_nm);
-                    // Rounding of some ten operations in double precision, where the powers may nearly cancel.
-                    CHECK(data.effective_focal_length == doctest::Approx(1 / power).epsilon(1e-12));
+                    // Rounding of some ten operations in double precision, where the powers may nearly
+                    // cancel.
+                    CHECK(data.effective_focal_length == about(1 / power, 1e-12));
                     const double back = (1 - (n - 1) * d / (n * r1)) / power;
-                    CHECK(data.back_focal_distance == doctest::Approx(back).epsilon(1e-12));
+                    CHECK(data.back_focal_distance == about(back, 1e-12));
                     const double front = -(1 + (n - 1) * d / (n * r2)) / power;
-                    CHECK(data.front_focal_distance == doctest::Approx(front).epsilon(1e-12));
+                    CHECK(data.front_focal_distance == about(front, 1e-12));
                 }
 }
 
 TEST_CASE("a Cassegrain telescope has the focal length of two separated mirrors") {
-    // f1 = 200 (concave), f2 = -75 (convex), 150 apart: 1/f = 1/f1 + 1/f2 - d/(f1 f2) = 1/600, and the image lies
-    // f (1 - d/f1) = 150 behind the secondary.
+    // f1 = 200 (concave), f2 = -75 (convex), 150 apart: 1/f = 1/f1 + 1/f2 - d/(f1 f2) = 1/600, and the image
+    // lies f (1 - d/f1) = 150 behind the secondary.
     Surface primary = refracting(-400, -150, Glass::air(), 30), secondary = refracting(-150, 0, Glass::air(), 10);
     primary.type = secondary.type = SurfaceType::mirror;
     const LensSystem lens = lens_of({stop_plane(150, 30), primary, secondary});
     const FirstOrder data = first_order(lens, kLineD_nm);
-    CHECK(data.effective_focal_length == doctest::Approx(600).epsilon(1e-13));
-    CHECK(data.back_focal_distance == doctest::Approx(150).epsilon(1e-13));
-    CHECK(data.f_number == doctest::Approx(10).epsilon(1e-13));
+    CHECK(data.effective_focal_length == about(600, 1e-13));
+    CHECK(data.back_focal_distance == about(150, 1e-13));
+    CHECK(data.f_number == about(10, 1e-13));
 }
 
 TEST_CASE("object and image distances obey Newton's equation") {
@@ -168,7 +171,8 @@ TEST_CASE("object and image distances obey Newton's equation") {
             // x x' = -f^2, x and x' from the focal points.
             const double object = -data.front_focal_distance + std::fabs(f) / magnification;
             const double image = data.back_focal_distance + std::fabs(f) * magnification;
-            // The image distance is a difference of terms that may be a hundred times larger (far front focus).
+            // The image distance is a difference of terms that may be a hundred times larger (far front
+            // focus).
             const double found = paraxial_image_distance(lens, lens.wavelength_nm, object);
             CHECK(std::fabs(found - image) < 1e-10 * (std::fabs(image) + std::fabs(f)));
         }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "traced_ray.hpp"
 
@@ -12,8 +13,9 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-// RMS distance from the axis, on a plane behind the last vertex, of the rays of an axial object point. The object lies
-// `object_distance` in front of the first vertex; the rays fill the entrance pupil on a spiral, evenly in area.
+// RMS distance from the axis, on a plane behind the last vertex, of the rays of an axial object point. The
+// object lies `object_distance` in front of the first vertex; the rays fill the entrance pupil on a spiral,
+// evenly in area.
 double rms_spot(const LensSystem& lens, double object_distance, double plane) {
     const RayTracer trace(lens, LightDirection::to_film);
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
@@ -39,9 +41,9 @@ double rms_spot(const LensSystem& lens, double object_distance, double plane) {
 void check_best_focus(const LensSystem& lens) {
     const double object = lens.focus_distance - lens.film_position();  // the object plane to film is what was asked
     const double best = rms_spot(lens, object, lens.film_distance);
-    // The squared spot is a parabola of the plane: its middle lies between two planes that have the same spot. A
-    // hundredth of the diffraction-limited depth of focus, 2 lambda N^2, is 0.05 mm at f/5.6 and 0.005 at f/2: the
-    // steps here are of that size.
+    // The squared spot is a parabola of the plane: its middle lies between two planes that have the same
+    // spot. A hundredth of the diffraction-limited depth of focus, 2 lambda N^2, is 0.05 mm at f/5.6 and
+    // 0.005 at f/2: the steps here are of that size.
     const double f_number = first_order(lens, lens.wavelength_nm).f_number;
     const double step = 2 * 0.00055 * f_number * f_number;
     const double before = rms_spot(lens, object, lens.film_distance - step);
@@ -50,8 +52,8 @@ void check_best_focus(const LensSystem& lens) {
     CHECK(after > best);
     const double a = before * before + after * after - 2 * best * best;
     const double middle = 0.5 * step * (before * before - after * after) / a;
-    // Of its 256 heights about half pass, so the edge of the pupil is uncertain by 1/250 of its area; with half a
-    // millimetre of spherical aberration, as at f/2 here, that moves the focus by a few um.
+    // Of its 256 heights about half pass, so the edge of the pupil is uncertain by 1/250 of its area; with
+    // half a millimetre of spherical aberration, as at f/2 here, that moves the focus by a few um.
     CHECK(std::fabs(middle) < 0.3 * step);
 }
 
@@ -65,12 +67,14 @@ std::string message_of(F&& f) {
     return "(no error)";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 // Biconvex, nearly thin, so slow that only paraxial rays pass.
 LensSystem nearly_thin_lens() {
-    return lens_of({stop_plane(0, 0.25), refracting(100, 0.001, Glass::constant(1.5), 5),
-                    refracting(-100, 0, Glass::air(), 5)});
+    return lens_of(
+        {stop_plane(0, 0.25), refracting(100, 0.001, Glass::constant(1.5), 5), refracting(-100, 0, Glass::air(), 5)});
 }
 
 }  // namespace
@@ -81,11 +85,11 @@ TEST_CASE("a thin lens obeys the thin-lens equation") {
         const LensSystem lens = focused(nearly_thin_lens(), focus);
         const double image = lens.film_distance, object = focus - image;
         // 0.001 mm of glass; spherical aberration of f/200 is smaller.
-        CHECK(1 / object + 1 / image == doctest::Approx(1 / f).epsilon(2e-5));
+        CHECK(1 / object + 1 / image == about(1 / f, 2e-5));
         CHECK(object >= image);  // the photographic one of the two solutions
         CHECK(lens.focus_distance == focus);
     }
-    CHECK(focused(nearly_thin_lens(), kInfinity).film_distance == doctest::Approx(f).epsilon(2e-5));
+    CHECK(focused(nearly_thin_lens(), kInfinity).film_distance == about(f, 2e-5));
 }
 
 TEST_CASE("every bundled lens has its sharpest plane on the film, focused far and near") {
@@ -115,12 +119,13 @@ TEST_CASE("inner focusing moves the group by the patent's travel, and nothing el
     lens.focusing.nearest_mm = 0;
     const LensSystem near = focused(lens, 2499.6);
     const double travel = near.surfaces[9].thickness - lens.surfaces[9].thickness;
-    // The patent's are paraxial; here both ends are best focus of f/1.86, whose depth of focus of 2 lambda N^2 =
-    // 0.004 mm and spherical aberration of a few hundredths the group's sensitivity of about 2.5 divides.
-    CHECK(travel == doctest::Approx(14.49).epsilon(0.01));
-    CHECK(near.surfaces[12].thickness - lens.surfaces[12].thickness == doctest::Approx(-travel).epsilon(1e-12));
+    // The patent's are paraxial; here both ends are best focus of f/1.86, whose depth of focus of 2 lambda
+    // N^2 = 0.004 mm and spherical aberration of a few hundredths the group's sensitivity of about 2.5
+    // divides.
+    CHECK(travel == about(14.49, 0.01));
+    CHECK(near.surfaces[12].thickness - lens.surfaces[12].thickness == about(-travel, 1e-12));
     CHECK(near.film_distance == lens.film_distance);
-    CHECK(near.last_vertex() == doctest::Approx(lens.last_vertex()).epsilon(1e-14));
+    CHECK(near.last_vertex() == about(lens.last_vertex(), 1e-14));
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
         if (i != 9 && i != 12) CHECK(near.surfaces[i].thickness == lens.surfaces[i].thickness);
 }
@@ -140,14 +145,15 @@ TEST_CASE("focus that a lens cannot reach is refused with its reason") {
     CHECK(contains(near, "0.4 m"));
     CHECK(message_of([&] { focused(thin, 400.01); }) == "(no error)");
     const LensSystem inner = io::read_lens("telephoto-200mm-inner-focus");
-    CHECK(contains(message_of([&] { focused(inner, 2400); }), "the nearest focus of lens \"telephoto-200mm-inner-focus\" is 2.5 m"));
+    CHECK(contains(message_of([&] { focused(inner, 2400); }),
+                   "the nearest focus of lens \"telephoto-200mm-inner-focus\" is 2.5 m"));
     LensSystem free = inner;
     free.focusing.nearest_mm = 0;
     CHECK(contains(message_of([&] { focused(free, 400); }), "surfaces 11 to 13"));
     for (const double wrong : {0.0, -1000.0, std::numeric_limits<double>::quiet_NaN(), -kInfinity})
         CHECK(contains(message_of([&] { focused(thin, wrong); }), "a positive distance or inf is wanted"));
-    const LensSystem diverging = lens_of({stop_plane(0, 2), refracting(-50, 1, Glass::constant(1.5), 5),
-                                          refracting(50, 0, Glass::air(), 5)});
+    const LensSystem diverging =
+        lens_of({stop_plane(0, 2), refracting(-50, 1, Glass::constant(1.5), 5), refracting(50, 0, Glass::air(), 5)});
     CHECK(contains(message_of([&] { focused(diverging, kInfinity); }), "no real image"));
     CHECK(message_of([&] { focused(diverging, 2000); }) != "(no error)");
 }
@@ -159,8 +165,8 @@ TEST_CASE("stopping down divides the entrance pupil by the f-number") {
         const FirstOrder open = first_order(lens, lens.wavelength_nm);
         for (const double f_number : {8.0, 11.0, 22.0}) {
             const FirstOrder data = first_order(stopped_down(lens, f_number), lens.wavelength_nm);
-            CHECK(data.f_number == doctest::Approx(f_number).epsilon(1e-12));
-            CHECK(data.entrance_pupil_diameter * f_number == doctest::Approx(std::fabs(open.effective_focal_length)).epsilon(1e-12));
+            CHECK(data.f_number == about(f_number, 1e-12));
+            CHECK(data.entrance_pupil_diameter * f_number == about(std::fabs(open.effective_focal_length), 1e-12));
             CHECK(data.entrance_pupil_position == open.entrance_pupil_position);
         }
         // The diaphragm opens again.

@@ -8,11 +8,13 @@
 #include "../../cpp/error.hpp"
 #include "../../cpp/io/bundled_lenses.hpp"
 #include "../../cpp/io/lens_file.hpp"
+#include "about.hpp"
 #include "doctest/doctest.h"
 
 namespace {
 
 using namespace realcam;
+using namespace realcam::test;
 
 std::string complaint(const std::string& name) {
     try {
@@ -23,7 +25,9 @@ std::string complaint(const std::string& name) {
     return "(no error)";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -46,7 +50,7 @@ TEST_CASE("N-BK7 has the indices of its data sheet at every line") {
 }
 
 TEST_CASE("a name that several makers use must say which; each has its own index") {
-    CHECK(io::catalogue_glass("schott:F4").index(kLineD_nm) == doctest::Approx(1.616592).epsilon(0.5e-6));
+    CHECK(io::catalogue_glass("schott:F4").index(kLineD_nm) == about(1.616592, 0.5e-6));
     // CDGM's is a fit of its power series, within 5e-6 as the catalogue states.
     CHECK(std::fabs(io::catalogue_glass("cdgm:F4").index(kLineD_nm) - 1.620047) < 5.5e-6);
     const std::string message = complaint("F4");
@@ -89,8 +93,8 @@ TEST_CASE("a glass by index and Abbe number has both") {
         for (const double abbe : {20.0, 64.17, 95.0}) {
             const Glass glass = Glass::from_abbe_number(n_d, abbe);
             const double spread = glass.index(kLineF_nm) - glass.index(kLineC_nm);
-            CHECK(glass.index(kLineD_nm) == doctest::Approx(n_d).epsilon(1e-15));
-            CHECK((n_d - 1) / spread == doctest::Approx(abbe).epsilon(1e-12));  // spread cancels three digits
+            CHECK(glass.index(kLineD_nm) == about(n_d, 1e-15));
+            CHECK((n_d - 1) / spread == about(abbe, 1e-12));  // spread cancels three digits
         }
 }
 
@@ -98,9 +102,9 @@ TEST_CASE("formulas give what they say") {
     CHECK(Glass::constant(1.7).index(450) == 1.7);
     CHECK(Glass::air().is_air());
     // n = A + B / l^2 + C / l^4 at l = 0.5 um.
-    CHECK(Glass::cauchy({1.5, 0.004, 0.0001}).index(500) == doctest::Approx(1.5 + 0.016 + 0.0016).epsilon(1e-15));
+    CHECK(Glass::cauchy({1.5, 0.004, 0.0001}).index(500) == about(1.5 + 0.016 + 0.0016, 1e-15));
     // n^2 = 1 + B l^2 / (l^2 - C).
-    CHECK(Glass::sellmeier({{1.25, 0.05}}).index(500) == doctest::Approx(std::sqrt(1 + 1.25 * 0.25 / 0.2)).epsilon(1e-15));
+    CHECK(Glass::sellmeier({{1.25, 0.05}}).index(500) == about(std::sqrt(1 + 1.25 * 0.25 / 0.2), 1e-15));
     CHECK(std::isnan(Glass::sellmeier({{1.25, 0.3}}).index(500)));  // below its resonance: no real index
 }
 
@@ -110,25 +114,27 @@ TEST_CASE("a table of indices is met at its points, and by a cubic in 1/l^2 betw
         return 1.5 + 0.004 * x + 2e-4 * x * x - 1e-5 * x * x * x;
     };
     std::vector<Glass::TablePoint> points;
-    for (const double nm : {656.0, 400.0, 780.0, 486.0, 588.0, 365.0, 436.0}) points.push_back({nm, cubic(nm)});  // unsorted
+    for (const double nm : {656.0, 400.0, 780.0, 486.0, 588.0, 365.0, 436.0})
+        points.push_back({nm, cubic(nm)});  // unsorted
     const Glass glass = Glass::table(points);
     for (double nm = 340; nm <= 850; nm += 7) {
         CAPTURE(nm);
         // Rounding, of Lagrange weights up to a few tens outside the points.
         CHECK(std::fabs(glass.index(nm) - cubic(nm)) < 1e-13);
     }
-    for (const Glass::TablePoint& p : points) CHECK(glass.index(p.wavelength_nm) == doctest::Approx(p.index).epsilon(1e-15));
+    for (const Glass::TablePoint& p : points) CHECK(glass.index(p.wavelength_nm) == about(p.index, 1e-15));
 
     // With fewer points, the polynomial through all of them.
     CHECK(Glass::table({{500, 1.6}}).index(700) == 1.6);
     const Glass line = Glass::table({{500, 1.6}, {1000, 1.57}});  // x = 4 and 1
-    CHECK(line.index(1e3 / std::sqrt(2.5)) == doctest::Approx(1.585).epsilon(1e-14));
+    CHECK(line.index(1e3 / std::sqrt(2.5)) == about(1.585, 1e-14));
 }
 
 TEST_CASE("a table stays close to the glass that it was made from") {
     const Glass glass = io::catalogue_glass("schott:SF6");
     std::vector<Glass::TablePoint> points;
-    for (const double nm : {365.0, 405.0, 436.0, 486.0, 546.0, 588.0, 656.0, 707.0, 852.0}) points.push_back({nm, glass.index(nm)});
+    for (const double nm : {365.0, 405.0, 436.0, 486.0, 546.0, 588.0, 656.0, 707.0, 852.0})
+        points.push_back({nm, glass.index(nm)});
     const Glass table = Glass::table(points);
     // A cubic's error between the lines of a data sheet, for the most dispersive of the common glasses.
     for (double nm = 380; nm <= 780; nm += 5) CHECK(std::fabs(table.index(nm) - glass.index(nm)) < 2e-5);

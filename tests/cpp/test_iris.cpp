@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "traced_ray.hpp"
 
@@ -47,9 +48,10 @@ TEST_CASE("blades leave open the area of the circle that the f-number means") {
                 CAPTURE(rounding);
                 CAPTURE(radius);
                 const double wanted = M_PI * radius * radius;
-                // The grid's cells are 4e-4 mm^2; of those on the edge, up to 40 mm long, half a cell too many or too
-                // few each, at random: sqrt(2000) / 2 cells.
-                CHECK(std::fabs(open_area(stop_with_blades(blades, rounding, 0.3, radius)) - wanted) < 0.01 * std::sqrt(wanted));
+                // The grid's cells are 4e-4 mm^2; of those on the edge, up to 40 mm long, half a cell too
+                // many or too few each, at random: sqrt(2000) / 2 cells.
+                CHECK(std::fabs(open_area(stop_with_blades(blades, rounding, 0.3, radius)) - wanted) <
+                      0.01 * std::sqrt(wanted));
             }
 }
 
@@ -108,5 +110,5 @@ TEST_CASE("half rounded blades lie between the polygon and the circle") {
     CHECK(corner < straight / std::cos(M_PI / 6) * 0.995);
     // The edge of a blade is an arc of radius apothem / rounding about a point on the blade's own axis.
     const double radius = middle / 0.5, centre = middle - radius, r = edge(0.2);
-    CHECK(std::hypot(r * std::cos(0.2) - centre, r * std::sin(0.2)) == doctest::Approx(radius).epsilon(1e-9));
+    CHECK(std::hypot(r * std::cos(0.2) - centre, r * std::sin(0.2)) == about(radius, 1e-9));
 }

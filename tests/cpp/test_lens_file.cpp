@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../../cpp/io/bundled_lenses.hpp"
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "traced_ray.hpp"
 
@@ -18,26 +19,25 @@ using namespace realcam;
 using namespace realcam::test;
 
 // A lens file that can be read, line by line; tests change single lines of it.
-const std::vector<std::string> kGoodLines = {
-    "format = 1",                      // 1
-    "name = \"probe\"",                // 2
-    "film_distance_mm = 50.0",         // 3
-    "",                                // 4
-    "[[surface]]",                     // 5
-    "radius_of_curvature_mm = 50.0",   // 6
-    "thickness_mm = 4.0",              // 7
-    "material = 1.5",                  // 8
-    "clear_semi_diameter_mm = 8.0",    // 9
-    "",                                // 10
-    "[[surface]]",                     // 11
-    "type = \"stop\"",                 // 12
-    "thickness_mm = 1.0",              // 13
-    "clear_semi_diameter_mm = 6.0",    // 14
-    "",                                // 15
-    "[[surface]]",                     // 16
-    "radius_of_curvature_mm = -60.0",  // 17
-    "clear_semi_diameter_mm = 8.0",    // 18
-    ""};                               // 19
+const std::vector<std::string> kGoodLines = {"format = 1",                      // 1
+                                             "name = \"probe\"",                // 2
+                                             "film_distance_mm = 50.0",         // 3
+                                             "",                                // 4
+                                             "[[surface]]",                     // 5
+                                             "radius_of_curvature_mm = 50.0",   // 6
+                                             "thickness_mm = 4.0",              // 7
+                                             "material = 1.5",                  // 8
+                                             "clear_semi_diameter_mm = 8.0",    // 9
+                                             "",                                // 10
+                                             "[[surface]]",                     // 11
+                                             "type = \"stop\"",                 // 12
+                                             "thickness_mm = 1.0",              // 13
+                                             "clear_semi_diameter_mm = 6.0",    // 14
+                                             "",                                // 15
+                                             "[[surface]]",                     // 16
+                                             "radius_of_curvature_mm = -60.0",  // 17
+                                             "clear_semi_diameter_mm = 8.0",    // 18
+                                             ""};                               // 19
 
 std::string joined(const std::vector<std::string>& lines) {
     std::string text;
@@ -70,7 +70,9 @@ std::string complaint_about_name(const std::string& name) {
     return "(no error)";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 // The message begins with its place and contains what is wrong.
 void check_complaint(const std::string& text, const std::string& place, const std::string& part) {
@@ -101,21 +103,29 @@ TEST_CASE("the lens that the bad ones are made from is good") {
 }
 
 TEST_CASE("bad numbers of a surface are named with file, line and surface") {
-    check_complaint(with_line(9, "clear_semi_diameter_mm = -8.0"), "probe.toml:5: surface 1", "a positive length is wanted");
-    check_complaint(with_line(9, "clear_semi_diameter_mm = 0.0"), "probe.toml:5: surface 1", "a positive length is wanted");
-    check_complaint(with_line(14, "clear_semi_diameter_mm = nan"), "probe.toml:14: surface 2", "must be a finite number");
-    check_complaint(with_line(18, "clear_semi_diameter_mm = 61.0"), "probe.toml:16: surface 3", "larger than the surface, which ends at 60. mm");
+    check_complaint(with_line(9, "clear_semi_diameter_mm = -8.0"), "probe.toml:5: surface 1",
+                    "a positive length is wanted");
+    check_complaint(with_line(9, "clear_semi_diameter_mm = 0.0"), "probe.toml:5: surface 1",
+                    "a positive length is wanted");
+    check_complaint(with_line(14, "clear_semi_diameter_mm = nan"), "probe.toml:14: surface 2",
+                    "must be a finite number");
+    check_complaint(with_line(18, "clear_semi_diameter_mm = 61.0"), "probe.toml:16: surface 3",
+                    "larger than the surface, which ends at 60. mm");
     check_complaint(with_line(7, "thickness_mm = -4.0"), "probe.toml:5: surface 1", "the thickness is negative");
     check_complaint(with_line(7, "thickness_mm = nan"), "probe.toml:7: surface 1", "must be a finite number");
     check_complaint(with_line(7, "thickness_mm = inf"), "probe.toml:7: surface 1", "must be a finite number");
     check_complaint(with_line(7, "thickness_mm = \"4\""), "probe.toml:7: surface 1", "must be a finite number");
     check_complaint(with_line(7, ""), "probe.toml:5: surface 1", "\"thickness_mm\" is missing");
-    check_complaint(with_line(19, "thickness_mm = 2.0"), "probe.toml:19: surface 3", "the last surface has no \"thickness_mm\"");
+    check_complaint(with_line(19, "thickness_mm = 2.0"), "probe.toml:19: surface 3",
+                    "the last surface has no \"thickness_mm\"");
     check_complaint(with_line(9, ""), "probe.toml:5: surface 1", "\"clear_semi_diameter_mm\" is missing");
-    check_complaint(with_line(6, "radius_of_curvature_mm = 0"), "probe.toml:6: surface 1", "a radius of curvature of 0 is no surface");
+    check_complaint(with_line(6, "radius_of_curvature_mm = 0"), "probe.toml:6: surface 1",
+                    "a radius of curvature of 0 is no surface");
     check_complaint(with_line(6, "radius_of_curvature_mm = nan"), "probe.toml:6: surface 1", "must be a finite number");
-    check_complaint(with_line(10, "inner_semi_diameter_mm = 8.0"), "probe.toml:5: surface 1", "less than the clear semi-diameter");
-    check_complaint(with_line(10, "aspheric_coefficients = { 5 = 1e-5 }"), "probe.toml:10: surface 1", "even powers from 4 to 18");
+    check_complaint(with_line(10, "inner_semi_diameter_mm = 8.0"), "probe.toml:5: surface 1",
+                    "less than the clear semi-diameter");
+    check_complaint(with_line(10, "aspheric_coefficients = { 5 = 1e-5 }"), "probe.toml:10: surface 1",
+                    "even powers from 4 to 18");
     check_complaint(with_line(10, "aspheric_coefficients = { 4 = nan }"), "probe.toml:10: surface 1", "r^4");
     check_complaint(with_line(10, "conic = inf"), "probe.toml:10: surface 1", "must be a finite number");
     check_complaint(with_line(12, "type = \"stopp\""), "probe.toml:12: surface 2", "unknown type \"stopp\"");
@@ -133,23 +143,30 @@ TEST_CASE("bad materials are named with file, line and surface") {
     check_complaint(with_line(8, "material = [1.5]"), "probe.toml:8: surface 1", "an array of 2 numbers");
     check_complaint(with_line(8, "material = \"N-BK77\""), "probe.toml:8: surface 1", "\"N-BK7\"");
     check_complaint(with_line(8, "material = \"F4\""), "probe.toml:8: surface 1", "several catalogues");
-    check_complaint(with_line(8, "material = \"schott:N-XX99\""), "probe.toml:8: surface 1", "unknown glass \"schott:N-XX99\"");
+    check_complaint(with_line(8, "material = \"schott:N-XX99\""), "probe.toml:8: surface 1",
+                    "unknown glass \"schott:N-XX99\"");
     check_complaint(with_line(8, "type = \"mirror\""), "probe.toml:5: surface 1", "light travels back behind a mirror");
     check_complaint(with_line(19, "type = \"mirror\""), "probe.toml", "odd number of mirrors");
-    check_complaint(with_line(19, "type = \"mirror\"\nmaterial = 1.5"), "probe.toml:20: surface 3", "a mirror has no material");
+    check_complaint(with_line(19, "type = \"mirror\"\nmaterial = 1.5"), "probe.toml:20: surface 3",
+                    "a mirror has no material");
     const std::string own = "[glass.OWN]\n";
     check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\n", "probe.toml:20", "wanted together");
-    check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\nV_d = 0.0\n", "probe.toml:22", "must be positive");
-    check_complaint(with_line(8, "material = \"OWN\"") + own + "index = 1.5\ncauchy = [1.5]\n", "probe.toml:20", "exactly one of");
-    check_complaint(with_line(8, "material = \"OWN\"") + own + "table = [[500, 1.5], [500, 1.6]]\n", "probe.toml:21", "twice");
-    check_complaint(with_line(8, "material = \"OWN\"") + own + "sellmeier = { B = [1.0, 2.0], C = [0.01] }\n", "probe.toml:21", "equally many");
+    check_complaint(with_line(8, "material = \"OWN\"") + own + "n_d = 1.5\nV_d = 0.0\n", "probe.toml:22",
+                    "must be positive");
+    check_complaint(with_line(8, "material = \"OWN\"") + own + "index = 1.5\ncauchy = [1.5]\n", "probe.toml:20",
+                    "exactly one of");
+    check_complaint(with_line(8, "material = \"OWN\"") + own + "table = [[500, 1.5], [500, 1.6]]\n", "probe.toml:21",
+                    "twice");
+    check_complaint(with_line(8, "material = \"OWN\"") + own + "sellmeier = { B = [1.0, 2.0], C = [0.01] }\n",
+                    "probe.toml:21", "equally many");
 }
 
 TEST_CASE("bad lenses are named with their file") {
     check_complaint(with_line(12, "type = \"aperture\""), "probe.toml", "0 surfaces of type \"stop\"");
     check_complaint(joined(kGoodLines) + "type = \"stop\"\n", "probe.toml:17: surface 3", "unknown key");
     std::vector<std::string> two = kGoodLines;
-    two.insert(two.begin() + 14, {"[[surface]]", "type = \"stop\"", "thickness_mm = 1.0", "clear_semi_diameter_mm = 6.0"});
+    two.insert(two.begin() + 14,
+               {"[[surface]]", "type = \"stop\"", "thickness_mm = 1.0", "clear_semi_diameter_mm = 6.0"});
     check_complaint(joined(two), "probe.toml", "2 surfaces of type \"stop\"; exactly one is wanted");
     check_complaint(with_line(3, "film_distance_mm = -5.0"), "probe.toml:3", "the film lies behind the last surface");
     check_complaint(with_line(3, "film_distance_mm = 0.0"), "probe.toml:3", "the film lies behind the last surface");
@@ -205,12 +222,21 @@ TEST_CASE("a lens that is not there is named, with the nearest names") {
 
 TEST_CASE("every bundled lens is valid, cites its source, and has the focal length that the source states") {
     // As the lens files' sources state them; of the four classics, the figures of test_first_order.cpp.
-    const std::vector<std::pair<std::string, double>> stated = {
-        {"achromat-75mm", 75}, {"cooke-triplet-50mm", 50}, {"double-gauss-100mm", 100.0038},
-        {"double-gauss-50mm", 50.3582}, {"fisheye-10mm", 9.9914}, {"fisheye-6mm-220deg", 6},
-        {"mirror-telephoto-500mm", 499.482}, {"phone-4mm", 4.10}, {"singlet-100mm", 101.501826}, {"sonnar-50mm", 50},
-        {"telephoto-200mm-inner-focus", 200}, {"telephoto-250mm", 249.5666}, {"tessar-50mm", 50}, {"wide-22mm", 22.0235},
-        {"zoom-70-210mm-at-70mm", 70.55}};
+    const std::vector<std::pair<std::string, double>> stated = {{"achromat-75mm", 75},
+                                                                {"cooke-triplet-50mm", 50},
+                                                                {"double-gauss-100mm", 100.0038},
+                                                                {"double-gauss-50mm", 50.3582},
+                                                                {"fisheye-10mm", 9.9914},
+                                                                {"fisheye-6mm-220deg", 6},
+                                                                {"mirror-telephoto-500mm", 499.482},
+                                                                {"phone-4mm", 4.10},
+                                                                {"singlet-100mm", 101.501826},
+                                                                {"sonnar-50mm", 50},
+                                                                {"telephoto-200mm-inner-focus", 200},
+                                                                {"telephoto-250mm", 249.5666},
+                                                                {"tessar-50mm", 50},
+                                                                {"wide-22mm", 22.0235},
+                                                                {"zoom-70-210mm-at-70mm", 70.55}};
     const std::vector<std::string> names = io::lens_names();
     CHECK(names.size() >= 12);
     for (const std::string& name : names) {
@@ -227,6 +253,6 @@ TEST_CASE("every bundled lens is valid, cites its source, and has the focal leng
         CAPTURE(name);
         // Nominal figures and prescriptions with four to five digits: 0.2%.
         CHECK(first_order(io::read_lens(name), io::read_lens(name).wavelength_nm).effective_focal_length ==
-              doctest::Approx(focal_length).epsilon(0.002));
+              about(focal_length, 0.002));
     }
 }

@@ -1,4 +1,5 @@
-// Real rays: against the printed rays of a lens-design program, back along themselves, and in every block size.
+// Real rays: against the printed rays of a lens-design program, back along themselves, and in every block
+// size.
 
 #include <cmath>
 #include <string>
@@ -14,9 +15,9 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-// The lens of the listing with rims so wide that nothing is vignetted (its rays are traced with vignetting factors).
-// Glasses by the maker's dispersion formulas, as the program has them: the six decimals of index that it prints would
-// leave 3e-5 mm. Each formula gives the printed index.
+// The lens of the listing with rims so wide that nothing is vignetted (its rays are traced with vignetting
+// factors). Glasses by the maker's dispersion formulas, as the program has them: the six decimals of index
+// that it prints would leave 3e-5 mm. Each formula gives the printed index.
 LensSystem code_v_lens() {
     LensSystem lens = io::read_lens("double-gauss-100mm");
     for (Surface& s : lens.surfaces) {
@@ -105,7 +106,8 @@ TEST_CASE("real rays of the CODE V double Gauss, surface by surface") {
     const std::vector<double> n = lens.indices(lens.wavelength_nm);
     for (const CodeVRay& ray : code_v_rays()) {
         CAPTURE(ray.name);
-        // The listing starts at an object at infinity; here at its point on surface 1, from half a millimetre before.
+        // The listing starts at an object at infinity; here at its point on surface 1, from half a millimetre
+        // before.
         const Vec3d direction = normalized(Vec3d{0, std::tan(ray.field_deg * M_PI / 180), 1});
         const CodeVRow& first = ray.rows[0];
         const Vec3d start = Vec3d{first.x, first.y, first.z} - 0.5 * direction;
@@ -127,7 +129,8 @@ TEST_CASE("real rays of the CODE V double Gauss, surface by surface") {
             CHECK(std::fabs(p.x - row.x) < 1e-5);
             CHECK(std::fabs(p.y - row.y) < 1e-5);
             CHECK(std::fabs(p.z - row.z) < 1e-5);
-            // The indices' half digit, 0.5e-6, changes each tangent by at most itself times the tangent of incidence.
+            // The indices' half digit, 0.5e-6, changes each tangent by at most itself times the tangent of
+            // incidence.
             CHECK(std::fabs(d.x / d.z - row.tan_x) < 3e-6);
             CHECK(std::fabs(d.y / d.z - row.tan_y) < 3e-6);
             // Both ends of each length are printed points.
@@ -179,8 +182,8 @@ TEST_CASE("every block size gives the same result") {
         const Batch batch = random_film_rays(lens, 2000, 3);
         const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
         const auto one = trace_in_blocks<double, 1>(path, batch);
-        // The lanes do the same arithmetic; a compiler may fuse a multiplication and an addition in one of the loops
-        // and not in the other, which rounding amplified by the lens then shows.
+        // The lanes do the same arithmetic; a compiler may fuse a multiplication and an addition in one of
+        // the loops and not in the other, which rounding amplified by the lens then shows.
         CHECK(largest_difference(one, trace_in_blocks<double, 8>(path, batch)) < 1e-10);
         CHECK(largest_difference(one, trace_in_blocks<double, 256>(path, batch)) < 1e-10);
     }
@@ -191,8 +194,10 @@ TEST_CASE("single precision stays close to double precision") {
         CAPTURE(name);
         const LensSystem lens = io::read_lens(name);
         const Batch batch = random_film_rays(lens, 20000, 5);
-        const auto d = trace_in_blocks<double, 256>(LensPath<double>(lens, LightDirection::to_scene, lens.wavelength_nm), batch);
-        const auto f = trace_in_blocks<float, 256>(LensPath<float>(lens, LightDirection::to_scene, lens.wavelength_nm), batch);
+        const auto d =
+            trace_in_blocks<double, 256>(LensPath<double>(lens, LightDirection::to_scene, lens.wavelength_nm), batch);
+        const auto f =
+            trace_in_blocks<float, 256>(LensPath<float>(lens, LightDirection::to_scene, lens.wavelength_nm), batch);
         const double focal = std::fabs(first_order(lens, lens.wavelength_nm).effective_focal_length);
         double direction_error = 0, point_error = 0;
         int passed = 0, differing = 0;
@@ -206,8 +211,8 @@ TEST_CASE("single precision stays close to double precision") {
         REQUIRE(passed > 3000);
         CAPTURE(direction_error * focal);
         CAPTURE(point_error);
-        // 4e-6 is 64 roundings of 24 bits: the lenses have up to 22 surfaces, and amplify the error of the first ones.
-        // Times the focal length it is the blur on the film: 0.2 um for a 50 mm lens.
+        // 4e-6 is 64 roundings of 24 bits: the lenses have up to 22 surfaces, and amplify the error of the
+        // first ones. Times the focal length it is the blur on the film: 0.2 um for a 50 mm lens.
         CHECK(direction_error * focal < 4e-6 * std::max(25.0, focal));
         CHECK(point_error < 4e-6 * (lens.film_position() + lens.surfaces[0].clear_semi_diameter));
         // Only rays within that error of a rim may end differently.

@@ -1,8 +1,9 @@
-// Surfaces that image one pair of points perfectly: every ray must meet the image point, and all must have the same
-// optical path. Closed forms; the tolerances are rounding in double precision.
+// Surfaces that image one pair of points perfectly: every ray must meet the image point, and all must have
+// the same optical path. Closed forms; the tolerances are rounding in double precision.
 
 #include <cmath>
 
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "traced_ray.hpp"
 
@@ -53,7 +54,7 @@ TEST_CASE("a sphere images its aplanatic points on each other") {
                 // n |O P| - |P I| is the same for all rays; on the axis it is n (R + R/n) - (R + R n) = 0.
                 CHECK(std::fabs(out.optical_path - length(out.origin - Vec3d{0, 0, outside})) < kSpot);
                 // Abbe's sine condition, which makes the points aplanatic: sin u / sin u' = n for all rays.
-                CHECK(std::sin(angle) == doctest::Approx(n * std::hypot(out.direction.x, out.direction.y)).epsilon(1e-12));
+                CHECK(std::sin(angle) == about(n * std::hypot(out.direction.x, out.direction.y), 1e-12));
 
                 const TracedRay back = to_film(out.origin + 50.0 * out.direction, -out.direction);
                 REQUIRE(back.passed());
@@ -68,7 +69,7 @@ TEST_CASE("a paraboloid mirror images infinity on its focus") {
     mirror.conic = -1;
     // To 150 mm of a focal length of 100: rays that leave at more than 70 degrees.
     for_parallel_rays(lens_of({mirror}), 150, [](const TracedRay& ray, double r) {
-        CHECK(ray.origin.z == doctest::Approx(-r * r / 400).epsilon(1e-13));  // the paraboloid itself
+        CHECK(ray.origin.z == about(-r * r / 400, 1e-13));  // the paraboloid itself
         CHECK(ray.direction.z < 0);
         CHECK(miss(ray, -100) < kSpot);
         // From the plane z = -10 to the focus: 10 to the vertex, 100 back.
@@ -141,24 +142,40 @@ TEST_CASE("the same conic as an even asphere with a negligible term takes the ot
 }
 
 TEST_CASE("a whole sphere is met on its near cap, whatever the ray's direction") {
-    // A ball lens's front cap of radius 10, semi-diameter 10: rays that run towards the film at up to 90 degrees and
-    // beyond (in front of the lens they run backwards: the fisheyes past the hemisphere).
+    // A ball lens's front cap of radius 10, semi-diameter 10: rays that run towards the film at up to 90
+    // degrees and beyond (in front of the lens they run backwards: the fisheyes past the hemisphere).
     const LensSystem lens = lens_of({refracting(10, 0, Glass::constant(1.5), 10)});
     const RayTracer trace(lens, LightDirection::to_film);
     for (double polar = 1; polar < 89; polar += 4)
         for (const double incidence : {0.0, 30.0, -30.0, 60.0, -60.0}) {
             const double theta = polar * M_PI / 180, turn = (polar + incidence) * M_PI / 180;
-            // Surface point at the polar angle from the centre; the ray comes along the normal turned by `incidence`.
+            // Surface point at the polar angle from the centre; the ray comes along the normal turned by
+            // `incidence`.
             const Vec3d point{10 * std::sin(theta), 0, 10 - 10 * std::cos(theta)};
             const Vec3d direction{-std::sin(turn), 0, std::cos(turn)};
             const TracedRay ray = trace(point - 7.0 * direction, direction);
             REQUIRE(ray.passed());
             CHECK(length(ray.origin - point) < 1e-12);
-            CHECK(ray.optical_path == doctest::Approx(7).epsilon(1e-12));
+            CHECK(ray.optical_path == about(7, 1e-12));
             // Snell's law about the normal.
             const Vec3d normal{-std::sin(theta), 0, std::cos(theta)};
             const double sine = length(cross(ray.direction, normal));
-            CHECK(1.5 * sine == doctest::Approx(std::sin(std::fabs(incidence) * M_PI / 180)).epsilon(1e-12));
-            CHECK(length(ray.direction) == doctest::Approx(1).epsilon(1e-14));
+            CHECK(std::fabs(1.5 * sine - std::sin(std::fabs(incidence) * M_PI / 180)) < 1e-13);
+            CHECK(length(ray.direction) == about(1, 1e-14));
+        }
+}
+
+TEST_CASE("a ray that starts on the far side of a sphere crosses it to the near cap") {
+    // A concave front: the centre lies on the scene's side, and the whole ball of radius 10 in front of the vertex.
+    // From the ball's other side one root of the quadratic is 0, and the other one is wanted.
+    const RayTracer trace(lens_of({refracting(-10, 0, Glass::constant(1.5), 10)}), LightDirection::to_film);
+    for (const double polar : {0.0, 0.3, -0.8, 1.2})
+        for (const double start : {0.0, 1e-9, -1e-9, 1e-4, 30.0}) {
+            // Through the middle of the ball, so that it is met along its normal.
+            const Vec3d direction{std::sin(polar), 0, std::cos(polar)};
+            const TracedRay ray = trace(Vec3d{0, 0, -10} - (10 + start) * direction, direction);
+            REQUIRE(ray.passed());
+            CHECK(ray.optical_path == about(20 + start, 1e-14));
+            CHECK(length(ray.direction - direction) < 1e-14);
         }
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "about.hpp"
 #include "doctest/doctest.h"
 #include "pupil_region.hpp"
 
@@ -19,8 +20,8 @@ struct Leak {
     double worst_radius = 0;
 };
 
-// Random directions to the whole last surface, and more of them around the region itself (stopped down it is a
-// thousandth of the surface): which of those that pass lie outside the region?
+// Random directions to the whole last surface, and more of them around the region itself (stopped down it is
+// a thousandth of the surface): which of those that pass lie outside the region?
 Leak find_leaks(const LensSystem& lens, unsigned seed) {
     constexpr int kRadii = 30, kRays = 2048;
     const Pupil pupil(lens, half_diagonal(lens));
@@ -46,16 +47,17 @@ Leak find_leaks(const LensSystem& lens, unsigned seed) {
             }
             directions[static_cast<std::size_t>(i)] = static_cast<Vec3f>(d);
         }
-        trace(static_cast<float>(radius), 0, kRays, [&](int i) { return directions[static_cast<std::size_t>(i)]; },
-              [&](int i, bool passes) {
-                  if (!passes) return;
-                  ++leak.passing;
-                  const Vec3f d = directions[static_cast<std::size_t>(i)];
-                  // 1e-5 of the box, from directions with 24 bits in boxes down to 0.01 wide.
-                  if (region.contains(static_cast<double>(d.x), static_cast<double>(d.y), 1e-5)) return;
-                  ++leak.outside;
-                  leak.worst_radius = radius;
-              });
+        trace(
+            static_cast<float>(radius), 0, kRays, [&](int i) { return directions[static_cast<std::size_t>(i)]; },
+            [&](int i, bool passes) {
+                if (!passes) return;
+                ++leak.passing;
+                const Vec3f d = directions[static_cast<std::size_t>(i)];
+                // 1e-5 of the box, from directions with 24 bits in boxes down to 0.01 wide.
+                if (region.contains(static_cast<double>(d.x), static_cast<double>(d.y), 1e-5)) return;
+                ++leak.outside;
+                leak.worst_radius = radius;
+            });
     }
     return leak;
 }
@@ -83,11 +85,12 @@ double passing_share(const LensSystem& lens) {
         for (PupilSample& s : samples)
             s = sample_pupil(pupil.view(), film.x, film.y, static_cast<float>(random()), static_cast<float>(random()));
         if (!(samples[0].weight > 0)) continue;
-        trace(film.x, film.y, 128, [&](int i) { return samples[static_cast<std::size_t>(i)].direction; },
-              [&](int, bool passes) {
-                  ++sampled;
-                  passed += passes;
-              });
+        trace(
+            film.x, film.y, 128, [&](int i) { return samples[static_cast<std::size_t>(i)].direction; },
+            [&](int, bool passes) {
+                ++sampled;
+                passed += passes;
+            });
     }
     REQUIRE(sampled > 10000);
     return static_cast<double>(passed) / static_cast<double>(sampled);
@@ -134,16 +137,19 @@ TEST_CASE("samples are even over the region: weights times counts are areas") {
         const double radius = place.share_of_image_circle * pupil.image_radius();
         const PupilRegion region(pupil.view(), radius);
 
-        // Cells of a grid over the box in direction cosines; the area that the region has in each, by 64 x 64 points.
+        // Cells of a grid over the box in direction cosines; the area that the region has in each, by 64 x 64
+        // points.
         constexpr int kCells = 12, kFine = 64, kSamples = 400000;
         const double reach = 1.1;  // in units of the box
         std::vector<double> area(kCells * kCells), estimate(kCells * kCells);
         const double box = 4 * reach * reach * region.half_width * region.half_height;
         for (int j = 0; j < kCells * kFine; ++j)
             for (int i = 0; i < kCells * kFine; ++i) {
-                const double x = reach * (2 * (i + 0.5) / (kCells * kFine) - 1), y = reach * (2 * (j + 0.5) / (kCells * kFine) - 1);
+                const double x = reach * (2 * (i + 0.5) / (kCells * kFine) - 1),
+                             y = reach * (2 * (j + 0.5) / (kCells * kFine) - 1);
                 if (region.contains(region.centre + x * region.half_width, y * region.half_height))
-                    area[static_cast<std::size_t>(j / kFine * kCells + i / kFine)] += box / (kCells * kFine * kCells * kFine);
+                    area[static_cast<std::size_t>(j / kFine * kCells + i / kFine)] +=
+                        box / (kCells * kFine * kCells * kFine);
             }
         std::mt19937 engine(41);
         const auto unit = [&] { return static_cast<float>(engine() >> 8) * 0x1p-24f; };
@@ -154,7 +160,8 @@ TEST_CASE("samples are even over the region: weights times counts are areas") {
                                                static_cast<float>(radius * sine), unit(), unit());
             REQUIRE(std::fabs(length(s.direction) - 1) < 1e-6f);
             const double dx = static_cast<double>(s.direction.x), dy = static_cast<double>(s.direction.y);
-            const double l = dx * cosine + dy * sine, m = dy * cosine - dx * sine, weight = static_cast<double>(s.weight);
+            const double l = dx * cosine + dy * sine, m = dy * cosine - dx * sine,
+                         weight = static_cast<double>(s.weight);
             REQUIRE(region.contains(l, m, 1e-5));
             const double x = (l - region.centre) / region.half_width / reach, y = m / region.half_height / reach;
             const int column = static_cast<int>(0.5 * kCells * (x + 1)), row = static_cast<int>(0.5 * kCells * (y + 1));
@@ -173,7 +180,8 @@ TEST_CASE("samples are even over the region: weights times counts are areas") {
                 CHECK(estimate[c] < 3e-4 * box);
                 continue;
             }
-            // Variance of a cell's estimate: its share of the squared weights; the quadrature's error is below that.
+            // Variance of a cell's estimate: its share of the squared weights; the quadrature's error is
+            // below that.
             const double variance = squares / total * area[c] / kSamples;
             const double quadrature = std::pow(0.2 * box / (kCells * kCells * kFine * std::sqrt(kFine)), 2);
             chi_square += (estimate[c] - area[c]) * (estimate[c] - area[c]) / (variance + quadrature);
@@ -182,9 +190,9 @@ TEST_CASE("samples are even over the region: weights times counts are areas") {
         CAPTURE(cells);
         // 5 standard deviations of a chi-square.
         CHECK(chi_square < cells + 5 * std::sqrt(2.0 * cells));
-        // Weights are areas of triangles here, counts of points there: 768 x 768 of them, and 400000 samples of nearly
-        // equal weight.
-        CHECK(total == doctest::Approx(whole).epsilon(0.002));
+        // Weights are areas of triangles here, counts of points there: 768 x 768 of them, and 400000 samples
+        // of nearly equal weight.
+        CHECK(total == about(whole, 0.002));
     }
 }
 
@@ -194,7 +202,8 @@ TEST_CASE("a film point out of the image circle gets no weight") {
     REQUIRE(pupil.image_radius() < 40);
     for (const double radius : {pupil.image_radius() * 1.0001, 30.0, 39.0})
         for (int i = 0; i < 64; ++i) {
-            const PupilSample s = sample_pupil(pupil.view(), static_cast<float>(radius), 0, static_cast<float>(i) / 64, 0.3f);
+            const PupilSample s =
+                sample_pupil(pupil.view(), static_cast<float>(radius), 0, static_cast<float>(i) / 64, 0.3f);
             CHECK(s.weight == 0);
             CHECK(std::isfinite(length(s.direction)));
         }

@@ -6,11 +6,13 @@
 
 #include "../../cpp/camera/generate_rays.hpp"
 #include "../../cpp/scene/light.hpp"
+#include "about.hpp"
 #include "doctest/doctest.h"
 
 namespace {
 
 using namespace realcam;
+using namespace realcam::test;
 
 // Inverse of an odd factor modulo 2^32, by Newton's iteration.
 std::uint32_t inverse_of(std::uint32_t odd) {
@@ -33,8 +35,8 @@ double chi_square(const std::vector<int>& counts, int total) {
     return sum;
 }
 
-// Where chi-square lies for even counts: mean k - 1, variance 2 (k - 1), here 5 standard deviations up. Stratified
-// numbers lie far below.
+// Where chi-square lies for even counts: mean k - 1, variance 2 (k - 1), here 5 standard deviations up.
+// Stratified numbers lie far below.
 double chi_square_limit(std::size_t bins) {
     const double freedom = static_cast<double>(bins) - 1;
     return freedom + 5 * std::sqrt(2 * freedom);
@@ -62,7 +64,8 @@ TEST_CASE("hash32 flips each bit with probability a half when one bit of its inp
             const std::uint32_t v = static_cast<std::uint32_t>(i), d = hash32(v) ^ hash32(v ^ (1u << in));
             for (int out = 0; out < 32; ++out) flips[out] += (d >> out) & 1;
         }
-        // 1024 pairs of bits at 5 standard deviations of 0.0035, and the bias that the constants are known to have.
+        // 1024 pairs of bits at 5 standard deviations of 0.0035, and the bias that the constants are known to
+        // have.
         for (const int n : flips) CHECK(std::fabs(static_cast<double>(n) / kInputs - 0.5) < 0.025);
     }
 }
@@ -74,8 +77,8 @@ TEST_CASE("the two dimensions are Sobol's: reversed bits, and Pascal's triangle 
         std::uint32_t reversed = 0;
         for (int b = 0; b < 32; ++b) reversed |= ((v >> b) & 1u) << (31 - b);
         REQUIRE(reverse_bits(v) == reversed);
-        // Bit r of the fraction (from the top) is the sum over the index's bits c of C(c, r) mod 2; C(c, r) is odd
-        // where the bits of r are among those of c (Lucas).
+        // Bit r of the fraction (from the top) is the sum over the index's bits c of C(c, r) mod 2; C(c, r)
+        // is odd where the bits of r are among those of c (Lucas).
         std::uint32_t second = 0;
         for (int r = 0; r < 32; ++r) {
             std::uint32_t bit = 0;
@@ -112,14 +115,16 @@ TEST_CASE("the samples of a pixel are a (0,2)-sequence") {
 }
 
 TEST_CASE("samples of different pixels, dimensions and seeds have even means and no correlation") {
-    // Independent numbers: means within 5 standard deviations of sqrt(1/12 / n), correlations within 5 / sqrt(n).
+    // Independent numbers: means within 5 standard deviations of sqrt(1/12 / n), correlations within 5 /
+    // sqrt(n).
     constexpr int kPixels = 200000;
     for (std::uint32_t sample : {0u, 1u, 5u})
         for (std::uint32_t seed : {0u, 1u}) {
             double mean[4] = {}, product[6] = {};
             for (int p = 0; p < kPixels; ++p) {
                 const std::uint32_t here = pixel_stream(p, seed), next = pixel_stream(p + 1, seed);
-                const Vec2f a = sample_2d(here, sample, 0), b = sample_2d(here, sample, 1), c = sample_2d(next, sample, 0);
+                const Vec2f a = sample_2d(here, sample, 0), b = sample_2d(here, sample, 1),
+                            c = sample_2d(next, sample, 0);
                 const Vec2f e = sample_2d(pixel_stream(p, seed + 1), sample, 0), g = sample_2d(here, sample + 1, 2);
                 const auto centred = [](float v) { return static_cast<double>(v) - 0.5; };
                 mean[0] += centred(a.x);
@@ -149,11 +154,12 @@ TEST_CASE("cos_sin_of_turn is right to 2e-7 all the way round") {
     }
     CHECK(largest < 2e-7);  // as documented
     const Vec2f last = cos_sin_of_turn(0x1.fffffep-1f);
-    CHECK(last.x == doctest::Approx(1).epsilon(1e-6));
+    CHECK(last.x == about(1, 1e-6));
 }
 
 TEST_CASE("sample_disc is uniform over the disc") {
-    // In polar boxes of equal area, r^2 and angle being even; angle and radius are taken back by library functions.
+    // In polar boxes of equal area, r^2 and angle being even; angle and radius are taken back by library
+    // functions.
     constexpr int kSamples = 200000, kBins = 16;
     std::vector<int> counts(kBins * kBins);
     for (int i = 0; i < kSamples; ++i) {

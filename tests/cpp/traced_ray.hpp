@@ -24,38 +24,45 @@ struct TracedRay {
 };
 
 class RayTracer {
-  public:
+public:
     RayTracer(const LensSystem& lens, LightDirection direction, double wavelength_nm)
-        : path_(lens, direction, wavelength_nm) {}
-    RayTracer(const LensSystem& lens, LightDirection direction)
-        : RayTracer(lens, direction, lens.wavelength_nm) {}
+        : path_(lens, direction, wavelength_nm) {
+        const std::vector<double> n = lens.indices(wavelength_nm);
+        entry_index_ = direction == LightDirection::to_film ? n.front() : n.back();
+        exit_index_ = direction == LightDirection::to_film ? n.back() : n.front();
+    }
+    RayTracer(const LensSystem& lens, LightDirection direction) : RayTracer(lens, direction, lens.wavelength_nm) {}
 
     TracedRay operator()(Vec3d origin, Vec3d direction) const {
         LensRays<double, 1> ray;
         origin.z -= path_.entry_position;
         ray.origin.set(0, origin);
-        ray.direction.set(0, normalized(direction));
+        ray.direction.set(0, entry_index_ * normalized(direction));
         ray.status[0] = 0;
         PathRecord<double, 1> record{};
         trace_lens(path_.view(), ray, record);
-        Vec3d end = ray.origin[0];
+        Vec3d end = ray.origin[0], way = ray.direction[0];
         end.z += path_.exit_position;
-        return {end, ray.direction[0], record.optical_path[0], static_cast<RayStatus>(ray.status[0]),
-                record.surface_index[0]};
+        const auto status = static_cast<RayStatus>(ray.status[0]);
+        // The core's directions have the length of the index. Not made a unit vector where the medium is known: tests
+        // see a wrong length.
+        way = (1 / (status == RayStatus::ok ? exit_index_ : length(way))) * way;
+        return {end, way, record.optical_path[0], status, record.surface_index[0]};
     }
 
-  private:
+private:
     LensPath<double> path_;
+    double entry_index_, exit_index_;
 };
 
 /// Numbers in [0, 1), the same on every machine.
 class Random {
-  public:
+public:
     explicit Random(unsigned seed) : engine_(seed) {}
     double operator()() { return static_cast<double>(engine_() >> 5) * 0x1p-27; }
     double between(double low, double high) { return low + (high - low) * (*this)(); }
 
-  private:
+private:
     std::mt19937 engine_;
 };
 

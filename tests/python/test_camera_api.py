@@ -81,7 +81,8 @@ def test_generated_rays_shapes_and_units() -> None:
     assert (rays.weights.shape, rays.weights.dtype) == ((count,), np.float32)
     assert (rays.pixels.shape, rays.pixels.dtype) == ((count,), np.int32)
     np.testing.assert_array_equal(rays.pixels, np.repeat(np.arange(24), 5))
-    np.testing.assert_allclose(np.linalg.norm(rays.directions, axis=1), 1, atol=3e-7)
+    # Eleven refractions in float32, each with a few roundings of 6e-8.
+    np.testing.assert_allclose(np.linalg.norm(rays.directions, axis=1), 1, atol=2e-6)
     passing = rays.weights > 0
     assert passing.mean() > 0.9
     assert (rays.weights >= 0).all()
@@ -103,7 +104,7 @@ def test_generated_rays_shapes_and_units() -> None:
 
 
 def test_rays_meet_in_the_plane_in_focus() -> None:
-    """A thin lens without aberrations: all rays of a film point pass through one point of the object plane."""
+    """No aberrations: all rays of a film point pass through one point of the object plane."""
     lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
     camera = rc.Camera(lens, film=rc.Film(0.001, 0.001, (1, 1)), model="thin")
     rays = camera.generate_rays(spp=256)
@@ -151,8 +152,8 @@ def test_rays_depend_on_seed_pixel_and_sample_alone() -> None:
     np.testing.assert_array_equal(camera.generate_rays(spp=4, seed=3).directions, few.directions)
 
 
-def test_samples_cover_film_and_pupil_evenly() -> None:
-    """Stratified: each of 8 x 8 cells of a pixel's film, and of the lens's disc, gets its share of 256 samples."""
+def test_samples_cover_the_pupil_evenly() -> None:
+    """Stratified: each of 8 x 8 cells of equal area of the lens's disc gets its share of 256 samples."""
     lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
     camera = rc.Camera(lens, film=rc.Film(0.001, 0.001, (1, 1)), model="thin")
     rays = camera.generate_rays(spp=256, seed=1)

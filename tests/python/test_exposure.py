@@ -104,31 +104,12 @@ def test_relative_illumination_of_ideal_models_is_cos_to_the_fourth() -> None:
 
 
 @pytest.mark.parametrize("name", LENSES)
-@pytest.mark.parametrize("model", MODELS[:3])
-def test_ideal_models_have_the_paraxial_exposure(name: str, model: str) -> None:
-    lens = rc.Lens.load(name)
-    # An aplanatic lens of f-number N: pi / (4 N^2). All samples weigh the same but for cos^4, which is 1
-    # here. Lenses not focused exactly on their paraxial focus: the thick model's film lies up to 2.4% nearer.
-    expected = math.pi / (4 * lens.first_order().f_number ** 2)
-    assert axial_exposure(lens, model=model, spp=16) == pytest.approx(
-        expected, rel=0.05 if model == "thick" else 1e-3
-    )
-
-
-def obstructed(name: str) -> pytest.ParameterSet | str:
-    if name != "mirror-telephoto-500mm":
-        return name
-    reason = "the ideal models do not know of the central obstruction: they are 39% brighter"
-    return pytest.param(name, marks=pytest.mark.xfail(reason=reason))
-
-
-@pytest.mark.parametrize("name", [obstructed(name) for name in LENSES])
 def test_camera_models_agree_on_the_axis(name: str) -> None:
     lens = rc.Lens.load(name)
     exposures = [axial_exposure(lens, model=model, spp=1024) for model in MODELS]
-    # The ideal models have the paraxial pupil; the full lens has a real marginal ray, up to 4% steeper or
-    # flatter in these lenses wide open: a tenth of a stop, 2^0.1 = 1.072, and a little.
-    assert max(exposures) / min(exposures) < 1.08
+    # The ideal models take over the real lens's exposure, by a quadrature over 4096 rays (1e-3 of the area at its
+    # edges at worst); the full lens is sampled: 1024 samples a pixel of which 2% miss, over several pixels.
+    assert max(exposures) / min(exposures) < 1.005
 
 
 def test_half_the_time_is_half_the_exposure_exactly() -> None:
@@ -201,14 +182,7 @@ def test_white_is_clipped_and_black_is_black() -> None:
     assert film[-1] == 255 or film[-1] > 250
 
 
-def sliver(name: str) -> pytest.ParameterSet | str:
-    if name != "fisheye-6mm-220deg":
-        return name
-    reason = "past 110 degrees the pupil shrinks to slivers that the outlines hold too loosely: 92% pass"
-    return pytest.param(name, marks=pytest.mark.xfail(reason=reason))
-
-
-@pytest.mark.parametrize("name", [sliver(name) for name in LENSES])
+@pytest.mark.parametrize("name", LENSES)
 def test_most_sampled_rays_pass(name: str) -> None:
     lens = rc.Lens.load(name)
     stats = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(*lens.film_mm, (120, 80))), spp=16).stats

@@ -14,7 +14,11 @@ from .._core import InputError
 def bench(
     names: Annotated[
         Optional[list[str]],  # noqa: UP045
-        typer.Argument(help="lens-rays, lens-setup, pass-share, frame [all].", metavar="[BENCHMARK]...", show_default=False),
+        typer.Argument(
+            help="lens-rays, lens-setup, pass-share, frame [all].",
+            metavar="[BENCHMARK]...",
+            show_default=False,
+        ),
     ] = None,
     threads: Annotated[int, typer.Option(help="0: all.", min=0)] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit.")] = False,
@@ -42,7 +46,9 @@ def _print(name: str, result: object, description: str) -> None:
     for key, value in (result if isinstance(result, dict) else {}).items():
         if isinstance(value, dict):
             for inner, figure in value.items():
-                text = ", ".join(f"{k} {v}" for k, v in figure.items()) if isinstance(figure, dict) else figure
+                text = (
+                    ", ".join(f"{k} {v}" for k, v in figure.items()) if isinstance(figure, dict) else figure
+                )
                 typer.echo(f"  {key} {inner}: {text}")
         else:
             typer.echo(f"  {key}: {value}")

@@ -17,9 +17,9 @@ from . import options
 
 
 def demo(
-    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the pictures; made where it is missing.")] = Path(
-        "realcam-demo"
-    ),
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Folder for the pictures; made where it is missing.")
+    ] = Path("realcam-demo"),
     spp: Annotated[int, typer.Option(help="Samples per pixel.", min=1)] = 64,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated, Any, Optional
 
 import typer
 from rich.table import Table
@@ -15,7 +15,9 @@ from . import options
 
 app = typer.Typer(help="Look at lenses.", no_args_is_help=True)
 
-LensName = Annotated[str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")]
+LensName = Annotated[
+    str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")
+]
 FNumber = Annotated[Optional[float], typer.Option("--f-number", help="Close the diaphragm to this f-number.")]  # noqa: UP045
 Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to film in metres, or inf.")]  # noqa: UP045
 
@@ -23,7 +25,7 @@ Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to f
 @app.command("list")
 def list_lenses(as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False) -> None:
     """List the bundled lenses."""
-    rows = []
+    rows: list[dict[str, Any]] = []
     for name in lens_names():
         lens = Lens.load(name)
         data = lens.first_order()
@@ -45,7 +47,10 @@ def list_lenses(as_json: Annotated[bool, typer.Option("--json", help="As JSON.")
     table.add_column("")
     for row in rows:
         table.add_row(
-            row["name"], f"{row['effective_focal_length_mm']:.4g} mm", f"f/{row['f_number']:.3g}", row["title"]
+            row["name"],
+            f"{row['effective_focal_length_mm']:.4g} mm",
+            f"f/{row['f_number']:.3g}",
+            row["title"],
         )
     options.console().print(table)
 
@@ -73,7 +78,9 @@ def info(
 @app.command("draw")
 def draw(
     name: LensName,
-    output: Annotated[Optional[Path], typer.Option("--output", "-o", help="A .svg or .png file [LENS.svg].")] = None,  # noqa: UP045
+    output: Annotated[
+        Optional[Path], typer.Option("--output", "-o", help="A .svg or .png file [LENS.svg].")
+    ] = None,  # noqa: UP045
     f_number: FNumber = None,
     focus: Focus = None,
     rays: Annotated[int, typer.Option(help="Rays for each of three points of the film.", min=1, max=101)] = 7,
@@ -99,8 +106,19 @@ def _kind(surface: Surface) -> str:
 
 def _surface_table(lens: Lens) -> Table:
     table = Table(box=None, pad_edge=False)
-    for title in ("#", "kind", "radius/mm", "thickness/mm", "material", "n", "semi-dia./mm", "conic, aspheric terms"):
-        table.add_column(title, justify="left" if title in ("kind", "material", "conic, aspheric terms") else "right")
+    for title in (
+        "#",
+        "kind",
+        "radius/mm",
+        "thickness/mm",
+        "material",
+        "n",
+        "semi-dia./mm",
+        "conic, aspheric terms",
+    ):
+        table.add_column(
+            title, justify="left" if title in ("kind", "material", "conic, aspheric terms") else "right"
+        )
     last = len(lens.surfaces)
     for number, surface in enumerate(lens.surfaces, start=1):
         terms = [f"k {surface.conic:g}"] if surface.conic else []
@@ -131,8 +149,14 @@ def _first_order_rows(lens: Lens, data: FirstOrder) -> list[tuple[str, str]]:
         ("back focal distance", f"{data.back_focal_distance_mm:.4f} mm"),
         ("front focal distance", f"{data.front_focal_distance_mm:.4f} mm"),
         ("f-number", f"{data.f_number:.4f}"),
-        ("entrance pupil", f"diameter {data.entrance_pupil_diameter_mm:.4f} mm at {data.entrance_pupil_position_mm:.4f} mm"),
-        ("exit pupil", f"diameter {data.exit_pupil_diameter_mm:.4f} mm at {data.exit_pupil_position_mm:.4f} mm"),
+        (
+            "entrance pupil",
+            f"diameter {data.entrance_pupil_diameter_mm:.4f} mm at {data.entrance_pupil_position_mm:.4f} mm",
+        ),
+        (
+            "exit pupil",
+            f"diameter {data.exit_pupil_diameter_mm:.4f} mm at {data.exit_pupil_position_mm:.4f} mm",
+        ),
         ("film distance", f"{lens.film_distance_mm:.4f} mm behind the last vertex"),
         ("focus", "infinity" if math.isinf(focus) else f"{focus:g} m from the film"),
         ("film", f"{width:g} x {height:g} mm"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated, Any, Optional
 
 import typer
 
@@ -24,14 +24,20 @@ def say(text: str) -> None:
 
 
 def render(
-    scene: Annotated[str, typer.Argument(help="The scene: .obj (with .mtl), .gltf, .glb or .ply.", metavar="SCENE")],
-    output: Annotated[list[Path], typer.Option("--output", "-o", help="Picture to write, .png or .exr; may be repeated.")],
+    scene: Annotated[
+        str, typer.Argument(help="The scene: .obj (with .mtl), .gltf, .glb or .ply.", metavar="SCENE")
+    ],
+    output: Annotated[
+        list[Path], typer.Option("--output", "-o", help="Picture to write, .png or .exr; may be repeated.")
+    ],
     lens: Annotated[
         str, typer.Option(help="Bundled lens (`realcam lens list`) or .toml file.", rich_help_panel=CAMERA)
     ] = "double-gauss-50mm",
     film: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option(help="Film in mm, WxH [the lens's, in the shape of the resolution].", rich_help_panel=CAMERA),
+        typer.Option(
+            help="Film in mm, WxH [the lens's, in the shape of the resolution].", rich_help_panel=CAMERA
+        ),
     ] = None,
     resolution: Annotated[
         Optional[str],  # noqa: UP045
@@ -46,12 +52,19 @@ def render(
     ] = None,
     look_at: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option(help="Point in the middle of the picture, X,Y,Z [middle of the scene].", rich_help_panel=CAMERA),
+        typer.Option(
+            help="Point in the middle of the picture, X,Y,Z [middle of the scene].", rich_help_panel=CAMERA
+        ),
     ] = None,
-    up: Annotated[str, typer.Option(help="Direction that is up in the picture.", rich_help_panel=CAMERA)] = "0,1,0",
+    up: Annotated[
+        str, typer.Option(help="Direction that is up in the picture.", rich_help_panel=CAMERA)
+    ] = "0,1,0",
     focus: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option(help="Object plane to film in metres, or inf [the first surface on the axis].", rich_help_panel=CAMERA),
+        typer.Option(
+            help="Object plane to film in metres, or inf [the first surface on the axis].",
+            rich_help_panel=CAMERA,
+        ),
     ] = None,
     f_number: Annotated[
         Optional[float],  # noqa: UP045
@@ -64,8 +77,12 @@ def render(
         ),
     ] = None,
     iso: Annotated[float, typer.Option(help="Sensitivity.", rich_help_panel=CAMERA)] = 100,
-    model: Annotated[str, typer.Option(help="full, thick, thin or pinhole.", rich_help_panel=CAMERA)] = "full",
-    scale: Annotated[float, typer.Option(help="Metres per unit of the scene's file.", rich_help_panel=SCENE)] = 1,
+    model: Annotated[
+        str, typer.Option(help="full, thick, thin or pinhole.", rich_help_panel=CAMERA)
+    ] = "full",
+    scale: Annotated[
+        float, typer.Option(help="Metres per unit of the scene's file.", rich_help_panel=SCENE)
+    ] = 1,
     environment: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option(
@@ -74,11 +91,18 @@ def render(
         ),
     ] = None,
     spp: Annotated[int, typer.Option(help="Samples per pixel.", rich_help_panel=PICTURE)] = 64,
-    seed: Annotated[int, typer.Option(help="Of the random numbers.", min=0, max=2**32 - 1, rich_help_panel=PICTURE)] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Of the random numbers.", min=0, max=2**32 - 1, rich_help_panel=PICTURE)
+    ] = 0,
     max_bounces: Annotated[
-        int, typer.Option(help="Light that bounces this often is seen; 0: direct light only.", rich_help_panel=PICTURE)
+        int,
+        typer.Option(
+            help="Light that bounces this often is seen; 0: direct light only.", rich_help_panel=PICTURE
+        ),
     ] = 1,
-    tone: Annotated[str, typer.Option(help="Of .png: film (soft highlights) or linear.", rich_help_panel=PICTURE)] = "film",
+    tone: Annotated[
+        str, typer.Option(help="Of .png: film (soft highlights) or linear.", rich_help_panel=PICTURE)
+    ] = "film",
     threads: Annotated[int, typer.Option(help="0: all.", min=0, rich_help_panel=PICTURE)] = 0,
     device: Annotated[str, typer.Option(help="auto or cpu.", rich_help_panel=PICTURE)] = "auto",
 ) -> None:
@@ -89,7 +113,7 @@ def render(
     camera = _unplaced_camera(lens, film, resolution, f_number, iso, model)
     if exposure_time is not None:
         camera = _with_time(camera, options.number(exposure_time, "--exposure-time"))
-    view = {
+    view: dict[str, Any] = {
         "position": None if position is None else options.numbers(position, ",", 3, "--position"),
         "look_at": None if look_at is None else options.numbers(look_at, ",", 3, "--look-at"),
         "up": options.numbers(up, ",", 3, "--up"),
@@ -100,7 +124,9 @@ def render(
         camera = _core.framed(camera, loaded, **view)
         if not loaded.has_light:
             loaded = _core.with_daylight(loaded, camera)
-            say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, a sky of 5000 cd/m^2")
+            say(
+                "the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, a sky of 5000 cd/m^2"
+            )
         if exposure_time is None:
             camera = _core.exposed(camera, loaded, device)
             say("no exposure time is given; the average of the picture is brought to middle grey")
@@ -150,5 +176,3 @@ def _load(path: str, scale: float, environment: str | None) -> Scene:
         if not Path(environment).exists():
             raise InputError(f'--environment is "{environment}"; cd/m^2 or a picture is wanted') from None
     return scene.with_environment(image_file.read_environment(environment))
-
-

@@ -1,0 +1,226 @@
+"""Case C: closed forms that a lens must obey, through the Python API."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import realcam as rc
+
+LENSES = rc.lens_names()
+
+
+def stop(semi_diameter: float) -> rc.Surface:
+    return rc.Stop(clear_semi_diameter_mm=semi_diameter)
+
+
+def parallel(heights: np.ndarray, z: float = -10.0) -> tuple[np.ndarray, np.ndarray]:
+    """Rays along the axis at these distances from it, at azimuths of the golden angle."""
+    azimuth = 2.4 * np.arange(len(heights))
+    origins = np.stack(
+        [heights * np.cos(azimuth), heights * np.sin(azimuth), np.full_like(heights, z)], axis=1
+    )
+    return origins, np.tile([0.0, 0.0, 1.0], (len(heights), 1))
+
+
+def miss(rays: rc.TraceResult, z: float) -> np.ndarray:
+    """How far the rays, as straight lines, pass from a point of the axis."""
+    assert (rays.status == rc.RayStatus.OK).all()
+    return np.linalg.norm(np.cross(np.array([0, 0, z]) - rays.origins_mm, rays.directions), axis=1)
+
+
+@pytest.mark.parametrize(
+    ("r1", "r2", "d", "n"),
+    [
+        (50, -50, 5, 1.5),
+        (30, 60, 12, 1.7),
+        (-40, -25, 8, 1.6),
+        (80, math.inf, 3, 1.5168),
+        (-100, -30, 20, 2.0),
+    ],
+)
+def test_thick_lens(r1: float, r2: float, d: float, n: float) -> None:
+    rim = {"clear_semi_diameter_mm": 5.0}
+    front = rc.Surface(radius_of_curvature_mm=r1, thickness_mm=d, material=n, **rim)
+    lens = rc.Lens(
+        surfaces=[stop(2), front, rc.Surface(radius_of_curvature_mm=r2, **rim)], film_distance_mm=1000
+    )
+    # Lensmaker's equation; the focal points from the vertices.
+    focal_length = 1 / ((n - 1) * (1 / r1 - 1 / r2 + (n - 1) * d / (n * r1 * r2)))
+    first = lens.first_order()
+    # Double precision.
+    assert first.effective_focal_length_mm == pytest.approx(focal_length, rel=1e-12)
+    assert first.back_focal_distance_mm == pytest.approx(
+        focal_length * (1 - (n - 1) * d / (n * r1)), rel=1e-12
+    )
+    assert first.front_focal_distance_mm == pytest.approx(
+        -focal_length * (1 + (n - 1) * d / (n * r2)), rel=1e-12
+    )
+    # The stop is in front of the glass: it is the entrance pupil.
+    assert (first.entrance_pupil_position_mm, first.entrance_pupil_diameter_mm) == (0, 4)
+    # And a real ray close to the axis crosses it there.
+    origins, directions = parallel(np.array([1e-4]))
+    out = lens.trace(origins, directions, start="scene")
+    reach = -out.origins_mm[0, 0] / out.directions[0, 0] * out.directions[0, 2]
+    crossing = out.origins_mm[0, 2] + reach - lens.vertices_mm[-1]
+    # Third order: (1e-4 / 25)^2, and the rounding of the slope of 1e-6.
+    assert crossing == pytest.approx(first.back_focal_distance_mm, rel=1e-8)
+
+
+@pytest.mark.parametrize("n", [1.3, 1.5168, 2.0])
+@pytest.mark.parametrize("radius", [2.0, 30.0])
+def test_aplanatic_points_of_a_sphere(n: float, radius: float) -> None:
+    """Rays in air that aim at R n behind the centre meet at R / n behind it, in the glass: all of them."""
+    sphere = rc.Surface(radius_of_curvature_mm=radius, material=n, clear_semi_diameter_mm=0.999 * radius)
+    lens = rc.Lens(surfaces=[stop(10 * radius), sphere], film_distance_mm=1.0)
+    aim, image = radius * (1 + n), radius * (1 + 1 / n)
+    heights = 0.98 * radius * np.linspace(0.05, 1, 40)
+    on_sphere, _ = parallel(heights)
+    on_sphere[:, 2] = radius - np.sqrt(radius**2 - heights**2)
+    directions = np.array([0, 0, aim]) - on_sphere
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    out = lens.trace(on_sphere - radius * directions, directions, start="scene")
+    assert miss(out, image).max() < 1e-9 * radius
+    # Abbe's sine condition, which makes them aplanatic: sin u / sin u' = 1 / n for all.
+    sines = [np.hypot(d[:, 0], d[:, 1]) for d in (directions, out.directions)]
+    np.testing.assert_allclose(sines[1], n * sines[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("n", [1.4, 1.5168, 1.9])
+def test_ellipsoid_images_infinity_perfectly_into_glass(n: float) -> None:
+    """Conic -1 / n^2: the focus lies n R / (n - 1) behind the vertex."""
+    surface = rc.Surface(radius_of_curvature_mm=40, material=n, conic=-1 / n**2, clear_semi_diameter_mm=30)
+    lens = rc.Lens(surfaces=[stop(30), surface], film_distance_mm=1.0)
+    out = lens.trace(*parallel(np.linspace(0.5, 29, 50)), start="scene")
+    assert miss(out, n * 40 / (n - 1)).max() < 1e-9
+    # Equal optical paths to the focus: Fermat's principle.
+    left = n * np.linalg.norm(np.array([0, 0, n * 40 / (n - 1)]) - out.origins_mm, axis=1)
+    assert np.ptp(out.optical_path_mm + left) < 1e-9
+
+
+def test_paraboloid_mirror_images_infinity_on_its_focus() -> None:
+    """A flat mirror folds the light back to the film's side: 100 mm to the focus, 60 from the fold."""
+    primary = rc.Mirror(radius_of_curvature_mm=-200, conic=-1, thickness_mm=-40, clear_semi_diameter_mm=80)
+    fold = rc.Mirror(clear_semi_diameter_mm=80)
+    entrance = rc.Stop(clear_semi_diameter_mm=80, thickness_mm=50)
+    lens = rc.Lens(surfaces=[entrance, primary, fold], film_distance_mm=60.0)
+    out = lens.trace(*parallel(np.linspace(0.5, 79, 50)), start="scene")
+    assert lens.film_position_mm == pytest.approx(70)
+    assert miss(out, 70.0).max() < 1e-9
+    assert abs(lens.first_order().effective_focal_length_mm) == pytest.approx(100, rel=1e-12)
+    # A sphere of the same radius misses it by h^3 / (2 R^2) and more.
+    sphere = rc.Mirror(radius_of_curvature_mm=-200, thickness_mm=-40, clear_semi_diameter_mm=80)
+    worse = rc.Lens(surfaces=[entrance, sphere, fold], film_distance_mm=60.0).trace(
+        *parallel(np.array([40.0])), start="scene"
+    )
+    assert miss(worse, 70.0)[0] == pytest.approx(40**3 / (2 * 200**2), rel=0.1)
+
+
+def thin_lens(shape: float, n: float = 1.5, focal_length: float = 100.0) -> rc.Lens:
+    """Without thickness; shape = (R2 + R1) / (R2 - R1)."""
+    power = 1 / ((n - 1) * focal_length)
+    c1, c2 = 0.5 * power * (shape + 1), 0.5 * power * (shape - 1)
+    radii = [math.inf if c == 0 else 1 / c for c in (c1, c2)]
+    rim = {"clear_semi_diameter_mm": 5.0}
+    return rc.Lens(
+        surfaces=[
+            stop(5),
+            rc.Surface(radius_of_curvature_mm=radii[0], material=n, **rim),
+            rc.Surface(radius_of_curvature_mm=radii[1], **rim),
+        ],
+        film_distance_mm=focal_length,
+    )
+
+
+def third_order(lens: rc.Lens) -> float:
+    """(1 / s' at height h less 1 / f) / h^2 of real rays, extrapolated to the axis."""
+    heights = np.linspace(0.5, 2, 7)
+    out = lens.trace(*parallel(heights), start="scene")
+    radial = np.hypot(out.origins_mm[:, 0], out.origins_mm[:, 1])
+    inward = np.hypot(out.directions[:, 0], out.directions[:, 1])
+    crossing = out.origins_mm[:, 2] + radial / inward * out.directions[:, 2]
+    values = (1 / crossing - 1 / lens.first_order().effective_focal_length_mm) / heights**2
+    return float(np.polyfit(heights**2, values, 2)[-1])
+
+
+@pytest.mark.parametrize("n", [1.5, 1.8])
+@pytest.mark.parametrize("shape", [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0])
+def test_spherical_aberration_of_a_thin_lens_against_its_bending(shape: float, n: float) -> None:
+    """Jenkins and White, Fundamentals of Optics, equation 9l, for an object at infinity (p = -1)."""
+    bracket = (n + 2) / (n - 1) * shape**2 - 4 * (n + 1) * shape + (3 * n + 2) * (n - 1) + n**3 / (n - 1)
+    expected = bracket / (8 * 100**3 * n * (n - 1))
+    # The fit leaves out the eighth order in h / f = 0.02.
+    assert third_order(thin_lens(shape, n)) == pytest.approx(expected, rel=1e-4)
+
+
+def test_best_bending_of_a_thin_lens() -> None:
+    """Least spherical aberration at the shape 2 (n^2 - 1) / (n + 2)."""
+    n = 1.5
+    best = 2 * (n**2 - 1) / (n + 2)
+    shapes = best + np.linspace(-0.3, 0.3, 7)
+    parabola = np.polyfit(shapes, [third_order(thin_lens(q, n)) for q in shapes], 2)
+    assert -parabola[1] / (2 * parabola[0]) == pytest.approx(best, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", LENSES)
+def test_light_retraces_itself(name: str) -> None:
+    lens = rc.Lens.load(name)
+    rng = np.random.default_rng(4)
+    first, film = lens.first_order(), lens.film_position_mm
+    height = 0.45 * min(lens.film_mm)
+    origins = np.stack([*rng.uniform(-height, height, (2, 4000)), np.full(4000, film)], axis=1)
+    pupil = 0.55 * first.exit_pupil_diameter_mm * rng.uniform(-1, 1, (4000, 2))
+    target = np.concatenate([pupil, np.full((4000, 1), first.exit_pupil_position_mm)], axis=1)
+    directions = (target - origins) * np.sign(film - first.exit_pupil_position_mm)
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    out = lens.trace(origins, directions, start="film")
+    passed = out.status == rc.RayStatus.OK
+    assert passed.sum() > 400
+    # Start a little in front of the lens, and go all the way back to the film.
+    ahead = out.origins_mm + 5 * out.directions
+    back = lens.trace(ahead[passed], -out.directions[passed], start="scene")
+    # A ray that grazes a rim may be cut on the way back.
+    same = back.status == rc.RayStatus.OK
+    assert same.mean() > 0.999
+    reach = (film - back.origins_mm[:, 2]) / back.directions[:, 2]
+    landed = back.origins_mm + reach[:, None] * back.directions
+    # 1e-10 mm in double precision; half a metre of glass and mirrors turns 1e-16 into no more than that.
+    assert np.abs(landed - origins[passed])[same].max() < 1e-10
+    assert np.abs(back.directions + directions[passed])[same].max() < 1e-10
+
+
+@pytest.mark.parametrize("name", LENSES)
+def test_pupils_obey_the_lagrange_invariant(name: str) -> None:
+    """A ray through the middle of the entrance pupil leaves from the middle of the exit pupil.
+
+    Its slope has changed by the ratio of their diameters.
+    """
+    lens = rc.Lens.load(name)
+    first, slope = lens.first_order(), 1e-5
+    # A central obstruction would stop it: the surfaces without theirs.
+    surfaces = [
+        rc.Surface(
+            radius_of_curvature_mm=s.radius_of_curvature_mm,
+            thickness_mm=s.thickness_mm,
+            material=None if s.material.label == "" else s.material,
+            clear_semi_diameter_mm=s.clear_semi_diameter_mm,
+            conic=s.conic,
+            aspheric_coefficients=s.aspheric_coefficients,
+            type=s.type,
+        )
+        for s in lens.surfaces
+    ]
+    open_lens = rc.Lens(
+        surfaces=surfaces, film_distance_mm=lens.film_distance_mm, wavelength_nm=lens.wavelength_nm
+    )
+    z = -20.0
+    origin = [[(z - first.entrance_pupil_position_mm) * slope, 0.0, z]]
+    out = open_lens.trace(origin, [[slope, 0.0, 1.0]], start="scene")
+    assert out.status[0] == rc.RayStatus.OK
+    leaving = out.directions[0, 0] / out.directions[0, 2]
+    ratio = first.entrance_pupil_diameter_mm / first.exit_pupil_diameter_mm
+    # Third order in 1e-5 and double precision over a small slope.
+    assert abs(leaving / slope) == pytest.approx(ratio, rel=1e-7)
+    crossing = out.origins_mm[0, 2] - out.origins_mm[0, 0] / leaving
+    assert crossing == pytest.approx(first.exit_pupil_position_mm, rel=1e-6, abs=1e-5)

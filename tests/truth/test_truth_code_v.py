@@ -1,0 +1,127 @@
+"""Case A: the double Gauss of a CODE V listing, through the Python API."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from ..python import yardsticks
+from . import code_v_listing as listing
+
+LENS = listing.listed_lens()
+
+
+def test_glasses_are_those_of_the_listing() -> None:
+    bundled = rc.Lens.load("double-gauss-100mm").surfaces
+    for number, (_, index) in listing.GLASSES.items():
+        assert LENS.surfaces[number - 1].material.index(587.6) == pytest.approx(index, abs=0.51e-6)
+        assert bundled[number - 1].material.index(587.6) == pytest.approx(index, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", listing.FIRST_ORDER)
+def test_first_order_data_to_the_printed_digits(name: str) -> None:
+    # Half a unit of the last digit.
+    assert getattr(LENS.first_order(), name) == pytest.approx(listing.FIRST_ORDER[name], abs=0.51e-4)
+    # The bundled lens has rounded indices: all of them half a unit off, in the worst direction, are six times
+    # that. They bring 5e-4 at most.
+    bundled = rc.Lens.load("double-gauss-100mm")
+    assert getattr(bundled.first_order(), name) == pytest.approx(listing.FIRST_ORDER[name], abs=5e-4)
+
+
+def test_exit_pupil_from_the_last_vertex() -> None:
+    distance = LENS.first_order().exit_pupil_position_mm - LENS.vertices_mm[-1]
+    assert distance == pytest.approx(listing.EXIT_PUPIL_FROM_LAST_VERTEX, abs=0.51e-4)
+
+
+def check_ray(field_tangent: float, rows: list[listing.Row]) -> None:
+    """Follows a ray from in front of the lens to each surface, and compares where it is and where it goes."""
+    direction = np.array([[0.0, field_tangent, 1.0]]) / math.hypot(1, field_tangent)
+    # From the listed point on surface 1 back to a plane in front of the lens.
+    first = np.array([[rows[0][0], rows[0][1], rows[0][2]]])
+    start = first - direction * 40
+    for i, (x, y, z, tan_x, tan_y) in enumerate(rows):
+        out = LENS.trace(start, direction, start="scene", surface_count=i + 1)
+        assert out.status[0] == rc.RayStatus.OK
+        assert out.surface_index[0] == i
+        place = out.origins_mm[0] - (0, 0, LENS.vertices_mm[i])
+        np.testing.assert_allclose(place, (x, y, z), atol=1e-5, err_msg=f"surface {i + 1}")
+        tangents = out.directions[0, :2] / out.directions[0, 2]
+        # Six decimals of the tangents, and of the point that the ray starts from.
+        np.testing.assert_allclose(tangents, (tan_x, tan_y), atol=2e-6, err_msg=f"surface {i + 1}")
+
+
+def test_marginal_ray_on_the_axis() -> None:
+    check_ray(0.0, listing.AXIAL_MARGINAL)
+
+
+def test_skew_ray_of_the_edge_of_the_field() -> None:
+    check_ray(math.tan(math.radians(14.0000000032)), listing.SKEW_AT_14_DEGREES)
+
+
+def test_every_ray_of_the_listing() -> None:
+    if not listing.LISTING.is_file():
+        pytest.skip(f"the listing is not at hand ({listing.LISTING.name} beside the repository)")
+    rays = listing.rays_of_the_listing()
+    assert len(rays) == 9
+    assert all(len(rows) == 11 for _, rows in rays)
+    assert rays[0][1] == listing.AXIAL_MARGINAL
+    assert rays[-1][1] == listing.SKEW_AT_14_DEGREES
+    for printed_tangent, rows in rays:
+        angle = {0.0: 0.0, 0.176327: 10.0000000023, 0.249328: 14.0000000032}[printed_tangent]
+        check_ray(math.tan(math.radians(angle)), rows)
+
+
+def test_transverse_aberrations_on_the_film() -> None:
+    """RAY ABERRATIONS on the axis, at 1.0, 0.8, 0.6 and 0.4 of the entrance pupil."""
+    listed = {1.0: 0.014138, 0.8: -0.012851, 0.6: 0.007971, 0.4: 0.022285}
+    full = listing.AXIAL_MARGINAL[5][0]
+    heights = np.linspace(0.1, 26, 20001)
+    origins = np.stack([heights, np.zeros_like(heights), np.full_like(heights, -5.0)], axis=1)
+    directions = np.tile([0.0, 0.0, 1.0], (len(heights), 1))
+    at_stop = LENS.trace(origins, directions, start="scene", surface_count=6).origins_mm[:, 0]
+    out = LENS.trace(origins, directions, start="scene")
+    on_film = out.origins_mm[:, 0] + out.directions[:, 0] / out.directions[:, 2] * (
+        LENS.film_position_mm - out.origins_mm[:, 2]
+    )
+    passed = out.status == 0
+    for share, aberration in listed.items():
+        # Heights are given with two decimals: 1.00 and so on are those aimed at in equal steps of the
+        # entrance pupil.
+        measured = np.interp(25 * share, heights[passed], on_film[passed])
+        assert measured == pytest.approx(aberration, abs=1e-5), share
+        assert np.interp(25 * share, heights, at_stop) / full == pytest.approx(share, abs=0.012)
+
+
+def test_third_order_spherical_aberration() -> None:
+    """Real rays in the paraxial focus: transverse aberration over height^3, extrapolated to the axis."""
+    heights = 25 * np.linspace(0.1, 0.4, 31)
+    origins = np.stack([heights, np.zeros_like(heights), np.full_like(heights, -5.0)], axis=1)
+    out = LENS.trace(origins, np.tile([0.0, 0.0, 1.0], (len(heights), 1)), start="scene")
+    focus = LENS.vertices_mm[-1] + LENS.first_order().back_focal_distance_mm
+    aberration = out.origins_mm[:, 0] + out.directions[:, 0] / out.directions[:, 2] * (
+        focus - out.origins_mm[:, 2]
+    )
+    share = (heights / 25) ** 2
+    coefficients = np.polyfit(share, aberration / share**1.5, 5)
+    # What the fit leaves out is (0.4)^12 of the aberration; the sum has six decimals, and the indices their
+    # share.
+    assert coefficients[-1] == pytest.approx(listing.SPHERICAL_SUM, abs=5e-6)
+
+
+def test_third_order_distortion() -> None:
+    """Real chief rays close to the axis: height in the paraxial focus less f tan(angle), over tan^3."""
+    lens_at_focus = LENS.first_order()
+    full = math.tan(math.radians(14))
+    shares = np.linspace(0.1, 0.5, 21)
+    errors = []
+    for share in shares:
+        height, slope = yardsticks.chief_ray_on_film(LENS, math.atan(share * full))
+        in_focus = height + slope * (
+            LENS.vertices_mm[-1] + lens_at_focus.back_focal_distance_mm - LENS.film_position_mm
+        )
+        errors.append(in_focus - lens_at_focus.effective_focal_length_mm * share * full)
+    coefficients = np.polyfit(shares**2, np.array(errors) / shares**3, 4)
+    assert coefficients[-1] == pytest.approx(listing.DISTORTION_SUM, abs=1e-5)
