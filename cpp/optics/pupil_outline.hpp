@@ -1,0 +1,153 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "pupil_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Reach of the passing directions from the middle of their bounding box, in units of the box, by azimuth from 0 to pi.
+struct PupilOutline {
+    static constexpr int kAzimuths = 64;  ///< intervals of azimuth
+
+    double outer[kAzimuths + 1] = {}, inner[kAzimuths + 1] = {};
+
+    static double azimuth(int spoke) { return std::numbers::pi * spoke / kAzimuths; }
+};
+
+/// The whole box, and a little more. At the edge of the image circle the last light comes through a crescent, thin
+/// and bent, that spokes from its middle do not describe.
+inline PupilOutline box_outline() {
+    PupilOutline outline;
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
+        const double angle = PupilOutline::azimuth(a);
+        outline.outer[a] = 1.3 / std::max(std::fabs(std::cos(angle)), std::fabs(std::sin(angle)));
+    }
+    return outline;
+}
+
+/// How much the reach along an azimuth differs between outlines.
+inline double spread(const std::vector<PupilOutline>& looks, int azimuth) {
+    const auto [least, most] = std::minmax_element(
+        looks.begin(), looks.end(),
+        [azimuth](const PupilOutline& x, const PupilOutline& y) { return x.outer[azimuth] < y.outer[azimuth]; });
+    return most->outer[azimuth] - least->outer[azimuth];
+}
+
+inline double largest_spread(const std::vector<PupilOutline>& looks) {
+    double largest = 0;
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) largest = std::max(largest, spread(looks, a));
+    return largest;
+}
+
+/// The outline that holds all of these, and a margin: a share of the reach, for what can pass between the film radii
+/// and azimuths looked at, and a share of how much it changes.
+inline PupilOutline holding_all(const std::vector<PupilOutline>& looks) {
+    constexpr double kMargin = 0.004, kSpreadShare = 0.05;
+    PupilOutline all;
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
+        double outer = 0, inner = kInfinity;
+        for (const PupilOutline& look : looks) {
+            if (!(look.outer[a] > 0)) continue;
+            outer = std::max(outer, look.outer[a]);
+            inner = std::min(inner, look.inner[a]);
+        }
+        if (!(outer > 0)) continue;
+        const double more = kSpreadShare * spread(looks, a);
+        all.outer[a] = (1 + kMargin) * outer + more;
+        all.inner[a] = std::max(0.0, (1 - kMargin) * inner - more);
+    }
+    return all;
+}
+
+/// Sectors of one row, first to last in azimuth.
+class PupilRow {
+public:
+    static constexpr int kSectors = 32;  ///< for m >= 0
+
+    /// Cuts the outline into sectors of nearly equal area.
+    explicit PupilRow(const PupilOutline& outline) {
+        constexpr int kAzimuths = PupilOutline::kAzimuths;
+        constexpr int kFine = 16;  // points of azimuth in each interval
+        constexpr int kPoints = kAzimuths * kFine;
+        std::vector<double> outer(kPoints + 1), inner(kPoints + 1), area(kPoints + 1, 0.0);
+        for (int i = 0; i <= kPoints; ++i) {
+            const int a = std::min(i / kFine, kAzimuths - 1);
+            const double f = static_cast<double>(i - a * kFine) / kFine;
+            const double before = outline.outer[a], after = outline.outer[a + 1];
+            // Where the reach jumps, the corner of a sliver lies between the two spokes, further out than either.
+            const bool corner = std::fabs(after - before) > 0.2 * std::max(before, after);
+            outer[static_cast<std::size_t>(i)] =
+                corner ? 1.25 * std::max(before, after) : before + f * (after - before);
+            inner[static_cast<std::size_t>(i)] = corner
+                                                     ? std::min(outline.inner[a], outline.inner[a + 1])
+                                                     : outline.inner[a] + f * (outline.inner[a + 1] - outline.inner[a]);
+        }
+        for (std::size_t i = 1; i <= kPoints; ++i)
+            area[i] = area[i - 1] + outer[i] * outer[i - 1] - inner[i] * inner[i - 1] + 1e-12;
+        std::size_t from = 0;
+        for (int s = 0; s < kSectors; ++s) {
+            std::size_t to = from + 1;
+            while (to < kPoints - static_cast<std::size_t>(kSectors - 1 - s) &&
+                   area[to] < area[kPoints] * (s + 1) / kSectors)
+                ++to;
+            if (s == kSectors - 1) to = kPoints;
+            sectors_.push_back(sector_over(outer, inner, from, to));
+            from = to;
+        }
+    }
+
+    /// Widens the sector of a place in the box such that it holds it; false where it does already.
+    bool take_in(Vec2f place) {
+        for (PupilSector& s : sectors_) {
+            const bool after = s.x * place.y - s.y * place.x >= 0;
+            const bool before = place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0;
+            if (!after || !before) continue;
+            const float reach = (place.x * s.dy - place.y * s.dx) / (s.x * s.dy - s.y * s.dx);
+            if (reach <= 1 && reach * reach >= s.hole_squared) return false;
+            const float scale = std::max(1.0f, 1.03f * reach);
+            s = {scale * s.x, scale * s.y, scale * s.dx, scale * s.dy,
+                 std::min(s.hole_squared / (scale * scale), 0.98f * reach * reach / (scale * scale))};
+            return true;
+        }
+        return false;
+    }
+
+    const std::vector<PupilSector>& sectors() const { return sectors_; }
+
+private:
+    struct Point {
+        double x, y;
+    };
+
+    /// The smallest triangle on these two azimuths whose outer edge lies outside the outline in between.
+    static PupilSector sector_over(const std::vector<double>& outer, const std::vector<double>& inner, std::size_t from,
+                                   std::size_t to) {
+        const auto angle = [&](std::size_t i) {
+            return std::numbers::pi * static_cast<double>(i) / static_cast<double>(outer.size() - 1);
+        };
+        const auto point = [&](std::size_t i) {
+            const double r = std::max(outer[i], 1e-9);
+            return Point{r * std::cos(angle(i)), r * std::sin(angle(i))};
+        };
+        const Point a = point(from), b = point(to);
+        const double twice_area = a.x * b.y - a.y * b.x;
+        // Distance from the middle to the edge along an azimuth, by Cramer's rule.
+        const auto edge = [&](std::size_t i) {
+            return twice_area / ((b.y - a.y) * std::cos(angle(i)) - (b.x - a.x) * std::sin(angle(i)));
+        };
+        double scale = 1, hole = 1;
+        for (std::size_t i = from; i <= to; ++i) scale = std::max(scale, outer[i] / edge(i));
+        for (std::size_t i = from; i <= to; ++i) hole = std::min(hole, inner[i] / (scale * edge(i)));
+        return {static_cast<float>(scale * a.x), static_cast<float>(scale * a.y),
+                static_cast<float>(scale * (b.x - a.x)), static_cast<float>(scale * (b.y - a.y)),
+                static_cast<float>(hole * hole)};
+    }
+
+    std::vector<PupilSector> sectors_;
+};
+
+}  // namespace REALCAM_NAMESPACE
