@@ -49,7 +49,7 @@ inline PupilOutline holding_all(const std::vector<PupilOutline>& looks) {
     constexpr double kMargin = 0.004, kSpreadShare = 0.05;
     PupilOutline all;
     for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
-        double outer = 0, inner = kInfinity;
+        double outer = 0, inner = std::numeric_limits<double>::infinity();
         for (const PupilOutline& look : looks) {
             if (!(look.outer[a] > 0)) continue;
             outer = std::max(outer, look.outer[a]);

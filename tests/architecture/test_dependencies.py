@@ -42,6 +42,8 @@ HOST_ONLY = {
     "optics/lens_system.hpp",
     "optics/paraxial.hpp",
     "optics/pupil.hpp",
+    "optics/pupil_outline.hpp",
+    "optics/pupil_search.hpp",
     "optics/surface.hpp",
     "render/backend.hpp",
     "render/daylight.hpp",
