@@ -72,16 +72,13 @@ def king() -> Mesh:
 
 def queen() -> Mesh:
     angles = np.linspace(0, 2 * np.pi, 9)[:-1]
-    pearls = [
-        ball(0.0021, 14).moved(0.0105 * float(np.cos(a)), 0.0858, 0.0105 * float(np.sin(a))) for a in angles
-    ]
+    pearls = [ball(0.0021, 14).moved(0.0105 * float(np.cos(a)), 0.0858, 0.0105 * float(np.sin(a))) for a in angles]
     return joined(turned(QUEEN), ball(0.0036, 20).moved(0, 0.0905, 0), *pearls)
 
 
 def rook() -> Mesh:
     merlons = [
-        box(0.0046, 0.0052, 0.0034).moved(0, 0.052, 0.0107).turned("y", angle)
-        for angle in np.arange(0, 360, 60)
+        box(0.0046, 0.0052, 0.0034).moved(0, 0.052, 0.0107).turned("y", angle) for angle in np.arange(0, 360, 60)
     ]
     return joined(turned(ROOK), *merlons)
 
@@ -102,12 +99,9 @@ def board(glb: Glb) -> int:
     width = 8 * SQUARE
     rim = 0.018
     sides = [
-        box(width + 2 * rim, THICKNESS + 0.0012, rim).moved(0, 0, side * (width + rim) / 2)
-        for side in (-1, 1)
+        box(width + 2 * rim, THICKNESS + 0.0012, rim).moved(0, 0, side * (width + rim) / 2) for side in (-1, 1)
     ] + [box(rim, THICKNESS + 0.0012, width).moved(side * (width + rim) / 2, 0, 0) for side in (-1, 1)]
-    return glb.mesh(
-        "board", [(joined(*squares[0]), light), (joined(*squares[1]), dark), (joined(*sides), frame)]
-    )
+    return glb.mesh("board", [(joined(*squares[0]), light), (joined(*squares[1]), dark), (joined(*sides), frame)])
 
 
 def on_square(column: float, row: float) -> tuple[float, float, float]:

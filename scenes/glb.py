@@ -94,9 +94,7 @@ class Glb:
         return len(values) - 1
 
     def _view(self, data: bytes) -> int:
-        view = self._add(
-            "bufferViews", {"buffer": 0, "byteOffset": len(self._bytes), "byteLength": len(data)}
-        )
+        view = self._add("bufferViews", {"buffer": 0, "byteOffset": len(self._bytes), "byteLength": len(data)})
         self._bytes += data + bytes(-len(data) % 4)
         return view
 

@@ -37,9 +37,7 @@ def add_table(glb: Glb, rng: np.random.Generator) -> None:
     edge = quad([1.1, -0.04, -0.85], [-2.2, 0, 0], [0, 0.04, 0], (2, 0.03))
     glb.place("table", glb.mesh("table", [(joined(top, edge), wood)]))
 
-    steel = glb.material(
-        "ruler", (0.5, 0.5, 0.5), roughness=0.35, texture=glb.picture(pictures.png(pictures.ruler()))
-    )
+    steel = glb.material("ruler", (0.5, 0.5, 0.5), roughness=0.35, texture=glb.picture(pictures.png(pictures.ruler())))
     ruler = quad([0, 0.0012, 0], [0.3, 0, 0], [0, 0, -0.024])
     glb.place("ruler", glb.mesh("ruler", [(ruler, steel)]), (-0.06, 0, 0.325))
 
@@ -85,9 +83,7 @@ def tube(path: np.ndarray, radius: float, sides: int = 16) -> Mesh:
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     across = np.column_stack([tangent[:, 1], -tangent[:, 0], np.zeros(len(path))])
     angles = np.linspace(0, 2 * np.pi, sides + 1)
-    normals = np.cos(angles)[None, :, None] * across[:, None, :] + np.sin(angles)[None, :, None] * np.array(
-        [0, 0, 1.0]
-    )
+    normals = np.cos(angles)[None, :, None] * across[:, None, :] + np.sin(angles)[None, :, None] * np.array([0, 0, 1.0])
     positions = path[:, None, :] + radius * normals
     i, j = np.meshgrid(np.arange(len(path) - 1), np.arange(sides), indexing="ij")
     a = (i * (sides + 1) + j).reshape(-1)
@@ -172,18 +168,8 @@ def add_lamps(glb: Glb) -> None:
     left = glb.material("lamp left", emission=(9500, 6900, 4300))
     behind = glb.material("lamp behind", emission=(4600, 5400, 6800))
     soft = quad([-0.6, 1.25, -0.6], [1.2, 0, 0], [0, 0, 1.1])
-    key = (
-        quad([-0.16, -0.16, 0], [0.32, 0, 0], [0, 0.32, 0])
-        .turned("x", 28)
-        .turned("y", 62)
-        .moved(-0.95, 0.72, 0.42)
-    )
-    rim = (
-        quad([-0.12, -0.2, 0], [0.24, 0, 0], [0, 0.4, 0])
-        .turned("x", 24)
-        .turned("y", 220)
-        .moved(0.98, 0.66, -0.82)
-    )
+    key = quad([-0.16, -0.16, 0], [0.32, 0, 0], [0, 0.32, 0]).turned("x", 28).turned("y", 62).moved(-0.95, 0.72, 0.42)
+    rim = quad([-0.12, -0.2, 0], [0.24, 0, 0], [0, 0.4, 0]).turned("x", 24).turned("y", 220).moved(0.98, 0.66, -0.82)
     glb.place("lamps", glb.mesh("lamps", [(soft, overhead), (key, left), (rim, behind)]))
 
 

@@ -74,9 +74,7 @@ def bricks(rng: np.random.Generator, size: int = 256) -> np.ndarray:
     across = x * columns + 0.5 * (row % 2)
     tone = rng.uniform(0.6, 1.15, (rows, columns))[row, across.astype(int) % columns]
     joint = (np.abs((y * rows) % 1 - 0.5) > 0.43) | (np.abs(across % 1 - 0.5) > 0.47)
-    return srgb(
-        np.where(joint[..., None], [0.10, 0.10, 0.11], tone[..., None] * np.array([0.20, 0.115, 0.092]))
-    )
+    return srgb(np.where(joint[..., None], [0.10, 0.10, 0.11], tone[..., None] * np.array([0.20, 0.115, 0.092])))
 
 
 def test_chart(width: int = 480, height: int = 680) -> np.ndarray:

@@ -40,9 +40,7 @@ def joined(*meshes: Mesh) -> Mesh:
     )
 
 
-def quad(
-    corner: list[float], along_u: list[float], along_v: list[float], repeat: tuple[float, float] = (1, 1)
-) -> Mesh:
+def quad(corner: list[float], along_u: list[float], along_v: list[float], repeat: tuple[float, float] = (1, 1)) -> Mesh:
     """A rectangle that faces along_u x along_v; the picture's left and lower edge are at `corner`."""
     p, u, v = (np.array(a, dtype=float) for a in (corner, along_u, along_v))
     normal = np.cross(u, v) / np.linalg.norm(np.cross(u, v))
@@ -120,18 +118,14 @@ def lathe(points: list[tuple[float, float] | None], segments: int = 48, steps: i
         positions = np.column_stack([radius * cs[:, 0], height, radius * cs[:, 1]])
         edge = positions[triangles]
         area = np.linalg.norm(np.cross(edge[:, 1] - edge[:, 0], edge[:, 2] - edge[:, 0]), axis=1)
-        parts.append(
-            Mesh(positions, np.column_stack([out * cs[:, 0], up, out * cs[:, 1]]), triangles[area > 1e-11])
-        )
+        parts.append(Mesh(positions, np.column_stack([out * cs[:, 0], up, out * cs[:, 1]]), triangles[area > 1e-11]))
     return joined(*parts)
 
 
 def ball(radius: float, segments: int = 36) -> Mesh:
     """Its middle is the origin."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, segments // 2 + 1)
-    return lathe(
-        [(max(radius * float(np.cos(a)), 0.0), radius * float(np.sin(a))) for a in angles], segments, 1
-    )
+    return lathe([(max(radius * float(np.cos(a)), 0.0), radius * float(np.sin(a))) for a in angles], segments, 1)
 
 
 def disc(radius: float, segments: int = 16) -> Mesh:
@@ -150,7 +144,5 @@ def rod(start: np.ndarray, end: np.ndarray, radius: float) -> Mesh:
     up = np.cross(side, along)
     ways = [side, up, -side, -up]
     positions = np.array([p + radius * w for p in (start, end) for w in ways])
-    triangles = [[i, (i + 1) % 4, 4 + i] for i in range(4)] + [
-        [(i + 1) % 4, 4 + (i + 1) % 4, 4 + i] for i in range(4)
-    ]
+    triangles = [[i, (i + 1) % 4, 4 + i] for i in range(4)] + [[(i + 1) % 4, 4 + (i + 1) % 4, 4 + i] for i in range(4)]
     return Mesh(positions, np.array(ways * 2), np.array(triangles)[:, ::-1])

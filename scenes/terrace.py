@@ -30,8 +30,7 @@ def add(glb: Glb, rng: np.random.Generator) -> None:
         glb.place("window", shape, (x, -0.35, -9.55))
 
     posts = [
-        box(0.11, 3.4, 0.11).moved(x, -0.76, z)
-        for x, z in ((-1.72, -4.4), (1.86, -4.4), (-2.5, -7.8), (2.6, -7.8))
+        box(0.11, 3.4, 0.11).moved(x, -0.76, z) for x, z in ((-1.72, -4.4), (1.86, -4.4), (-2.5, -7.8), (2.6, -7.8))
     ]
     glb.place("posts", glb.mesh("posts", [(joined(*posts), dark)]))
 

@@ -17,6 +17,7 @@ that series over 365 to 850 nm. A glass whose fit is off by more than FIT_TOLERA
 import argparse
 import re
 import sys
+from pathlib import Path
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -40,11 +41,11 @@ MAKERS = [  # catalogue, name in opticalglass, formula, edition of the data shee
 
 def sellmeier_index(b, c, um):
     um2 = np.asarray(um) ** 2
-    return np.sqrt(1 + sum(bi * um2 / (um2 - ci) for bi, ci in zip(b, c)))
+    return np.sqrt(1 + sum(bi * um2 / (um2 - ci) for bi, ci in zip(b, c, strict=True)))
 
 
 def series_index(coefficients, powers, um):
-    return np.sqrt(sum(a * np.asarray(um) ** p for a, p in zip(coefficients, powers)))
+    return np.sqrt(sum(a * np.asarray(um) ** p for a, p in zip(coefficients, powers, strict=True)))
 
 
 def fit_sellmeier(coefficients, powers):
@@ -67,9 +68,7 @@ def fit_sellmeier(coefficients, powers):
         )
         b, c = linear(fit.x)[0], np.exp(fit.x)
         b, c = [float(f"{v:.9g}") for v in b], [float(f"{v:.9g}") for v in c]
-        error = np.abs(
-            sellmeier_index(b, c, VISIBLE_UM) - series_index(coefficients, powers, VISIBLE_UM)
-        ).max()
+        error = np.abs(sellmeier_index(b, c, VISIBLE_UM) - series_index(coefficients, powers, VISIBLE_UM)).max()
         if np.isfinite(error) and (best is None or error < best[2]):
             best = (b, c, error)
     return best
@@ -80,7 +79,8 @@ def number(v):
 
 
 def sellmeier_line(b, c):
-    return "sellmeier = {B=[%s], C=[%s]}" % (", ".join(map(number, b)), ", ".join(map(number, c)))
+    first, second = (", ".join(map(number, values)) for values in (b, c))
+    return f"sellmeier = {{B=[{first}], C=[{second}]}}"
 
 
 def glasses_of_maker(name, formula):
@@ -97,7 +97,7 @@ def glasses_of_maker(name, formula):
 
 
 def glasses_of_agf(path):
-    raw = open(path, "rb").read()
+    raw = Path(path).read_bytes()
     text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "latin-1").replace("\0", "")
     name = kind = index = None
     for line in text.splitlines():
@@ -129,9 +129,7 @@ def glass_line(coefficients, formula):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument(
-        "--opticalglass", metavar="DIR", help="folder that the package opticalglass is installed in"
-    )
+    parser.add_argument("--opticalglass", metavar="DIR", help="folder that the package opticalglass is installed in")
     parser.add_argument(
         "--agf",
         action="append",
@@ -148,13 +146,8 @@ def main():
     for catalogue, maker, formula, edition in MAKERS:
         sources = [(edition, glasses_of_maker(maker, formula))]
         if catalogue in extra:
-            first = (
-                open(extra[catalogue], "rb")
-                .readline()
-                .decode("latin-1")
-                .replace("\0", "")
-                .strip("CC \r\n\t!ÿþ")
-            )
+            text = Path(extra[catalogue]).read_bytes().split(b"\n", 1)[0].decode("latin-1")
+            first = re.sub(r"^[\sÿþ!C]+|\s+$", "", text.replace("\0", ""))
             sources.append(
                 (
                     f"{maker}, AGF catalogue: {first}" if first else f"{maker}, AGF catalogue",
@@ -169,9 +162,7 @@ def main():
                     continue
                 toml, n_d, made = glass_line(coefficients, form)
                 if not (1.3 < n_d < 2.3) or (printed and abs(printed - n_d) > 3e-5):
-                    problems.append(
-                        f"{catalogue}:{name} left out: formula gives {n_d:.6f}, the sheet prints {printed}"
-                    )
+                    problems.append(f"{catalogue}:{name} left out: formula gives {n_d:.6f}, the sheet prints {printed}")
                     continue
                 seen.add((catalogue, name.upper()))
                 counts[made] = counts.get(made, 0) + 1
@@ -182,12 +173,13 @@ def main():
                 "# Glass catalogue, written by tools/make_glass_catalogue.py; do not edit by hand.",
                 "# Indices relative to air at 20 to 25 C as the makers publish them; wavelengths in um in the formulas",
                 "# (n^2 = 1 + sum B l^2 / (l^2 - C), C in um^2) and nm in the tables.",
-                "# Schott and Ohara: the makers' own Sellmeier coefficients. Hoya, CDGM, Hikari, Sumita: Sellmeier formulas fitted",
-                f"# to the makers' power series, within {FIT_TOLERANCE:g} in index from 380 to 780 nm, else tables of the series.",
+                "# Schott and Ohara: the makers' own Sellmeier coefficients. Hoya, CDGM, Hikari, Sumita: Sellmeier",
+                f"# formulas fitted to the makers' power series, within {FIT_TOLERANCE:g} in index from 380 to 780 nm, else",
+                "# tables of the series.",
                 "# " + ", ".join(f"{v} {k}" for k, v in sorted(counts.items())) + ".",
                 "format = 1",
+                *lines,
             ]
-            + lines
         )
     )
     for p in problems:

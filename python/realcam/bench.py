@@ -36,9 +36,7 @@ def _processor() -> str:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
         return platform.processor()
-    return next(
-        (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine()
-    )
+    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
 
 
 def _commit() -> str | None:
@@ -53,9 +51,9 @@ def lens_rays(threads: int) -> Result:
     """Rays per second through the 11 surfaces of the double Gauss, one core, float32, by instruction set."""
     del threads  # one core by definition
     rates = _core._lens_ray_rates(Lens.load("double-gauss-50mm"), 3.0)
-    return {
-        f"x86-64-{name}" if name != "native" else name: round(rate / 1e6, 1) for name, rate in rates.items()
-    } | {"unit": "million rays a second on one core"}
+    return {f"x86-64-{name}" if name != "native" else name: round(rate / 1e6, 1) for name, rate in rates.items()} | {
+        "unit": "million rays a second on one core"
+    }
 
 
 def lens_setup(threads: int) -> Result:
@@ -87,9 +85,7 @@ def _best(work: Callable[[], object], rounds: int = 3) -> float:
 
 def pass_share(threads: int) -> Result:
     """Share of the sampled rays that pass the lens, whole frame, wide open."""
-    speck = Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(
-        1.0
-    )
+    speck = Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
     shares = {}
     for name in lens_names():
         lens = Lens.load(name)
@@ -142,12 +138,8 @@ def _box(centre: tuple[float, float, float], half: float) -> Mesh:
 
 
 def _sphere(centre: tuple[float, float, float], radius: float, columns: int = 64, rows: int = 32) -> Mesh:
-    polar, azimuth = np.meshgrid(
-        np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij"
-    )
-    points = np.stack(
-        [np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1
-    )
+    polar, azimuth = np.meshgrid(np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij")
+    points = np.stack([np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1)
     row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
     a = (row * (columns + 1) + column).ravel()
     b, c, d = a + 1, a + columns + 1, a + columns + 2
@@ -166,9 +158,7 @@ def frame(threads: int) -> Result:
     }
     cpu: dict[str, list[float]] = {model: [] for model in cameras}
     wall: dict[str, list[float]] = {model: [] for model in cameras}
-    render(
-        scene, cameras["pinhole"], spp=1, threads=threads
-    )  # builds the scene's BVH, which is no part of a picture
+    render(scene, cameras["pinhole"], spp=1, threads=threads)  # builds the scene's BVH, which is no part of a picture
     for _ in range(5):  # in turns, so that what else the machine does falls on all alike
         for model, camera in cameras.items():
             start = time.process_time(), time.perf_counter()

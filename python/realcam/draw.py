@@ -55,9 +55,7 @@ def draw_cross_section(lens: Lens, axes: Axes, rays: int = 7) -> None:
     half = 0.5 * float(np.hypot(*lens.film_mm))
     axes.plot([lens.film_position_mm] * 2, [-half, half], color="black", linewidth=2)
     data = lens.first_order()
-    axes.set_title(
-        f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}"
-    )
+    axes.set_title(f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}")
     axes.set_xlabel("z / mm")
     axes.set_ylabel("y / mm")
     axes.set_aspect("equal")
@@ -142,9 +140,7 @@ def _ray_paths(lens: Lens, height: float, count: int, reach: float) -> list[np.n
     """Points of each ray, from the film to `reach` mm past the front surface: (surfaces + 2, 3) mm each."""
     passing = _passing_slopes(lens, height)
     angle = (
-        np.linspace(passing[0], passing[-1], count)
-        if count > 1
-        else passing[len(passing) // 2 : len(passing) // 2 + 1]
+        np.linspace(passing[0], passing[-1], count) if count > 1 else passing[len(passing) // 2 : len(passing) // 2 + 1]
     )
     origins, directions = _film_rays(lens, height, angle)
     points = [origins]

@@ -48,9 +48,7 @@ def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
     """A latitude-longitude image as (H, W, 3) float32, linear. Raises ImageFileError."""
     name = os.fspath(path)
     if not Path(name).is_file():
-        raise ImageFileError(
-            f"{name}: there is no such file; an environment image (.exr, .hdr, .png) is wanted"
-        )
+        raise ImageFileError(f"{name}: there is no such file; an environment image (.exr, .hdr, .png) is wanted")
     buffer = oiio.ImageBuf(name)
     pixels = buffer.get_pixels(oiio.FLOAT)
     if buffer.has_error or pixels is None:
@@ -76,9 +74,7 @@ def check_writable(path: str | os.PathLike[str]) -> None:
     """Raises ImageFileError where write_image could not write: before the work, not after it."""
     if Path(path).suffix.lower() not in (".png", ".exr"):
         name = os.fspath(path)
-        raise ImageFileError(
-            f"{name}: unknown suffix; .png (for the screen) or .exr (film exposure) is wanted"
-        )
+        raise ImageFileError(f"{name}: unknown suffix; .png (for the screen) or .exr (film exposure) is wanted")
     check_folder(path)
 
 
@@ -114,11 +110,7 @@ def write_image(
         output = oiio.ImageOutput.create(temporary)
         if output is None:
             raise ImageFileError(f"{name}: {oiio.geterror()}")
-        if not (
-            output.open(temporary, spec)
-            and output.write_image(np.ascontiguousarray(pixels))
-            and output.close()
-        ):
+        if not (output.open(temporary, spec) and output.write_image(np.ascontiguousarray(pixels)) and output.close()):
             raise ImageFileError(f"{name}: cannot be written: {output.geterror()}")
         publish(temporary, name)
     finally:

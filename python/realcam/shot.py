@@ -106,9 +106,7 @@ def _shot(scene: Scene, values: Mapping[str, Any]) -> Shot:
     resolution = values.get("resolution")
     camera = Camera(
         lens,
-        film=_core.default_film(
-            lens, values.get("film_mm"), resolution and tuple(int(v) for v in resolution)
-        ),
+        film=_core.default_film(lens, values.get("film_mm"), resolution and tuple(int(v) for v in resolution)),
         iso=values.get("iso", 100),
         model=values.get("model", "full"),
         exposure_time_s=values.get("exposure_time_s", 1.0),

@@ -38,9 +38,7 @@ def quad(
 def scene_of(*quads: Quad, shift: Sequence[float] = (0, 0, 0), uvs: bool = False) -> rc.Scene:
     """All rectangles in one scene. uvs: (0, 0) to (1, 1), lower left to upper right corner of each."""
     vertices = np.concatenate([corners for corners, _ in quads]) + np.asarray(shift, float)
-    faces = [
-        [4 * i + a, 4 * i + b, 4 * i + c] for i in range(len(quads)) for a, b, c in ((0, 1, 2), (0, 2, 3))
-    ]
+    faces = [[4 * i + a, 4 * i + b, 4 * i + c] for i in range(len(quads)) for a, b, c in ((0, 1, 2), (0, 2, 3))]
     return rc.Scene.from_arrays(
         vertices,
         faces,
@@ -61,9 +59,7 @@ def sphere(radius: float, segments: int, material: rc.Material, *, inward: bool)
     polar = np.linspace(0, np.pi, segments + 1)
     turn = np.linspace(0, 2 * np.pi, 2 * segments, endpoint=False)
     p, t = np.meshgrid(polar, turn, indexing="ij")
-    vertices = radius * np.stack([np.sin(p) * np.sin(t), np.cos(p), np.sin(p) * np.cos(t)], axis=-1).reshape(
-        -1, 3
-    )
+    vertices = radius * np.stack([np.sin(p) * np.sin(t), np.cos(p), np.sin(p) * np.cos(t)], axis=-1).reshape(-1, 3)
     n, faces = 2 * segments, []
     for i in range(segments):
         for j in range(n):

@@ -123,9 +123,7 @@ def test_render_traces_the_rays_that_are_generated(model: str) -> None:
     values = rng.uniform(0, 10, (8, 16)).astype(np.float32)
     scene = scenes.sky(0.0).with_environment(np.repeat(values[..., None], 3, axis=2))
     lens = rc.Lens.load("wide-22mm")
-    camera = rc.Camera(
-        lens, film=rc.Film(24, 16, (24, 16)), look_at=(0.5, 0.2, -1), exposure_time_s=0.25, model=model
-    )
+    camera = rc.Camera(lens, film=rc.Film(24, 16, (24, 16)), look_at=(0.5, 0.2, -1), exposure_time_s=0.25, model=model)
     rays = camera.generate_rays(spp=32, seed=9)
     d = rays.directions.astype(np.float64)
     row = (np.arccos(np.clip(d[:, 1], -1, 1)) / math.pi * 8).astype(int)

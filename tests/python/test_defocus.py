@@ -26,9 +26,7 @@ def thin_singlet(f_number: float) -> rc.Lens:
     return rc.Lens(surfaces=[rc.Stop(clear_semi_diameter_mm=opening), front, back], name="thin singlet")
 
 
-def picture(
-    lens: rc.Lens, *marks: scenes.Quad, model: str, size_mm: float = PICTURE_MM, spp: int = SPP
-) -> np.ndarray:
+def picture(lens: rc.Lens, *marks: scenes.Quad, model: str, size_mm: float = PICTURE_MM, spp: int = SPP) -> np.ndarray:
     """Exposure of bright marks on black: (rows, columns). The camera at the origin looks along -z."""
     count = round(size_mm / PITCH_MM)
     film = rc.Film(size_mm, size_mm, (count, count))
@@ -72,9 +70,7 @@ FOCUS_MM, IMAGE_MM = 1100.0, 110.0  # from the lens
 def test_circle_of_confusion_of_a_thin_lens(model: str, distance_mm: float) -> None:
     f_number = 16.0
     lens = thin_singlet(f_number).focused((FOCUS_MM + IMAGE_MM) / 1000)
-    expected = (
-        FOCAL_LENGTH**2 / f_number * abs(distance_mm - FOCUS_MM) / (distance_mm * (FOCUS_MM - FOCAL_LENGTH))
-    )
+    expected = FOCAL_LENGTH**2 / f_number * abs(distance_mm - FOCUS_MM) / (distance_mm * (FOCUS_MM - FOCAL_LENGTH))
     if model == "thick":
         # Focusing goes by real rays, 0.12 mm in front of the paraxial plane; this model is paraxial on that
         # film.
@@ -85,9 +81,7 @@ def test_circle_of_confusion_of_a_thin_lens(model: str, distance_mm: float) -> N
 
 
 @pytest.mark.parametrize("distance_m", [0.8, 1.2, 5.0, 20.0])
-@pytest.mark.parametrize(
-    "name", ["double-gauss-50mm", "tessar-50mm", "double-gauss-100mm", "zoom-70-210mm-at-70mm"]
-)
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "tessar-50mm", "double-gauss-100mm", "zoom-70-210mm-at-70mm"])
 def test_circle_of_confusion_of_a_full_lens(name: str, distance_m: float) -> None:
     lens = rc.Lens.load(name).focused(2.0).stopped_down(16)
     paraxial = yardsticks.Paraxial(lens)
@@ -114,9 +108,7 @@ def test_depth_of_field_in_a_picture(model: str) -> None:
         column, row = round((x + 0.6) / PITCH_MM), round((0.6 - y) / PITCH_MM)
         blurs.append(blur_diameter(values[row - 14 : row + 14, column - 14 : column + 14]))
     # Dioptres are linear in the blur.
-    near, far = (
-        np.polyval(np.polyfit(blurs[side], 1 / depths[side], 1), c) for side in (slice(4), slice(4, 8))
-    )
+    near, far = (np.polyval(np.polyfit(blurs[side], 1 / depths[side], 1), c) for side in (slice(4), slice(4, 8)))
     measured = 1 / far - 1 / near
     # The equation leaves out (N c / (f m))^2 = 0.6%. Each end lies near four blurs, whose 0.3% are about
     # doubled by taking the mark's own size from them: 0.3% of the depth for each end, and 1.5% in all at
@@ -144,9 +136,7 @@ def test_a_pinhole_is_sharp_everywhere(distance_mm: float) -> None:
 def test_place_and_size_of_the_image(model: str, distance_mm: float) -> None:
     lens = thin_singlet(16.0).focused((FOCUS_MM + IMAGE_MM) / 1000)
     place = (0.1, -0.15)
-    centroid, _ = moments(
-        picture(lens, mark_at(distance_mm + IMAGE_MM, IMAGE_MM / distance_mm, place), model=model)
-    )
+    centroid, _ = moments(picture(lens, mark_at(distance_mm + IMAGE_MM, IMAGE_MM / distance_mm, place), model=model))
     # Image distance over object distance; the real film lies 0.1% nearer. A blur of at most 0.4 mm has 0.1 mm
     # / sqrt( 10000) = 1 um of noise; four of them.
     np.testing.assert_allclose(centroid, place, atol=0.004)
@@ -176,11 +166,7 @@ def test_three_blades_make_a_triangle_of_the_same_area() -> None:
     surfaces = thin_singlet(4.0).surfaces
 
     def blurred(blades: int) -> np.ndarray:
-        lens = (
-            rc.Lens(surfaces=surfaces, iris_blades=blades)
-            .focused((FOCUS_MM + IMAGE_MM) / 1000)
-            .stopped_down(16)
-        )
+        lens = rc.Lens(surfaces=surfaces, iris_blades=blades).focused((FOCUS_MM + IMAGE_MM) / 1000).stopped_down(16)
         return picture(lens, mark_at(700 + IMAGE_MM, IMAGE_MM / 700, (0, 0)), model="full")
 
     round_blur, triangle = blurred(0), blurred(3)

@@ -96,9 +96,7 @@ def test_ideal_models_do_not_distort(model: str) -> None:
     lens = rc.Lens.load("double-gauss-100mm").stopped_down(22)
     camera = rc.Camera(lens, film=rc.Film(2, 52, (100, 2600)), exposure_time_s=1, model=model)
     far_m, angle = 1e4, 14.0
-    mark = scenes.quad(
-        (0, far_m * math.tan(math.radians(angle)), -far_m), 0.2e-3 / EFL * 1e3 * far_m, emission=1e4
-    )
+    mark = scenes.quad((0, far_m * math.tan(math.radians(angle)), -far_m), 0.2e-3 / EFL * 1e3 * far_m, emission=1e4)
     strip = rc.render(scenes.scene_of(mark), camera, spp=16).pixels[..., 0].astype(np.float64)
     # f tan(angle) on the film of infinity; the thick lens's film is 0.4 mm in front of the paraxial focus,
     # and its chief ray arrives at a slope of 0.2175 (listed).
@@ -116,9 +114,7 @@ def test_picture_is_neither_mirrored_nor_upside_down(model: str) -> None:
         scenes.quad((1, -0.7, -6), 0.2, emission=(0, 0, 1e3)),
     ]
     lens = rc.Lens.load("double-gauss-50mm").focused(6)
-    image = rc.render(
-        scenes.scene_of(*marks), rc.Camera(lens, film=rc.Film(36, 24, (36, 24)), model=model), spp=4
-    )
+    image = rc.render(scenes.scene_of(*marks), rc.Camera(lens, film=rc.Film(36, 24, (36, 24)), model=model), spp=4)
     rows, columns = np.indices((24, 36))
     for channel, (right, down) in enumerate([(False, False), (True, False), (True, True)]):
         light = image.pixels[..., channel].astype(np.float64)

@@ -68,9 +68,7 @@ def test_constant_sky_over_an_open_plane(axis: str) -> None:
     plane, camera = facing(AXES[axis], 0.4)
     measured = scenes.radiance(plane.with_environment((3.0, 2.0, 1.0)), camera)
     # Cosine-distributed samples of a constant have no noise.
-    np.testing.assert_allclose(
-        measured, np.broadcast_to(0.4 * np.array([3.0, 2.0, 1.0]), (16, 24, 3)), rtol=2e-5
-    )
+    np.testing.assert_allclose(measured, np.broadcast_to(0.4 * np.array([3.0, 2.0, 1.0]), (16, 24, 3)), rtol=2e-5)
 
 
 def test_wall_takes_its_share_of_the_sky() -> None:

@@ -75,16 +75,12 @@ def test_relative_illumination_equals_the_integral_summed_by_force(name: str) ->
         # Over the width of the ring, and of its pixels, the irradiance is a parabola through three sums.
         nodes = wanted + 1.2 * pitch * np.array([-1, 0, 1])
         sums = [yardsticks.brute_force_irradiance(lens, r, 350) for r in nodes]
-        expected = (
-            np.polyval(np.polyfit(nodes - wanted, sums, 2), radius - wanted).mean(axis=(1, 3))[ring].mean()
-        )
+        expected = np.polyval(np.polyfit(nodes - wanted, sums, 2), radius - wanted).mean(axis=(1, 3))[ring].mean()
         # At least 100 pixels of 64 samples lie in a ring. For the least that may pass, 60% of the samples at
         # the edge of a fisheye, one standard deviation is sqrt(0.67 / 6400) = 1% of independent samples;
         # these are stratified, and elsewhere more pass. The sums are good to 350^-1.5 = 0.02%.
         assert ring.sum() >= 100
-        assert picture[ring].mean(dtype=np.float64) / rendered_axis == pytest.approx(
-            expected / axis, rel=0.01
-        ), share
+        assert picture[ring].mean(dtype=np.float64) / rendered_axis == pytest.approx(expected / axis, rel=0.01), share
 
 
 def test_relative_illumination_of_ideal_models_is_cos_to_the_fourth() -> None:
@@ -117,8 +113,7 @@ def test_half_the_time_is_half_the_exposure_exactly() -> None:
     scene = scenes.scene_of(scenes.quad((0, 0, -3), 1, emission=(200, 100, 50))).with_environment(5.0)
     film = rc.Film(36, 24, (36, 24))
     whole, half = (
-        rc.render(scene, rc.Camera(lens, film=film, exposure_time_s=t), spp=8).pixels
-        for t in (1 / 60, 1 / 120)
+        rc.render(scene, rc.Camera(lens, film=film, exposure_time_s=t), spp=8).pixels for t in (1 / 60, 1 / 120)
     )
     # Halving is exact in binary, wherever it happens.
     np.testing.assert_array_equal(half, whole / 2)

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 import numpy as np
-import OpenImageIO as oiio  # noqa: N813
+import OpenImageIO as oiio
 import pytest
 import realcam as rc
 from realcam import image_file
@@ -112,9 +112,7 @@ def test_missing_folder_and_folder_in_place_of_the_file(image: rc.Image, tmp_pat
     assert [path.name for path in tmp_path.iterdir()] == ["taken.png"]
 
 
-def test_folder_that_is_not_writable(
-    image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_folder_that_is_not_writable(image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if os.geteuid() == 0:  # root may write everywhere: ask as somebody else would be answered
         monkeypatch.setattr(os, "access", lambda *_, **__: False)
     else:
@@ -142,9 +140,7 @@ def test_a_failing_disk_leaves_the_old_file(
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
-def test_an_interrupt_leaves_nothing(
-    image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupt_leaves_nothing(image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> np.ndarray:
         raise KeyboardInterrupt
 

@@ -22,9 +22,7 @@ def biconvex(**changes: object) -> rc.Lens:
 def test_bundled_lenses_load_by_name() -> None:
     names = rc.lens_names()
     assert names == sorted(names)
-    assert {"double-gauss-50mm", "wide-22mm", "fisheye-10mm", "telephoto-250mm", "double-gauss-100mm"} <= set(
-        names
-    )
+    assert {"double-gauss-50mm", "wide-22mm", "fisheye-10mm", "telephoto-250mm", "double-gauss-100mm"} <= set(names)
     for name in names:
         lens = rc.Lens.load(name)
         assert lens.name == name
@@ -75,9 +73,7 @@ HEAD = "format = 1\nname = 'x'\n[[surface]]\n"
     ],
     ids=["syntax", "negative", "nan", "unknown key"],
 )
-def test_errors_name_file_line_and_surface(
-    tmp_path: Path, text: str, line: int, surface: int, says: str
-) -> None:
+def test_errors_name_file_line_and_surface(tmp_path: Path, text: str, line: int, surface: int, says: str) -> None:
     path = tmp_path / "x.toml"
     path.write_text(HEAD + text)
     with pytest.raises(rc.LensFileError, match=says) as caught:
@@ -198,9 +194,7 @@ def test_a_surface_says_what_is_wanted(arguments: dict[str, object], says: str) 
 
 
 def test_surface_keeps_what_it_is_given() -> None:
-    s = rc.Surface(
-        radius_of_curvature_mm=20, conic=-1, aspheric_coefficients={6: 1e-6}, clear_semi_diameter_mm=4
-    )
+    s = rc.Surface(radius_of_curvature_mm=20, conic=-1, aspheric_coefficients={6: 1e-6}, clear_semi_diameter_mm=4)
     assert (s.radius_of_curvature_mm, s.conic, s.type) == (20, -1, "refracting")
     assert s.aspheric_coefficients == {6: 1e-6}
     # A paraboloid's sag is r^2 / (2 R).

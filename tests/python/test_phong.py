@@ -34,9 +34,7 @@ def albedo(shininess: float, view_deg: float) -> float:
 
 def camera_at(view_deg: float) -> rc.Camera:
     t = math.radians(view_deg)
-    return scenes.pinhole(
-        SPOT, position=(-2 * math.sin(t), 2 * math.cos(t), 0), look_at=(0, 0, 0), up=(0, 0, 1)
-    )
+    return scenes.pinhole(SPOT, position=(-2 * math.sin(t), 2 * math.cos(t), 0), look_at=(0, 0, 0), up=(0, 0, 1))
 
 
 def plane(specular: float, shininess: float, diffuse: float = 0.0, half: float = 10.0) -> scenes.Quad:

@@ -21,11 +21,7 @@ def room(shift: tuple[float, float, float] = (0, 0, 0)) -> rc.Scene:
     lamp = scenes.quad((0.5, 1.5, -3), 0.3, right=(1, 0, 0), up=(0, 0, 1), emission=300)
     scene = scenes.scene_of(floor, lamp, *cards, shift=shift)
     place = tuple(np.add((0.0, 0.6, -1.0), shift))
-    return (
-        scene.with_sun((0.4, -1, -0.3), (50, 50, 45))
-        .with_point_light(place, (5, 5, 5))
-        .with_environment((3, 4, 6))
-    )
+    return scene.with_sun((0.4, -1, -0.3), (50, 50, 45)).with_point_light(place, (5, 5, 5)).with_environment((3, 4, 6))
 
 
 def camera_at(shift: tuple[float, float, float], *, model: str = "full") -> rc.Camera:

@@ -62,9 +62,7 @@ def test_what_is_returned() -> None:
         ({"device": "toaster"}, rc.DeviceError, "toaster.*cpu"),
     ],
 )
-def test_settings_that_make_no_picture(
-    arguments: dict[str, object], error: type[Exception], says: str
-) -> None:
+def test_settings_that_make_no_picture(arguments: dict[str, object], error: type[Exception], says: str) -> None:
     with pytest.raises(error, match=says):
         rc.render(small_scene(), camera(4, 4), **arguments)  # type: ignore[arg-type]
 

@@ -27,9 +27,7 @@ def test_a_scene_counts_and_bounds() -> None:
 @pytest.mark.parametrize("kind", [np.float32, np.float64, np.int64])
 @pytest.mark.parametrize("index", [np.uint8, np.int32, np.uint32, np.int64, np.uint64])
 def test_arrays_of_many_types(kind: type, index: type) -> None:
-    scene = rc.Scene.from_arrays(
-        CORNERS.astype(kind), FACE.astype(index), triangle_materials=np.zeros(1, index)
-    )
+    scene = rc.Scene.from_arrays(CORNERS.astype(kind), FACE.astype(index), triangle_materials=np.zeros(1, index))
     np.testing.assert_array_equal(scene.bounds_m, [[0, 0, -3], [1, 1, -3]])
 
 
@@ -120,11 +118,7 @@ def test_lights_that_are_none() -> None:
 
 def test_scenes_are_values() -> None:
     scene = rc.Scene.from_arrays(CORNERS, FACE)
-    lit = (
-        scene.with_environment((1, 2, 3))
-        .with_sun((0, -1, 0), (1, 1, 1))
-        .with_point_light((0, 1, 0), (1, 1, 1))
-    )
+    lit = scene.with_environment((1, 2, 3)).with_sun((0, -1, 0), (1, 1, 1)).with_point_light((0, 1, 0), (1, 1, 1))
     assert lit.has_light
     assert not scene.has_light
     vertices = CORNERS.copy()

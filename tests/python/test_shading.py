@@ -26,9 +26,7 @@ def polygon_irradiance(points: np.ndarray, normal: np.ndarray, corners: np.ndarr
 
 def test_point_light_over_a_plane() -> None:
     place, intensity, albedo = np.array([0.5, 0.3, -1.2]), (100.0, 50.0, 25.0), (0.3, 0.6, 0.9)
-    scene = scenes.scene_of(scenes.quad((0, 0, -2), 3, diffuse=albedo)).with_point_light(
-        tuple(place), intensity
-    )
+    scene = scenes.scene_of(scenes.quad((0, 0, -2), 3, diffuse=albedo)).with_point_light(tuple(place), intensity)
     camera = scenes.pinhole()
     points, rays = scenes.points_on_plane(camera, 16, (0, 0, -2), (0, 0, 1))
     distance = np.linalg.norm(place - points, axis=1)
@@ -73,9 +71,7 @@ def test_rectangular_area_light(tilted: bool) -> None:
 def test_area_light_shines_to_its_front_alone() -> None:
     floor = scenes.quad((0, -1, 0), 10, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.7)
     away = scenes.quad((0, 1, -2), 0.5, right=(1, 0, 0), up=(0, 0, -1), emission=1000)
-    np.testing.assert_array_equal(
-        scenes.radiance(scenes.scene_of(floor, away), scenes.pinhole(look_at=(0, -1, -2))), 0
-    )
+    np.testing.assert_array_equal(scenes.radiance(scenes.scene_of(floor, away), scenes.pinhole(look_at=(0, -1, -2))), 0)
     # Seen itself: bright from its front, dark from behind.
     front, back = (
         scenes.quad((0, 0, -2), 3, emission=7),

@@ -21,9 +21,9 @@ UNIT_SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], float)
 
 
 def rgba(codes: np.ndarray) -> np.ndarray:
-    return np.concatenate(
-        [np.repeat(codes[..., None], 3, axis=2), np.full((*codes.shape, 1), 255)], axis=2
-    ).astype(np.uint8)
+    return np.concatenate([np.repeat(codes[..., None], 3, axis=2), np.full((*codes.shape, 1), 255)], axis=2).astype(
+        np.uint8
+    )
 
 
 def linear(code: float) -> float:

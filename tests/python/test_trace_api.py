@@ -77,9 +77,7 @@ def test_trace_takes_any_arrays() -> None:
         (AXIS, AXIS, {"wavelength_nm": 0.5}, "wavelength"),
     ],
 )
-def test_trace_says_what_is_wanted(
-    origins: object, directions: object, options: dict[str, object], says: str
-) -> None:
+def test_trace_says_what_is_wanted(origins: object, directions: object, options: dict[str, object], says: str) -> None:
     with pytest.raises(rc.InputError, match=says):
         rc.Lens.load("tessar-50mm").trace(origins, directions, **options)  # type: ignore[arg-type]
 

@@ -18,9 +18,7 @@ def stop(semi_diameter: float) -> rc.Surface:
 def parallel(heights: np.ndarray, z: float = -10.0) -> tuple[np.ndarray, np.ndarray]:
     """Rays along the axis at these distances from it, at azimuths of the golden angle."""
     azimuth = 2.4 * np.arange(len(heights))
-    origins = np.stack(
-        [heights * np.cos(azimuth), heights * np.sin(azimuth), np.full_like(heights, z)], axis=1
-    )
+    origins = np.stack([heights * np.cos(azimuth), heights * np.sin(azimuth), np.full_like(heights, z)], axis=1)
     return origins, np.tile([0.0, 0.0, 1.0], (len(heights), 1))
 
 
@@ -43,20 +41,14 @@ def miss(rays: rc.TraceResult, z: float) -> np.ndarray:
 def test_thick_lens(r1: float, r2: float, d: float, n: float) -> None:
     rim = {"clear_semi_diameter_mm": 5.0}
     front = rc.Surface(radius_of_curvature_mm=r1, thickness_mm=d, material=n, **rim)
-    lens = rc.Lens(
-        surfaces=[stop(2), front, rc.Surface(radius_of_curvature_mm=r2, **rim)], film_distance_mm=1000
-    )
+    lens = rc.Lens(surfaces=[stop(2), front, rc.Surface(radius_of_curvature_mm=r2, **rim)], film_distance_mm=1000)
     # Lensmaker's equation; the focal points from the vertices.
     focal_length = 1 / ((n - 1) * (1 / r1 - 1 / r2 + (n - 1) * d / (n * r1 * r2)))
     first = lens.first_order()
     # Double precision.
     assert first.effective_focal_length_mm == pytest.approx(focal_length, rel=1e-12)
-    assert first.back_focal_distance_mm == pytest.approx(
-        focal_length * (1 - (n - 1) * d / (n * r1)), rel=1e-12
-    )
-    assert first.front_focal_distance_mm == pytest.approx(
-        -focal_length * (1 + (n - 1) * d / (n * r2)), rel=1e-12
-    )
+    assert first.back_focal_distance_mm == pytest.approx(focal_length * (1 - (n - 1) * d / (n * r1)), rel=1e-12)
+    assert first.front_focal_distance_mm == pytest.approx(-focal_length * (1 + (n - 1) * d / (n * r2)), rel=1e-12)
     # The stop is in front of the glass: it is the entrance pupil.
     assert (first.entrance_pupil_position_mm, first.entrance_pupil_diameter_mm) == (0, 4)
     # And a real ray close to the axis crosses it there.
@@ -211,9 +203,7 @@ def test_pupils_obey_the_lagrange_invariant(name: str) -> None:
         )
         for s in lens.surfaces
     ]
-    open_lens = rc.Lens(
-        surfaces=surfaces, film_distance_mm=lens.film_distance_mm, wavelength_nm=lens.wavelength_nm
-    )
+    open_lens = rc.Lens(surfaces=surfaces, film_distance_mm=lens.film_distance_mm, wavelength_nm=lens.wavelength_nm)
     z = -20.0
     origin = [[(z - first.entrance_pupil_position_mm) * slope, 0.0, z]]
     out = open_lens.trace(origin, [[slope, 0.0, 1.0]], start="scene")

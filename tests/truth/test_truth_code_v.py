@@ -101,9 +101,7 @@ def test_third_order_spherical_aberration() -> None:
     origins = np.stack([heights, np.zeros_like(heights), np.full_like(heights, -5.0)], axis=1)
     out = LENS.trace(origins, np.tile([0.0, 0.0, 1.0], (len(heights), 1)), start="scene")
     focus = LENS.vertices_mm[-1] + LENS.first_order().back_focal_distance_mm
-    aberration = out.origins_mm[:, 0] + out.directions[:, 0] / out.directions[:, 2] * (
-        focus - out.origins_mm[:, 2]
-    )
+    aberration = out.origins_mm[:, 0] + out.directions[:, 0] / out.directions[:, 2] * (focus - out.origins_mm[:, 2])
     share = (heights / 25) ** 2
     coefficients = np.polyfit(share, aberration / share**1.5, 5)
     # What the fit leaves out is (0.4)^12 of the aberration; the sum has six decimals, and the indices their

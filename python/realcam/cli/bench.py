@@ -46,9 +46,7 @@ def _print(name: str, result: object, description: str) -> None:
     for key, value in (result if isinstance(result, dict) else {}).items():
         if isinstance(value, dict):
             for inner, figure in value.items():
-                text = (
-                    ", ".join(f"{k} {v}" for k, v in figure.items()) if isinstance(figure, dict) else figure
-                )
+                text = ", ".join(f"{k} {v}" for k, v in figure.items()) if isinstance(figure, dict) else figure
                 typer.echo(f"  {key} {inner}: {text}")
         else:
             typer.echo(f"  {key}: {value}")

@@ -78,9 +78,7 @@ def info(
 @app.command("draw")
 def draw(
     name: LensName,
-    output: Annotated[
-        Optional[Path], typer.Option("--output", "-o", help="A .svg or .png file [LENS.svg].")
-    ] = None,  # noqa: UP045
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="A .svg or .png file [LENS.svg].")] = None,
     f_number: FNumber = None,
     focus: Focus = None,
     rays: Annotated[int, typer.Option(help="Rays for each of three points of the film.", min=1, max=101)] = 7,
@@ -116,9 +114,7 @@ def _surface_table(lens: Lens) -> Table:
         "semi-dia./mm",
         "conic, aspheric terms",
     ):
-        table.add_column(
-            title, justify="left" if title in ("kind", "material", "conic, aspheric terms") else "right"
-        )
+        table.add_column(title, justify="left" if title in ("kind", "material", "conic, aspheric terms") else "right")
     last = len(lens.surfaces)
     for number, surface in enumerate(lens.surfaces, start=1):
         terms = [f"k {surface.conic:g}"] if surface.conic else []

@@ -24,9 +24,7 @@ def say(text: str) -> None:
 
 
 def render(
-    scene: Annotated[
-        str, typer.Argument(help="The scene: .obj (with .mtl), .gltf, .glb or .ply.", metavar="SCENE")
-    ],
+    scene: Annotated[str, typer.Argument(help="The scene: .obj (with .mtl), .gltf, .glb or .ply.", metavar="SCENE")],
     output: Annotated[
         list[Path], typer.Option("--output", "-o", help="Picture to write, .png or .exr; may be repeated.")
     ],
@@ -35,9 +33,7 @@ def render(
     ] = "double-gauss-50mm",
     film: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option(
-            help="Film in mm, WxH [the lens's, in the shape of the resolution].", rich_help_panel=CAMERA
-        ),
+        typer.Option(help="Film in mm, WxH [the lens's, in the shape of the resolution].", rich_help_panel=CAMERA),
     ] = None,
     resolution: Annotated[
         Optional[str],  # noqa: UP045
@@ -46,19 +42,15 @@ def render(
     position: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option(
-            help="Middle of the film, metres, X,Y,Z [in front of look-at, along +z, such that the scene fills the film].",
+            help="Middle of the film, metres, X,Y,Z [in front of look-at along +z, the scene fills the film].",
             rich_help_panel=CAMERA,
         ),
     ] = None,
     look_at: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option(
-            help="Point in the middle of the picture, X,Y,Z [middle of the scene].", rich_help_panel=CAMERA
-        ),
+        typer.Option(help="Point in the middle of the picture, X,Y,Z [middle of the scene].", rich_help_panel=CAMERA),
     ] = None,
-    up: Annotated[
-        str, typer.Option(help="Direction that is up in the picture.", rich_help_panel=CAMERA)
-    ] = "0,1,0",
+    up: Annotated[str, typer.Option(help="Direction that is up in the picture.", rich_help_panel=CAMERA)] = "0,1,0",
     focus: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option(
@@ -77,16 +69,12 @@ def render(
         ),
     ] = None,
     iso: Annotated[float, typer.Option(help="Sensitivity.", rich_help_panel=CAMERA)] = 100,
-    model: Annotated[
-        str, typer.Option(help="full, thick, thin or pinhole.", rich_help_panel=CAMERA)
-    ] = "full",
-    scale: Annotated[
-        float, typer.Option(help="Metres per unit of the scene's file.", rich_help_panel=SCENE)
-    ] = 1,
+    model: Annotated[str, typer.Option(help="full, thick, thin or pinhole.", rich_help_panel=CAMERA)] = "full",
+    scale: Annotated[float, typer.Option(help="Metres per unit of the scene's file.", rich_help_panel=SCENE)] = 1,
     environment: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option(
-            help="Light from all around: cd/m^2, or a latitude-longitude picture [the scene's light; daylight if none].",
+            help="Light all around: cd/m^2, or a latitude-longitude picture [the scene's; daylight if none].",
             rich_help_panel=SCENE,
         ),
     ] = None,
@@ -96,9 +84,7 @@ def render(
     ] = 0,
     max_bounces: Annotated[
         int,
-        typer.Option(
-            help="Light that bounces this often is seen; 0: direct light only.", rich_help_panel=PICTURE
-        ),
+        typer.Option(help="Light that bounces this often is seen; 0: direct light only.", rich_help_panel=PICTURE),
     ] = 1,
     tone: Annotated[
         str, typer.Option(help="Of .png: film (soft highlights) or linear.", rich_help_panel=PICTURE)
