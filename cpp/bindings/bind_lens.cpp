@@ -118,7 +118,14 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
 
 void bind_glass(py::module_& m) {
     py::class_<Glass>(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.")
-        .def_static("constant", &Glass::constant, "index"_a, "The same index at every wavelength.")
+        .def_static(
+            "constant",
+            [](double index) {
+                if (!(index >= 1) || !std::isfinite(index))
+                    throw InputError("a refractive index of at least 1 is wanted");
+                return Glass::constant(index);
+            },
+            "index"_a, "The same index at every wavelength.")
         .def_static(
             "from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
             "Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).")

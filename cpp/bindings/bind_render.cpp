@@ -1,6 +1,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <cstring>
 #include <memory>
 
@@ -67,6 +68,7 @@ py::array_t<std::uint8_t> develop(const py::array_t<float, py::array::c_style | 
                                   double iso, const std::string& tone) {
     if (tone != "film" && tone != "linear")
         throw InputError("unknown tone curve \"" + tone + "\"; film or linear is wanted");
+    if (!(iso > 0) || !std::isfinite(iso)) throw InputError("the ISO number must be positive");
     const ToneCurve curve = tone == "film" ? ToneCurve::film : ToneCurve::linear;
     py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));
     const float* from = exposure.data();

@@ -19,12 +19,13 @@ inline double best_focus_distance(const LensSystem& lens, double wavelength_nm, 
     LensRays<double, kRays> rays;
     for (int i = 0; i < kRays; ++i) {
         const double height = reach * std::sqrt((i + 0.5) / kRays);
-        Vec3d origin{height, 0, -data.entrance_pupil_position}, direction{0, 0, 1};
-        if (std::isinf(object_distance)) {
-            origin.z = 0;
-        } else {
-            origin = {0, 0, -object_distance};
-            direction = normalized(Vec3d{height, 0, object_distance + data.entrance_pupil_position});
+        Vec3d origin{height, 0, 0}, direction{0, 0, 1};
+        if (std::isfinite(object_distance)) {
+            // From the axial point to the entrance pupil, begun at the front vertex: from an object kilometres away the
+            // intersections would lose all their digits.
+            const double to_pupil = object_distance + data.entrance_pupil_position;
+            origin.x = height * object_distance / to_pupil;
+            direction = normalized(Vec3d{height, 0, to_pupil});
         }
         rays.origin.set(i, origin);
         rays.direction.set(i, direction);

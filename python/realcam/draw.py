@@ -73,10 +73,8 @@ def _draw_glass(lens: Lens, axes: Axes) -> None:
     for i, (front, back) in enumerate(zip(lens.surfaces, lens.surfaces[1:], strict=False)):
         if front.type != "refracting" or front.material.index(lens.wavelength_nm) <= 1.0001:
             continue
-        a, b = _profile(front, z[i]), _profile(back, z[i + 1])
         rim = max(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm)
-        for profile in (a, b):
-            profile[[0, -1], 1] = (-rim, rim)
+        a, b = (_out_to_rim(_profile(*place), rim) for place in ((front, z[i]), (back, z[i + 1])))
         axes.fill(
             *np.concatenate([a, b[::-1]]).T,
             facecolor=GLASS,
@@ -85,6 +83,12 @@ def _draw_glass(lens: Lens, axes: Axes) -> None:
             zorder=2,
             alpha=0.8,
         )
+
+
+def _out_to_rim(profile: np.ndarray, rim: float) -> np.ndarray:
+    ends = profile[[0, -1]].copy()
+    ends[:, 1] = (-rim, rim)
+    return np.concatenate([ends[:1], profile, ends[1:]])
 
 
 def _draw_surface(axes: Axes, position: float, surface: Surface) -> None:

@@ -59,7 +59,7 @@ class Image:
             "Software": f"realcam {_core.__version__}",
             "ExposureTime": float(self.camera.exposure_time_s),
             "FNumber": float(first_order.f_number),
-            "Exif:PhotographicSensitivity": round(self.camera.iso),
+            "Exif:PhotographicSensitivity": min(round(self.camera.iso), 65535),
             "Exif:FocalLength": float(first_order.effective_focal_length_mm),
             "Exif:LensModel": lens.name,
             "realcam:lens": lens.name,

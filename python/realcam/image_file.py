@@ -35,7 +35,8 @@ def _suffix_of(encoded: bytes) -> str:
 
 def _rgba8(buffer: oiio.ImageBuf) -> np.ndarray | None:
     pixels = buffer.get_pixels(oiio.UINT8) if not buffer.has_error else None
-    if pixels is None or pixels.ndim != 3 or buffer.has_error:
+    # geterror() takes the error away; left in the buffer, it would be printed when the buffer goes.
+    if buffer.geterror() or pixels is None or pixels.ndim != 3:
         return None
     channels = pixels.shape[2]
     grey = pixels[..., :1].repeat(3, axis=2)
@@ -86,6 +87,15 @@ def publish(temporary: str, path: str | os.PathLike[str]) -> None:
     Path(temporary).replace(path)
 
 
+def _check_complete(temporary: str, name: str, shape: tuple[int, ...]) -> None:
+    """Reads the file back: OpenImageIO does not say so when a disk is full while it writes a PNG."""
+    buffer = oiio.ImageBuf(temporary)
+    pixels = buffer.get_pixels()
+    error = buffer.geterror()
+    if error or pixels is None or pixels.shape != shape:
+        raise ImageFileError(f"{name}: cannot be written completely; is the disk full?")
+
+
 def write_image(
     path: str | os.PathLike[str], pixels: np.ndarray, channels: tuple[str, ...], attributes: Attributes
 ) -> None:
@@ -112,6 +122,7 @@ def write_image(
             raise ImageFileError(f"{name}: {oiio.geterror()}")
         if not (output.open(temporary, spec) and output.write_image(np.ascontiguousarray(pixels)) and output.close()):
             raise ImageFileError(f"{name}: cannot be written: {output.geterror()}")
+        _check_complete(temporary, name, pixels.shape)
         publish(temporary, name)
     finally:
         Path(temporary).unlink(missing_ok=True)

@@ -30,7 +30,8 @@ NUMBERS = {
     "up": 3,
 }
 NUMBERS |= {"film_mm": 2, "resolution": 2}
-KEYS = {"format", "scene", "lens", "model", "environment_cd_m2", "environment", "texture", *NUMBERS}
+TEXTS = {"scene", "lens", "model", "environment", "texture"}
+KEYS = {"format", "environment_cd_m2", *TEXTS, *NUMBERS}
 
 
 @dataclass(frozen=True)
@@ -74,20 +75,31 @@ def _read(path: Path) -> dict[str, Any]:
         _check(path, key, value)
     if not isinstance(values.get("scene"), str):
         raise InputError(f"{path}: scene is missing: the file to photograph")
+    if "/" in values.get("lens", "") or "." in values.get("lens", ""):
+        values["lens"] = str(path.parent / values["lens"])
     return values
 
 
 def _check(path: Path, key: str, value: object) -> None:
     if key not in KEYS:
         raise InputError(f'{path}: unknown key "{key}"; one of {", ".join(sorted(KEYS))} is wanted')
+    if key in TEXTS and not isinstance(value, str):
+        raise InputError(f"{path}: {key} must be a text in quotes")
+    if key == "environment_cd_m2" and not (_is_number(value) or (isinstance(value, list) and len(value) == 3)):
+        raise InputError(f"{path}: {key} must be a number or [r, g, b]")
     count = NUMBERS.get(key)
     if count is None:
         return
-    items = [value] if count == 1 else value
-    numbers = items if isinstance(items, list) and len(items) == count else [None]
-    if not all(isinstance(v, (int, float)) and not math.isnan(v) for v in numbers):
+    items: list[Any] = [value] if count == 1 else value if isinstance(value, list) else []
+    if len(items) != count or not all(_is_number(v) for v in items):
         wanted = "a number" if count == 1 else f"an array of {count} numbers"
         raise InputError(f"{path}: {key} must be {wanted}")
+    if key == "resolution" and not all(float(v).is_integer() and abs(v) < 2**31 for v in items):
+        raise InputError(f"{path}: resolution must be two whole numbers of pixels")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
 
 
 def _textured(scene: Scene, path: Path) -> Scene:

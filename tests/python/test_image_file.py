@@ -179,3 +179,13 @@ def test_an_environment_image_is_read_as_light(tmp_path: Path) -> None:
     (tmp_path / "broken.exr").write_bytes(b"not an image")
     with pytest.raises(rc.ImageFileError, match="cannot be read"):
         image_file.read_environment(tmp_path / "broken.exr")
+
+
+def test_a_picture_cut_short_by_a_full_disk_is_no_success(tmp_path: Path) -> None:
+    pixels = np.random.default_rng(1).integers(0, 255, (64, 64, 3), dtype=np.uint8)
+    target = tmp_path / "whole.png"
+    image_file.write_image(target, pixels, ("R", "G", "B"), {})
+    cut = tmp_path / "cut.png"
+    cut.write_bytes(target.read_bytes()[:4096])  # what a disk of 4 KB keeps
+    with pytest.raises(rc.ImageFileError, match="completely"):
+        image_file._check_complete(str(cut), "cut.png", pixels.shape)

@@ -230,3 +230,14 @@ def test_first_order_and_best_focus_check_their_arguments() -> None:
             lens.best_focus_mm(wavelength_nm=wrong)
         with pytest.raises(rc.InputError, match="object distance"):
             lens.best_focus_mm(wrong)
+
+
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-6mm-220deg", "telephoto-250mm"])
+def test_focus_on_far_objects_goes_to_that_of_infinity(name: str) -> None:
+    lens = rc.Lens.load(name)
+    infinity = lens.focused(math.inf).film_distance_mm
+    focal_mm = abs(lens.first_order().effective_focal_length_mm)
+    for distance_m in (1e4, 1e6, 1e9, 1e15):
+        # Newton: the image lies f^2 / x' behind the focal point; 2 for the aberrations' share.
+        expected = focal_mm**2 / (1000 * distance_m)
+        assert 0 <= lens.focused(distance_m).film_distance_mm - infinity < 2 * expected + 1e-9

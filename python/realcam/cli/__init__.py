@@ -15,6 +15,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # defaults in the help stand in [brackets]
 )
 app.add_typer(lens.app, name="lens")
 app.command("render")(render.render)
@@ -48,6 +49,8 @@ def main() -> None:
         app()
     except RealcamError as error:
         _fail(str(error))
+    except OSError as error:
+        _fail(f"{error.filename or 'file'}: {error.strerror or error}")
     except MemoryError:
         _fail("out of memory; fewer pixels or a smaller scene are wanted")
 

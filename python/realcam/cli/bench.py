@@ -20,7 +20,7 @@ def bench(
             show_default=False,
         ),
     ] = None,
-    threads: Annotated[int, typer.Option(help="0: all.", min=0)] = 0,
+    threads: Annotated[int, typer.Option(help="0: all.", min=0, max=4096)] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit.")] = False,
 ) -> None:
     """Measure rays through the lens, pupil set-up, sampling efficiency and a frame on this machine."""

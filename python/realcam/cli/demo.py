@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from .._core import Camera, InputError
-from ..draw import save_cross_section
 from ..progress import progress_bar
 from ..render import render
 from ..shot import read_shot
@@ -20,9 +19,11 @@ def demo(
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the pictures; made where it is missing.")
     ] = Path("realcam-demo"),
-    spp: Annotated[int, typer.Option(help="Samples per pixel.", min=1)] = 64,
+    spp: Annotated[int, typer.Option(help="Samples per pixel.", min=1, max=2**24)] = 64,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
+    from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
+
     shot = read_shot(_scenes_folder() / "demo.toml")
     try:
         output.mkdir(parents=True, exist_ok=True)

@@ -13,7 +13,7 @@ from rich.table import Table
 from .._core import FirstOrder, Lens, Surface, lens_names
 from . import options
 
-app = typer.Typer(help="Look at lenses.", no_args_is_help=True)
+app = typer.Typer(help="Look at lenses.", no_args_is_help=True, rich_markup_mode=None)
 
 LensName = Annotated[
     str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")

@@ -78,18 +78,20 @@ def render(
             rich_help_panel=SCENE,
         ),
     ] = None,
-    spp: Annotated[int, typer.Option(help="Samples per pixel.", rich_help_panel=PICTURE)] = 64,
+    spp: Annotated[int, typer.Option(help="Samples per pixel.", min=1, max=2**24, rich_help_panel=PICTURE)] = 64,
     seed: Annotated[
         int, typer.Option(help="Of the random numbers.", min=0, max=2**32 - 1, rich_help_panel=PICTURE)
     ] = 0,
     max_bounces: Annotated[
         int,
-        typer.Option(help="Light that bounces this often is seen; 0: direct light only.", rich_help_panel=PICTURE),
+        typer.Option(
+            help="Light that bounces this often is seen; 0: direct light only.", min=0, max=64, rich_help_panel=PICTURE
+        ),
     ] = 1,
     tone: Annotated[
         str, typer.Option(help="Of .png: film (soft highlights) or linear.", rich_help_panel=PICTURE)
     ] = "film",
-    threads: Annotated[int, typer.Option(help="0: all.", min=0, rich_help_panel=PICTURE)] = 0,
+    threads: Annotated[int, typer.Option(help="0: all.", min=0, max=4096, rich_help_panel=PICTURE)] = 0,
     device: Annotated[str, typer.Option(help="auto or cpu.", rich_help_panel=PICTURE)] = "auto",
 ) -> None:
     """Photograph a scene through a lens."""
@@ -108,7 +110,7 @@ def render(
     loaded = _load(scene, scale, environment)
     with options.stoppable():
         camera = _core.framed(camera, loaded, **view)
-        if not loaded.has_light:
+        if environment is None and not loaded.has_light:
             loaded = _core.with_daylight(loaded, camera)
             say(
                 "the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, a sky of 5000 cd/m^2"
