@@ -118,7 +118,7 @@ private:
 
     /// Scans outwards along each azimuth, then halves the last and the first interval at which the light changes.
     PupilOutline outline_at(double position) const {
-        constexpr int kSteps = 24, kHalvings = 9;
+        constexpr int kSteps = 20, kHalvings = 9;
         constexpr double kReach = 1.5;  // past the corner of the box
         const PupilNode node = node_at(position);
         const double radius = radius_at(position);

@@ -19,7 +19,7 @@ def demo(
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the pictures; made where it is missing.")
     ] = Path("realcam-demo"),
-    spp: Annotated[int, typer.Option(help="Samples per pixel.", min=1, max=2**24)] = 64,
+    spp: Annotated[int, typer.Option(help="Samples per pixel.", min=1, max=2**24)] = 48,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
