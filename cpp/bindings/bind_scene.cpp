@@ -8,6 +8,7 @@
 
 #include "../io/scene_checks.hpp"
 #include "../io/scene_file.hpp"
+#include "../render/default_view.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {
@@ -145,17 +146,8 @@ std::shared_ptr<Scene> with_light(const Scene& scene, std::vector<Light> Scene::
 using Corner = std::tuple<double, double, double>;
 
 std::pair<Corner, Corner> bounds(const Scene& scene) {
-    Triple low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
-    for (const Triangle& triangle : scene.triangles)
-        for (std::uint32_t vertex : triangle.vertices) {
-            const Vec3d p = scene.positions_m[vertex];
-            const Triple q{p.x, p.y, p.z};
-            for (std::size_t k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], q[k]);
-                high[k] = std::max(high[k], q[k]);
-            }
-        }
-    return {Corner{low[0], low[1], low[2]}, Corner{high[0], high[1], high[2]}};
+    const BoundingBox box = bounding_box(scene);
+    return {Corner{box.low.x, box.low.y, box.low.z}, Corner{box.high.x, box.high.y, box.high.z}};
 }
 
 Material make_material(const Colour& diffuse, const Colour& specular, float shininess, const Colour& emission) {
