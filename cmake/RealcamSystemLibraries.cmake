@@ -43,6 +43,8 @@ endif()
 if(REALCAM_TESTS)
   find_package(doctest CONFIG QUIET)
   realcam_need(doctest_FOUND "doctest, runs the C++ tests" doctest-dev)
+  find_package(Boost QUIET)
+  realcam_need(Boost_FOUND "Boost (headers), many-digit numbers and statistics of the C++ tests" libboost-dev)
 endif()
 
 if(missing)
