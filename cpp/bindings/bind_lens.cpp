@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 
 #include <map>
-#include <optional>
 
 #include "../optics/focus.hpp"
 #include "bindings.hpp"
@@ -37,13 +36,12 @@ Glass glass_from(const py::object& material) {
     return glass;
 }
 
-namespace {
-
-/// The design wavelength where none is given. The limits are those of Lens.trace.
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm) {
     if (nm && !(*nm >= 100 && *nm <= 20000)) throw InputError("the wavelength must lie between 100 and 20000 nm");
     return nm.value_or(lens.wavelength_nm);
 }
+
+namespace {
 
 constexpr const char* kTypeNames[] = {"refracting", "mirror", "stop", "aperture"};
 
@@ -185,7 +183,10 @@ void bind_surface(py::module_& m) {
 }
 
 void bind_first_order(py::module_& m) {
-    py::class_<FirstOrder>(m, "FirstOrder", "First-order data at one wavelength. mm; positions from the front vertex.")
+    py::class_<FirstOrder>(
+        m, "FirstOrder",
+        "First-order data at one wavelength. mm; positions from the front vertex. Of an afocal lens the focal length,\n"
+        "the focal distances and the f-number are infinite.")
         .def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
         .def_readonly("back_focal_distance_mm", &FirstOrder::back_focal_distance)
         .def_readonly("front_focal_distance_mm", &FirstOrder::front_focal_distance)
@@ -236,11 +237,17 @@ void bind_lens(py::module_& m) {
             [](const LensSystem& lens, double object_m, std::optional<double> nm) {
                 if (!(object_m > 0))
                     throw InputError("the object distance must be a positive number of metres, or inf");
-                return best_focus_distance(lens, wavelength_or_design(lens, nm), 1000 * object_m);
+                const double plane = best_focus_distance(lens, wavelength_or_design(lens, nm), 1000 * object_m);
+                if (!std::isfinite(plane))
+                    throw InputError(
+                        "lens \"" + lens.name +
+                        "\" has no best focus: no ray from the object passes it, or its light leaves parallel");
+                return plane;
             },
             "object_distance_m"_a = kInfinity, "wavelength_nm"_a = py::none(),
             "Last vertex to the plane of the smallest RMS spot of an axial point this far in front of the front "
-            "vertex.")
+            "vertex.\n"
+            "Raises InputError where there is none: no ray passes, or an afocal lens looks at infinity.")
         .def_readonly("name", &LensSystem::name)
         .def_readonly("title", &LensSystem::title)
         .def_readonly("source", &LensSystem::source)

@@ -1,8 +1,12 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
+#include <numbers>
+#include <optional>
+
 #include "../io/lens_file.hpp"
 #include "../optics/lens_system.hpp"
+#include "../optics/object_point.hpp"
 #include "../render/backend.hpp"
 
 namespace realcam::bindings {
@@ -13,6 +17,8 @@ namespace py = pybind11;
 void bind_errors(py::module_& m);
 void bind_lens(py::module_& m);
 void bind_trace(py::module_& m);
+void bind_seidel(py::module_& m);
+void bind_analysis(py::module_& m);
 void bind_camera(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_render(py::module_& m);
@@ -33,5 +39,13 @@ inline std::string path_from(const py::object& path) {
 
 /// A medium as users write it: an index, (n_d, V_d), the name of a glass of the catalogue, a Glass; None is air.
 Glass glass_from(const py::object& material);
+
+/// The design wavelength where none is given. Throws InputError outside the limits of Lens.trace.
+double wavelength_or_design(const LensSystem& lens, std::optional<double> nm);
+
+/// A place in the field as users write it.
+inline FieldPoint field_from(double field_deg, double object_distance_m) {
+    return {field_deg * std::numbers::pi / 180, 1000 * object_distance_m};
+}
 
 }  // namespace realcam::bindings

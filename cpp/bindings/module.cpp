@@ -7,6 +7,8 @@ PYBIND11_MODULE(_core, m) {
     bind_errors(m);
     bind_lens(m);
     bind_trace(m);
+    bind_seidel(m);
+    bind_analysis(m);
     bind_camera(m);
     bind_scene(m);
     bind_render(m);

@@ -46,7 +46,10 @@ inline void validate(const Camera& camera) {
     if (!(camera.exposure_time_s > 0) || !std::isfinite(camera.exposure_time_s))
         throw InputError("the exposure time must be a positive number of seconds");
     if (!(camera.iso > 0) || !std::isfinite(camera.iso)) throw InputError("the ISO number must be positive");
-    if (!(camera.lens.film_distance > 0)) throw InputError("the film must lie behind the last surface of the lens");
+    if (!(camera.lens.film_distance > 0) || !std::isfinite(camera.lens.film_distance))
+        throw InputError("the film must lie behind the last surface of the lens");
+    if (!(camera.lens.stop_semi_diameter >= 0))
+        throw InputError("the radius of the lens's open stop must be a length of 0 or more");
     const Vec3d forward = camera.pose.look_at_m - camera.pose.position_m;
     const double length_of_cross = length(cross(forward, camera.pose.up));
     if (!std::isfinite(length_of_cross))
@@ -73,7 +76,12 @@ inline ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data) {
     ThinLens thin{};
     thin.pupil_radius = static_cast<float>(0.5 * data.entrance_pupil_diameter);
     thin.image_distance = static_cast<float>(std::fabs(data.effective_focal_length));
-    if (std::isfinite(lens.focus_distance)) {
+    if (data.is_afocal()) {
+        // The film is where it is; the ray through the middle of the pupil says how large the picture is there.
+        const ParaxialRay chief = trace_paraxial(lens, lens.wavelength_nm, {-data.entrance_pupil_position, 1}, 0,
+                                                 static_cast<int>(lens.surfaces.size()));
+        thin.image_distance = static_cast<float>(std::fabs(chief.height + lens.film_distance * chief.slope));
+    } else if (std::isfinite(lens.focus_distance)) {
         const double object = lens.focus_distance - lens.film_position();  // in front of the first vertex
         const double to_pupil = object + data.entrance_pupil_position;
         const ParaxialRay end =
@@ -98,11 +106,31 @@ inline ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     const double distance = lens.film_position() - data.exit_pupil_position;
     const bool far = !(std::fabs(distance) < kFar);
     const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
-    const double marginal = 0.5 / data.f_number;  // of a pupil at infinity, where the quotient has no value
+    // Of a pupil at infinity, where the quotient has no value: the slope of light from the stop's rim.
+    const double rim = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const double marginal =
+        std::fabs(trace_paraxial(lens, lens.wavelength_nm, {rim, 0}, lens.stop_index(), count).slope);
     thick.exit_pupil_distance = static_cast<float>(far ? kFar : distance);
     thick.exit_pupil_radius =
         static_cast<float>(far ? kFar * (std::isfinite(tangent) ? tangent : marginal) : 0.5 * data.exit_pupil_diameter);
     return thick;
+}
+
+/// Throws InputError where an ideal model has no place for the lens.
+inline void validate_ideal(const LensSystem& lens, CameraModel model) {
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const std::string which = "the ideal camera models have no place for lens \"" + lens.name + "\": its ";
+    if (model == CameraModel::thick_lens) {
+        const ThickLens thick = thick_lens_of(lens, data);
+        if (!(std::fabs(thick.exit_pupil_distance) > 0)) throw InputError(which + "exit pupil lies in the film");
+        return;
+    }
+    const ThinLens thin = thin_lens_of(lens, data);
+    if (!std::isfinite(data.entrance_pupil_position))
+        throw InputError(which + "entrance pupil lies at infinity; use the thick lens");
+    if (!std::isfinite(thin.inverse_object_distance) || !(thin.image_distance > 0) ||
+        !std::isfinite(thin.image_distance))
+        throw InputError(which + "entrance pupil lies in the plane in focus, or its image in the film");
 }
 
 }  // namespace camera_detail
@@ -117,10 +145,21 @@ public:
         if (camera.model == CameraModel::full_lens)
             pupil_ = std::make_unique<Pupil>(camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm),
                                              std::move(tracer));
-        if (pupil_ && !(pupil_->image_radius() > 0))
-            throw InputError("no light passes lens \"" + camera.lens.name +
-                             "\" in this state: what it blocks in the middle is "
-                             "larger than what its stop leaves open, or a surface is out of reach");
+        if (!pupil_) {
+            camera_detail::validate_ideal(camera.lens, camera.model);
+            return;
+        }
+        const std::string lens = "lens \"" + camera.lens.name + "\"";
+        if (!(camera.lens.stop_semi_diameter > 0)) throw InputError("no light passes " + lens + ": its stop is closed");
+        if (!(pupil_->image_radius() > 0))
+            throw InputError(
+                "no light passes " + lens +
+                " in this state: what it blocks in the middle is larger than what its stop leaves open, or "
+                "a surface is out of reach");
+        if (!pupil_->follows())
+            throw InputError(
+                "the stop of " + lens + ", a hole of radius " + std::to_string(1000 * camera.lens.stop_semi_diameter) +
+                " um, is too small for pictures through every surface; open it, or use another camera model");
     }
 
     /// `origin_m`: of the placed scene.

@@ -6,6 +6,12 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Exposure in lux seconds as the film stores it: what is too bright for a float is the largest one.
+REALCAM_HD inline float film_exposure(double lux_s) {
+    constexpr double kLargest = 3.4028234663852886e38;
+    return static_cast<float>(lux_s < kLargest ? lux_s : kLargest);
+}
+
 /// How film exposure becomes a picture for a screen.
 enum class ToneCurve : int {
     linear,  ///< clipped at white

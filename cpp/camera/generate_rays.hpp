@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "../math/random.hpp"
-#include "../math/sincos.hpp"
+#include "../math/sampling.hpp"
 #include "../optics/lens_trace.hpp"
 #include "camera_view.hpp"
 
@@ -46,13 +46,6 @@ REALCAM_INLINE Vec2f film_point(const CameraView& camera, std::int32_t column, s
     const float x = 2.0f * (static_cast<float>(column) + offset.x) / static_cast<float>(camera.width) - 1.0f;
     const float y = 2.0f * (static_cast<float>(row) + offset.y) / static_cast<float>(camera.height) - 1.0f;
     return {-x * camera.film_half_width, y * camera.film_half_height};
-}
-
-/// Uniform on the unit disc.
-REALCAM_INLINE Vec2f sample_disc(Vec2f u) {
-    const float radius = std::sqrt(u.y);
-    const Vec2f azimuth = cos_sin_of_turn(u.x);
-    return {radius * azimuth.x, radius * azimuth.y};
 }
 
 struct LensFrameRay {

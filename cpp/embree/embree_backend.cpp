@@ -12,6 +12,7 @@
 #include <mutex>
 #include <thread>
 
+#include "../camera/develop.hpp"
 #include "../math/lanes.hpp"
 #include "embree_scene.hpp"
 #include "kernels.hpp"
@@ -42,7 +43,7 @@ struct ExposingFilm {
         image.exposure.reserve(3 * sums.size());
         image.depth.reserve(sums.size());
         for (const realcam_pixel_sum& sum : sums) {
-            for (double e : sum.irradiance) image.exposure.push_back(static_cast<float>(e * exposure_time_s / spp));
+            for (double e : sum.irradiance) image.exposure.push_back(film_exposure(e * exposure_time_s / spp));
             image.depth.push_back(sum.hits > 0 ? static_cast<float>(sum.depth / sum.hits)
                                                : std::numeric_limits<float>::infinity());
         }

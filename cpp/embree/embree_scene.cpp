@@ -22,7 +22,7 @@ EmbreeScene::EmbreeScene(RTCDevice device, std::shared_ptr<const Scene> scene, V
     rtcSetSceneFlags(handle_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(handle_, RTC_BUILD_QUALITY_MEDIUM);
     const auto& positions = placed_.positions();
-    const auto& triangles = scene_->triangles;
+    const auto& triangles = placed_.triangles();
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  sizeof(Vec3f), positions.size()));

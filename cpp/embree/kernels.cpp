@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include "../optics/lens_entry.hpp"
 #include "packet_scene.hpp"
 
 // Built once for each instruction set, see cmake/RealcamInstructionSets.cmake.
@@ -141,16 +142,19 @@ void trace_recorded(const realcam_trace* request) {
     const LensView<T> lens = *static_cast<const LensView<T>*>(request->lens_view);
     LensRays<T, kBlock> rays;
     PathRecord<T, kBlock> record;
+    double path_to_entry[kBlock];
     for (std::int64_t first = 0; first < request->count; first += kBlock) {
         const int used = static_cast<int>(request->count - first < kBlock ? request->count - first : kBlock);
         for (int k = 0; k < kBlock; ++k) {
-            const double* o = request->origins + 3 * (first + (k < used ? k : 0));
-            const double* d = request->directions + 3 * (first + (k < used ? k : 0));
-            rays.origin.set(
-                k, {static_cast<T>(o[0]), static_cast<T>(o[1]), static_cast<T>(o[2] - request->entry_position)});
-            const double n = request->entry_index;
-            rays.direction.set(k, {static_cast<T>(n * d[0]), static_cast<T>(n * d[1]), static_cast<T>(n * d[2])});
-            rays.status[k] = request->status[first + (k < used ? k : 0)];
+            const std::int64_t ray = first + (k < used ? k : 0);
+            const double* o = request->origins + 3 * ray;
+            const double* d = request->directions + 3 * ray;
+            const LensEntry entry = enter_lens({o[0], o[1], o[2] - request->entry_position}, {d[0], d[1], d[2]},
+                                               request->entry_index, request->entry_reach);
+            rays.origin.set(k, static_cast<Vec3<T>>(entry.origin));
+            rays.direction.set(k, static_cast<Vec3<T>>(entry.direction));
+            rays.status[k] = static_cast<int>(entry.status);
+            path_to_entry[k] = entry.optical_path;
             record.optical_path[k] = 0;
             record.surface_index[k] = -1;
         }
@@ -158,11 +162,13 @@ void trace_recorded(const realcam_trace* request) {
         for (int k = 0; k < used; ++k) {
             double* o = request->out_origins + 3 * (first + k);
             double* d = request->out_directions + 3 * (first + k);
-            o[0] = rays.origin.x[k], o[1] = rays.origin.y[k], o[2] = rays.origin.z[k];
+            const bool bad = rays.status[k] == static_cast<int>(RayStatus::bad_input);
+            o[0] = rays.origin.x[k], o[1] = rays.origin.y[k];
+            o[2] = bad ? 0.0 : static_cast<double>(rays.origin.z[k]) + request->exit_position;
             const Vec3d optical = static_cast<Vec3d>(rays.direction[k]);
             const double size = length(optical), unit = size > 0 ? 1 / size : 0.0;
             d[0] = unit * optical.x, d[1] = unit * optical.y, d[2] = unit * optical.z;
-            request->optical_path[first + k] = record.optical_path[k];
+            request->optical_path[first + k] = path_to_entry[k] + static_cast<double>(record.optical_path[k]);
             request->status[first + k] = rays.status[k];
             request->surface_index[first + k] = record.surface_index[k];
         }

@@ -37,10 +37,11 @@ struct realcam_ray_request {
 /// A trace with its record, one array for each quantity (double, or float for the f32 functions).
 struct realcam_trace {
     const void* lens_view;
-    double entry_position;  // z of the vertex to which the first step is relative
+    double entry_position, exit_position;  // z of the vertices to which the first and the last step are relative
     double entry_index;       // of the medium from which the rays enter
-    const double *origins, *directions;     // count x 3, lens frame, unit directions
-    double *out_origins, *out_directions;   // z relative to the vertex of the last step
+    double entry_reach;       // how far from the first vertex an origin may lie
+    const double *origins, *directions;     // count x 3, lens frame; directions of any length
+    double *out_origins, *out_directions;   // count x 3, lens frame; unit directions
     double* optical_path;
     int *status, *surface_index;
     std::int64_t count;

@@ -8,14 +8,19 @@
 namespace realcam::io {
 namespace {
 
-// Squares of it are still far from the largest float.
-constexpr double farthest_m = 1e15;
+// Cubes of it, which traversal and planes need, are still far from the largest float.
+constexpr double farthest_m = 1e12;
+// Beyond all that shines; what a short distance and a long exposure make of it is still a float.
+constexpr float brightest = 1e20f;
 
 bool finite(Vec3f v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
-bool is_light(Vec3f v) {
+bool is_reflectance(Vec3f v) {
     return finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
+}
+bool is_light(Vec3f v) {
+    return is_reflectance(v) && v.x <= brightest && v.y <= brightest && v.z <= brightest;
 }
 bool in_reach(double v) {
     return std::abs(v) <= farthest_m;
@@ -53,7 +58,7 @@ private:
         const std::size_t count = scene_.positions_m.size();
         for (std::size_t i = 0; i < count; ++i) {
             if (!in_reach(scene_.positions_m[i])) {
-                require(false, "vertex", i, "coordinates must be finite numbers of at most 1e15 m");
+                require(false, "vertex", i, "coordinates must be finite numbers of at most 1e12 m");
             }
         }
         const auto one_each = [&](std::size_t size, const char* what) {
@@ -94,11 +99,11 @@ private:
         const auto textures = static_cast<std::int64_t>(scene_.textures.size());
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             const Material& m = scene_.materials[i];
-            require(is_light(m.diffuse), "material", i, "diffuse reflectance must be finite and not negative");
-            require(is_light(m.specular), "material", i, "specular reflectance must be finite and not negative");
-            require(std::isfinite(m.shininess) && m.shininess >= 0, "material", i,
-                    "the Phong exponent must be finite and not negative");
-            require(is_light(m.emission), "material", i, "emission, in cd/m^2, must be finite and not negative");
+            require(is_reflectance(m.diffuse), "material", i, "diffuse reflectance must be finite and not negative");
+            require(is_reflectance(m.specular), "material", i, "specular reflectance must be finite and not negative");
+            require(m.shininess >= 0 && m.shininess <= 1e9f, "material", i,
+                    "the Phong exponent must lie between 0 and 1e9");
+            require(is_light(m.emission), "material", i, "emission must lie between 0 and 1e20 cd/m^2");
             require(m.diffuse_texture >= -1 && m.diffuse_texture < textures, "material", i,
                     "texture " + std::to_string(m.diffuse_texture) + " does not exist; there are " +
                         std::to_string(textures));
@@ -121,26 +126,25 @@ private:
         for (std::size_t i = 0; i < scene_.points.size(); ++i) {
             require(in_reach(scene_.points[i].position_m), "point light", i, "its position must be finite");
             require(is_light(scene_.points[i].intensity), "point light", i,
-                    "its intensity, in cd, must be finite and not negative");
+                    "its intensity must lie between 0 and 1e20 cd");
         }
         for (std::size_t i = 0; i < scene_.suns.size(); ++i) {
             const Vec3f d = scene_.suns[i].direction;
             require(finite(d) && std::abs(length(d) - 1.0f) < 1e-3f, "sun", i, "its direction must have length 1");
-            require(is_light(scene_.suns[i].illuminance), "sun", i,
-                    "its illuminance, in lux, must be finite and not negative");
+            require(is_light(scene_.suns[i].illuminance), "sun", i, "its illuminance must lie between 0 and 1e20 lux");
         }
     }
 
     void check_environment() const {
         const Environment& e = scene_.environment;
-        if (!is_light(e.constant)) fail("environment: radiance, in cd/m^2, must be finite and not negative");
+        if (!is_light(e.constant)) fail("environment: radiance must lie between 0 and 1e20 cd/m^2");
         if (e.pixels.empty()) return;
         if (e.width <= 0 || e.height <= 0 ||
             e.pixels.size() != static_cast<std::size_t>(e.width) * static_cast<std::size_t>(e.height)) {
             fail("environment: width x height pixels are wanted");
         }
         if (!std::all_of(e.pixels.begin(), e.pixels.end(), is_light)) {
-            fail("environment: radiance, in cd/m^2, must be finite and not negative in every pixel");
+            fail("environment: radiance must lie between 0 and 1e20 cd/m^2 in every pixel");
         }
     }
 

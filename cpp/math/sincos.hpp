@@ -19,4 +19,7 @@ REALCAM_INLINE Vec2f cos_sin_of_turn(float turns) {
     return {(quadrant == 1) | (quadrant == 2) ? -a : a, quadrant >= 2 ? -b : b};
 }
 
+/// Density per radian of the angle of a turn that is drawn evenly.
+inline constexpr float kTurnPdf = 0.1591549431f;
+
 }  // namespace REALCAM_NAMESPACE

@@ -28,49 +28,125 @@ REALCAM_INLINE Sag<T> asphere_sag(const LensStep<T>& step, T radius_squared) {
     }
     const T height = step.curvature * r2 / (T(1) + root) + r2 * r2 * polynomial;
     const T derivative = step.curvature / (T(2) * root) + r2 * (T(2) * polynomial + r2 * slope);
-    return {height, select(radius_squared < step.search_squared, derivative, T(0))};
+    return {height, select(radius_squared <= step.search_squared, derivative, T(0))};
 }
 
-/// Search state of one lane. `below` and `above` are ray parameters at which the ray is known to be on the scene
-/// side and on the film side of the surface: a bracket, in whichever order the ray meets them.
+/// Search state of N lanes: a root of f(t) = z(t) - sag(r^2(t)). `below` and `above` are ray parameters with f <= 0
+/// (the scene's side of the surface) and f >= 0 (the film's): a bracket, in whichever order the ray meets them. A
+/// crossing in the right sense lies between them. NaN: the ray does not meet the surface.
 template <class T, int N>
 struct AsphereSearch {
-    alignas(64) T t[N], below[N], above[N], residual[N], tolerance[N];
+    alignas(64) T t[N], below[N], above[N];
+    alignas(64) T residual[N], tolerance[N];  ///< |f|, and what rounding alone can leave of it
 };
 
-/// Both Newton's method and, where it leaves the bracket, bisection: 24 (float) or 53 (double) halvings and a few
-/// Newton steps always suffice where there is a root.
+/// Newton's steps alone for as long as they do on a lens that can be made; then every other step halves the bracket,
+/// which bounds their number whatever the surface: 2^-digits of a bracket that is at most 2^8 times the scale.
+inline constexpr int kNewtonSteps = 6;
 template <class T>
-inline constexpr int kMaxAsphereIterations = std::numeric_limits<T>::digits + 8;
+inline constexpr int kMaxAsphereSteps = kNewtonSteps + 2 * (std::numeric_limits<T>::digits + 8);
 
+/// Share of the scale by which rounding may move a height: 1 / (16 sqrt(epsilon)) roundings.
 template <class T>
-REALCAM_INLINE void begin_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
-    const SurfaceHit<T> conic =
-        intersect_conic(o, p, step.curvature, step.conic_factor, step.index_squared, step.sense_in);
-    const T pz = select(p.z >= T(0), select(p.z > T(1e-6), p.z, T(1e-6)), select(p.z < T(-1e-6), p.z, T(-1e-6)));
-    below = (step.sag_min - o.z) / pz;
-    above = (step.sag_max - o.z) / pz;
+inline constexpr T kSteepest = std::numeric_limits<T>::digits == 24 ? T(181) : T(4194304);
+
+/// More than any squared radius.
+template <class T>
+inline constexpr T kSideways = std::numeric_limits<T>::max() / 4;
+
+/// For a ray that goes through the surface: the sag's bounds are planes on either side of it. Returns how far from the
+/// axis (squared, less the square of the search radius) the ray meets the plane of the surface's edge: where that is
+/// positive, the only crossing in this bracket may be one with the plane outside.
+template <class T>
+REALCAM_INLINE T begin_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
+    const SurfaceHit<T> conic = intersect_conic(o, p, step.curvature, step.conic_factor, step.sense_in);
+    const T per_z = T(1) / select(p.z == T(0), T(1), p.z);
+    below = (step.sag_min - o.z) * per_z;
+    above = (step.sag_max - o.z) * per_z;
     const bool inside = (conic.parameter - below) * (above - conic.parameter) >= T(0);
     t = select(conic.met() & inside, conic.parameter, T(0.5) * (below + above));
+    const T to_edge = (step.sag_edge - o.z) * per_z;
+    const T x = o.x + to_edge * p.x, y = o.y + to_edge * p.y;
+    // Less than 3 degrees from the vertex plane, or backwards: out of a fisheye's front, say.
+    const bool sideways = p.z * step.sense_in * std::fabs(p.z) < T(0.0025) * dot(p, p);
+    // A sum, because gcc would turn a choice into a branch.
+    return x * x + y * y - step.search_squared + select(sideways, kSideways<T>, T(0));
 }
 
-/// One safeguarded Newton step on f(t) = z(t) - sag(r^2(t)).
+/// For the others: the first piece of the ray's way through the search cylinder that begins on the near side of the
+/// surface and ends on its far side. In a piece that comes nearer to the surface and turns away again, the turning
+/// point may lie on its other side. Leaves the bracket as it is where there is none.
 template <class T>
-REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above, T& residual,
-                                   T& tolerance) {
+REALCAM_HD inline bool find_bracket(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
+    constexpr int kPieces = 16, kTurnSteps = std::numeric_limits<T>::digits;
+    const T across = p.x * p.x + p.y * p.y;
+    const T middle = -(o.x * p.x + o.y * p.y) / across;
+    const T x = o.x + middle * p.x, y = o.y + middle * p.y;
+    const T room = step.search_squared - x * x - y * y;
+    if (!(room > T(0))) return false;
+    // A little inside: at the very edge the sag's slope is already that of its continuation.
+    const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * std::sqrt(room / across);
+    struct Sample {
+        T parameter, beyond, slope;  // how far the ray has passed the surface, and its derivative
+    };
+    const auto sample = [&](T parameter) -> Sample {
+        const Vec3<T> at = o + parameter * p;
+        const Sag<T> sag = asphere_sag(step, at.x * at.x + at.y * at.y);
+        return {parameter, step.sense_in * (at.z - sag.height),
+                step.sense_in * (p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y))};
+    };
+    const auto bracketed = [&](T near, T far) {
+        below = step.sense_in > T(0) ? near : far;
+        above = step.sense_in > T(0) ? far : near;
+        t = T(0.5) * (below + above);
+        return true;
+    };
+    Sample near = sample(middle - half);
+    for (int i = 1; i <= kPieces; ++i) {
+        const Sample far = sample(middle + (T(2) / kPieces * static_cast<T>(i) - T(1)) * half);
+        if (near.beyond < T(0) && far.beyond >= T(0)) return bracketed(near.parameter, far.parameter);
+        const T side = near.beyond < T(0) ? T(-1) : T(1);
+        if (side * far.beyond >= T(0) && side * near.slope < T(0) && side * far.slope > T(0)) {
+            T low = near.parameter, high = far.parameter;
+            for (int k = 0; k < kTurnSteps; ++k) {
+                const Sample turn = sample(T(0.5) * (low + high));
+                if (side * turn.beyond < T(0))
+                    return side > T(0) ? bracketed(turn.parameter, far.parameter)
+                                       : bracketed(near.parameter, turn.parameter);
+                (side * turn.slope < T(0) ? low : high) = turn.parameter;
+            }
+        }
+        near = far;
+    }
+    return false;
+}
+
+/// One safeguarded Newton step. `halve`: not Newton's step but the middle of the bracket.
+template <class T>
+REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, bool halve, T& t, T& below, T& above,
+                                   T& residual, T& tolerance) {
     constexpr T eps = std::numeric_limits<T>::epsilon();
     const Vec3<T> at = o + t * p;
     const Sag<T> sag = asphere_sag(step, at.x * at.x + at.y * at.y);
     const T f = at.z - sag.height;
     const T slope = p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y);
-    residual = std::fabs(f);
-    // What rounding alone can leave in f: the terms of z(t), the sag, and the sag's change with r.
-    tolerance = T(4) * eps * (std::fabs(o.z) + std::fabs(t) + std::fabs(sag.height));
+    // Rounding of z(t) and of the sag, and what rounding of x(t) and y(t) becomes where the surface is steep. A wall is
+    // as steep as one likes: there the bracket has to shrink until the height fits too. And a ray that starts on the
+    // vertex has no lengths at all but the surface's own.
+    const T axial =
+        std::fabs(o.z) + std::fabs(t * p.z) + std::fabs(sag.height) + T(0.0625) * (step.sag_max - step.sag_min);
+    const T lateral = std::fabs(T(2) * sag.derivative) * (std::fabs(at.x) * (std::fabs(o.x) + std::fabs(t * p.x)) +
+                                                          std::fabs(at.y) * (std::fabs(o.y) + std::fabs(t * p.y)));
+    const T most = kSteepest<T> * axial;
+    tolerance = T(4) * eps * (axial + select(lateral < most, lateral, most));
+    // A root that is crossed in the wrong sense is none.
+    const bool right_sense = slope * step.sense_in >= T(0);
+    residual = select(right_sense, std::fabs(f), std::numeric_limits<T>::max());
     below = select(f <= T(0), t, below);
     above = select(f >= T(0), t, above);
     const T newton = t - f / slope;
     const bool inside = (newton - below) * (above - newton) > T(0);
-    const T next = select(inside, newton, T(0.5) * (below + above));
+    const T next = select(inside & right_sense & !halve, newton, T(0.5) * (below + above));
     t = select(residual <= tolerance, t, next);
 }
 

@@ -2,52 +2,21 @@
 #include <cmath>
 #include <cstdio>
 
-#include "lens_path.hpp"
-#include "paraxial.hpp"
+#include "../math/root.hpp"
+#include "best_focus.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// Last vertex to the film plane on which the real rays from an axial point make the smallest RMS spot, mm.
-///
-/// The rays fill the aperture evenly; x(z) = x0 + m z is straight behind the lens, so the plane of the least sum of
-/// squares is z = -sum(x0 m) / sum(m^2). Returns NaN where no ray passes.
-inline double best_focus_distance(const LensSystem& lens, double wavelength_nm, double object_distance) {
-    constexpr int kRays = 256;
-    const LensPath<double> path(lens, LightDirection::to_film, wavelength_nm);
-    const FirstOrder data = first_order(lens, wavelength_nm);
-    const double reach = 0.75 * data.entrance_pupil_diameter;  // past the paraxial rim: real pupils are larger at times
-    LensRays<double, kRays> rays;
-    for (int i = 0; i < kRays; ++i) {
-        const double height = reach * std::sqrt((i + 0.5) / kRays);
-        Vec3d origin{height, 0, 0}, direction{0, 0, 1};
-        if (std::isfinite(object_distance)) {
-            // From the axial point to the entrance pupil, begun at the front vertex: from an object kilometres away the
-            // intersections would lose all their digits.
-            const double to_pupil = object_distance + data.entrance_pupil_position;
-            origin.x = height * object_distance / to_pupil;
-            direction = normalized(Vec3d{height, 0, to_pupil});
-        }
-        rays.origin.set(i, origin);
-        rays.direction.set(i, direction);
-        rays.status[i] = 0;
-    }
-    PathRecord<double, kRays> record{};
-    trace_lens(path.view(), rays, record);
-    double cross = 0, square = 0;
-    for (int i = 0; i < kRays; ++i) {
-        if (rays.status[i] != 0) continue;
-        const double slope = rays.direction.x[i] / rays.direction.z[i];
-        cross += (rays.origin.x[i] - slope * rays.origin.z[i]) * slope;
-        square += slope * slope;
-    }
-    return -cross / square;
-}
-
 namespace focus_detail {
 
-inline std::string metres(double mm) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g m", mm / 1000);
+/// With as many digits as tell it from `other`.
+inline std::string metres(double mm, double other = kInfinity) {
+    char text[40], against[40];
+    for (int digits = 3; digits <= 17; ++digits) {
+        std::snprintf(text, sizeof text, "%.*g m", digits, mm / 1000);
+        std::snprintf(against, sizeof against, "%.*g m", digits, other / 1000);
+        if (std::string(text) != against) break;
+    }
     return text;
 }
 
@@ -64,50 +33,47 @@ inline LensSystem with_group_moved(LensSystem lens, double shift) {
     return lens;
 }
 
-/// Root of f by bisection; f(low) and f(high) have different signs.
-template <class F>
-double bisect(F&& f, double low, double high) {
-    const bool rising = f(high) > 0;
-    for (int i = 0; i < 200 && low != high; ++i) {
-        const double middle = 0.5 * (low + high);
-        if (middle == low || middle == high) break;
-        ((f(middle) > 0) == rising ? high : low) = middle;
-    }
-    return 0.5 * (low + high);
+/// By which share of the focus distance the object plane of a focused lens may lie elsewhere than asked.
+inline constexpr double kFocusTolerance = 1e-9;
+
+[[noreturn]] inline void fail(const LensSystem& lens, double focus_distance, const std::string& reason) {
+    throw InputError("cannot focus at " + metres(focus_distance) + ": lens \"" + lens.name + "\" " + reason);
 }
 
-/// Front vertex to the object plane, for a lens that moves as a whole, by the paraxial image.
-/// The distance from object to film has its minimum at magnification -1; the far branch is the photographic one.
-inline double paraxial_object_distance(const LensSystem& lens, double focus_distance) {
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    const double f = std::fabs(data.effective_focal_length);
-    const auto object_to_film = [&](double s) {
-        return s + lens.last_vertex() + paraxial_image_distance(lens, lens.wavelength_nm, s);
-    };
-    // s = -ffd + f / |m| and the image f |m| behind the rear focal point, so m = -1 lies at s = f - ffd; inside the
-    // lens where the front focal point lies deep in it, as in a fisheye.
-    const double nearest = std::max(0.0, f - data.front_focal_distance);
-    if (object_to_film(nearest) > focus_distance)
-        throw InputError("cannot focus at " + metres(focus_distance) + ": the nearest object plane that lens \"" +
-                         lens.name + "\" can bring to a film is " + metres(object_to_film(nearest)) + " from it");
-    double far = nearest + f;
-    while (object_to_film(far) < focus_distance) far *= 2;
-    return bisect([&](double s) { return object_to_film(s) - focus_distance; }, nearest, far);
-}
-
+/// Object to film, by real rays, has its minimum near magnification -1; the far branch is the photographic one.
 inline LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
+    const auto image_of = [&](double object) { return best_focus_distance(lens, lens.wavelength_nm, object); };
     if (std::isinf(focus_distance)) {
-        lens.film_distance = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
+        lens.film_distance = image_of(kInfinity);
         return lens;
     }
-    // Real rays move the image from the paraxial plane by little; object to film is kept by going round.
-    double object = paraxial_object_distance(lens, focus_distance);
-    for (int i = 0; i < 50; ++i) {
-        lens.film_distance = best_focus_distance(lens, lens.wavelength_nm, object);
-        const double excess = object + lens.film_position() - focus_distance;
-        if (!(std::fabs(excess) > 1e-9 * focus_distance)) break;
-        object -= excess;
+    const double length = lens.last_vertex();
+    const auto excess = [&](double object) { return object + length + image_of(object) - focus_distance; };
+    // Paraxially s = -ffd + f / |m|, so m = -1 lies at s = f - ffd; inside the lens where the front focal point lies
+    // deep in it, as in a fisheye.
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    double near = std::max(0.0, std::fabs(data.effective_focal_length) - data.front_focal_distance);
+    double far = focus_distance - length;  // there object to film is longer by the image distance
+    double excess_near = excess(near);
+    // From very near no ray may pass the lens: a little further away some do.
+    for (int i = 30; i > 0 && std::isnan(excess_near) && near < far; --i) {
+        const double further = near + std::ldexp(far - near, -i);
+        excess_near = excess(further);
+        if (!std::isnan(excess_near)) near = further;
     }
+    if (std::isnan(excess_near)) fail(lens, focus_distance, "lets no ray from there pass");
+    if (excess_near > 0 || far < near) {
+        const double nearest = focus_distance + excess_near;
+        throw InputError("cannot focus at " + metres(focus_distance, nearest) +
+                         ": the nearest object plane that lens \"" + lens.name + "\" can bring to a film is " +
+                         metres(nearest, focus_distance) + " from it");
+    }
+    const double excess_far = excess(far);
+    if (!(excess_far >= 0)) fail(lens, focus_distance, "makes no real image behind its last surface");
+    const Root object = find_root(excess, near, excess_near, far, excess_far, 1e-14 * focus_distance);
+    if (!(std::fabs(object.value) <= kFocusTolerance * focus_distance))
+        fail(lens, focus_distance, "has no plane there that its rays make sharp");
+    lens.film_distance = image_of(object.at);
     return lens;
 }
 
@@ -115,6 +81,7 @@ inline LensSystem moved_by_group(const LensSystem& lens, double focus_distance) 
     const auto error = [&](double shift) {
         const LensSystem moved = with_group_moved(lens, shift);
         const double object = focus_distance - moved.film_position();
+        if (object < 0) return std::numeric_limits<double>::quiet_NaN();  // inside the lens
         return best_focus_distance(moved, lens.wavelength_nm, object) - moved.film_distance;
     };
     const auto& s = lens.surfaces;
@@ -122,14 +89,21 @@ inline LensSystem moved_by_group(const LensSystem& lens, double focus_distance) 
     const auto last = static_cast<std::size_t>(lens.focusing.group_last);
     const double back = first > 0 ? s[first - 1].thickness : lens.last_vertex();
     const double forth = last + 1 < s.size() ? s[last].thickness : lens.film_distance;
-    // From the resting place outwards, to the first change of sign on either side.
+    const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
+    if (start == 0) return lens;
+    // From the resting place outwards, to the first change of sign on either side that is a root: where the image goes
+    // through infinity, or the last ray ends, there is none.
     constexpr int kSteps = 200;
-    const double start = error(0);
+    double inner[2] = {start, start};
     for (int i = 1; i <= kSteps; ++i)
-        for (const double reach : {-back, forth}) {
-            const double inner = reach * (i - 1) / kSteps, outer = reach * i / kSteps;
-            if (start == 0) return lens;
-            if ((error(inner) > 0) != (error(outer) > 0)) return with_group_moved(lens, bisect(error, inner, outer));
+        for (const int side : {0, 1}) {
+            const double reach = (side == 0 ? -back : forth) / kSteps, outer = error(reach * i);
+            const bool bracket = std::isfinite(inner[side]) && std::isfinite(outer) && (inner[side] > 0) != (outer > 0);
+            if (bracket) {
+                const Root shift = find_root(error, reach * (i - 1), inner[side], reach * i, outer, 1e-5 * tolerance);
+                if (std::fabs(shift.value) <= tolerance) return with_group_moved(lens, shift.at);
+            }
+            inner[side] = outer;
         }
     throw InputError("cannot focus at " + metres(focus_distance) + ": no position of the focusing group of lens \"" +
                      lens.name + "\" (surfaces " + std::to_string(first + 1) + " to " + std::to_string(last + 1) +
@@ -141,14 +115,17 @@ inline LensSystem moved_by_group(const LensSystem& lens, double focus_distance) 
 /// The lens focused on an object plane `focus_distance` mm from the film (infinity allowed): real rays from the axial
 /// point, over the full aperture, make their smallest spot on the film. Moves the film, or the focusing group.
 /// A diaphragm that is closed does not refocus the lens, as on a camera.
-/// Throws InputError where the lens cannot.
+/// Throws InputError where the lens cannot. The object plane lies within 1e-9 of its distance where it was asked for.
 inline LensSystem focused(const LensSystem& lens, double focus_distance) {
     using namespace focus_detail;
     if (!(focus_distance > 0))
         throw InputError("the focus distance is " + metres(focus_distance) + "; a positive distance or inf is wanted");
     if (focus_distance < lens.focusing.nearest_mm)
-        throw InputError("cannot focus at " + metres(focus_distance) + ": the nearest focus of lens \"" + lens.name +
-                         "\" is " + metres(lens.focusing.nearest_mm));
+        throw InputError("cannot focus at " + metres(focus_distance, lens.focusing.nearest_mm) +
+                         ": the nearest focus of lens \"" + lens.name + "\" is " +
+                         metres(lens.focusing.nearest_mm, focus_distance));
+    if (first_order(lens, lens.wavelength_nm).is_afocal() && !lens.focusing.moves_group())
+        throw InputError("cannot focus lens \"" + lens.name + "\": it is afocal, parallel light leaves it parallel");
     LensSystem open = lens;
     open.stop_semi_diameter = lens.stop().clear_semi_diameter;
     LensSystem result =
@@ -163,14 +140,19 @@ inline LensSystem focused(const LensSystem& lens, double focus_distance) {
 }
 
 /// The lens with its diaphragm closed to an f-number (of the lens at infinity; exact for paraxial rays).
-/// Throws InputError where the lens is not as fast. A number 0.5% below the lens's own counts as wide open: f-numbers
-/// are engraved with two digits.
+/// Throws InputError where the lens is not as fast, or has no f-number. A number 0.5% below the lens's own counts as
+/// wide open: f-numbers are engraved with two digits.
 inline LensSystem stopped_down(LensSystem lens, double f_number) {
     const double full = lens.stop().clear_semi_diameter;
     lens.stop_semi_diameter = full;
-    const double fastest = first_order(lens, lens.wavelength_nm).f_number;
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const double fastest = data.f_number;
     if (!(f_number > 0) || !std::isfinite(f_number))
         throw InputError("the f-number is " + std::to_string(f_number) + "; a positive number is wanted");
+    if (!(fastest > 0) || !std::isfinite(fastest))
+        throw InputError("lens \"" + lens.name + "\" has no f-number: " +
+                         (data.is_afocal() ? "it is afocal, parallel light leaves it parallel"
+                                           : "its entrance pupil lies at infinity"));
     if (f_number < 0.995 * fastest) {
         char text[160];
         std::snprintf(text, sizeof text, "f/%.4g is faster than lens \"%s\", which opens to f/%.4g", f_number,

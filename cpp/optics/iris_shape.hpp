@@ -14,6 +14,14 @@ struct IrisShape {
     double rotation_rad = 0;  ///< of the first blade, from the x axis towards y
 };
 
+/// Distance from the axis to a blade's edge in the direction that makes an angle of this cosine with the blade's
+/// middle, mm: of q r^2 + 2 (1 - q h) cos r - (2 h - q h^2) = 0, in the form that holds for q = 0 too.
+inline double opening_radius(double apothem, double curvature, double cosine) {
+    const double linear = (1 - curvature * apothem) * cosine;
+    const double constant = 2 * apothem - curvature * apothem * apothem;
+    return constant / (linear + std::sqrt(linear * linear + curvature * constant));
+}
+
 /// Area that n blades at a distance `apothem` from the axis leave open inside a round rim, mm^2.
 inline double iris_area(const IrisShape& shape, double apothem, double rim) {
     // The opening has 2n equal parts; one is integrated in polar form by the midpoint rule, whose error for this
@@ -24,11 +32,7 @@ inline double iris_area(const IrisShape& shape, double apothem, double rim) {
     double sum = 0;
     for (int i = 0; i < kPoints; ++i) {
         const double cosine = std::cos((i + 0.5) * width / kPoints);
-        // q r^2 + 2 (1 - q h) cos r - (2 h - q h^2) = 0, in the form that holds for q = 0 too.
-        const double linear = (1 - q * apothem) * cosine;
-        const double constant = 2 * apothem - q * apothem * apothem;
-        const double radius = constant / (linear + std::sqrt(linear * linear + q * constant));
-        sum += std::pow(std::min(radius, rim), 2);
+        sum += std::pow(std::min(opening_radius(apothem, q, cosine), rim), 2);
     }
     return shape.blades * width * sum / kPoints;
 }

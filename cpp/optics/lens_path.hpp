@@ -37,6 +37,10 @@ public:
         }
         if (direction == LightDirection::to_scene) std::reverse(steps_.begin(), steps_.end());
         entry_index = direction == LightDirection::to_film ? n.front() : n.back();
+        // A few diameters: what a float32 of the first surface's size can square.
+        entry_reach =
+            16 *
+            (direction == LightDirection::to_film ? lens.surfaces.front() : lens.surfaces.back()).clear_semi_diameter;
         entry_position = direction == LightDirection::to_film ? z.front() : z.back();
         exit_position = direction == LightDirection::to_film ? z.back() : z.front();
     }
@@ -44,6 +48,7 @@ public:
     LensView<T> view() const { return {steps_.data(), static_cast<int>(steps_.size()), iris_}; }
 
     double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by
+    double entry_reach = 0;     ///< rays from farther away than this are to start nearer (enter_lens), mm
     double entry_position = 0;  ///< z of the vertex to which the origins of entering rays are relative
     double exit_position = 0;  ///< the same for leaving rays
 
@@ -75,6 +80,7 @@ private:
             high = std::max(high, sag);
         }
         const double margin = 0.02 * (high - low) + 1e-3 * reach;
+        step.sag_edge = static_cast<T>(surface.sag(reach));
         step.search_squared = static_cast<T>(reach * reach);
         step.sag_min = static_cast<T>(low - margin);
         step.sag_max = static_cast<T>(high + margin);
@@ -82,7 +88,7 @@ private:
 
     static void set_media(LensStep<T>& step, double before, double after, double sense_in, double sense_out) {
         step.index_squared = static_cast<T>(before * before);
-        step.index_step = static_cast<T>((after - before) * (after + before));
+        step.relative_step = static_cast<T>((after - before) * (after + before) / (before * before));
         step.sense_in = static_cast<T>(sense_in);
         step.sense_out = static_cast<T>(sense_out);
     }

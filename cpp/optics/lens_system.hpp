@@ -13,6 +13,12 @@ namespace REALCAM_NAMESPACE {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr int kMaxSurfaces = 256;
 
+// Numbers beyond these are no lens's, and their squares, or those of their sums, leave the range of float32.
+inline constexpr double kLongest = 1e9;         ///< any length, mm
+inline constexpr double kShortestRadius = 1e-6;  ///< of curvature, and clear semi-diameter, mm
+inline constexpr double kLargestConic = 1e6;
+inline constexpr double kLargestCoefficient = 1e37;  ///< of an asphere, whatever its unit
+
 /// How the focusing ring moves the glass.
 struct FocusingRule {
     double nearest_mm = 0;  ///< nearest object plane, measured to the film; 0: as near as the optics can
@@ -59,10 +65,17 @@ struct LensSystem {
     double film_position() const { return last_vertex() + film_distance; }
 
     /// Refractive index of the n + 1 media: before the first surface, between the surfaces, behind the last.
+    /// Throws InputError at a wavelength where a glass has none: a formula near its resonances gives anything.
     std::vector<double> indices(double wavelength) const {
         std::vector<double> n(surfaces.size() + 1, 1.0);
-        for (std::size_t i = 0; i < surfaces.size(); ++i)
-            n[i + 1] = surfaces[i].type == SurfaceType::refracting ? surfaces[i].material.index(wavelength) : n[i];
+        for (std::size_t i = 0; i < surfaces.size(); ++i) {
+            const Surface& s = surfaces[i];
+            n[i + 1] = s.type == SurfaceType::refracting ? s.material.index(wavelength) : n[i];
+            if (!(n[i + 1] > 0.1) || !(n[i + 1] < 100))
+                throw InputError("the material of surface " + std::to_string(i + 1) +
+                                 (s.material.label.empty() ? "" : " (" + s.material.label + ")") +
+                                 " has no refractive index at " + std::to_string(std::lround(wavelength)) + " nm");
+        }
         return n;
     }
 };
@@ -86,15 +99,27 @@ inline void validate(const LensSystem& lens) {
         const Surface& s = lens.surfaces[i];
         if (!std::isfinite(s.curvature) || !std::isfinite(s.conic))
             fail(i, "radius of curvature and conic must be finite numbers (leave the radius out for a plane)");
+        if (std::fabs(s.conic) > kLargestConic) fail(i, "the conic must lie between -1e6 and 1e6");
+        if (std::fabs(s.curvature) > 1 / kShortestRadius)
+            fail(i, "the curvature is larger than that of a radius of 1e-6 mm");
         for (double a : s.aspheric)
             if (!std::isfinite(a)) fail(i, "an aspheric coefficient is not a finite number");
         if (s.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
             fail(i, "aspheric coefficients go up to r^" + std::to_string(2 * kMaxAsphericTerms + 2));
         if (!(s.clear_semi_diameter > 0) || !std::isfinite(s.clear_semi_diameter))
             fail(i, "the clear semi-diameter is " + mm(s.clear_semi_diameter) + "; a positive length is wanted");
+        if (s.clear_semi_diameter < kShortestRadius || s.clear_semi_diameter > kLongest)
+            fail(i, "the clear semi-diameter must lie between 1e-6 and 1e9 mm");
+        double power = s.clear_semi_diameter * s.clear_semi_diameter;
+        for (double a : s.aspheric) {
+            power *= s.clear_semi_diameter * s.clear_semi_diameter;
+            if (std::fabs(a) > kLargestCoefficient || std::fabs(a) * power > kLongest)
+                fail(i, "an aspheric coefficient is too large: it is past 1e37, or its term past 1e9 mm at the rim");
+        }
         if (!(s.inner_semi_diameter >= 0) || s.inner_semi_diameter >= s.clear_semi_diameter)
             fail(i, "the inner semi-diameter must be at least 0 and less than the clear semi-diameter");
         if (!std::isfinite(s.thickness)) fail(i, "the thickness is not a finite number");
+        if (std::fabs(s.thickness) > kLongest) fail(i, "the thickness is more than 1e9 mm");
         if (s.type == SurfaceType::mirror) direction = -direction;
         if (s.thickness * direction < 0)
             fail(i, direction > 0
@@ -124,8 +149,9 @@ inline void validate(const LensSystem& lens) {
                             std::to_string(kMaxIrisBlades) + " are wanted");
     if (!(lens.iris.rounding >= 0 && lens.iris.rounding <= 1))
         throw LensFileError("the rounding of the iris must lie between 0 (straight blades) and 1 (a circle)");
-    if (!(lens.film_width > 0) || !(lens.film_height > 0) || !std::isfinite(lens.film_width * lens.film_height))
-        throw LensFileError("the film's width and height must be positive lengths");
+    if (!std::isfinite(lens.iris.rotation_rad)) throw LensFileError("the rotation of the iris is not a finite number");
+    if (!(lens.film_width > 0) || !(lens.film_height > 0) || !(lens.film_width + lens.film_height <= kLongest))
+        throw LensFileError("the film's width and height must be positive lengths, of at most 1e9 mm");
     const int n = static_cast<int>(lens.surfaces.size());
     if (lens.focusing.moves_group() &&
         (lens.focusing.group_last < lens.focusing.group_first || lens.focusing.group_last >= n))

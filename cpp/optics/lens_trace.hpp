@@ -29,21 +29,26 @@ struct PathRecord {
     alignas(64) int surface_index[N];  ///< surface at which the ray ended, in the lens system's order
 };
 
+/// Parameters beyond are those of rays that miss. Their squares still fit in float32.
+template <class T>
+inline constexpr T kFarthest = T(1e18);
+
 /// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
 template <class T, int N, class Record>
 REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays, Record& record, int lane, Vec3<T> o,
                                   Vec3<T> p, SurfaceHit<T> hit, int failure) {
     const Vec3<T> at = o + hit.parameter * p;
     const T r2 = at.x * at.x + at.y * at.y;
-    const Refraction<T> refracted = refract(p, hit.normal, hit.along_normal, step.index_step, step.sense_out);
+    const Refraction<T> refracted = refract(p, hit.normal, hit.along_normal, step.relative_step, step.sense_out);
 
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
     const bool clear = (r2 <= step.rim_squared) & (r2 >= step.hole_squared);
-    const bool met = alive & hit.met();
+    // A ray along a plane meets it at infinity.
+    const bool met = alive & hit.met() & (std::fabs(hit.parameter) <= kFarthest<T>);
     const bool passes = met & clear & (refracted.radicand >= T(0));
     if constexpr (Record::enabled) {
-        const int cause = select(hit.met(),
+        const int cause = select(met,
                                  select(clear, static_cast<int>(RayStatus::total_internal_reflection),
                                         static_cast<int>(RayStatus::vignetted)),
                                  failure);
@@ -66,7 +71,7 @@ REALCAM_HD inline void cross_sphere(const LensStep<T>& step, LensRays<T, N>& ray
         Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
         o.z -= step.shift;
-        const SurfaceHit<T> hit = intersect_sphere(o, p, step.curvature, step.index_squared, step.sense_in);
+        const SurfaceHit<T> hit = intersect_sphere(o, p, step.curvature, step.sense_in);
         cross_surface(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
@@ -78,8 +83,9 @@ REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays
         Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
         o.z -= step.shift;
-        const SurfaceHit<T> hit =
-            intersect_conic(o, p, step.curvature, step.conic_factor, step.index_squared, step.sense_in);
+        const T approach = to_vertex_plane(o, p);
+        SurfaceHit<T> hit = intersect_conic(o + approach * p, p, step.curvature, step.conic_factor, step.sense_in);
+        hit.parameter += approach;
         cross_surface(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
@@ -87,7 +93,8 @@ REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays
 template <class T, int N, class Record>
 REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
     AsphereSearch<T, N> search;
-    int ended = 0;
+    alignas(64) T outside[N];
+    int ended = 0, uncertain = 0;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         rays.origin.z[i] -= step.shift;
@@ -96,14 +103,25 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
     if (ended == N) return;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        begin_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
+        outside[i] =
+            begin_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
+        uncertain |= static_cast<int>(rays.status[i] == 0) & static_cast<int>(outside[i] > T(0));
     }
-    for (int iteration = 0; iteration < kMaxAsphereIterations<T>; ++iteration) {
+    for (int i = 0; uncertain && i < N; ++i) {
+        if (rays.status[i] != 0 || !(outside[i] > T(0))) continue;
+        const bool found =
+            find_bracket(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
+        // One that goes through, though not inside: it meets the plane outside, and is vignetted there.
+        const bool through = outside[i] < kSideways<T> / 2;
+        if (!found && !through) search.t[i] = search.below[i] = search.above[i] = std::numeric_limits<T>::quiet_NaN();
+    }
+    for (int count = 0; count < kMaxAsphereSteps<T>; ++count) {
+        const bool halve = count >= kNewtonSteps && count % 2 == 0;
         int searching = 0;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            improve_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i],
-                           search.residual[i], search.tolerance[i]);
+            improve_search(step, rays.origin[i], rays.direction[i], halve, search.t[i], search.below[i],
+                           search.above[i], search.residual[i], search.tolerance[i]);
             searching |=
                 static_cast<int>(rays.status[i] == 0) & static_cast<int>(search.residual[i] > search.tolerance[i]);
         }
@@ -115,8 +133,9 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
         const Vec3<T> p = rays.direction[i];
         const T slack = search.tolerance[i] - search.residual[i];
         const SurfaceHit<T> hit = asphere_hit(step, o, p, search.t[i], slack);
+        // Without a bracket both are NaN.
         const int failure =
-            select(slack >= T(0), static_cast<int>(RayStatus::missed), static_cast<int>(RayStatus::no_convergence));
+            select(slack < T(0), static_cast<int>(RayStatus::no_convergence), static_cast<int>(RayStatus::missed));
         cross_surface(step, rays, record, i, o, p, hit, failure);
     }
 }

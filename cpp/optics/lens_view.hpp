@@ -20,10 +20,11 @@ struct LensStep {
     T sense_in;            ///< +1 where the ray crosses towards the film, -1 towards the scene (a mirror turns it)
     T sense_out;
     T index_squared;       ///< n^2 of the medium before the surface
-    T index_step;          ///< n'^2 - n^2
+    T relative_step;       ///< n'^2 / n^2 - 1
     T rim_squared;         ///< squared clear semi-diameter
     T hole_squared;        ///< squared radius inside which light is blocked; negative: none
     T sag_min, sag_max;    ///< aspheres: bounds of the sag inside the search radius
+    T sag_edge;            ///< aspheres: the sag at the search radius
     T search_squared;      ///< aspheres: the sag is continued as constant outside this squared radius
     T aspheric[kMaxAsphericTerms];  ///< of r^4, r^6, ...; zeros after the last
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <limits>
 
 #include "lens_system.hpp"
 
@@ -11,8 +12,22 @@ struct ParaxialRay {
     double slope;
 };
 
+/// A sum of two terms that is no larger than what rounding has left of them is zero: the power of an afocal system, the
+/// height at a stop in a focal plane. A telescope would have a focal length of 1e18 mm else.
+inline double sum_or_zero(double a, double b) {
+    constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+    const double sum = a + b;
+    return std::fabs(sum) <= kRounding * std::fabs(a) ? 0.0 : sum;
+}
+
+/// Across a surface: n' u' = n u - y c (n' - n). Indices have the sign of the light's sense along z, so that a mirror
+/// is n' = -n.
+inline ParaxialRay refract_paraxial(ParaxialRay ray, double curvature, double before, double after) {
+    return {ray.height, sum_or_zero(before * ray.slope, -ray.height * curvature * (after - before)) / after};
+}
+
 /// Traces a paraxial ray over the surfaces [first, last) in the direction of the light, from the vertex of the first
-/// to the vertex of the last one, by n' u' = n u - y c (n' - n); behind a mirror n changes its sign.
+/// to the vertex of the last one.
 inline ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, ParaxialRay ray, int first, int last) {
     const std::vector<double> index = lens.indices(wavelength_nm);
     double sign = 1;
@@ -22,21 +37,25 @@ inline ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, 
         if (s.type == SurfaceType::mirror) sign = -sign;
         if (i < first) continue;
         const double after = sign * index[static_cast<std::size_t>(i) + 1];
-        ray.slope = (before * ray.slope - ray.height * s.curvature * (after - before)) / after;
-        if (i + 1 < last) ray.height += s.thickness * ray.slope;
+        ray = refract_paraxial(ray, s.curvature, before, after);
+        if (i + 1 < last) ray.height = sum_or_zero(ray.height, s.thickness * ray.slope);
     }
     return ray;
 }
 
 /// First-order data at one wavelength. Positions in the lens frame (from the front vertex), mm.
+/// An afocal system has an infinite focal length, distances and f-number; a stop in a focal plane has a pupil of
+/// infinite size at infinity, and a closed one a pupil of size 0.
 struct FirstOrder {
     double effective_focal_length;
-    double back_focal_distance;   ///< last vertex to the rear focal point
+    double back_focal_distance;  ///< last vertex to the rear focal point
     double front_focal_distance;  ///< front vertex to the front focal point, negative in front of it
-    double f_number;              ///< focal length over entrance pupil diameter, object at infinity
+    double f_number;  ///< focal length over entrance pupil diameter, object at infinity
     double entrance_pupil_position, entrance_pupil_diameter;
     double exit_pupil_position, exit_pupil_diameter;
     double film_distance;
+
+    bool is_afocal() const { return std::isinf(effective_focal_length); }
 };
 
 inline FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
@@ -44,10 +63,11 @@ inline FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     const ParaxialRay marginal = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, count);
     const ParaxialRay inclined = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, count);
     FirstOrder data{};
-    data.effective_focal_length = -1 / marginal.slope;
-    data.back_focal_distance = -marginal.height / marginal.slope;
+    const bool afocal = marginal.slope == 0;
+    data.effective_focal_length = afocal ? kInfinity : -1 / marginal.slope;
+    data.back_focal_distance = afocal ? kInfinity : -marginal.height / marginal.slope;
     // A ray through the front focal point, in front of the vertex by -ffd, leaves parallel to the axis.
-    data.front_focal_distance = inclined.slope / marginal.slope;
+    data.front_focal_distance = afocal ? -kInfinity : inclined.slope / marginal.slope;
 
     // Height and slope at the stop are linear in those at the front vertex; the ray through the middle of the stop
     // crosses the axis in the middle of the entrance pupil.
@@ -55,14 +75,14 @@ inline FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     const ParaxialRay slope_at_stop = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, stop + 1);
     const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
     data.entrance_pupil_position = slope_at_stop.height / height_at_stop.height;
-    data.entrance_pupil_diameter = 2 * radius / std::fabs(height_at_stop.height);
-    data.f_number = std::fabs(data.effective_focal_length) / data.entrance_pupil_diameter;
+    data.entrance_pupil_diameter = radius > 0 ? 2 * radius / std::fabs(height_at_stop.height) : 0.0;
+    data.f_number = afocal ? kInfinity : std::fabs(data.effective_focal_length) / data.entrance_pupil_diameter;
 
     const ParaxialRay chief = trace_paraxial(lens, wavelength_nm, {0, 1}, stop, count);
     const ParaxialRay edge = trace_paraxial(lens, wavelength_nm, {radius, 0}, stop, count);
     const double from_last = -chief.height / chief.slope;  // infinite for a lens that is telecentric on the film side
     data.exit_pupil_position = lens.last_vertex() + from_last;
-    data.exit_pupil_diameter = 2 * std::fabs(edge.height + edge.slope * from_last);
+    data.exit_pupil_diameter = radius > 0 ? 2 * std::fabs(edge.height + edge.slope * from_last) : 0.0;
     data.film_distance = lens.film_distance;
     return data;
 }

@@ -17,11 +17,18 @@ class Pupil {
 public:
     static constexpr int kRows = 48;
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
+    /// No search traces more, whatever the lens: 170 looks at a film radius (two tables of nodes, the edge of the
+    /// image, half-way between rows) of PupilSearch::kMostBlocks, 8 outlines of 15 blocks and 256 rounds for each row.
+    /// Lenses that can be made take a hundredth of it.
+    static constexpr int kMostBlocks = 170 * PupilSearch::kMostBlocks + kRows * (8 * 15 + 256) + 15;
 
-    /// `film_radius` in mm: the film point furthest from the axis.
+    /// `film_radius` in mm: the film point furthest from the axis. Throws InputError where it is no positive length.
     Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = nullptr)
         : search_(lens, std::move(tracer)), image_radius_(film_radius * (1 + 1e-6)) {
+        if (!(film_radius > 0) || !(film_radius <= kLongest))
+            throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
         find_nodes();
+        follows_ = image_radius_ > 0 && nodes_follow();
         if (image_radius_ > 0) {
             find_outlines();
         } else {
@@ -41,6 +48,9 @@ public:
                 static_cast<float>(search_.index_squared())};
     }
     double image_radius() const { return image_radius_; }
+    /// Whether the table holds the pupil between its rows too. A stop of some micrometres moves by more than its own
+    /// size from row to row.
+    bool follows() const { return follows_; }
 
 private:
     /// Outermost rows, 0.4% of the image's area, that get no finer outline than a box.
@@ -89,6 +99,25 @@ private:
     double radius_at(double position) const {
         const double inward = 1 - position / kRows;
         return image_radius_ * (1 - inward * inward);
+    }
+
+    /// Whether a small pupil lies half-way between rows where its neighbours say. Of large ones the outlines see it;
+    /// and slivers at the edge of the image are small without a small stop.
+    bool nodes_follow() const {
+        constexpr float kSmall = 1e-3f;
+        const float on_axis = nodes_.front().half_width;
+        if (on_axis > kSmall) return true;
+        PupilTrack track;
+        for (int row = 0; row < kRows; ++row) {
+            const PupilNode node = node_at(row + 0.5);
+            if (node.half_width < 0.5f * on_axis) continue;
+            const std::optional<PupilBox> box = search_.look(radius_at(row + 0.5), track);
+            const double width = static_cast<double>(node.half_width);
+            if (!box || !(std::fabs(box->l() - static_cast<double>(node.centre)) < 0.5 * width) ||
+                !(box->half_width() < 1.4 * width))
+                return false;
+        }
+        return true;
     }
 
     struct Edge {
@@ -193,9 +222,11 @@ private:
 
     /// Adds a row. Sends rays all over its surroundings first, and widens the sectors beside which some pass, until so
     /// many rounds in a row find none: the corners of slivers lie between spokes, and the ends of crescents between the
-    /// points of a grid.
+    /// points of a grid. Sectors that few rays pass do not tell where the light is, which may lie in several rings: the
+    /// whole box takes their place.
     void add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
         constexpr int kMostRounds = 256, kBlock = PupilSearch::kBlock;
+        int held = 0, passing = 0;  // of the rays inside the sectors
         for (int round = 0, clean = 0; round < kMostRounds && clean < clean_rounds; ++round) {
             const auto stream = static_cast<std::uint32_t>(kMostRounds * row + round);
             // Both ends of the row first.
@@ -213,16 +244,20 @@ private:
                                       static_cast<double>(node.half_height * places[i].y)};
             };
             bool strayed = false;
-            search_.trace(radius_at(position), kBlock, direction,
-                          [&](int i, bool passes) { strayed |= passes && sectors.take_in(places[i]); });
+            search_.trace(radius_at(position), kBlock, direction, [&](int i, bool passes) {
+                held += static_cast<int>(sectors.holds(places[i]));
+                passing += static_cast<int>(passes);
+                strayed |= passes && sectors.take_in(places[i]);
+            });
             clean = strayed ? 0 : clean + 1;
         }
+        if (passing < held / 4) sectors = PupilRow(box_outline());
         outline_.insert(outline_.end(), sectors.sectors().begin(), sectors.sectors().end());
     }
 
     PupilSearch search_;
     double image_radius_;
-    bool ends_inside_film_ = false;
+    bool ends_inside_film_ = false, follows_ = false;
     std::vector<PupilNode> nodes_;
     std::vector<PupilSector> outline_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "pupil_view.hpp"
@@ -100,20 +101,22 @@ public:
         }
     }
 
+    bool holds(Vec2f place) const {
+        const std::optional<std::size_t> at = sector_of(place);
+        return at && holds(sectors_[*at], reach_in(sectors_[*at], place));
+    }
+
     /// Widens the sector of a place in the box such that it holds it; false where it does already.
     bool take_in(Vec2f place) {
-        for (PupilSector& s : sectors_) {
-            const bool after = s.x * place.y - s.y * place.x >= 0;
-            const bool before = place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0;
-            if (!after || !before) continue;
-            const float reach = (place.x * s.dy - place.y * s.dx) / (s.x * s.dy - s.y * s.dx);
-            if (reach <= 1 && reach * reach >= s.hole_squared) return false;
-            const float scale = std::max(1.0f, 1.03f * reach);
-            s = {scale * s.x, scale * s.y, scale * s.dx, scale * s.dy,
-                 std::min(s.hole_squared / (scale * scale), 0.98f * reach * reach / (scale * scale))};
-            return true;
-        }
-        return false;
+        const std::optional<std::size_t> at = sector_of(place);
+        if (!at) return false;
+        PupilSector& s = sectors_[*at];
+        const float reach = reach_in(s, place);
+        if (holds(s, reach)) return false;
+        const float scale = std::max(1.0f, 1.03f * reach);
+        s = {scale * s.x, scale * s.y, scale * s.dx, scale * s.dy,
+             std::min(s.hole_squared / (scale * scale), 0.98f * reach * reach / (scale * scale))};
+        return true;
     }
 
     const std::vector<PupilSector>& sectors() const { return sectors_; }
@@ -123,6 +126,22 @@ private:
         double x, y;
     };
 
+    /// Nothing for a place with m < 0, and for one that falls between two sectors by rounding.
+    std::optional<std::size_t> sector_of(Vec2f place) const {
+        for (std::size_t i = 0; i < sectors_.size(); ++i) {
+            const PupilSector& s = sectors_[i];
+            const bool after = s.x * place.y - s.y * place.x >= 0;
+            const bool before = place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0;
+            if (after && before) return i;
+        }
+        return std::nullopt;
+    }
+    /// 1 on the sector's outer edge.
+    static float reach_in(const PupilSector& s, Vec2f place) {
+        return (place.x * s.dy - place.y * s.dx) / (s.x * s.dy - s.y * s.dx);
+    }
+    static bool holds(const PupilSector& s, float reach) { return reach <= 1 && reach * reach >= s.hole_squared; }
+
     /// The smallest triangle on these two azimuths whose outer edge lies outside the outline in between.
     static PupilSector sector_over(const std::vector<double>& outer, const std::vector<double>& inner, std::size_t from,
                                    std::size_t to) {
@@ -130,7 +149,8 @@ private:
             return std::numbers::pi * static_cast<double>(i) / static_cast<double>(outer.size() - 1);
         };
         const auto point = [&](std::size_t i) {
-            const double r = std::max(outer[i], 1e-9);
+            // Not less: next to a point a thousand times as far out, float32 would give the triangle no area.
+            const double r = std::max(outer[i], 1e-3);
             return Point{r * std::cos(angle(i)), r * std::sin(angle(i))};
         };
         const Point a = point(from), b = point(to);

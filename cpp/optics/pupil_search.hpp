@@ -28,6 +28,12 @@ struct PupilBox {
     double l() const { return 0.5 * (l_min + l_max); }
     double half_width() const { return 0.5 * (l_max - l_min); }
     PupilBox with(PupilDirection d) const { return {std::min(l_min, d.l), std::max(l_max, d.l), std::max(m_max, d.m)}; }
+    /// Whether it ends inside the searched box, or where nothing can be any more.
+    bool lies_in(const PupilBox& searched, const PupilBox& widest) const {
+        return (l_min > searched.l_min || searched.l_min <= widest.l_min) &&
+               (l_max < searched.l_max || searched.l_max >= widest.l_max) &&
+               (m_max < searched.m_max || searched.m_max >= widest.m_max);
+    }
     PupilBox grown(double share) const {
         const double w = share * 2 * half_width(), h = share * m_max;
         return {l_min - w, l_max + w, m_max + h};
@@ -64,6 +70,8 @@ struct PupilTrack {
 class PupilSearch {
 public:
     static constexpr int kBlock = 256;
+    /// Of one look: two searches of six levels, 17 blocks each, and of 17 growths.
+    static constexpr int kMostBlocks = 2 * (6 * 17 + 17 * 6);
 
     PupilSearch(const LensSystem& lens, PupilTracer tracer)
         : lens_(round_iris(lens)),
@@ -82,15 +90,10 @@ public:
 
     /// The box at a film radius further out than those on the track; adds it there.
     std::optional<PupilBox> look(double radius, PupilTrack& track) const {
+        const PupilBox widest = box_of_last_surface(radius);
         std::optional<PupilBox> box;
-        if (track.last) {
-            const PupilBox search = track.search_at(radius);
-            box = passing_box(radius, search, 48);
-            const bool whole =
-                box && box->l_min > search.l_min && box->l_max < search.l_max && box->m_max < search.m_max;
-            if (!whole) box = find_box(radius, search);
-        }
-        if (!box) box = find_box(radius, box_of_last_surface(radius));
+        if (track.last) box = find_box(radius, track.search_at(radius), widest);
+        if (!box) box = find_box(radius, widest, widest);
         if (box) track.add(radius, *box);
         return box;
     }
@@ -197,17 +200,31 @@ private:
 
     /// A small aperture falls through any grid: where too few rays pass, goes to the ray that comes nearest to the
     /// middle of the stop, in a smaller box.
-    std::optional<PupilBox> find_box(double radius, PupilBox search) const {
+    std::optional<PupilBox> find_box(double radius, PupilBox search, const PupilBox& widest) const {
         constexpr int kLevels = 6;
         for (int level = 0; level < kLevels; ++level) {
-            if (const auto box = passing_box(radius, search, 48)) return box;
+            if (const auto box = passing_box(radius, search, 48)) return whole(radius, *box, search, widest);
             const auto nearest = nearest_to_stop(radius, search);
             if (!nearest) break;
             const double w = search.half_width() / 6, h = search.m_max / 6;
             const auto few = passing_box(radius, search, 1);
             search = few ? few->grown(0.2) : PupilBox{nearest->l - w, nearest->l + w, nearest->m + h};
         }
-        return passing_box(radius, search, 1);
+        const auto few = passing_box(radius, search, 1);
+        return few ? whole(radius, *few, search, widest) : few;
+    }
+
+    /// The searched box may have held a part of the region only: follows it as far as it goes. A region that has moved
+    /// by more than its size begins as a sliver, and one that is found by its nearest ray as its middle.
+    PupilBox whole(double radius, PupilBox box, PupilBox search, const PupilBox& widest) const {
+        constexpr int kMostGrowths = 16;
+        for (int i = 0; i < kMostGrowths && !box.lies_in(search, widest); ++i) {
+            search = box.grown(1);
+            const auto more = passing_box(radius, search, 1);
+            if (!more) break;
+            box = *more;
+        }
+        return box;
     }
 
     std::optional<PupilDirection> nearest_to_stop(double radius, const PupilBox& search) const {

@@ -37,20 +37,17 @@ struct PupilView {
     float index_squared;         ///< n^2 of the medium before the film
 };
 
-/// A ray's start direction.
-struct PupilSample {
-    Vec3f direction;  ///< optical, from the film point to the scene, lens frame
-    float weight;     ///< one over the density: steradians of projected solid angle; 0 outside the image circle
+/// The box of a film point's region, and the row of sectors that fills it.
+struct PupilPlace {
+    float cos, sin;  ///< of the film point's azimuth, by which the region is turned
+    float centre, half_width, half_height;
+    int row;
+    float lit;  ///< 1 inside the image circle, else 0
 };
 
-/// Chooses a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over the row's outline.
-REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, float film_y, float u, float v) {
+REALCAM_INLINE PupilPlace pupil_place(const PupilView& pupil, float film_x, float film_y) {
     const float radius = std::sqrt(film_x * film_x + film_y * film_y);
     const float inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
-    const float cos = select(radius > 0.0f, film_x * inverse, 1.0f);
-    const float sin = film_y * inverse;
-
-    const bool lit = radius < pupil.image_radius;
     const float position =
         static_cast<float>(pupil.rows) * (1.0f - sqrt_or_zero(1.0f - radius * pupil.inverse_image_radius));
     int row = static_cast<int>(position);
@@ -58,29 +55,69 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
     const float f = position - static_cast<float>(row);
     const PupilNode& near = pupil.nodes[row];
     const PupilNode& far = pupil.nodes[row + 1];
-    const float centre = near.centre + f * (far.centre - near.centre);
-    const float width = near.half_width + f * (far.half_width - near.half_width);
-    const float height = near.half_height + f * (far.half_height - near.half_height);
+    return {select(radius > 0.0f, film_x * inverse, 1.0f),
+            film_y * inverse,
+            near.centre + f * (far.centre - near.centre),
+            near.half_width + f * (far.half_width - near.half_width),
+            near.half_height + f * (far.half_height - near.half_height),
+            row,
+            select(radius < pupil.image_radius, 1.0f, 0.0f)};
+}
 
+/// One over the density in a sector, steradians of projected solid angle: sectors are chosen evenly, so that it is
+/// their number times the area of this one. 0 outside the image circle.
+REALCAM_INLINE float pupil_weight(const PupilView& pupil, const PupilPlace& place, const PupilSector& sector) {
+    const float area = static_cast<float>(pupil.sectors) * (sector.x * sector.dy - sector.y * sector.dx) *
+                       (1.0f - sector.hole_squared);
+    return area * place.half_width * place.half_height * place.lit;
+}
+
+/// A ray's start direction.
+struct PupilSample {
+    Vec3f direction;  ///< optical, from the film point to the scene, lens frame
+    float weight;     ///< one over pupil_pdf; 0 outside the image circle
+};
+
+/// Chooses a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the row.
+REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, float film_y, float u, float v) {
+    const PupilPlace place = pupil_place(pupil, film_x, film_y);
     const float scaled = u * static_cast<float>(2 * pupil.sectors);
     int index = static_cast<int>(scaled);
     index = select(index < 2 * pupil.sectors, index, 2 * pupil.sectors - 1);
     const float along = scaled - static_cast<float>(index);
     const bool lower = index >= pupil.sectors;
     index = select(lower, index - pupil.sectors, index);
-    const PupilSector& sector = pupil.outline[row * pupil.sectors + index];
-    const float open = 1.0f - sector.hole_squared;
-    const float reach = std::sqrt(sector.hole_squared + v * open);
+    const PupilSector& sector = pupil.outline[place.row * pupil.sectors + index];
+    const float reach = std::sqrt(sector.hole_squared + v * (1.0f - sector.hole_squared));
     const float x = reach * (sector.x + along * sector.dx);
     const float y = reach * (sector.y + along * sector.dy);
-    // Sectors are chosen evenly, so the density is one over this: their number times the area of one.
-    const float area = static_cast<float>(pupil.sectors) * (sector.x * sector.dy - sector.y * sector.dx) * open;
 
-    const float l = centre + width * x;
-    const float m = height * select(lower, -y, y);
-    const float l_film = l * cos - m * sin, m_film = l * sin + m * cos;
+    const float l = place.centre + place.half_width * x;
+    const float m = place.half_height * select(lower, -y, y);
+    const float l_film = l * place.cos - m * place.sin, m_film = l * place.sin + m * place.cos;
     const float towards_scene = sqrt_or_zero(pupil.index_squared - l * l - m * m);
-    return {{l_film, m_film, -towards_scene}, select(lit, area * width * height, 0.0f)};
+    return {{l_film, m_film, -towards_scene}, pupil_weight(pupil, place, sector)};
+}
+
+/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 where it never goes.
+REALCAM_INLINE float pupil_pdf(const PupilView& pupil, float film_x, float film_y, float l, float m) {
+    const PupilPlace place = pupil_place(pupil, film_x, film_y);
+    const float x = (l * place.cos + m * place.sin - place.centre) / place.half_width;
+    const float y = std::fabs(m * place.cos - l * place.sin) / place.half_height;
+    // The sector by azimuth, from 0 to pi.
+    const PupilSector* row = pupil.outline + place.row * pupil.sectors;
+    int first = 0, last = pupil.sectors;
+    while (first + 1 < last) {
+        const int middle = (first + last) / 2;
+        const bool after = row[middle].x * y - row[middle].y * x >= 0.0f;
+        first = select(after, middle, first);
+        last = select(after, last, middle);
+    }
+    const PupilSector& s = row[first];
+    const float reach = (x * s.dy - y * s.dx) / (s.x * s.dy - s.y * s.dx);
+    const bool inside = reach <= 1.0f && reach * reach >= s.hole_squared;
+    const float weight = pupil_weight(pupil, place, s);
+    return select(inside && weight > 0.0f, 1.0f / weight, 0.0f);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -8,7 +8,7 @@ namespace REALCAM_NAMESPACE {
 template <int N>
 struct SceneRays {
     Vec3Lanes<float, N> origin, direction;
-    alignas(64) float far[N];  ///< how far along the ray to look
+    alignas(64) float far[N];  ///< how far along the ray to look, in lengths of the direction
     alignas(64) std::int32_t active[N];
 };
 
@@ -73,7 +73,7 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
                     results.irradiance.set(i, throughput[i] * environment_radiance(view.environment, direction));
                 continue;
             }
-            const SurfacePoint point = surface_point(view, hit, direction);
+            const SurfacePoint point = surface_point(view, hit, rays.origin[i], direction);
             if (bounce == 0) {
                 results.irradiance.set(i, throughput[i] * point.emission);
                 results.depth[i] = dot(camera.position - point.position, camera.backward);
@@ -82,9 +82,15 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
             const LightSample light = sample_light(view, point, block.random(i, dimension + dimension::light));
             const Vec3f seen = throughput[i] * lit_radiance(point, -direction, light);
             shadow.origin.set(i, start);
-            shadow.direction.set(i, light.direction);
-            // Stops short of the light, which is itself in the scene.
-            shadow.far[i] = light.distance < kFarAway ? light.distance * 0.9999f : kFarAway;
+            if (light.distance < kFarAway) {
+                // From the start to the light, whose distance is then 1: a light may be as near as the offset. The ray
+                // stops short of the light, which is itself in the scene.
+                shadow.direction.set(i, light.distance * light.direction - (start - point.position));
+                shadow.far[i] = light.reach > 0 ? light.reach : 0.0f;
+            } else {
+                shadow.direction.set(i, light.direction);
+                shadow.far[i] = kFarAway;
+            }
             shadow.active[i] = seen.x + seen.y + seen.z > 0;
             unshadowed.set(i, seen);
             if (last) {

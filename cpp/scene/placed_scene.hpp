@@ -3,30 +3,36 @@
 #include <cmath>
 #include <vector>
 
+#include "light_tables.hpp"
 #include "scene.hpp"
+#include "split_triangles.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// A scene as kernels read it: float, relative to an origin near the camera, so that a scene far from its own origin
-/// loses nothing. Owns the memory of its view; the Scene must outlive it.
+/// loses nothing. What is measured between corners (planes, areas, edges) comes from their double positions. Owns the
+/// memory of its view; the Scene must outlive it.
 class PlacedScene {
 public:
-    PlacedScene(const Scene& scene, Vec3d origin_m) : scene_(scene), origin_(origin_m) {
-        positions_.reserve(scene.positions_m.size());
-        for (const Vec3d& p : scene.positions_m) positions_.push_back(static_cast<Vec3f>(p - origin_m));
+    PlacedScene(const Scene& scene, Vec3d origin_m) : scene_(scene), origin_(origin_m), split_(scene, origin_m) {
+        positions_.reserve(split_.position_count());
+        for (std::size_t i = 0; i < split_.position_count(); ++i)
+            positions_.push_back(static_cast<Vec3f>(split_.position(i)));
         for (const PlacedPointLight& p : scene.points)
             points_.push_back({static_cast<Vec3f>(p.position_m - origin_m), p.intensity});
         for (const Texture& t : scene.textures) textures_.push_back({t.rgba.data(), t.width, t.height});
+        add_planes();
         add_area_lights();
-        if (!scene.environment.pixels.empty()) add_environment_cdf();
+        if (!scene.environment.pixels.empty()) environment_ = environment_tables(scene.environment);
     }
 
     SceneView view() const {
         SceneView view{};
-        view.triangles = scene_.triangles.data();
+        view.triangles = triangles().data();
+        view.planes = planes_.data();
         view.positions = positions_.data();
-        view.normals = scene_.normals.empty() ? nullptr : scene_.normals.data();
-        view.uvs = scene_.uvs.empty() ? nullptr : scene_.uvs.data();
+        view.normals = split_.normals().empty() ? nullptr : split_.normals().data();
+        view.uvs = split_.uvs().empty() ? nullptr : split_.uvs().data();
         view.materials = scene_.materials.data();
         view.textures = textures_.data();
         view.points = points_.data();
@@ -37,77 +43,80 @@ public:
         view.sun_count = static_cast<std::int32_t>(scene_.suns.size());
         view.area_count = static_cast<std::int32_t>(areas_.size());
         view.has_environment = scene_.environment.shines();
-        view.environment = {
-            scene_.environment.constant, scene_.environment.pixels.empty() ? nullptr : scene_.environment.pixels.data(),
-            marginal_cdf_.data(),        conditional_cdf_.data(),
-            scene_.environment.width,    scene_.environment.height};
+        view.environment = {scene_.environment.constant,
+                            scene_.environment.pixels.empty() ? nullptr : scene_.environment.pixels.data(),
+                            environment_.marginal_cdf.data(),
+                            environment_.conditional_cdf.data(),
+                            scene_.environment.width,
+                            scene_.environment.height};
         return view;
     }
 
     const Scene& scene() const { return scene_; }
     Vec3d origin_m() const { return origin_; }
     const std::vector<Vec3f>& positions() const { return positions_; }
+    /// The scene's, of which those that are large and near are in pieces.
+    const std::vector<Triangle>& triangles() const { return split_.triangles(); }
 
 private:
-    static double luminance(Vec3f rgb) {
-        const Vec3d c = static_cast<Vec3d>(rgb);
-        return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+    /// Corner and edges of a triangle, as exact as the scene gives them.
+    struct Edges {
+        Vec3d corner, u, v;
+    };
+    template <class PositionOf>
+    static Edges edges_of(const Triangle& t, PositionOf&& position) {
+        const Vec3d a = position(t.vertices[0]);
+        return {a, position(t.vertices[1]) - a, position(t.vertices[2]) - a};
     }
 
-    /// Turns weights into count + 1 cumulative probabilities; returns their sum.
-    static double accumulate(const std::vector<double>& weights, std::vector<float>& cdf) {
-        double total = 0;
-        for (double w : weights) total += w;
-        double sum = 0;
-        cdf.push_back(0.0f);
-        for (double w : weights)
-            cdf.push_back(
-                static_cast<float>((sum += total > 0 ? w / total : 1.0 / static_cast<double>(weights.size()))));
-        cdf.back() = 1.0f;
-        return total;
+    void add_planes() {
+        planes_.reserve(triangles().size());
+        for (std::size_t i = 0; i < triangles().size(); ++i) {
+            // Of the whole triangle, so that its pieces are one plane.
+            const Edges whole = edges_of(scene_.triangles[split_.parent(i)],
+                                         [&](std::uint32_t v) { return scene_.positions_m[v] - origin_; });
+            const Vec3d area = cross(whole.u, whole.v);
+            const double size = length(area);
+            const Vec3d normal = size > 0 ? (1 / size) * area : Vec3d{0, 0, 1};
+            double reach = 0;
+            for (const std::uint32_t v : triangles()[i].vertices) {
+                const Vec3f p = positions_[v];
+                reach = std::max({reach, std::fabs(static_cast<double>(p.x)), std::fabs(static_cast<double>(p.y)),
+                                  std::fabs(static_cast<double>(p.z))});
+            }
+            planes_.push_back({static_cast<Vec3f>(normal), static_cast<float>(dot(normal, whole.corner)),
+                               static_cast<float>(static_cast<double>(kMarginShare) * reach + 1e-12)});
+        }
     }
 
     void add_area_lights() {
-        std::vector<double> power;
-        for (const Triangle& t : scene_.triangles) {
+        std::vector<std::uint32_t> materials;
+        std::vector<double> areas;
+        for (std::size_t i = 0; i < triangles().size(); ++i) {
+            const Triangle& t = triangles()[i];
             const Vec3f emission = scene_.materials[t.material].emission;
             if (!(luminance(emission) > 0)) continue;
-            const Vec3f a = positions_[t.vertices[0]], u = positions_[t.vertices[1]] - a,
-                        v = positions_[t.vertices[2]] - a;
-            const Vec3f normal = cross(u, v);
-            const float twice_area = length(normal);
-            if (!(twice_area > 0)) continue;
-            areas_.push_back({a, u, v, (1 / twice_area) * normal, emission, 0.5f * twice_area, 0.0f});
-            power.push_back(luminance(emission) * static_cast<double>(twice_area));
+            const Edges edges = edges_of(t, [&](std::uint32_t v) { return split_.position(v); });
+            const double area = 0.5 * length(cross(edges.u, edges.v));
+            if (!(area > 0)) continue;
+            areas_.push_back({static_cast<Vec3f>(edges.corner), static_cast<Vec3f>(edges.u),
+                              static_cast<Vec3f>(edges.v), planes_[i].normal, emission, 0.0f, planes_[i].margin});
+            areas.push_back(area);
+            materials.push_back(t.material);
         }
-        if (areas_.empty()) return;
-        accumulate(power, area_cdf_);
-        // What the rounded cumulative values give, so that density and choice agree.
-        for (std::size_t i = 0; i < areas_.size(); ++i) areas_[i].probability = area_cdf_[i + 1] - area_cdf_[i];
-    }
-
-    void add_environment_cdf() {
-        const Environment& e = scene_.environment;
-        std::vector<double> rows;
-        for (std::int32_t row = 0; row < e.height; ++row) {
-            std::vector<double> weights;
-            const double sine = std::sin(3.141592653589793 * (row + 0.5) / e.height);
-            for (std::int32_t column = 0; column < e.width; ++column)
-                weights.push_back(sine *
-                                  luminance(e.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(e.width) +
-                                                     static_cast<std::size_t>(column)]));
-            rows.push_back(accumulate(weights, conditional_cdf_));
-        }
-        accumulate(rows, marginal_cdf_);
+        area_cdf_ = area_light_cdf(areas_, areas, materials, scene_.materials.size());
     }
 
     const Scene& scene_;
     Vec3d origin_;
+    SplitTriangles split_;
     std::vector<Vec3f> positions_;
+    std::vector<TrianglePlane> planes_;
     std::vector<PointLight> points_;
     std::vector<TextureView> textures_;
     std::vector<AreaLight> areas_;
-    std::vector<float> area_cdf_, marginal_cdf_, conditional_cdf_;
+    std::vector<float> area_cdf_;
+    EnvironmentTables environment_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -22,6 +22,19 @@ struct Triangle {
     std::uint32_t material;
 };
 
+/// The plane of a triangle, from positions in double precision: float corners of a sliver have no normal, and those of
+/// a large triangle give no place on it.
+struct TrianglePlane {
+    Vec3f normal;  ///< unit, by the right-hand rule over the corners
+    float height;  ///< dot(normal, p) of the points p on it
+    float margin;  ///< how far from it the float triangle, and what traversal makes of it, may lie
+};
+
+/// Margin over the largest coordinate of the corners: 25 roundings to 24 bits. Corners and a point between them take
+/// up to two each along the normal, and traversal, which works relative to the ray's origin, some ten of twice the
+/// size.
+inline constexpr float kMarginShare = 1.5e-6f;
+
 /// 8-bit sRGB, row 0 at the top, texture coordinate v upwards, repeated outside 0..1.
 struct TextureView {
     const std::uint8_t* rgba;
@@ -39,28 +52,29 @@ struct SunLight {
     Vec3f illuminance;  ///< on a plane that it meets at a right angle
 };
 
-/// A triangle that shines, with the probability that it is chosen among all of them.
+/// A triangle that shines.
 struct AreaLight {
     Vec3f corner, edge_u, edge_v;
     Vec3f normal;  ///< unit; light leaves on this side
     Vec3f radiance;
-    float area;
-    float probability;
+    float density;  ///< of points chosen on all area lights, per square metre of this one
+    float margin;   ///< see TrianglePlane
 };
 
 /// Light from infinity all around: constant, or a latitude-longitude image (row 0 up, +y; the middle column -z).
 struct EnvironmentView {
     Vec3f constant;
     const Vec3f* pixels;          ///< null: constant
-    const float* marginal_cdf;    ///< height + 1 values, for importance sampling
+    const float* marginal_cdf;    ///< height + 1 values, for importance sampling (math/cdf.hpp)
     const float* conditional_cdf; ///< height rows of width + 1 values
     std::int32_t width, height;
 };
 
 struct SceneView {
     const Triangle* triangles;
+    const TrianglePlane* planes;  ///< one for each triangle
     const Vec3f* positions;
-    const Vec3f* normals;  ///< per vertex, unit, or zero where the triangle is flat; null: all flat
+    const Vec3f* normals;  ///< per vertex, zero where the triangle is flat; null: all flat
     const Vec2f* uvs;      ///< per vertex; null: none
     const Material* materials;
     const TextureView* textures;

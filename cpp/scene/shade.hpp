@@ -3,15 +3,18 @@
 
 namespace REALCAM_NAMESPACE {
 
+REALCAM_INLINE Vec3f mirrored_at(Vec3f normal, Vec3f direction) {
+    return (2.0f * dot(direction, normal)) * normal - direction;
+}
+
 /// Reflectance per steradian: Lambert, and Phong's lobe in its normalised form (Lafortune and Willems 1994), so that no
 /// surface reflects more than it gets.
 REALCAM_INLINE Vec3f reflectance(const SurfacePoint& point, Vec3f to_eye, Vec3f to_light) {
     Vec3f value = 0.3183098862f * point.diffuse;
     if (point.specular.x + point.specular.y + point.specular.z > 0) {
-        const Vec3f mirrored = (2.0f * dot(to_eye, point.normal)) * point.normal - to_eye;
-        const float cosine = dot(mirrored, to_light);
-        if (cosine > 0)
-            value += ((point.shininess + 2.0f) * 0.1591549431f * std::pow(cosine, point.shininess)) * point.specular;
+        const float n = point.shininess;
+        const float lobe = phong_pdf(mirrored_at(point.normal, to_eye), n, to_light);
+        value += ((n + 2.0f) / (n + 1.0f) * lobe) * point.specular;
     }
     return value;
 }
@@ -30,13 +33,26 @@ struct Scatter {
     Vec3f factor;  ///< 0: the path ends
 };
 
-/// Chooses the lobe by its largest reflectance, then a direction by its cosine or its power.
-REALCAM_INLINE Scatter scatter(const SurfacePoint& point, Vec3f to_eye, Vec2f u) {
+/// Probability with which scatter chooses the diffuse lobe: by the largest reflectance of each.
+REALCAM_INLINE float diffuse_share(const SurfacePoint& point) {
     const auto largest = [](Vec3f c) { return c.x > c.y ? (c.x > c.z ? c.x : c.z) : (c.y > c.z ? c.y : c.z); };
     const float diffuse = largest(point.diffuse), specular = largest(point.specular);
-    const float total = diffuse + specular;
-    if (!(total > 0)) return {point.normal, {0, 0, 0}};
-    const float share = diffuse / total;
+    return diffuse > 0 ? diffuse / (diffuse + specular) : 0.0f;
+}
+
+/// Density of scatter's directions, per steradian.
+REALCAM_INLINE float scatter_pdf(const SurfacePoint& point, Vec3f to_eye, Vec3f direction) {
+    const float share = diffuse_share(point);
+    const float lobe = phong_pdf(mirrored_at(point.normal, to_eye), point.shininess, direction);
+    return share * cosine_pdf(point.normal, direction) + (1.0f - share) * lobe;
+}
+
+/// Chooses a lobe, then a direction by its cosine or its power. The factor is the lobe's reflectance times the cosine
+/// over the density of both choices, in which all but a few factors cancel.
+REALCAM_INLINE Scatter scatter(const SurfacePoint& point, Vec3f to_eye, Vec2f u) {
+    const Vec3f all = point.diffuse + point.specular;
+    if (!(all.x + all.y + all.z > 0)) return {point.normal, {0, 0, 0}};
+    const float share = diffuse_share(point);
     Scatter result;
     if (u.x < share) {
         u.x /= share;
@@ -44,16 +60,10 @@ REALCAM_INLINE Scatter scatter(const SurfacePoint& point, Vec3f to_eye, Vec2f u)
         result.factor = (1.0f / share) * point.diffuse;
     } else {
         u.x = (u.x - share) / (1.0f - share);
-        const Vec3f mirrored = (2.0f * dot(to_eye, point.normal)) * point.normal - to_eye;
-        Vec3f s, t;
-        tangent_frame(mirrored, s, t);
-        const float cosine = std::pow(1.0f - u.x, 1.0f / (point.shininess + 1.0f));
-        const float radius = std::sqrt(1.0f - cosine * cosine);
-        const Vec2f azimuth = cos_sin_of_turn(u.y);
-        result.direction = (radius * azimuth.x) * s + (radius * azimuth.y) * t + cosine * mirrored;
-        const float at_surface = dot(result.direction, point.normal);
-        const float factor = (point.shininess + 2.0f) / (point.shininess + 1.0f) * at_surface / (1.0f - share);
-        result.factor = factor * point.specular;
+        result.direction = sample_phong(mirrored_at(point.normal, to_eye), point.shininess, u);
+        const float cosine = dot(result.direction, point.normal);
+        const float factor = (point.shininess + 2.0f) / (point.shininess + 1.0f) * cosine / (1.0f - share);
+        result.factor = (cosine > 0 ? factor : 0.0f) * point.specular;
     }
     if (!(dot(result.direction, point.geometric_normal) > 0)) result.factor = {0, 0, 0};
     return result;

@@ -39,21 +39,31 @@ REALCAM_INLINE float largest_coordinate(Vec3f p) {
     return x > y ? (x > z ? x : z) : (y > z ? y : z);
 }
 
-REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_direction) {
+/// Where a ray has met the scene.
+REALCAM_INLINE Vec3f hit_position(const SceneView& scene, const TrianglePlane& plane, Hit hit, Vec3f ray_origin,
+                                  Vec3f ray_direction) {
+    // Along the ray: barycentric coordinates of a sliver are uncertain by its aspect ratio times the rounding, and
+    // would carry the point along it. Not from afar, where the error of the distance exceeds that of the corners.
+    Vec3f p = ray_origin + hit.distance * ray_direction;
+    if ((largest_coordinate(ray_origin) + hit.distance) * kMarginShare > 16.0f * plane.margin) {
+        const std::uint32_t* corner = scene.triangles[hit.triangle].vertices;
+        p = (1.0f - hit.u - hit.v) * scene.positions[corner[0]] + hit.u * scene.positions[corner[1]] +
+            hit.v * scene.positions[corner[2]];
+    }
+    return p + (plane.height - dot(p, plane.normal)) * plane.normal;
+}
+
+REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
     const Triangle triangle = scene.triangles[hit.triangle];
+    const TrianglePlane plane = scene.planes[hit.triangle];
     const std::uint32_t* corner = triangle.vertices;
-    const Vec3f a = scene.positions[corner[0]], b = scene.positions[corner[1]], c = scene.positions[corner[2]];
     const float w = 1.0f - hit.u - hit.v;
     const Material& material = scene.materials[triangle.material];
 
     SurfacePoint point;
-    // From the corners, not along the ray: the error is then that of the coordinates, not of the distance.
-    point.position = w * a + hit.u * b + hit.v * c;
-    const Vec3f area = cross(b - a, c - a);
-    const float facing = dot(area, ray_direction);
-    const float length_squared = dot(area, area);
-    const float toward = facing <= 0 ? 1.0f : -1.0f;
-    point.geometric_normal = (toward / std::sqrt(length_squared)) * area;
+    point.position = hit_position(scene, plane, hit, ray_origin, ray_direction);
+    const bool from_front = dot(plane.normal, ray_direction) <= 0;
+    point.geometric_normal = from_front ? plane.normal : -plane.normal;
     point.normal = point.geometric_normal;
     if (scene.normals) {
         const Vec3f n =
@@ -73,10 +83,8 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
     }
     point.specular = material.specular;
     point.shininess = material.shininess;
-    point.emission = facing <= 0 ? material.emission : Vec3f{0, 0, 0};
-    // Some roundings of the largest coordinate that went into the position: the corners of a large triangle may lie far
-    // from a point on it.
-    point.self_offset = 5e-7f * (largest_coordinate(a) + largest_coordinate(b) + largest_coordinate(c)) + 1e-12f;
+    point.emission = from_front ? material.emission : Vec3f{0, 0, 0};
+    point.self_offset = plane.margin;
     return point;
 }
 

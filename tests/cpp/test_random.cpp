@@ -1,11 +1,11 @@
-// The random numbers: what they are built from, and what pictures rely on.
+// The random numbers: what they are built from, and what pictures rely on. test_sample_square.cpp tests that they are
+// even.
 
 #include <cmath>
 #include <set>
 #include <vector>
 
 #include "../../cpp/camera/generate_rays.hpp"
-#include "../../cpp/scene/light.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 
@@ -25,21 +25,6 @@ std::uint32_t undo_xorshift(std::uint32_t v, int shift) {
     std::uint32_t x = v;
     for (int i = 0; i < 32; i += shift) x = v ^ (x >> shift);
     return x;
-}
-
-// Chi-square of counts that should be equal.
-double chi_square(const std::vector<int>& counts, int total) {
-    const double expected = static_cast<double>(total) / static_cast<double>(counts.size());
-    double sum = 0;
-    for (const int n : counts) sum += (n - expected) * (n - expected) / expected;
-    return sum;
-}
-
-// Where chi-square lies for even counts: mean k - 1, variance 2 (k - 1), here 5 standard deviations up.
-// Stratified numbers lie far below.
-double chi_square_limit(std::size_t bins) {
-    const double freedom = static_cast<double>(bins) - 1;
-    return freedom + 5 * std::sqrt(2 * freedom);
 }
 
 }  // namespace
@@ -155,43 +140,4 @@ TEST_CASE("cos_sin_of_turn is right to 2e-7 all the way round") {
     CHECK(largest < 2e-7);  // as documented
     const Vec2f last = cos_sin_of_turn(0x1.fffffep-1f);
     CHECK(last.x == about(1, 1e-6));
-}
-
-TEST_CASE("sample_disc is uniform over the disc") {
-    // In polar boxes of equal area, r^2 and angle being even; angle and radius are taken back by library
-    // functions.
-    constexpr int kSamples = 200000, kBins = 16;
-    std::vector<int> counts(kBins * kBins);
-    for (int i = 0; i < kSamples; ++i) {
-        const Vec2f p = sample_disc(sample_2d(hash32(static_cast<std::uint32_t>(i)), 3, 0));  // another pixel each
-        const double x = static_cast<double>(p.x), y = static_cast<double>(p.y), r2 = x * x + y * y;
-        REQUIRE(r2 < 1 + 1e-6);
-        const double turn = std::atan2(y, x) / (2 * M_PI) + 0.5;
-        const int ring = std::min(static_cast<int>(r2 * kBins), kBins - 1);
-        const int spoke = std::min(static_cast<int>(turn * kBins), kBins - 1);
-        ++counts[static_cast<std::size_t>(ring * kBins + spoke)];
-    }
-    CHECK(chi_square(counts, kSamples) < chi_square_limit(counts.size()));
-}
-
-TEST_CASE("sample_cosine follows the cosine law around any normal") {
-    constexpr int kSamples = 100000, kBins = 12;
-    for (const Vec3f& n : {Vec3f{0, 0, 1}, Vec3f{0, 0, -1}, Vec3f{0, 1, 0}, Vec3f{-1, 0, 0},
-                           normalized(Vec3f{0.3f, -0.8f, 0.5f}), normalized(Vec3f{1e-4f, 0, -1})}) {
-        // The law's projection on the plane of the normal is uniform: axes of that plane by Gram and Schmidt.
-        const Vec3f other = std::fabs(n.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
-        const Vec3f s = normalized(other - dot(other, n) * n), t = cross(n, s);
-        std::vector<int> counts(kBins * kBins);
-        for (int i = 0; i < kSamples; ++i) {
-            const Vec3f d = sample_cosine(n, sample_2d(hash32(static_cast<std::uint32_t>(i)), 7, 1));
-            REQUIRE(std::fabs(length(d) - 1) < 2e-6f);  // a few roundings of 24 bits
-            REQUIRE(dot(d, n) >= -1e-6f);
-            const double x = static_cast<double>(dot(d, s)), y = static_cast<double>(dot(d, t));
-            const double turn = std::atan2(y, x) / (2 * M_PI) + 0.5;
-            const int ring = std::min(static_cast<int>((x * x + y * y) * kBins), kBins - 1);
-            const int spoke = std::min(static_cast<int>(turn * kBins), kBins - 1);
-            ++counts[static_cast<std::size_t>(ring * kBins + spoke)];
-        }
-        CHECK(chi_square(counts, kSamples) < chi_square_limit(counts.size()));
-    }
 }

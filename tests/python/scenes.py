@@ -82,10 +82,12 @@ def pinhole(film: rc.Film = FILM, **pose: object) -> rc.Camera:
     return rc.Camera(lens, film=film, exposure_time_s=1, model="pinhole", **pose)
 
 
-def radiance(scene: rc.Scene, camera: rc.Camera, spp: int = 16, max_bounces: int = 0) -> np.ndarray:
+def radiance(
+    scene: rc.Scene, camera: rc.Camera, spp: int = 16, max_bounces: int = 0, device: str = "auto"
+) -> np.ndarray:
     """(H, W, 3): the picture in units of one of radiance 1 everywhere, taken with the same samples."""
-    picture = rc.render(scene, camera, spp=spp, max_bounces=max_bounces).pixels.astype(np.float64)
-    return picture / rc.render(sky(), camera, spp=spp).pixels
+    picture = rc.render(scene, camera, spp=spp, max_bounces=max_bounces, device=device).pixels.astype(np.float64)
+    return picture / rc.render(sky(), camera, spp=spp, device=device).pixels
 
 
 def points_on_plane(
@@ -103,3 +105,16 @@ def mean_over_pixels(rays: rc.CameraRays, values: np.ndarray) -> np.ndarray:
     shape = (FILM.resolution[1], FILM.resolution[0], -1)
     weights = rays.weights.astype(np.float64)
     return (weights * values).reshape(shape).mean(axis=2) / weights.reshape(shape).mean(axis=2)
+
+
+def polygon_irradiance(points: np.ndarray, normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Irradiance at points (N, 3) from a polygon of radiance 1 above their horizon (Lambert, 1760)."""
+    spokes = corners[None] - points[:, None]
+    spokes /= np.linalg.norm(spokes, axis=2, keepdims=True)
+    total = np.zeros(len(points))
+    for i in range(len(corners)):
+        a, b = spokes[:, i], spokes[:, (i + 1) % len(corners)]
+        edge = np.cross(a, b)
+        angle = np.arccos(np.clip((a * b).sum(axis=1), -1, 1))
+        total += 0.5 * angle * (edge @ normal) / np.linalg.norm(edge, axis=1)
+    return np.abs(total)

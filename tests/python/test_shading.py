@@ -11,19 +11,6 @@ import realcam as rc
 from . import scenes
 
 
-def polygon_irradiance(points: np.ndarray, normal: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Irradiance at points (N, 3) from a polygon of radiance 1 above their horizon (Lambert, 1760)."""
-    spokes = corners[None] - points[:, None]
-    spokes /= np.linalg.norm(spokes, axis=2, keepdims=True)
-    total = np.zeros(len(points))
-    for i in range(len(corners)):
-        a, b = spokes[:, i], spokes[:, (i + 1) % len(corners)]
-        edge = np.cross(a, b)
-        angle = np.arccos(np.clip((a * b).sum(axis=1), -1, 1))
-        total += 0.5 * angle * (edge @ normal) / np.linalg.norm(edge, axis=1)
-    return np.abs(total)
-
-
 def test_point_light_over_a_plane() -> None:
     place, intensity, albedo = np.array([0.5, 0.3, -1.2]), (100.0, 50.0, 25.0), (0.3, 0.6, 0.9)
     scene = scenes.scene_of(scenes.quad((0, 0, -2), 3, diffuse=albedo)).with_point_light(tuple(place), intensity)
@@ -58,7 +45,7 @@ def test_rectangular_area_light(tilted: bool) -> None:
     points, rays = scenes.points_on_plane(camera, 256, (0, -1, 0), (0, 1, 0))
     facing = points @ np.cross((1, 0, 0), up) > light[0][0] @ np.cross((1, 0, 0), up)
     assert facing.all()
-    irradiance = polygon_irradiance(points, np.array([0.0, 1.0, 0.0]), light[0])
+    irradiance = scenes.polygon_irradiance(points, np.array([0.0, 1.0, 0.0]), light[0])
     expected = scenes.mean_over_pixels(rays, 0.7 / math.pi * 1000 * irradiance)
     measured = scenes.radiance(scenes.scene_of(floor, light), camera, spp=256)[..., 0]
     # cos cos / d^2 over this light has a relative standard deviation below 0.5: 0.5 / 16 = 3% a pixel of 256

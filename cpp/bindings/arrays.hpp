@@ -1,0 +1,27 @@
+#pragma once
+#include <pybind11/numpy.h>
+
+#include <cstddef>
+
+namespace realcam::bindings {
+
+/// An array of shape (n,) of f(i).
+template <class T = double, class F>
+pybind11::array_t<T> array_of(std::size_t n, F&& f) {
+    pybind11::array_t<T> array(static_cast<pybind11::ssize_t>(n));
+    T* to = array.mutable_data();
+    for (std::size_t i = 0; i < n; ++i) to[i] = f(i);
+    return array;
+}
+
+/// An array of shape (n, m) of f(i, k).
+template <class F>
+pybind11::array_t<double> table_of(std::size_t n, std::size_t m, F&& f) {
+    pybind11::array_t<double> array({static_cast<pybind11::ssize_t>(n), static_cast<pybind11::ssize_t>(m)});
+    double* to = array.mutable_data();
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < m; ++k) to[i * m + k] = f(i, k);
+    return array;
+}
+
+}  // namespace realcam::bindings

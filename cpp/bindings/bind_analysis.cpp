@@ -1,0 +1,254 @@
+#include "../optics/wavefront.hpp"
+
+#include <pybind11/stl.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+using Array = py::array_t<double>;
+using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+// What the analyses ask of the user alike.
+
+std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples, const std::optional<Points>& pupil) {
+    if (pupil) {
+        if (pupil->ndim() != 2 || pupil->shape(1) != 2 || pupil->shape(0) == 0)
+            throw InputError("pupil must be an array of shape (N, 2), with N of 1 or more");
+        std::vector<PupilPoint> points;
+        for (py::ssize_t i = 0; i < pupil->shape(0); ++i) {
+            const double x = pupil->at(i, 0), y = pupil->at(i, 1);
+            if (!(std::hypot(x, y) < 10)) throw InputError("places in the pupil are shares of the stop's radius");
+            points.push_back({x, y, 1});
+        }
+        return points;
+    }
+    if (!(samples >= 1 && samples <= 2048)) throw InputError("samples must lie between 1 and 2048");
+    if (pattern == "grid") return square_grid(samples);
+    if (pattern == "rings") return gauss_rings(samples);
+    if (pattern == "hexapolar") return hexapolar(samples);
+    throw InputError("unknown pattern \"" + pattern + "\"; grid, rings or hexapolar is wanted");
+}
+
+double film_distance_from(const LensSystem& lens, std::optional<double> mm) {
+    if (mm && !std::isfinite(*mm)) throw InputError("film_distance_mm must be a finite length, or None for the film");
+    return mm.value_or(lens.film_distance);
+}
+
+Array pupil_of(const FieldRays& rays) {
+    return table_of(rays.pattern.size(), 2,
+                    [&](auto i, auto k) { return k == 0 ? rays.pattern[i].x : rays.pattern[i].y; });
+}
+
+Array weights_of(const FieldRays& rays) {
+    double sum = 0;
+    for (const PupilPoint& point : rays.pattern) sum += point.weight;
+    return array_of(rays.pattern.size(), [&](auto i) { return rays.pattern[i].weight / sum; });
+}
+
+py::array_t<int> status_of(const FieldRays& rays) {
+    return array_of<int>(rays.rays.size(), [&](auto i) { return static_cast<int>(rays.rays[i].status); });
+}
+
+constexpr const char* kPupilText =
+    "(N, 2): x and y on the aperture stop, as shares of the radius of the circle that holds its opening.";
+constexpr const char* kWeightsText = "(N,): shares of the circle's area for which the rays stand; their sum is 1.";
+constexpr const char* kStatusText =
+    "(N,): RayStatus values; NO_CONVERGENCE where no ray was found that meets the place.";
+
+// Wavefront, spot, aimed rays.
+
+struct AimedRays {
+    Array origins_mm, directions;
+    py::array_t<int> status;
+};
+
+AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, double object_distance_m,
+              std::optional<double> wavelength_nm) {
+    const double wavelength = wavelength_or_design(lens, wavelength_nm);
+    const std::vector<PupilPoint> pattern = pattern_from("", 1, pupil);
+    const RayAimer aimer(lens, wavelength, field_from(field_deg, object_distance_m));
+    const double reach = stop_reach(lens);
+    std::vector<AimedRay> rays;
+    for (const PupilPoint& point : pattern) rays.push_back(aimer({reach * point.x, reach * point.y}));
+    const auto component = [](const Vec3d& v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; };
+    const auto of_entry = [&](auto&& f) {
+        return table_of(rays.size(), 3, [&](std::size_t i, std::size_t k) { return component(f(rays[i].entry), k); });
+    };
+    return {of_entry([&](ObjectPoint::Entry e) { return aimer.object.at(e); }),
+            of_entry([&](ObjectPoint::Entry e) { return aimer.object.direction(e); }),
+            status_of({{}, pattern, rays, {}})};
+}
+
+struct PythonWavefront {
+    Wavefront wavefront;
+    double wavelength_nm, stop_radius_mm, last_vertex_mm;
+    int columns;  ///< of the grid; 0: no grid
+};
+
+PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, double object_distance_m,
+                               std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
+                               const std::string& reference, const std::optional<std::string>& remove,
+                               const std::string& pattern, int samples, const std::optional<Points>& pupil) {
+    const double wavelength = wavelength_or_design(lens, wavelength_nm);
+    const double distance = film_distance_from(lens, film_distance_mm);
+    const FieldPoint field = field_from(field_deg, object_distance_m);
+    std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
+    if (reference != "chief" && reference != "centroid")
+        throw InputError("unknown reference \"" + reference + "\"; chief or centroid is wanted");
+    if (remove && *remove != "tilt" && *remove != "focus")
+        throw InputError("cannot remove \"" + *remove + "\"; tilt, focus or None is wanted");
+    const py::gil_scoped_release release;
+    return {wavefront_of(lens, wavelength, field_rays(lens, wavelength, field, std::move(points)), distance,
+                         reference == "chief" ? SphereCentre::chief : SphereCentre::centroid,
+                         !remove             ? Removed::nothing
+                         : *remove == "tilt" ? Removed::tilt
+                                             : Removed::focus),
+            wavelength, stop_reach(lens), lens.last_vertex(), pattern == "grid" && !pupil ? samples : 0};
+}
+
+Array map_of(const PythonWavefront& w) {
+    if (w.columns == 0) throw InputError("a map is made of the pattern \"grid\" only");
+    const auto n = static_cast<std::size_t>(w.columns);
+    Array map = table_of(n, n, [](auto, auto) { return std::numeric_limits<double>::quiet_NaN(); });
+    for (std::size_t i = 0; i < w.wavefront.opd.size(); ++i)
+        map.mutable_data()[w.wavefront.rays.pattern[i].cell] = w.wavefront.opd[i];
+    return map;
+}
+
+Spot make_spot(const LensSystem& lens, double field_deg, double object_distance_m, std::optional<double> wavelength_nm,
+               std::optional<double> film_distance_mm, const std::string& pattern, int samples,
+               const std::optional<Points>& pupil) {
+    const double wavelength = wavelength_or_design(lens, wavelength_nm);
+    const double distance = film_distance_from(lens, film_distance_mm);
+    std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
+    const py::gil_scoped_release release;
+    return spot_of(field_rays(lens, wavelength, field_from(field_deg, object_distance_m), std::move(points)), distance);
+}
+
+constexpr const char* kFieldText =
+    R"(field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
+  for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
+object_distance_m: object plane to front vertex, inf allowed. wavelength_nm: None is the design wavelength.
+)";
+constexpr const char* kPatternText =
+    R"(pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
+  whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
+  ... rays up to the edge, all of one weight.
+pupil: (N, 2), places on the stop as shares of its radius, in place of a pattern.
+Rays fill the real stop: each is aimed at its place there within 1e-10 of the stop's radius. One for which no ray is
+found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
+)";
+
+}  // namespace
+
+void bind_analysis(py::module_& m) {
+    py::class_<AimedRays>(m, "AimedRays", "Rays of one object point, in front of the lens. Lens frame.")
+        .def_readonly("origins_mm", &AimedRays::origins_mm,
+                      "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light; nan "
+                      "where there is no ray.")
+        .def_readonly("directions", &AimedRays::directions, "(N, 3), unit.")
+        .def_readonly("status", &AimedRays::status, kStatusText);
+    using W = const PythonWavefront&;
+    py::class_<PythonWavefront>(
+        m, "Wavefront",
+        "Optical path differences of one object point over the stop, in waves: positive where "
+        "the wavefront is ahead of\nthe reference sphere. Means are over the area of the open stop.")
+        .def_property_readonly(
+            "opd_waves",
+            [](W w) { return array_of(w.wavefront.opd.size(), [&](auto i) { return w.wavefront.opd[i]; }); },
+            "(N,): less that of the chief ray, if nothing is removed; nan where no ray passes.")
+        .def_property_readonly(
+            "pupil", [](W w) { return pupil_of(w.wavefront.rays); }, kPupilText)
+        .def_property_readonly(
+            "weights", [](W w) { return weights_of(w.wavefront.rays); }, kWeightsText)
+        .def_property_readonly(
+            "status", [](W w) { return status_of(w.wavefront.rays); }, kStatusText)
+        .def("map_waves", &map_of,
+             "(samples, samples): opd_waves of the pattern \"grid\" as a picture, rows from the lowest y, columns from "
+             "the lowest x;\nnan outside. Raises InputError for other patterns.")
+        .def_property_readonly(
+            "rms_waves", [](W w) { return w.wavefront.rms; }, "About the mean.")
+        .def_property_readonly("peak_to_valley_waves", [](W w) { return w.wavefront.peak_to_valley; })
+        .def_property_readonly(
+            "strehl", [](W w) { return w.wavefront.strehl; }, "|mean of exp(2 pi i W)|^2.")
+        .def_property_readonly(
+            "strehl_marechal", [](W w) { return w.wavefront.strehl_marechal; },
+            "Marechal's approximation in Mahajan's form, exp(-(2 pi rms)^2).")
+        .def_property_readonly(
+            "centre_mm",
+            [](W w) {
+                const Vec3d c = w.wavefront.centre;
+                return std::array{c.x, c.y, c.z + w.last_vertex_mm};
+            },
+            "(x, y, z) of the reference sphere's centre, lens frame.")
+        .def_property_readonly(
+            "reference_radius_mm", [](W w) { return 1 / w.wavefront.reference_curvature; },
+            "Of the reference sphere; positive where the light runs from the exit pupil to the "
+            "centre, inf for a plane.")
+        .def_readonly("stop_radius_mm", &PythonWavefront::stop_radius_mm, "What places in the pupil are shares of.")
+        .def_readonly("wavelength_nm", &PythonWavefront::wavelength_nm);
+    py::class_<Spot>(m, "Spot", "Where rays of one object point meet a plane behind the lens. mm from the axis.")
+        .def_property_readonly(
+            "points_mm",
+            [](const Spot& s) {
+                return table_of(s.points.size(), 2,
+                                [&](auto i, auto k) { return k == 0 ? s.points[i].x : s.points[i].y; });
+            },
+            "(N, 2): x and y; nan where no ray passes.")
+        .def_property_readonly(
+            "pupil", [](const Spot& s) { return pupil_of(s.rays); }, kPupilText)
+        .def_property_readonly(
+            "weights", [](const Spot& s) { return weights_of(s.rays); }, kWeightsText)
+        .def_property_readonly(
+            "status", [](const Spot& s) { return status_of(s.rays); }, kStatusText)
+        .def_property_readonly("centroid_mm", [](const Spot& s) { return std::pair(s.centroid.x, s.centroid.y); })
+        .def_property_readonly(
+            "chief_ray_mm", [](const Spot& s) { return std::pair(s.chief.x, s.chief.y); },
+            "Of the ray through the middle of the stop, even where the lens blocks it.")
+        .def_property_readonly(
+            "rms_radius_mm", [](const Spot& s) { return s.about_centroid.rms_radius; }, "About the centroid.")
+        .def_property_readonly(
+            "max_radius_mm", [](const Spot& s) { return s.about_centroid.max_radius; }, "About the centroid.")
+        .def_property_readonly("rms_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.rms_radius; })
+        .def_property_readonly("max_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.max_radius; });
+
+    static const std::string aim_text =
+        std::string(R"(Rays of one object point that meet given places on the real stop, for Lens.trace(start="scene").
+pupil: (N, 2), places on the stop as shares of its radius.
+)") + kFieldText +
+        R"(Returns AimedRays; the status is that of the ray behind the lens. Raises InputError where no ray of the
+object point reaches the middle of the stop.)";
+    static const std::string wavefront_text =
+        std::string(R"(The wavefront of one object point against a sphere, by real rays, in double precision.
+)") + kFieldText +
+        R"(film_distance_mm: last vertex to the plane of the image point; None: the film.
+reference: the sphere's centre: "chief", where the chief ray (through the middle of the real stop) meets that plane, or
+  "centroid", of the spot there. Its radius is the distance from there to the exit pupil's middle on the chief ray:
+  where the chief ray crosses the axis; on the axis, the paraxial exit pupil. As in CODE V's listings.
+remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 of the stop and taken away.
+)" + kPatternText +
+        "Returns a Wavefront. Raises InputError where no ray passes, or no reference sphere can be laid.";
+    static const std::string spot_text =
+        std::string(
+            R"(The spot of one object point on the film, or on a plane at film_distance_mm behind the last vertex.
+)") + kFieldText +
+        kPatternText + "Returns a Spot. Raises InputError where no ray passes.";
+    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+        .def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = kInfinity,
+             "wavelength_nm"_a = py::none(), aim_text.c_str())
+        .def("wavefront", &make_wavefront, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = kInfinity,
+             "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "reference"_a = "chief",
+             "remove"_a = py::none(), "pattern"_a = "grid", "samples"_a = 64, "pupil"_a = py::none(),
+             wavefront_text.c_str())
+        .def("spot", &make_spot, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = kInfinity,
+             "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "pattern"_a = "hexapolar",
+             "samples"_a = 6, "pupil"_a = py::none(), spot_text.c_str());
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,65 @@
+#pragma once
+#include "lanes.hpp"
+#include "sincos.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Warps of the unit square, each with its density beside it: samplers, tests and other estimators share one formula.
+
+/// Uniform on the unit disc.
+REALCAM_INLINE Vec2f sample_disc(Vec2f u) {
+    const float radius = std::sqrt(u.y);
+    const Vec2f azimuth = cos_sin_of_turn(u.x);
+    return {radius * azimuth.x, radius * azimuth.y};
+}
+
+/// Per unit of area.
+REALCAM_INLINE float disc_pdf(Vec2f p) {
+    return select(p.x * p.x + p.y * p.y <= 1.0f, 0.3183098862f, 0.0f);
+}
+
+/// Two unit vectors that make a right-handed frame with n (Duff et al. 2017).
+REALCAM_INLINE void tangent_frame(Vec3f n, Vec3f& s, Vec3f& t) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    s = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    t = {b, sign + n.y * n.y * a, -n.y};
+}
+
+/// Direction about n with density cosine / pi.
+REALCAM_INLINE Vec3f sample_cosine(Vec3f n, Vec2f u) {
+    Vec3f s, t;
+    tangent_frame(n, s, t);
+    const float radius = std::sqrt(u.x), height = std::sqrt(1.0f - u.x);
+    const Vec2f azimuth = cos_sin_of_turn(u.y);
+    return (radius * azimuth.x) * s + (radius * azimuth.y) * t + height * n;
+}
+
+/// Per steradian.
+REALCAM_INLINE float cosine_pdf(Vec3f n, Vec3f direction) {
+    const float cosine = dot(n, direction);
+    return select(cosine > 0.0f, 0.3183098862f * cosine, 0.0f);
+}
+
+/// Direction about a unit vector with density (exponent + 1) / (2 pi) cosine^exponent.
+REALCAM_INLINE Vec3f sample_phong(Vec3f axis, float exponent, Vec2f u) {
+    Vec3f s, t;
+    tangent_frame(axis, s, t);
+    // cosine^2 = (1 - u)^(2 / (exponent + 1)). The sine comes first: one minus a rounded cosine would leave a narrow
+    // lobe a few steps of angle only.
+    const float sine_squared = -std::expm1(2.0f / (exponent + 1.0f) * std::log1p(-u.x));
+    const float radius = sqrt_or_zero(sine_squared), height = sqrt_or_zero(1.0f - sine_squared);
+    const Vec2f azimuth = cos_sin_of_turn(u.y);
+    return (radius * azimuth.x) * s + (radius * azimuth.y) * t + height * axis;
+}
+
+/// Per steradian.
+REALCAM_INLINE float phong_pdf(Vec3f axis, float exponent, Vec3f direction) {
+    // One minus the cosine from the chord: a power of 1e4 would make 1e-3 out of the rounding of a dot product.
+    const Vec3f chord = axis - direction;
+    const float missing = 0.5f * dot(chord, chord);
+    if (!(missing < 1.0f)) return 0.0f;
+    return (exponent + 1.0f) * 0.1591549431f * std::exp(exponent * std::log1p(-missing));
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,46 @@
+#pragma once
+#include "pupil_pattern.hpp"
+#include "ray_aiming.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The rays of one object point over the stop, behind the lens: what wavefronts and spots are made from. Lengths in mm;
+/// points relative to the last vertex.
+struct FieldRays {
+    FieldPoint field;
+    std::vector<PupilPoint> pattern;
+    std::vector<AimedRay> rays;  ///< one for each point of the pattern; only those whose status is ok count
+    AimedRay chief;  ///< through the middle of the stop, even where the lens blocks it
+
+    bool passes(std::size_t i) const { return rays[i].status == RayStatus::ok; }
+};
+
+/// Where a ray, as a straight line, crosses the plane at z behind the last vertex.
+inline Vec3d crossing(const AimedRay& ray, double z) {
+    return ray.origin + ((z - ray.origin.z) / ray.direction.z) * ray.direction;
+}
+
+/// Aims a ray at every point of the pattern. Throws InputError where the field point makes no sense, or where the lens
+/// lets none of the rays pass.
+inline FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
+                            std::vector<PupilPoint> pattern) {
+    const RayAimer aim(lens, wavelength_nm, field);
+    const double reach = stop_reach(lens);
+    FieldRays result{field, std::move(pattern), {}, aim.chief_ray()};
+    result.rays.reserve(result.pattern.size());
+    const std::string where = "at a field angle of " + object_point_detail::degrees(field.angle_rad);
+    if (result.chief.status != RayStatus::ok)
+        throw InputError("the ray " + where + " through the middle of the stop does not leave lens \"" + lens.name +
+                         "\"");
+    int passing = 0;
+    for (const PupilPoint& point : result.pattern) {
+        result.rays.push_back(aim({reach * point.x, reach * point.y}));
+        passing += static_cast<int>(result.rays.back().status == RayStatus::ok);
+    }
+    if (passing == 0)
+        throw InputError("none of " + std::to_string(result.rays.size()) + " rays " + where + " passes lens \"" +
+                         lens.name + "\"");
+    return result;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,76 @@
+#pragma once
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "iris_shape.hpp"
+#include "lens_system.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A place on the aperture stop, as a share of the radius of the circle that holds its opening.
+struct PupilPoint {
+    double x, y;
+    double weight;  ///< share of the stop's area for which it stands, up to a common factor
+    int cell = -1;  ///< of a square grid: its number, row by row from the lowest y
+};
+
+/// Midpoints of the cells of an n x n grid over the circle, those outside of it left out.
+inline std::vector<PupilPoint> square_grid(int n) {
+    std::vector<PupilPoint> points;
+    for (int row = 0; row < n; ++row)
+        for (int column = 0; column < n; ++column) {
+            const double x = (2 * column + 1.0) / n - 1, y = (2 * row + 1.0) / n - 1;
+            if (x * x + y * y <= 1) points.push_back({x, y, 1, row * n + column});
+        }
+    return points;
+}
+
+/// A middle point and n rings of 6, 12, 18 ... points at equal distances, all of one weight: as OpticStudio's standard
+/// spot diagram. The outermost ring lies on the edge.
+inline std::vector<PupilPoint> hexapolar(int n) {
+    std::vector<PupilPoint> points{{0, 0, 1}};
+    for (int ring = 1; ring <= n; ++ring)
+        for (int i = 0; i < 6 * ring; ++i) {
+            const double radius = static_cast<double>(ring) / n, angle = 2 * std::numbers::pi * i / (6 * ring);
+            points.push_back({radius * std::cos(angle), radius * std::sin(angle), 1});
+        }
+    return points;
+}
+
+/// n rings at the nodes of Gauss and Legendre in the squared radius, 4 n points each: integrals over a full round
+/// pupil are exact for polynomials up to degree 4 n - 2 (G. W. Forbes, "Optical system assessment for design:
+/// numerical ray tracing in the Gaussian pupil", J. Opt. Soc. Am. A 5, 1943, 1988).
+inline std::vector<PupilPoint> gauss_rings(int n) {
+    std::vector<PupilPoint> points;
+    for (int ring = 0; ring < n; ++ring) {
+        double node = std::cos(std::numbers::pi * (ring + 0.75) / (n + 0.5)), slope = 0;
+        for (int iteration = 0; iteration < 20; ++iteration) {  // Newton; five suffice
+            double last = 1, value = node;
+            for (int k = 2; k <= n; ++k) {
+                const double next = ((2 * k - 1) * node * value - (k - 1) * last) / k;
+                last = value;
+                value = next;
+            }
+            slope = n * (node * value - last) / (node * node - 1);
+            node -= value / slope;
+        }
+        const double weight = 1 / ((1 - node * node) * slope * slope) / (4 * n);
+        const double radius = std::sqrt(0.5 * (1 + node));
+        for (int i = 0; i < 4 * n; ++i) {
+            const double angle = 2 * std::numbers::pi * (i + 0.5) / (4 * n);
+            points.push_back({radius * std::cos(angle), radius * std::sin(angle), weight});
+        }
+    }
+    return points;
+}
+
+/// Radius of the smallest circle that holds the opening of the stop, mm: places on the stop are shares of it.
+inline double stop_reach(const LensSystem& lens) {
+    const double rim = lens.stop().clear_semi_diameter;
+    if (lens.iris.blades == 0 || lens.is_wide_open()) return std::min(lens.stop_semi_diameter, rim);
+    const Iris<double> iris = open_iris(lens.iris, lens.stop_semi_diameter, rim);
+    return std::min(rim, opening_radius(iris.apothem, iris.curvature, std::cos(std::numbers::pi / iris.blades)));
+}
+
+}  // namespace REALCAM_NAMESPACE

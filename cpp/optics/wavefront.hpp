@@ -1,0 +1,164 @@
+#pragma once
+#include <array>
+#include <complex>
+
+#include "spot.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Where the reference sphere has its centre.
+enum class SphereCentre {
+    chief,     ///< where the chief ray crosses the film plane
+    centroid,  ///< the centroid of the spot there
+};
+
+/// What is fitted to the optical path difference by least squares over the open stop, in the stop's coordinates x, y,
+/// and taken away.
+enum class Removed {
+    nothing,
+    tilt,   ///< 1, x, y
+    focus,  ///< 1, x, y, x^2 + y^2
+};
+
+/// The wavefront of one object point, by real rays that fill the real stop.
+///
+/// W = (optical path of the chief ray - optical path of the ray) / wavelength, both from the object to the reference
+/// sphere: positive where the wavefront is ahead of the sphere, so that an undercorrected lens has a positive W040. The
+/// sphere's radius is the distance from its centre to the exit pupil's on the chief ray: where the chief ray crosses
+/// the axis, and on the axis the paraxial exit pupil. These are the definitions of CODE V's listings. The radius R is
+/// in W by p^2 / 2R, p the ray's distance from the centre: another radius changes little, another centre much.
+struct Wavefront {
+    FieldRays rays;
+    std::vector<double> opd;  ///< W in waves; NaN where the ray does not pass
+    Vec3d centre;  ///< of the reference sphere, mm, relative to the last vertex
+    double reference_curvature;  ///< 1/mm; positive where the light runs from the pupil to the centre; 0: plane
+    double rms;  ///< of W about its mean over the open stop, waves
+    double peak_to_valley;  ///< waves
+    double strehl;  ///< |mean of exp(2 pi i W)|^2
+    double strehl_marechal;  ///< exp(-(2 pi rms)^2), Marechal's approximation in the form of V. N. Mahajan, 1983
+};
+
+namespace wavefront_detail {
+
+/// One over the distance from the exit pupil to the point where the chief ray meets the plane z, along the ray.
+inline double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double z) {
+    const Vec3d direction = normalized(rays.chief.direction);
+    const Vec3d image = crossing(rays.chief, z);
+    // A chief ray on the axis does not cross it; one at 1e-6 crosses it within 1e-12 of the paraxial place, which is
+    // what rounding leaves of a quotient of two such numbers.
+    if (std::fabs(rays.field.angle_rad) < 1e-6) {
+        const double pupil = first_order(lens, wavelength_nm).exit_pupil_position - lens.last_vertex();
+        return direction.z / (z - pupil);
+    }
+    // With t along the ray from the axis: image.y = t direction.y.
+    return direction.y / image.y;
+}
+
+/// Optical path of a ray to the reference sphere, mm, less a length that all rays share. With b from the centre to the
+/// ray, p their distance and 1/R the sphere's curvature, the ray meets the sphere at -b.d - sqrt(R^2 - p^2) along
+/// itself; R is taken off in the form in which nothing cancels, and which holds for a plane too.
+inline double path_to_sphere(const AimedRay& ray, Vec3d centre, double curvature, double index) {
+    const Vec3d d = normalized(ray.direction), b = ray.origin - centre, off = cross(b, d);
+    const double square = dot(off, off) * curvature;
+    return ray.path + index * (square / (1 + std::sqrt(1 - square * curvature)) - dot(b, d));
+}
+
+/// Solves the normal equations of a least-squares fit, a symmetric positive matrix of order n, by Cholesky's method.
+template <std::size_t N>
+std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::array<double, N> b, std::size_t n) {
+    for (std::size_t j = 0; j < n; ++j) {
+        for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
+        a[j][j] = std::sqrt(a[j][j]);
+        for (std::size_t i = j + 1; i < n; ++i) {
+            for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
+            a[i][j] /= a[j][j];
+        }
+        for (std::size_t k = 0; k < j; ++k) b[j] -= a[j][k] * b[k];
+        b[j] /= a[j][j];
+    }
+    for (std::size_t j = n; j-- > 0;) {
+        for (std::size_t i = j + 1; i < n; ++i) b[j] -= a[i][j] * b[i];
+        b[j] /= a[j][j];
+    }
+    return b;
+}
+
+inline void remove_fit(Wavefront& wavefront, Removed removed) {
+    const std::size_t terms = removed == Removed::focus ? 4 : 3;
+    std::array<std::array<double, 4>, 4> matrix{};
+    std::array<double, 4> right{};
+    const auto basis = [](const PupilPoint& p) { return std::array<double, 4>{1, p.x, p.y, p.x * p.x + p.y * p.y}; };
+    for (std::size_t i = 0; i < wavefront.opd.size(); ++i) {
+        if (!wavefront.rays.passes(i)) continue;
+        const PupilPoint& point = wavefront.rays.pattern[i];
+        const std::array<double, 4> f = basis(point);
+        for (std::size_t j = 0; j < terms; ++j) {
+            for (std::size_t k = 0; k <= j; ++k) matrix[j][k] += point.weight * f[j] * f[k];
+            right[j] += point.weight * f[j] * wavefront.opd[i];
+        }
+    }
+    const std::array<double, 4> fit = solve_normal(matrix, right, terms);
+    if (!std::isfinite(fit[terms - 1]))
+        throw InputError("the rays that pass are too few, or too close together, for a fit of tilt and focus");
+    for (std::size_t i = 0; i < wavefront.opd.size(); ++i) {
+        const std::array<double, 4> f = basis(wavefront.rays.pattern[i]);
+        for (std::size_t j = 0; j < terms; ++j) wavefront.opd[i] -= fit[j] * f[j];
+    }
+}
+
+inline void summarize(Wavefront& wavefront) {
+    double weight = 0, sum = 0, low = kInfinity, high = -kInfinity, square = 0;
+    std::complex<double> amplitude = 0;
+    const auto for_passing = [&](auto&& f) {
+        for (std::size_t i = 0; i < wavefront.opd.size(); ++i)
+            if (wavefront.rays.passes(i)) f(wavefront.rays.pattern[i].weight, wavefront.opd[i]);
+    };
+    for_passing([&](double share, double w) {
+        weight += share;
+        sum += share * w;
+        low = std::min(low, w);
+        high = std::max(high, w);
+        amplitude += std::polar(share, 2 * std::numbers::pi * w);
+    });
+    for_passing([&](double share, double w) { square += share * (w - sum / weight) * (w - sum / weight); });
+    wavefront.rms = std::sqrt(square / weight);
+    wavefront.peak_to_valley = high - low;
+    wavefront.strehl = std::norm(amplitude / weight);
+    wavefront.strehl_marechal = std::exp(-std::pow(2 * std::numbers::pi * wavefront.rms, 2));
+}
+
+}  // namespace wavefront_detail
+
+/// The wavefront of the rays of one object point, with its reference sphere centred on the plane `film_distance` mm
+/// behind the last vertex. Throws InputError where no reference sphere can be laid: the exit pupil lies in that plane,
+/// or a ray passes the centre at more than the sphere's radius; and where a fit has too few rays.
+inline Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
+                              SphereCentre centre, Removed removed) {
+    using namespace wavefront_detail;
+    Wavefront result{};
+    result.centre = crossing(rays.chief, film_distance);
+    result.reference_curvature = reference_curvature(lens, wavelength_nm, rays, film_distance);
+    if (centre == SphereCentre::centroid) {
+        const Vec2<double> middle = spot_of(rays, film_distance).centroid;
+        result.centre = {middle.x, middle.y, film_distance};
+    }
+    const double index = lens.indices(wavelength_nm).back(), curvature = result.reference_curvature;
+    const double waves_per_mm = 1e6 / wavelength_nm;
+    const double reference = path_to_sphere(rays.chief, result.centre, curvature, index);
+    for (std::size_t i = 0; i < rays.rays.size(); ++i) {
+        double w = std::numeric_limits<double>::quiet_NaN();
+        if (rays.passes(i)) {
+            w = waves_per_mm * (reference - path_to_sphere(rays.rays[i], result.centre, curvature, index));
+            if (!std::isfinite(w))
+                throw InputError("no reference sphere from the exit pupil of lens \"" + lens.name +
+                                 "\" holds all its rays: the image is too far out of focus, or lies in the exit pupil");
+        }
+        result.opd.push_back(w);
+    }
+    result.rays = std::move(rays);
+    if (removed != Removed::nothing) remove_fit(result, removed);
+    summarize(result);
+    return result;
+}
+
+}  // namespace REALCAM_NAMESPACE

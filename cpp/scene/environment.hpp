@@ -1,0 +1,69 @@
+#pragma once
+#include "../math/cdf.hpp"
+#include "../math/sampling.hpp"
+#include "light_sample.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+struct EnvironmentPixel {
+    int row, column;
+};
+
+/// The pixel of the environment's image that lies in a direction.
+REALCAM_INLINE EnvironmentPixel environment_pixel(const EnvironmentView& environment, Vec3f direction) {
+    const float u = 0.5f + std::atan2(direction.x, -direction.z) * 0.1591549431f;
+    const float v =
+        std::acos(select(direction.y > 1.0f, 1.0f, select(direction.y < -1.0f, -1.0f, direction.y))) * 0.3183098862f;
+    const int row = static_cast<int>(v * static_cast<float>(environment.height));
+    const int column = static_cast<int>(u * static_cast<float>(environment.width));
+    return {select(row < environment.height, row, environment.height - 1),
+            select(column < environment.width, column, environment.width - 1)};
+}
+
+REALCAM_INLINE Vec3f pixel_radiance(const EnvironmentView& environment, EnvironmentPixel pixel) {
+    return environment.pixels[static_cast<std::int64_t>(pixel.row) * environment.width + pixel.column];
+}
+
+REALCAM_INLINE Vec3f environment_radiance(const EnvironmentView& environment, Vec3f direction) {
+    if (!environment.pixels) return environment.constant;
+    return pixel_radiance(environment, environment_pixel(environment, direction));
+}
+
+REALCAM_INLINE const float* conditional_cdf_of(const EnvironmentView& environment, int row) {
+    return environment.conditional_cdf + static_cast<std::int64_t>(row) * (environment.width + 1);
+}
+
+/// Per steradian, in a pixel that is chosen with this probability; `sine` of the polar angle.
+REALCAM_INLINE float pixel_pdf(const EnvironmentView& environment, float probability, float sine) {
+    // 2 pi^2: the map's area in azimuth and polar angle.
+    const float area = 19.7392088f / (static_cast<float>(environment.width) * static_cast<float>(environment.height));
+    return probability / (area * sine);
+}
+
+/// Density of sample_environment_image, per steradian.
+REALCAM_INLINE float environment_pdf(const EnvironmentView& environment, Vec3f direction) {
+    const EnvironmentPixel pixel = environment_pixel(environment, direction);
+    const float* row = environment.marginal_cdf + pixel.row;
+    const float* column = conditional_cdf_of(environment, pixel.row) + pixel.column;
+    const float sine = std::sqrt(direction.x * direction.x + direction.z * direction.z);
+    return pixel_pdf(environment, (row[1] - row[0]) * (column[1] - column[0]), sine);
+}
+
+/// Chooses a pixel by its light, and a direction inside it.
+REALCAM_INLINE LightSample sample_environment_image(const EnvironmentView& environment, Vec2f u) {
+    const CdfChoice row = choose_from_cdf(environment.marginal_cdf, environment.height, u.y);
+    const CdfChoice column = choose_from_cdf(conditional_cdf_of(environment, row.index), environment.width, u.x);
+    const float across = (static_cast<float>(column.index) + column.fresh) / static_cast<float>(environment.width);
+    const float down = (static_cast<float>(row.index) + row.fresh) / static_cast<float>(environment.height);
+    const float azimuth = 6.283185307f * (across - 0.5f);
+    // The float nearest to pi lies past it, where the sine is negative.
+    const float polar = select(down < 0.99999994f, 3.141592654f * down, 3.1415925f);
+    const float sine = std::sin(polar);
+    const float pdf = pixel_pdf(environment, row.probability * column.probability, sine);
+    return {{sine * std::sin(azimuth), std::cos(polar), -sine * std::cos(azimuth)},
+            kFarAway,
+            1.0f,
+            (1.0f / pdf) * pixel_radiance(environment, {row.index, column.index})};
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,99 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "scene.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// By which probabilities lights are chosen. Most by their power; a share without regard to it, because a light that is
+// 1e8 times dimmer than another is all the light there is where the other does not reach.
+
+inline constexpr double kEvenShare = 0.125;  ///< its price: where power is the best choice, 1/7 more variance
+
+inline double luminance(Vec3f rgb) {
+    const Vec3d c = static_cast<Vec3d>(rgb);
+    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+/// Appends weights as count + 1 cumulative probabilities in steps of 2^-24 (see math/cdf.hpp). Whatever has weight
+/// keeps at least one step, as long as there are enough. All alike where there is no weight at all.
+inline void append_cdf(const std::vector<double>& weights, std::vector<float>& cdf) {
+    constexpr double kSteps = 1 << 24;
+    double total = 0, count = 0;
+    for (double w : weights) {
+        total += w;
+        count += w > 0;
+    }
+    const double kept = count <= kSteps ? count : 0;
+    double sum = 0, before = 0;
+    cdf.push_back(0.0f);
+    for (double w : weights) {
+        sum += total > 0 ? w / total : 1.0 / static_cast<double>(weights.size());
+        before += kept > 0 && w > 0;
+        cdf.push_back(static_cast<float>((std::round(std::min(sum, 1.0) * (kSteps - kept)) + before) / kSteps));
+    }
+}
+
+/// `weights` by their sum, less kEvenShare; that share by `even_weights`, which are 0 where `weights` are.
+inline std::vector<double> mixed(std::vector<double> weights, const std::vector<double>& even_weights) {
+    double sum = 0, even_sum = 0;
+    for (double w : weights) sum += w;
+    for (double w : even_weights) even_sum += w;
+    if (!(sum > 0)) return weights;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] = (1 - kEvenShare) * (weights[i] / sum) + kEvenShare * (even_weights[i] / even_sum);
+    return weights;
+}
+
+/// Chooses triangles by their power and, for the even share, every shining material alike and its triangles by area.
+/// Sets the densities. `areas` and `materials`: of the lights; there are `material_count` materials.
+inline std::vector<float> area_light_cdf(std::vector<AreaLight>& lights, const std::vector<double>& areas,
+                                         const std::vector<std::uint32_t>& materials, std::size_t material_count) {
+    std::vector<float> cdf;
+    if (lights.empty()) return cdf;
+    std::vector<double> power, even, of_material(material_count, 0.0);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        power.push_back(luminance(lights[i].radiance) * areas[i]);
+        of_material[materials[i]] += areas[i];
+    }
+    for (std::size_t i = 0; i < lights.size(); ++i) even.push_back(areas[i] / of_material[materials[i]]);
+    append_cdf(mixed(power, even), cdf);
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        lights[i].density = static_cast<float>(static_cast<double>(cdf[i + 1] - cdf[i]) / areas[i]);
+    return cdf;
+}
+
+struct EnvironmentTables {
+    std::vector<float> marginal_cdf, conditional_cdf;
+};
+
+/// Chooses the pixels of an image by their light and, for the even share, by their solid angle where they have any.
+inline EnvironmentTables environment_tables(const Environment& e) {
+    EnvironmentTables tables;
+    const auto width = static_cast<std::size_t>(e.width), height = static_cast<std::size_t>(e.height);
+    std::vector<double> light, solid_angle;
+    for (std::size_t row = 0; row < height; ++row) {
+        const double sine =
+            std::sin(3.141592653589793 * (static_cast<double>(row) + 0.5) / static_cast<double>(height));
+        for (std::size_t column = 0; column < width; ++column) {
+            light.push_back(sine * luminance(e.pixels[row * width + column]));
+            solid_angle.push_back(light.back() > 0 ? sine : 0.0);
+        }
+    }
+    const std::vector<double> weights = mixed(light, solid_angle);
+    std::vector<double> rows;
+    for (std::size_t row = 0; row < height; ++row) {
+        const auto first = weights.begin() + static_cast<std::ptrdiff_t>(row * width);
+        const std::vector<double> pixels(first, first + static_cast<std::ptrdiff_t>(width));
+        append_cdf(pixels, tables.conditional_cdf);
+        double sum = 0;
+        for (double w : pixels) sum += w;
+        rows.push_back(sum);
+    }
+    append_cdf(rows, tables.marginal_cdf);
+    return tables;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,133 @@
+// Driver of the fuzz targets where the compiler has no libFuzzer. Inputs are functions of the seed, so a run can be
+// repeated; the first input that breaks something, crashes or hangs is saved as a file that replays it.
+
+#include <fcntl.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "inputs.hpp"
+
+extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
+
+namespace {
+
+using namespace realcam::fuzz;
+
+/// Of processor time, for one input: a thousand times what they take.
+constexpr long kHangSeconds = 60;
+
+struct NamedTarget {
+    const char* name;
+    Target target;
+    std::uint64_t Findings::* counts;  ///< what is counted up to the wanted number
+    const char* unit;
+};
+constexpr NamedTarget kTargets[] = {
+    {"lens_trace", fuzz_lens_trace, &Findings::rays, "rays"},
+    {"lens_file", fuzz_lens_file, &Findings::files, "files"},
+    {"camera", fuzz_camera, &Findings::pupil_samples, "pupil samples"},
+};
+
+Input current;
+std::string saved_as = "fuzz-input.bin";
+
+/// Called from signal handlers: system calls alone.
+void save(const Input& input) {
+    const int file = open(saved_as.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
+    if (file < 0) return;
+    std::size_t done = 0;
+    while (done < input.size()) {
+        const ssize_t n = write(file, input.data() + done, input.size() - done);
+        if (n <= 0) break;
+        done += static_cast<std::size_t>(n);
+    }
+    close(file);
+}
+
+void save_current() {
+    save(current);
+}
+
+[[noreturn]] void stop(int signal) {
+    save_current();
+    const char* what = signal == SIGPROF ? "realcam_fuzz: an input does not end\n" : "realcam_fuzz: crashed\n";
+    if (write(STDERR_FILENO, what, std::strlen(what)) < 0) _exit(4);
+    _exit(3);
+}
+
+void watch() {
+    std::signal(SIGPROF, stop);
+    if (__sanitizer_set_death_callback) {
+        __sanitizer_set_death_callback(save_current);
+    } else {
+        for (const int signal : {SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGABRT}) std::signal(signal, stop);
+    }
+}
+
+void start_clock() {
+    const itimerval limit{{0, 0}, {kHangSeconds, 0}};
+    setitimer(ITIMER_PROF, &limit, nullptr);
+}
+
+int print(const Run& run, const NamedTarget& target) {
+    const Findings& all = findings();
+    const std::uint64_t count = all.*target.counts;
+    std::printf("%s: %.4g %s of %llu inputs in %.1f s, %.3g/s; slowest input %.3f s; %llu broken\n", target.name,
+                static_cast<double>(count), target.unit, static_cast<unsigned long long>(run.inputs), run.seconds,
+                static_cast<double>(count) / run.seconds, run.slowest, static_cast<unsigned long long>(all.broken));
+    if (all.rays) std::printf("  %.3g of the rays left their lens\n", static_cast<double>(all.passed) / static_cast<double>(all.rays));
+    if (all.files) std::printf("  %llu of the files were lenses\n", static_cast<unsigned long long>(all.files_read));
+    if (all.cameras)
+        std::printf("  %llu of %llu cameras took %llu rays\n", static_cast<unsigned long long>(all.cameras_made),
+                    static_cast<unsigned long long>(all.cameras), static_cast<unsigned long long>(all.camera_rays));
+    for (const auto& [kind, found] : all.kinds)
+        std::printf("  %llu x %s, first in input %llu\n    %s\n", static_cast<unsigned long long>(found.count), kind.c_str(),
+                    static_cast<unsigned long long>(found.first_input), found.first.c_str());
+    return all.broken == 0 ? 0 : 1;
+}
+
+int usage() {
+    std::fprintf(stderr,
+                 "realcam_fuzz TARGET COUNT [SEED] [FILE]   runs COUNT rays, files or samples; FILE is where the first\n"
+                 "                                          input that breaks something is saved (fuzz-input.bin)\n"
+                 "realcam_fuzz TARGET replay FILE           runs one saved input\n"
+                 "targets: lens_trace, lens_file, camera\n");
+    return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 3) return usage();
+    const NamedTarget* target = nullptr;
+    for (const NamedTarget& known : kTargets)
+        if (argv[1] == std::string(known.name)) target = &known;
+    if (!target) return usage();
+    if (argv[2] == std::string("replay")) {
+        if (argc < 4) return usage();
+        std::ifstream file(argv[3], std::ios::binary);
+        const Input input{std::istreambuf_iterator<char>(file), {}};
+        target->target(input.data(), input.size());
+        return print({1, 1, 0, {}}, *target);
+    }
+    const double count = std::atof(argv[2]);
+    const std::uint32_t seed = argc > 3 ? static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)) : 1;
+    if (argc > 4) saved_as = argv[4];
+    watch();
+    const Run run = run_inputs(
+        target->target, seed, [&] { return static_cast<double>(findings().*target->counts) >= count; },
+        [](const Input& input) {
+            current = input;
+            start_clock();
+        });
+    if (!run.first_broken.empty()) save(run.first_broken);
+    return print(run, *target);
+}

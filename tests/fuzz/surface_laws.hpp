@@ -1,0 +1,236 @@
+#pragma once
+// What must be true of a ray at every surface that it meets, whatever surface and ray: it lies on the surface, inside
+// the rim, and obeys Snell's law; and what stopped it was there.
+//
+// The bounds are backward errors: what is allowed is what a few roundings of the numbers that enter a formula can do,
+// so they hold at tangents and at the edges of hemispheres too. `kRoundings` of them: the longest chain of operations
+// from a ray to a hit has about twenty.
+
+#include <algorithm>
+
+#include "../../cpp/optics/lens_trace.hpp"
+#include "findings.hpp"
+
+namespace realcam::fuzz {
+
+inline constexpr double kRoundings = 32;
+
+/// One ray at one surface. The numbers of the core, exact in double.
+struct Crossing {
+    Vec3d before, along;  ///< origin relative to this vertex, and optical direction
+    Vec3d at, after;
+    double path;  ///< optical path from `before` to `at`
+    RayStatus status;
+};
+
+template <class T>
+class SurfaceLaws {
+public:
+    SurfaceLaws(const LensStep<T>& step, const Iris<T>& iris)
+        : step_(step), iris_(iris), c_(step.curvature), q_(step.conic_factor), bend_(std::fabs(c_) * (1 + std::fabs(q_ - 1))) {}
+
+    void check(const Crossing& ray) const {
+        const bool on_surface = ray.status != RayStatus::missed && ray.status != RayStatus::no_convergence;
+        // Squares beyond say nothing; such a ray is out of every rim.
+        if (!(length(ray.at) < 1e30) || !(length(ray.before) < 1e30)) return;
+        if (!on_surface) {
+            if (!same(ray.at, ray.before)) broken("a ray that ended has moved", ray, 0, 0);
+            if (!same(ray.after, ray.along)) broken("a ray that ended has turned", ray, 0, 0);
+            if (ray.status == RayStatus::missed) check_miss(ray);
+            return;
+        }
+        // Past the region of the search the surface is another, which nothing passes.
+        const double r2 = ray.at.x * ray.at.x + ray.at.y * ray.at.y;
+        if (step_.kind == StepKind::asphere && r2 > static_cast<double>(step_.search_squared)) return check_aperture(ray);
+        if (r2 > 1e4 * static_cast<double>(step_.rim_squared)) return check_aperture(ray);  // lost, however far
+        const Near near = step_.kind == StepKind::asphere ? asphere_at(ray) : conic_at(ray);
+        if (!(near.distance <= near.distance_bound))
+            broken("a hit is not on the surface", ray, near.distance, near.distance_bound);
+        check_path(ray);
+        check_aperture(ray);
+        if (ray.status == RayStatus::ok) {
+            check_refraction(ray, near);
+        } else {
+            if (!same(ray.after, ray.along)) broken("a ray that ended has turned", ray, 0, 0);
+            if (ray.status == RayStatus::total_internal_reflection) check_reflection(ray, near);
+        }
+    }
+
+private:
+    static constexpr double eps = std::numeric_limits<T>::epsilon();
+    /// Squares of smaller numbers are none.
+    static constexpr double tiny = std::numeric_limits<T>::digits == 24 ? 0x1p-63 : 0x1p-511;
+
+
+    struct Near {
+        double distance, distance_bound;  ///< of the hit from the surface, mm
+        Vec3d normal;
+        double normal_bound;    ///< radians
+        double incidence_bound;  ///< of p . normal, over |p|
+    };
+
+    Near conic_at(const Crossing& ray) const {
+        const Vec3d o = ray.before, at = ray.at;
+        // A conic is met from the vertex plane, where a ray that runs along it may come by far out.
+        const double detour = step_.kind == StepKind::conic ? 10 * std::fabs(o.z) : 0;
+        const double way = length(at - o) + 2 * detour, from = length(o) + detour;
+        const Vec3d gradient{-c_ * at.x, -c_ * at.y, 1 - c_ * q_ * at.z};
+        const double g = length(gradient);
+        const double value = residual(at);
+        // Of the terms of A t^2 - 2 G t + F, and of o + t p.
+        const double terms = bend_ * (from * from + dot(at, at) + way * way) + 2 * (std::fabs(o.z) + std::fabs(at.z)) +
+                             2 * way * (1 + bend_ * from) + 2 * g * (from + way) + tiny;
+        const double incidence = kRoundings * eps * (1 + bend_ * (from + way));  // of G - A t
+        const double turn = kRoundings * eps * (1 + std::fabs(c_ * q_ * at.z) + bend_ * (from + way)) / g;
+        return {std::fabs(value) / (2 * g), kRoundings * eps * terms / (2 * g), (1 / g) * gradient, turn,
+                incidence / g + turn};
+    }
+    /// c (r^2 + (1 + k) z^2) - 2 z: twice the distance from the surface, times the length of the gradient.
+    double residual(Vec3d at) const {
+        const long double x = at.x, y = at.y, z = at.z, c = c_, q = q_;
+        return static_cast<double>(c * (x * x + y * y + q * z * z) - 2 * z);
+    }
+
+    Near asphere_at(const Crossing& ray) const {
+        const Vec3d o = ray.before, at = ray.at;
+        const long double r2 = static_cast<long double>(at.x) * at.x + static_cast<long double>(at.y) * at.y;
+        const long double root = std::sqrt(std::max(0.0L, 1 - static_cast<long double>(q_) * c_ * c_ * r2));
+        long double polynomial = 0, slope = 0;
+        double sizes = 0, slope_sizes = 0;
+        for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
+            slope = slope * r2 + polynomial;
+            polynomial = polynomial * r2 + step_.aspheric[i];
+            sizes = sizes * static_cast<double>(r2) + std::fabs(static_cast<double>(step_.aspheric[i]));
+            slope_sizes += (i + 2) * std::fabs(static_cast<double>(step_.aspheric[i])) * std::pow(static_cast<double>(r2), i + 1);
+        }
+        const double sag = static_cast<double>(c_ * r2 / (1 + root) + r2 * r2 * polynomial);
+        const double derivative = static_cast<double>(c_ / (2 * root) + r2 * (2 * polynomial + r2 * slope));
+        const double square = static_cast<double>(r2), r = std::sqrt(square);
+        // Rounding of 1 - (1 + k) c^2 r^2, which the root makes large at the edge.
+        const double edge = std::min(std::sqrt(kRoundings * eps), kRoundings * eps / static_cast<double>(root)) *
+                            (1 + std::fabs(q_) * c_ * c_ * square);
+        const double steep = 2 * std::fabs(derivative) * r;
+        const double way = length(at - o);
+        // The search's tolerance knows the surface's own height too.
+        const double axial = std::fabs(o.z) + std::fabs(at.z - o.z) + std::fabs(sag) +
+                             static_cast<double>(step_.sag_max - step_.sag_min) / 16;
+        const double lateral = steep * (length(o) + way);
+        const double height = kRoundings * eps * (axial + std::min(lateral, axial / std::sqrt(eps)) + square * square * sizes) +
+                              std::fabs(c_) * square * edge + tiny;
+        const Vec3d gradient{-2 * derivative * at.x, -2 * derivative * at.y, 1};
+        const double g = std::isfinite(derivative) ? length(gradient) : 0;
+        const double conic_share = std::fabs(c_) * r * edge / std::max(static_cast<double>(root * root), eps);
+        const double turn = g > 0 ? (kRoundings * eps * (g + slope_sizes * r) + conic_share) / (g * g) + kRoundings * eps : 2;
+        return {std::fabs(at.z - sag), height, g > 0 ? (1 / g) * gradient : Vec3d{0, 0, 1}, turn, turn};
+    }
+
+    void check_refraction(const Crossing& ray, const Near& near) const {
+        const double p = length(ray.along), out = length(ray.after), n = std::sqrt(1 + static_cast<double>(step_.relative_step));
+        const Vec3d change = ray.after - ray.along;
+        const double turned = length(cross(change, near.normal));
+        // A sphere's normal is (-cx, -cy, 1 - cz) as it is, longer or shorter where the hit is not on the sphere.
+        const double stretch = step_.kind == StepKind::sphere ? 2 * bend_ * near.distance_bound : 0;
+        const double length_bound = kRoundings * eps * (p + n * p) +
+                                    length(change) * (p * near.incidence_bound + length(change) * stretch) / out;
+        if (!(near.distance_bound * bend_ < 0.01)) return;  // nobody knows the normal
+        // A length that was made right again turns the part along the surface.
+        const double turn_bound = length(change) * near.normal_bound + kRoundings * eps * (p + out) + length_bound;
+        if (!(turned <= turn_bound)) broken("Snell's law: the change is not along the normal", ray, turned, turn_bound);
+        const double length_error = std::fabs(out - n * p);
+        if (!(length_error <= length_bound)) broken("Snell's law: the length is not the index", ray, length_error, length_bound);
+        const double in_sense = dot(ray.along, near.normal) * static_cast<double>(step_.sense_in);
+        const double out_sense = dot(ray.after, near.normal) * static_cast<double>(step_.sense_out);
+        const double bound = p * near.incidence_bound + turn_bound;
+        if (!(in_sense >= -bound)) broken("the surface is crossed in the wrong sense", ray, in_sense, bound);
+        if (!(out_sense >= -bound)) broken("light leaves on the wrong side", ray, out_sense, bound);
+    }
+
+    void check_reflection(const Crossing& ray, const Near& near) const {
+        const double p2 = dot(ray.along, ray.along), step = static_cast<double>(step_.relative_step);
+        const double along = dot(ray.along, near.normal), radicand = along * along + step * p2;
+        const double bound = kRoundings * eps * (along * along + std::fabs(step) * p2) + 4 * p2 * near.incidence_bound;
+        if (!(radicand <= bound)) broken("total reflection below the critical angle", ray, radicand, bound);
+    }
+
+    void check_path(const Crossing& ray) const {
+        const double n = std::sqrt(static_cast<double>(step_.index_squared));
+        const Vec3d moved = ray.at - ray.before;
+        const double way = std::copysign(length(moved), dot(moved, ray.along));
+        const double error = std::fabs(ray.path - n * way);
+        // n^2 t is the path of a direction whose length is n.
+        const double p = length(ray.along), stretched = std::fabs(way * (p - n) * n / p);
+        const double bound = kRoundings * eps * n * (std::fabs(way) + length(ray.before)) + stretched + tiny;
+        if (!(error <= bound)) broken("the optical path is not the way", ray, error, bound);
+    }
+
+    void check_aperture(const Crossing& ray) const {
+        const double r2 = ray.at.x * ray.at.x + ray.at.y * ray.at.y;
+        const double rim = static_cast<double>(step_.rim_squared), hole = static_cast<double>(step_.hole_squared);
+        constexpr double least = 1 - 4 * eps, most = 1 + 4 * eps;
+        double open_most = -1, open_least = -1, scale = 0;
+        if (step_.has_blades) open_least = open_most = blades(ray.at, scale);
+        open_least -= scale, open_most += scale;
+        if (ray.status == RayStatus::vignetted) {
+            if (r2 < least * rim && (hole < 0 || r2 > most * hole) && open_most < 0)
+                broken("vignetted inside the rim", ray, r2, rim);
+        } else {
+            if (!(r2 <= most * rim + tiny)) broken("passed outside the rim", ray, r2, rim);
+            if (!(r2 >= least * hole)) broken("passed inside the hole", ray, r2, hole);
+            if (ray.status == RayStatus::ok && open_least > 0) broken("passed behind a blade", ray, open_least, scale);
+        }
+    }
+    /// Positive behind a blade; `scale`: what rounding can change.
+    double blades(Vec3d at, double& scale) const {
+        const double h = static_cast<double>(iris_.apothem), k = static_cast<double>(iris_.curvature);
+        double extent = -1e300;
+        for (int i = 0; i < iris_.blades; ++i)
+            extent = std::max(extent, at.x * static_cast<double>(iris_.cos[i]) + at.y * static_cast<double>(iris_.sin[i]));
+        const double r2 = at.x * at.x + at.y * at.y;
+        scale = kRoundings * eps * (k * (r2 + h * h) + 2 * (1 + k * h) * std::sqrt(r2) + 2 * h);
+        return k * (r2 + h * h) + 2 * (1 - k * h) * extent - 2 * h;
+    }
+
+    /// A conic that is met squarely must be met. How much of the discriminant, and of the near cap, rounding can take
+    /// away depends on how far the ray comes from; a hundredth is past that, or the case is left out.
+    void check_miss(const Crossing& ray) const {
+        if (step_.kind == StepKind::asphere) return;
+        using Long = long double;
+        const Vec3d od = ray.before, pd = ray.along;
+        const Long k = q_ - 1, c = c_, ox = od.x, oy = od.y, oz = od.z, px = pd.x, py = pd.y, pz = pd.z;
+        const Long F = c * (ox * ox + oy * oy + oz * oz + k * oz * oz) - 2 * oz;
+        const Long G = pz - c * (ox * px + oy * py + oz * pz + k * oz * pz);
+        const Long A = c * (px * px + py * py + pz * pz + k * pz * pz);
+        const Long discriminant = G * G - A * F;
+        const double slope = 1 + bend_ * length(od), p2 = dot(pd, pd);
+        const double squares = p2 * (slope * slope + bend_ * (bend_ * dot(od, od) + 2 * std::fabs(od.z)));
+        if (!(discriminant > std::max(0.01, 1e3 * eps) * squares)) return;
+        const Long s = static_cast<Long>(step_.sense_in) * std::sqrt(discriminant);
+        const bool same_sign = G * s >= 0;
+        if (!same_sign && !(std::fabs(A) > 1e-3L * bend_ * p2)) return;  // the root that is far away
+        const Long t = same_sign ? F / (G + s) : (G - s) / A;
+        const Long gz = 1 - c * q_ * (oz + t * pz);
+        const double reach = length(od) + std::fabs(static_cast<double>(t)) * std::sqrt(p2);
+        if (!(reach < 1e6 * std::sqrt(static_cast<double>(step_.rim_squared)))) return;
+        if (gz > 0.01L && gz > 1e4L * static_cast<Long>(eps) * (1 + bend_ * static_cast<Long>(reach)))
+            broken("a surface that is met counts as missed", ray, static_cast<double>(gz), static_cast<double>(discriminant));
+    }
+
+    static bool same(Vec3d a, Vec3d b) { return length(a - b) <= 4 * eps * length(b) + tiny; }
+
+    __attribute__((noinline, cold)) void broken(const char* what, const Crossing& ray, double error, double bound) const {
+        report(what,
+               "%s, kind %d, c %.17g, 1+k %.17g, sense %g to %g, n'^2/n^2-1 %.17g, rim^2 %.9g; o (%.17g %.17g %.17g), p "
+               "(%.17g %.17g %.17g), at (%.17g %.17g %.17g), p' (%.17g %.17g %.17g), path %.17g, status %d: %.6g, bound %.6g",
+               eps < 1e-10 ? "float64" : "float32", static_cast<int>(step_.kind), c_, q_, static_cast<double>(step_.sense_in),
+               static_cast<double>(step_.sense_out), static_cast<double>(step_.relative_step),
+               static_cast<double>(step_.rim_squared), ray.before.x, ray.before.y, ray.before.z, ray.along.x, ray.along.y,
+               ray.along.z, ray.at.x, ray.at.y, ray.at.z, ray.after.x, ray.after.y, ray.after.z, ray.path,
+               static_cast<int>(ray.status), error, bound);
+    }
+
+    const LensStep<T>& step_;
+    const Iris<T>& iris_;
+    double c_, q_, bend_;
+};
+
+}  // namespace realcam::fuzz

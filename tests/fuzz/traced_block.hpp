@@ -1,0 +1,136 @@
+#pragma once
+// A block of fuzz rays through a lens, as the backends trace it, and surface by surface.
+
+#include "../../cpp/embree/kernels.hpp"
+#include "../../cpp/optics/lens_entry.hpp"
+#include "../../cpp/optics/lens_path.hpp"
+#include "surface_laws.hpp"
+
+namespace realcam::fuzz {
+
+inline constexpr int kRays = 256;
+
+struct RayBlock {
+    Vec3d origin[kRays], direction[kRays];  ///< lens frame
+};
+
+struct BlockResult {
+    Vec3d origin[kRays], direction[kRays];
+    double path[kRays];
+    int status[kRays], surface_index[kRays];
+};
+
+/// The kernels' function of a number type.
+inline auto recorded(const realcam_kernels& kernels, double) {
+    return kernels.trace_f64;
+}
+inline auto recorded(const realcam_kernels& kernels, float) {
+    return kernels.trace_f32;
+}
+
+/// A trace with its record, by the kernels of one instruction set.
+struct KernelTrace {
+    double entry_position, exit_position, entry_index, entry_reach;
+
+    template <class T>
+    void operator()(const realcam_kernels& kernels, const LensView<T>& view, const RayBlock& rays, BlockResult& out) const {
+        realcam_trace request{};
+        request.lens_view = &view;
+        request.entry_position = entry_position;
+        request.exit_position = exit_position;
+        request.entry_index = entry_index;
+        request.entry_reach = entry_reach;
+        request.origins = &rays.origin[0].x;
+        request.directions = &rays.direction[0].x;
+        request.out_origins = &out.origin[0].x;
+        request.out_directions = &out.direction[0].x;
+        request.optical_path = out.path;
+        request.status = out.status;
+        request.surface_index = out.surface_index;
+        request.count = kRays;
+        recorded(kernels, T())(&request);
+    }
+};
+
+/// As the backends take rays in. Returned through memory: gcc 12 takes (double)(float)x of two neighbours for x.
+template <class T>
+__attribute__((noinline)) void enter(const RayBlock& rays, const KernelTrace& trace, LensRays<T, kRays>& out) {
+    for (int i = 0; i < kRays; ++i) {
+        Vec3d o = rays.origin[i];
+        o.z -= trace.entry_position;
+        const LensEntry entry = enter_lens(o, rays.direction[i], trace.entry_index, trace.entry_reach);
+        out.origin.set(i, static_cast<Vec3<T>>(entry.origin));
+        out.direction.set(i, static_cast<Vec3<T>>(entry.direction));
+        out.status[i] = static_cast<int>(entry.status);
+    }
+}
+
+/// Surface by surface in one go: the numbers between the surfaces are those that the whole trace has there.
+template <class T>
+void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
+    const LensView<T> lens = path.view();
+    LensRays<T, kRays> before;
+    PathRecord<T, kRays> record;
+    for (int k = 0; k < lens.count; ++k) {
+        const SurfaceLaws<T> laws(lens.steps[k], lens.iris);
+        before = rays;
+        int alive = 0;
+        for (int i = 0; i < kRays; ++i) {
+            record.optical_path[i] = 0;
+            alive += rays.status[i] == 0;
+        }
+        if (alive == 0) return;
+        trace_lens(LensView<T>{lens.steps + k, 1, lens.iris}, rays, record);
+        for (int i = 0; i < kRays; ++i) {
+            if (before.status[i] != 0) continue;
+            Vec3<T> o = before.origin[i];
+            o.z -= lens.steps[k].shift;
+            laws.check({static_cast<Vec3d>(o), static_cast<Vec3d>(before.direction[i]),
+                        static_cast<Vec3d>(rays.origin[i]), static_cast<Vec3d>(rays.direction[i]),
+                        static_cast<double>(record.optical_path[i]), static_cast<RayStatus>(rays.status[i])});
+        }
+    }
+}
+
+/// The same by the kernels, which take each surface for a lens of its own and give unit directions back.
+template <class T>
+void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, const LensRays<T, kRays>& start) {
+    const LensView<T> lens = path.view();
+    RayBlock rays;
+    BlockResult out;
+    LensRays<T, kRays> before;
+    bool ended[kRays];
+    for (int i = 0; i < kRays; ++i) {
+        rays.origin[i] = static_cast<Vec3d>(start.origin[i]);
+        rays.direction[i] = static_cast<Vec3d>(start.direction[i]);
+        ended[i] = start.status[i] != 0;
+    }
+    double index = path.entry_index;
+    for (int k = 0; k < lens.count; ++k) {
+        const LensStep<T>& step = lens.steps[k];
+        const SurfaceLaws<T> laws(step, lens.iris);
+        const KernelTrace trace{0, 0, index, std::numeric_limits<double>::infinity()};
+        enter(rays, trace, before);
+        trace(kernels, LensView<T>{&step, 1, lens.iris}, rays, out);
+        int alive = 0;
+        for (int i = 0; i < kRays; ++i) {
+            if (ended[i]) continue;
+            Vec3<T> o = before.origin[i];
+            o.z -= step.shift;
+            const Vec3d along = static_cast<Vec3d>(before.direction[i]);
+            const bool passed = out.status[i] == 0;
+            const double size = length(along) * (passed ? std::sqrt(1 + static_cast<double>(step.relative_step)) : 1);
+            laws.check({static_cast<Vec3d>(o), along, out.origin[i], size * out.direction[i], out.path[i],
+                        static_cast<RayStatus>(out.status[i])});
+            if (findings().input == 6789 && out.status[i]==5) printf("in dir %g %g %g org %g %g %g idx %g surface %d of %d: o %g %g %g p %g %g %g -> %g %g %g  %g %g %g rel %g c %g\n", rays.direction[i].x,rays.direction[i].y,rays.direction[i].z,rays.origin[i].x,rays.origin[i].y,rays.origin[i].z,index,k, lens.count, (double)o.x,(double)o.y,(double)o.z, along.x,along.y,along.z,out.origin[i].x,out.origin[i].y,out.origin[i].z,out.direction[i].x,out.direction[i].y,out.direction[i].z,(double)step.relative_step,(double)step.curvature);
+            ended[i] = !passed;
+            alive += passed;
+            rays.origin[i] = out.origin[i];
+            rays.direction[i] = out.direction[i];
+        }
+        if (alive == 0) return;
+        index *= std::sqrt(1 + static_cast<double>(step.relative_step));
+    }
+}
+
+}  // namespace realcam::fuzz

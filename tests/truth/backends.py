@@ -1,0 +1,73 @@
+"""realcam as one more program that is given a prescription and rays: what the peers and the oracle are held against."""
+
+from __future__ import annotations
+
+import numpy as np
+import realcam as rc
+
+from .prescription import Prescription, Rays, Row, Traced
+
+# What may trace, and what Lens.trace needs to be told so.
+BACKENDS: dict[str, dict] = {"Embree": {}}
+
+FATES = {
+    rc.RayStatus.OK: "ok",
+    rc.RayStatus.MISSED: "missed",
+    rc.RayStatus.VIGNETTED: "vignetted",
+    rc.RayStatus.TOTAL_INTERNAL_REFLECTION: "total internal reflection",
+    rc.RayStatus.NO_CONVERGENCE: "no convergence",
+    rc.RayStatus.BAD_INPUT: "bad input",
+}
+
+
+def realcam_lens(prescription: Prescription) -> rc.Lens:
+    surfaces = [
+        rc.Surface(
+            type=row.type,
+            radius_of_curvature_mm=row.radius,
+            thickness_mm=row.thickness,
+            material=row.index if row.type == "refracting" else None,
+            clear_semi_diameter_mm=row.semi_diameter,
+            inner_semi_diameter_mm=row.inner_semi_diameter,
+            conic=row.conic,
+            aspheric_coefficients=row.coefficients,
+        )
+        for row in prescription.rows
+    ]
+    # A film distance spares the search for the best focus; no ray here reaches a film.
+    return rc.Lens(surfaces=surfaces, name=prescription.name, film_distance_mm=10.0)
+
+
+def of_bundled_lens(name: str) -> Prescription:
+    """With the indices at the lens's own wavelength, so that no glass catalogue takes part."""
+    lens = rc.Lens.load(name)
+    rows, index = [], 1.0
+    for s in lens.surfaces:
+        if s.type == "refracting":
+            index = s.material.index(lens.wavelength_nm)
+        rows.append(
+            Row(
+                type=s.type,
+                semi_diameter=s.clear_semi_diameter_mm,
+                radius=s.radius_of_curvature_mm,
+                thickness=s.thickness_mm,
+                index=index,
+                conic=s.conic,
+                coefficients=s.aspheric_coefficients,
+                inner_semi_diameter=s.inner_semi_diameter_mm,
+            )
+        )
+    return Prescription(name, tuple(rows))
+
+
+def trace(prescription: Prescription, rays: Rays, backend: str, start: str = "scene") -> Traced:
+    out = realcam_lens(prescription).trace(
+        rays.origins, rays.directions, start=start, dtype="float64", **BACKENDS[backend]
+    )
+    fates = np.array([FATES[rc.RayStatus(status)] for status in out.status], dtype="<U26")
+    return Traced(out.origins_mm, out.directions, out.optical_path_mm, fates, out.surface_index)
+
+
+def first_order(prescription: Prescription) -> dict[str, float]:
+    figures = realcam_lens(prescription).first_order()
+    return {name: getattr(figures, name) for name in dir(figures) if not name.startswith("_")}

@@ -1,0 +1,143 @@
+"""Third-order and chromatic sums through the Python API: the CODE V listing (case A), closed forms (case C)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from ..measurement import Measurement, hold
+from . import code_v_listing as listing
+
+LENS = rc.Lens.load("double-gauss-100mm")
+SUMS = LENS.seidel(14.0000000032, colours_nm=(486.1, 656.3))
+
+
+def columns(sums: rc.Seidel) -> np.ndarray:
+    """As the listing's columns: SA, TCO, TAS, SAS, PTB, DST, AX, LAT, PTZ."""
+    return np.stack(
+        [
+            sums.spherical_mm,
+            sums.tangential_coma_mm,
+            sums.tangential_astigmatism_mm,
+            sums.sagittal_astigmatism_mm,
+            sums.petzval_mm,
+            sums.distortion_mm,
+            sums.axial_colour_mm,
+            sums.lateral_colour_mm,
+            sums.petzval_curvature_per_mm,
+        ],
+        axis=1,
+    )
+
+
+def test_third_order_sums_surface_by_surface() -> None:
+    found = columns(SUMS)
+    worst = max(np.abs(found - listing.THIRD_ORDER).max(), np.abs(found.sum(axis=0) - listing.THIRD_ORDER_SUM).max())
+    # Half a unit of the last digit.
+    hold(
+        Measurement(
+            "Truth",
+            "third-order and colour sums of a double Gauss as CODE V prints them, from Python",
+            "11 surfaces and sum x 9 figures",
+            "core",
+            "float64",
+            float(worst),
+            0.51e-6,
+            "mm",
+        )
+    )
+
+
+def test_paraxial_rays_surface_by_surface() -> None:
+    found = np.stack(
+        [
+            SUMS.marginal_height_mm,
+            SUMS.marginal_slope,
+            SUMS.marginal_invariant,
+            SUMS.chief_height_mm,
+            SUMS.chief_slope,
+            SUMS.chief_invariant,
+        ],
+        axis=1,
+    )
+    # Half a unit of the last digit, and of the stop's radius in the lens file: 0.8e-6 of the marginal ray's 25 mm.
+    assert np.abs(found - listing.PARAXIAL_RAYS).max() < 1.3e-6
+
+
+def test_paraxial_image_height() -> None:
+    assert SUMS.chief_slope.shape == (11,)
+    focus = LENS.first_order().back_focal_distance_mm
+    height = SUMS.chief_height_mm[-1] + SUMS.chief_slope[-1] * focus
+    assert height == pytest.approx(24.9337, abs=0.51e-4)
+    on_film = SUMS.chief_height_mm[-1] + SUMS.chief_slope[-1] * LENS.film_distance_mm
+    assert on_film == pytest.approx(24.846684, abs=0.51e-6)
+
+
+def thin_lens(bending: float, n: float, focal_length: float) -> rc.Lens:
+    """Without thickness, the stop on it; bending = (c1 + c2) / (c1 - c2)."""
+    difference = 1 / ((n - 1) * focal_length)
+    curvatures = 0.5 * difference * (bending + 1), 0.5 * difference * (bending - 1)
+    radii = [math.inf if c == 0 else 1 / c for c in curvatures]
+    rim = {"clear_semi_diameter_mm": 6.0}
+    return rc.Lens(
+        surfaces=[
+            rc.Stop(clear_semi_diameter_mm=5),
+            rc.Surface(radius_of_curvature_mm=radii[0], material=(n, 50.0), **rim),
+            rc.Surface(radius_of_curvature_mm=radii[1], **rim),
+        ],
+        film_distance_mm=focal_length,
+    )
+
+
+@pytest.mark.parametrize("n", [1.5, 1.8])
+@pytest.mark.parametrize("bending", [-2.0, -1.0, 0.0, 0.5, 1.0, 2.0])
+def test_thin_lens(bending: float, n: float) -> None:
+    """Jenkins and White, Fundamentals of Optics, equation 9l, for an object at infinity; colour by C_I = h^2 K / V."""
+    sums = thin_lens(bending, n, 100.0).seidel(5.0)
+    bracket = (n + 2) / (n - 1) * bending**2 - 4 * (n + 1) * bending + (3 * n + 2) * (n - 1) + n**3 / (n - 1)
+    longitudinal = bracket / (8 * 100**3 * n * (n - 1))  # (1 / s' - 1 / f) / h^2
+    # W040 = (1 / s' - 1 / f) h^2 / 4 at third order, and S_I = 8 W040.
+    spherical = sums.seidel_mm[:, 0].sum()
+    assert spherical == pytest.approx(2 * longitudinal * 5.0**4, rel=1e-12)
+    assert sums.coefficients_waves[:, 0].sum() == pytest.approx(spherical / 8 / 587.5618e-6, rel=1e-12)
+    glass = rc.Glass.from_abbe_number(n, 50.0)
+    abbe_number = (n - 1) / (glass.index(486.1327) - glass.index(656.2725))
+    assert sums.colour_mm[:, 0].sum() == pytest.approx(25 / 100 / abbe_number, rel=1e-12)
+    assert sums.colour_mm[:, 1].sum() == pytest.approx(0, abs=1e-15)
+    # The stop on a thin lens leaves no distortion; S_III = H^2 K and S_IV = H^2 K / n whatever the bending.
+    invariant = sums.lagrange_invariant_mm
+    assert invariant == pytest.approx(5 * math.tan(math.radians(5)), rel=1e-12)
+    assert sums.seidel_mm[:, 2].sum() == pytest.approx(invariant**2 / 100, rel=1e-12)
+    assert sums.seidel_mm[:, 3].sum() == pytest.approx(invariant**2 / 100 / n, rel=1e-12)
+    assert sums.seidel_mm[:, 4].sum() == pytest.approx(0, abs=1e-15)
+
+
+@pytest.mark.parametrize("n", [1.4, 1.5168, 1.9])
+def test_best_bending_of_a_thin_lens(n: float) -> None:
+    bendings = np.array([-1.0, 0.0, 1.0])
+    spherical = [thin_lens(b, n, 100.0).seidel(0.0).seidel_mm[:, 0].sum() for b in bendings]
+    parabola = np.polyfit(bendings, spherical, 2)
+    assert -parabola[1] / (2 * parabola[0]) == pytest.approx(2 * (n**2 - 1) / (n + 2), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", rc.lens_names())
+def test_lagrange_invariant_behind_every_surface(name: str) -> None:
+    lens = rc.Lens.load(name)
+    sums = lens.seidel(5.0, object_distance_m=3.0)
+    index, sense, indices = 1.0, 1.0, []
+    for surface in lens.surfaces:
+        if surface.type == "mirror":
+            sense = -sense
+        elif surface.type == "refracting":
+            index = surface.material.index(lens.wavelength_nm)
+        indices.append(sense * index)
+    products = np.array(indices) * [
+        sums.chief_slope * sums.marginal_height_mm,
+        sums.marginal_slope * sums.chief_height_mm,
+    ]
+    # Rounding, of the products that are subtracted.
+    scale = np.abs(products).sum(axis=0) + abs(sums.lagrange_invariant_mm)
+    assert (np.abs(products[0] - products[1] - sums.lagrange_invariant_mm) / scale).max() < 1e-13

@@ -1,0 +1,55 @@
+#!/usr/bin/env python3
+"""Write tests/truth/peer_rays.json.gz: what Optiland and ray-optics say of random and bundled lenses.
+
+    pip install -e '.[dev,truth]'
+    python tools/make_peer_rays.py
+
+The tests compare realcam with that file, and with the programs themselves where they are installed.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import realcam as rc
+
+from tests.truth import backends, peer_file, peers, random_lenses, random_rays
+
+RANDOM_LENSES = range(1, 201)  # their seeds
+RANDOM_RAYS = 20  # each
+BUNDLED_RAYS = 40
+
+
+def main() -> None:
+    versions = {name: peers.version(name) for name in peers.PEERS}
+    absent = [name for name, version in versions.items() if version is None]
+    if absent:
+        sys.exit(f"{' and '.join(absent)} not installed: pip install -e '.[truth]'")
+    inputs = []
+    for seed in RANDOM_LENSES:
+        random = random_lenses.random_lens(seed)
+        rng = np.random.default_rng([seed, 1])
+        lens = random.prescription
+        inputs.append((lens, random_rays.from_the_scene(lens, random.half_field_deg, RANDOM_RAYS, rng)))
+    for name in rc.lens_names():
+        rays = random_rays.from_the_film(name, BUNDLED_RAYS, np.random.default_rng(1))
+        inputs.append((backends.of_bundled_lens(name), rays))
+    cases = []
+    for lens, (origins, directions) in inputs:
+        rays = random_rays.unit(origins, directions)
+        said = {
+            name: peer_file.Opinion(peer.first_order(lens), peer.trace(lens, rays))
+            for name, peer in peers.PEERS.items()
+        }
+        cases.append(peer_file.case_to_json(lens, origins, directions, said))
+    peer_file.write(versions, cases)
+    print(f"{peer_file.FILE}: {len(cases)} lenses, {peer_file.FILE.stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main()

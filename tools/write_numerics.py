@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+"""Write docs/numerics.md and its plot from what the tests measured.
+
+    ./run numerics
+    python tools/write_numerics.py build/dev/measurements.jsonl [--page docs/numerics.md] [--lens NAME ...]
+
+The tests append their figures, a line of JSON each, to the file that the environment variable REALCAM_MEASUREMENTS
+names. The page is written only where all of them hold: one past its limit, or a broken routine that stays within one,
+is an error. The plot is measured anew, with the rays of tests/truth/test_float32_error.py.
+"""
+
+from __future__ import annotations
+
+import argparse
+import html
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import measurements
+import numerics_plot
+import realcam as rc
+from measurements import Figure
+from realcam.bench import machine
+from tabulate import tabulate
+
+PAGE = Path(__file__).parents[1] / "docs" / "numerics.md"
+PLOT = Path("images") / "float32-error.png"
+SEPARATOR = " · "
+LIMIT = "\N{NO-BREAK SPACE}≤\N{NO-BREAK SPACE}"
+
+INTRODUCTION = """\
+# How exact the figures are
+
+Written by `./run numerics`, which repeats it all, from what the tests measure; never by hand. Each line is a hard case:
+the largest error that was found, the limit that the test holds it to, and what was tried. An error is the distance from
+a figure found in another way: by a closed form, with the same rays in 50 digits, by another program, from a printed
+listing, or, for float32, in float64.
+
+`0.53 ≤ 4` is the largest error and its limit. Where the head of a column names several backends, their errors stand in
+that order, or there is one that all of them have. An *ulp* is the distance from 1 to the next number: 2⁻²³ = 1.2e-7 in
+float32, 2⁻⁵² = 2.2e-16 in float64. An *ulp of scale* is that times the largest length in the case: what one rounding
+may cost.
+"""
+
+PLOT_TEXT = """\
+![Error of float32 image points over field and aperture]({plot})
+
+{count:,} rays from the film to the scene in float32, and back in float64: how far they miss the film point that they
+started from is by how much a picture has a point in the wrong place. The limit is 1/50 of a pixel of 4 µm. Colours
+show the worst ray at each film radius and height in the stop; what is white no light reaches.
+"""
+
+BROKEN = """\
+## Broken on purpose
+
+A test that cannot fail proves nothing. These routines are wrong by intent, and go past the limit that the real ones are
+held to.
+"""
+
+
+def escaped(text: str) -> str:
+    return html.escape(text, quote=False).replace("|", "\\|").replace("*", "\\*")
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    return tabulate(rows, head, tablefmt="github", disable_numparse=True) + "\n"
+
+
+def tried(figures: list[Figure]) -> str:
+    """What was tried on all backends: once where it differs in nothing but the number of rays."""
+    texts = {}
+    for figure in figures:
+        text = figure.measurement.tried + (f", the worst of {figure.runs}" if figure.runs > 1 else "")
+        texts.setdefault(re.sub(r"[\d.,]+", "", text), text)
+    return escaped("; ".join(texts.values()))
+
+
+def column(number_type: str, backends: tuple[str, ...]) -> str:
+    """`float32`, `float32, CUDA` or `float32, CUDA · Embree v2 · v3`."""
+    if backends == ("core",):
+        return number_type
+    names = list(backends)
+    for i in range(1, len(names)):
+        family = backends[i].split(" ")[0] + " "
+        if backends[i - 1].startswith(family):
+            names[i] = backends[i].removeprefix(family)
+    return f"{number_type}, {SEPARATOR.join(names)}"
+
+
+def short(number: float, digits: int = 6) -> str:
+    text = f"{number:.{digits}g}".replace("nan", "NaN").replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+    return text.replace("-", "\N{MINUS SIGN}")  # a browser breaks the line after a hyphen
+
+
+def on_all(texts: list[str]) -> str:
+    return SEPARATOR.join(texts[:1] if len(set(texts)) == 1 else texts)
+
+
+def cell(figures: dict[str, Figure], backends: tuple[str, ...]) -> str:
+    """Errors of one case in one number type, in the order of the backends, and their limit."""
+    if not figures:
+        return ""
+    errors = [short(figures[b].measurement.worst, 2) if b in figures else "–" for b in backends]
+    limits = [short(figures[b].measurement.limit) for b in backends if b in figures]
+    return f"{on_all(errors)}{LIMIT}{on_all(limits)}"
+
+
+def grouped_by(figures: list[Figure], key: Callable[[Figure], object]) -> dict:
+    groups: dict = {}
+    for figure in figures:
+        groups.setdefault(key(figure), []).append(figure)
+    return groups
+
+
+def held_tables(figures: list[Figure]) -> str:
+    """A table for all cases that were tried on the same backends."""
+    cases = grouped_by(figures, lambda f: (f.measurement.what, f.measurement.unit))
+    tables: dict[tuple[str, ...], list[tuple[str, str]]] = {}
+    for case in sorted(cases):
+        backends = tuple(sorted({f.measurement.backend for f in cases[case]}))
+        tables.setdefault(backends, []).append(case)
+    texts = []
+    for backends, names in tables.items():
+        types = sorted({f.measurement.number_type for name in names for f in cases[name]})
+        rows = []
+        for what, unit in names:
+            of_type = grouped_by(cases[what, unit], lambda f: f.measurement.number_type)
+            cells = [cell({f.measurement.backend: f for f in of_type.get(t, [])}, backends) for t in types]
+            rows.append([escaped(what), *cells, escaped(unit), tried(cases[what, unit])])
+        texts.append(table(["case", *(column(t, backends) for t in types), "unit", "tried"], rows))
+    return "\n".join(texts)
+
+
+def broken_table(figures: list[Figure]) -> str:
+    rows = []
+    for figure in sorted(figures, key=lambda f: measurements.SECTIONS.index(f.measurement.section)):
+        m = figure.measurement
+        limits = [short(m.worst, 2), short(m.limit), escaped(m.unit)]
+        rows.append([escaped(m.what), column(m.number_type, (m.backend,)), *limits, tried([figure]), m.section])
+    return table(["broken routine", "number type", "error", "limit", "unit", "tried", "section"], rows)
+
+
+def run_text(figures: list[Figure]) -> str:
+    at = machine()
+    nearest = max((f for f in figures if not f.broken), key=lambda f: f.share_of_limit)
+    return (
+        f"This run: commit {at['commit']}, {at['date']}, {at['processor']}, {'; '.join(at['devices'])}. "
+        f"{sum(f.runs for f in figures)} measurements; nearest to its limit, at {nearest.share_of_limit:.0%}, is "
+        f"*{escaped(nearest.measurement.what)}*.\n"
+    )
+
+
+def page(figures: list[Figure], plot_text: str) -> str:
+    figures = measurements.grouped(figures)
+    parts = [INTRODUCTION, run_text(figures)]
+    for section in measurements.SECTIONS:
+        held = [f for f in figures if f.measurement.section == section and not f.broken]
+        if held:
+            parts += [f"## {section}\n", *([plot_text] if section == "Bundled lenses" else []), held_tables(held)]
+    broken = [f for f in figures if f.broken]
+    if broken:
+        parts += [BROKEN, broken_table(broken)]
+    return "\n".join(parts)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("measurements", type=Path, help="what the tests wrote")
+    parser.add_argument("--page", type=Path, default=PAGE, help="the plot goes into images/ beside it")
+    parser.add_argument("--lens", action="append", help="plot this one only; may be repeated")
+    options = parser.parse_args()
+    try:
+        figures = measurements.read(options.measurements)
+    except measurements.MeasurementError as error:
+        raise SystemExit(f"write_numerics: {error}") from error
+    count = numerics_plot.save_error_plot(options.lens or rc.lens_names(), options.page.parent / PLOT)
+    options.page.write_text(page(figures, PLOT_TEXT.format(plot=PLOT.as_posix(), count=count)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
