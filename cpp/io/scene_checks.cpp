@@ -10,8 +10,8 @@ namespace {
 
 // Cubes of it, which traversal and planes need, are still far from the largest float.
 constexpr double farthest_m = 1e12;
-// Beyond all that shines; what a short distance and a long exposure make of it is still a float.
-constexpr float brightest = 1e20f;
+// Beyond all that shines, the sun as a point light included; what a distance or a lobe makes of it is still a float.
+constexpr float brightest = 1e20f, most_intense = 1e30f;
 
 bool finite(Vec3f v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -19,8 +19,8 @@ bool finite(Vec3f v) {
 bool is_reflectance(Vec3f v) {
     return finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
 }
-bool is_light(Vec3f v) {
-    return is_reflectance(v) && v.x <= brightest && v.y <= brightest && v.z <= brightest;
+bool is_light(Vec3f v, float most) {
+    return is_reflectance(v) && v.x <= most && v.y <= most && v.z <= most;
 }
 bool in_reach(double v) {
     return std::abs(v) <= farthest_m;
@@ -103,7 +103,7 @@ private:
             require(is_reflectance(m.specular), "material", i, "specular reflectance must be finite and not negative");
             require(m.shininess >= 0 && m.shininess <= 1e9f, "material", i,
                     "the Phong exponent must lie between 0 and 1e9");
-            require(is_light(m.emission), "material", i, "emission must lie between 0 and 1e20 cd/m^2");
+            require(is_light(m.emission, brightest), "material", i, "emission must lie between 0 and 1e20 cd/m^2");
             require(m.diffuse_texture >= -1 && m.diffuse_texture < textures, "material", i,
                     "texture " + std::to_string(m.diffuse_texture) + " does not exist; there are " +
                         std::to_string(textures));
@@ -125,25 +125,26 @@ private:
     void check_lights() const {
         for (std::size_t i = 0; i < scene_.points.size(); ++i) {
             require(in_reach(scene_.points[i].position_m), "point light", i, "its position must be finite");
-            require(is_light(scene_.points[i].intensity), "point light", i,
-                    "its intensity must lie between 0 and 1e20 cd");
+            require(is_light(scene_.points[i].intensity, most_intense), "point light", i,
+                    "its intensity must lie between 0 and 1e30 cd");
         }
         for (std::size_t i = 0; i < scene_.suns.size(); ++i) {
             const Vec3f d = scene_.suns[i].direction;
             require(finite(d) && std::abs(length(d) - 1.0f) < 1e-3f, "sun", i, "its direction must have length 1");
-            require(is_light(scene_.suns[i].illuminance), "sun", i, "its illuminance must lie between 0 and 1e20 lux");
+            require(is_light(scene_.suns[i].illuminance, brightest), "sun", i,
+                    "its illuminance must lie between 0 and 1e20 lux");
         }
     }
 
     void check_environment() const {
         const Environment& e = scene_.environment;
-        if (!is_light(e.constant)) fail("environment: radiance must lie between 0 and 1e20 cd/m^2");
+        if (!is_light(e.constant, brightest)) fail("environment: radiance must lie between 0 and 1e20 cd/m^2");
         if (e.pixels.empty()) return;
         if (e.width <= 0 || e.height <= 0 ||
             e.pixels.size() != static_cast<std::size_t>(e.width) * static_cast<std::size_t>(e.height)) {
             fail("environment: width x height pixels are wanted");
         }
-        if (!std::all_of(e.pixels.begin(), e.pixels.end(), is_light)) {
+        if (!std::all_of(e.pixels.begin(), e.pixels.end(), [](Vec3f v) { return is_light(v, brightest); })) {
             fail("environment: radiance must lie between 0 and 1e20 cd/m^2 in every pixel");
         }
     }

@@ -19,15 +19,17 @@ template <class T>
 REALCAM_INLINE Sag<T> asphere_sag(const LensStep<T>& step, T radius_squared) {
     const T r2 = select(radius_squared < step.search_squared, radius_squared, step.search_squared);
     const T root = sqrt_or_zero(T(1) - step.conic_factor * step.curvature * step.curvature * r2);
-    T polynomial = 0, slope = 0;  // Horner, of p(r^2) = a4 + a6 r^2 + ... and its derivative
+    const T u = r2 * step.inverse_search_squared;
+    T polynomial = 0, slope = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative
     // Always all terms, zeros too: a constant count unrolls, and the loop over the lanes becomes vector code.
 #pragma GCC unroll 8
     for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
-        slope = slope * r2 + polynomial;
-        polynomial = polynomial * r2 + step.aspheric[i];
+        slope = slope * u + polynomial;
+        polynomial = polynomial * u + step.aspheric[i];
     }
-    const T height = step.curvature * r2 / (T(1) + root) + r2 * r2 * polynomial;
-    const T derivative = step.curvature / (T(2) * root) + r2 * (T(2) * polynomial + r2 * slope);
+    const T height = step.curvature * r2 / (T(1) + root) + u * u * polynomial;
+    const T derivative =
+        step.curvature / (T(2) * root) + step.inverse_search_squared * u * (T(2) * polynomial + u * slope);
     return {height, select(radius_squared <= step.search_squared, derivative, T(0))};
 }
 

@@ -61,8 +61,6 @@ private:
         const double rim = surface.clear_semi_diameter, hole = surface.inner_semi_diameter;
         step.rim_squared = static_cast<T>(rim * rim);
         step.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
-        for (std::size_t i = 0; i < surface.aspheric.size(); ++i)
-            step.aspheric[i] = static_cast<T>(surface.aspheric[i]);
         if (step.kind == StepKind::asphere) set_search_region(step, surface);
         return step;
     }
@@ -82,6 +80,9 @@ private:
         const double margin = 0.02 * (high - low) + 1e-3 * reach;
         step.sag_edge = static_cast<T>(surface.sag(reach));
         step.search_squared = static_cast<T>(reach * reach);
+        step.inverse_search_squared = static_cast<T>(1 / (reach * reach));
+        for (std::size_t i = 0; i < surface.aspheric.size(); ++i)
+            step.aspheric[i] = static_cast<T>(surface.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
         step.sag_min = static_cast<T>(low - margin);
         step.sag_max = static_cast<T>(high + margin);
     }

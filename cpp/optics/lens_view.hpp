@@ -26,14 +26,17 @@ struct LensStep {
     T sag_min, sag_max;    ///< aspheres: bounds of the sag inside the search radius
     T sag_edge;            ///< aspheres: the sag at the search radius
     T search_squared;      ///< aspheres: the sag is continued as constant outside this squared radius
-    T aspheric[kMaxAsphericTerms];  ///< of r^4, r^6, ...; zeros after the last
+    T inverse_search_squared;
+    /// Of u^2, u^3, ..., u = r^2 / search_squared, mm; zeros after the last. The polynomial's own coefficients leave
+    /// the range of float32 where surfaces are large or small.
+    T aspheric[kMaxAsphericTerms];
 };
 
 /// The opening of the aperture stop: n blades whose inner edges are arcs of one curvature.
 template <class T>
 struct Iris {
     int blades;
-    T apothem;    ///< distance from the axis to the middle of a blade's edge
+    T apothem;  ///< distance from the axis to the middle of a blade's edge
     T curvature;  ///< of the edge: 0 straight, 1/apothem a circle
     T cos[kMaxIrisBlades], sin[kMaxIrisBlades];
 };

@@ -1,4 +1,6 @@
 #pragma once
+#include <limits>
+
 #include "../math/lanes.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -18,8 +20,11 @@ struct SurfaceHit {
     Vec3<T> normal;  ///< unit, z positive on the near cap
     T discriminant;  ///< negative or NaN where the ray does not meet the surface
 
-    /// No flag is stored: gcc does not vectorise loops that keep a bool in an aggregate.
-    REALCAM_INLINE bool met() const { return (discriminant >= T(0)) & (normal.z > T(0)); }
+    /// No flag is stored: gcc does not vectorise loops that keep a bool in an aggregate. An exact tangent is no
+    /// crossing, and a discriminant that left the range of T says nothing.
+    REALCAM_INLINE bool met() const {
+        return (discriminant > T(0)) & (discriminant <= std::numeric_limits<T>::max()) & (normal.z > T(0));
+    }
 };
 
 /// Intersection with a conic of revolution (1 + k = conic_factor) around the z axis, vertex in the origin, for a ray

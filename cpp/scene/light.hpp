@@ -76,7 +76,7 @@ REALCAM_INLINE LightSample sample_light(const SceneView& scene, const SurfacePoi
         const float pdf = cosine_pdf(point.normal, direction);
         sample = {direction, kFarAway, 1.0f, (pdf > 0.0f ? 1.0f / pdf : 0.0f) * scene.environment.constant};
     }
-    // One over the squared distance has no bound. Lights end at 1e20; what a narrow lobe and the film's sums make of
+    // One over the squared distance has no bound. Lights end at 1e30; what a narrow lobe and the film's sums make of
     // this is still finite.
     const auto bounded = [](float v) { return v < 1e28f ? v : 1e28f; };
     const Vec3f all = (1.0f / choice.pdf) * sample.irradiance;

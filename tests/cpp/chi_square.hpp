@@ -58,7 +58,8 @@ double integral(F&& f, double x0, double x1, double y0, double y1, int pieces) {
         for (int k = 0; k < pieces; ++k)
             sum += Gauss::integrate(
                 [&](double x) {
-                    return Gauss::integrate([&](double y) { return static_cast<double>(f(x, y)); }, y0 + k * dy, y0 + (k + 1) * dy);
+                    return Gauss::integrate([&](double y) { return static_cast<double>(f(x, y)); }, y0 + k * dy,
+                                            y0 + (k + 1) * dy);
                 },
                 x0 + i * dx, x0 + (i + 1) * dx);
     return sum;

@@ -112,11 +112,11 @@ inline RayErrors errors_of(const TraceBackend& backend, const LensSystem& lens, 
         const double turn = size_of(direction - ray.direction);
         const double path = std::fabs(static_cast<double>(Real(found.optical_path[i]) - ray.optical_path));
         errors.ray = std::max({errors.ray, size_of(origin - ray.origin) / scale, turn, path / scale});
+        // Not of rays that graze a surface under less than 6 degrees: the rounding of a place or a direction in front
+        // of it, which is nothing there, moves them along it by ten times as much, and more.
+        if (ray.clearance < 0.01) continue;
         double image = 0;
         if (way == LightDirection::to_film) {
-            // Not of rays that graze a surface under less than 6 degrees: it moves them by ten times the rounding of
-            // their direction, and more. Pictures go the other way, where such a ray leaves the lens.
-            if (ray.clearance < 0.01) continue;
             const Real film = lens.film_position();
             image = size_of(on_plane(origin, direction, film) - on_plane(ray.origin, ray.direction, film));
         } else {

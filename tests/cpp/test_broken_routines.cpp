@@ -70,12 +70,12 @@ TEST_CASE("Newton's method without a bracket takes points that are not on the su
     double worst = 0;
     for (int s = 0; s < 100; ++s) {
         Surface surface = refracting(random.between(8, 50), 0, Glass::constant(1.7), 6);
-        for (int i = 0; i < 4; ++i) surface.aspheric.push_back(random.between(-0.5, 0.5) * std::pow(6.0, -3 - 2 * i));
+        for (int i = 0; i < 8; ++i) surface.aspheric.push_back(random.between(-1, 1) * std::pow(6.0, -3 - 2 * i));
         const LensPath<float> path(lens_of({surface}), LightDirection::to_film, kLineD_nm);
         const LensStep<float> step = path.view().steps[0];
         for (int i = 0; i < 20; ++i) {
             const Vec3f o = in_float32({random.between(-5, 5), random.between(-5, 5), -10});
-            const Vec3f d = in_float32(normalized(Vec3d{random.between(-0.5, 0.5), random.between(-0.5, 0.5), 1}));
+            const Vec3f d = in_float32(normalized(Vec3d{random.between(-1, 1), random.between(-1, 1), 1}));
             float t = -o.z / d.z;
             for (int k = 0; k < 20; ++k) {
                 const Vec3f at = o + t * d;

@@ -36,8 +36,8 @@ TEST_CASE("fuzzed rays end with finite numbers and keep the laws of optics") {
     const Findings& all = fuzz::findings();
     CHECK(all.passed > all.rays / 40);  // it is not all waste
     hold({"Rays", "fuzzed rays that end with a NaN, an infinity or a broken invariant",
-          count_of(all.rays) + " rays through drawn lenses of 2 to 102 surfaces", "Embree, all instruction sets", "both",
-          broken, 0, "rays"});
+          count_of(all.rays) + " rays through drawn lenses of 2 to 102 surfaces", "Embree, all instruction sets",
+          "both", broken, 0, "rays"});
 }
 
 TEST_CASE("a mutated lens file is a lens or a LensFileError") {
@@ -51,6 +51,7 @@ TEST_CASE("a camera with absurd dials is refused or its rays are finite") {
     const double broken = run(fuzz::fuzz_camera, &Findings::pupil_samples, 100000);
     CHECK(fuzz::findings().cameras_made > 0);
     hold({"Rays", "rays of absurd cameras, and samples of pupils at absurd film points, that are not finite",
-          count_of(fuzz::findings().pupil_samples) + " samples, " + std::to_string(fuzz::findings().cameras) + " cameras",
+          count_of(fuzz::findings().pupil_samples) + " samples, " + std::to_string(fuzz::findings().cameras) +
+              " cameras",
           "core", "float32", broken, 0, "rays"});
 }

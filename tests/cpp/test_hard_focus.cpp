@@ -133,6 +133,25 @@ TEST_CASE("every bundled lens is sharp at the distance asked for, from its neare
           std::to_string(count) + " states", "core", "float64", worst, 1e-9, "of the focus distance"});
 }
 
+TEST_CASE("going round from the film to the object and back, as it is often done, ends nowhere near life size") {
+    const LensSystem gauss = io::read_lens("double-gauss-50mm");
+    double worst = 0;
+    for (const double share : {1e-6, 1e-4, 1e-3}) {
+        const double distance = 196.8623 * (1 + share);  // of the nearest
+        LensSystem lens = gauss;
+        double object = 0.5 * distance - 0.3 * lens.last_vertex();
+        for (int i = 0; i < 50; ++i) {
+            lens.film_distance = best_focus_distance(lens, lens.wavelength_nm, object);
+            object -= object + lens.film_position() - distance;
+        }
+        lens.focus_distance = distance;
+        const double error = misfocus(lens);
+        worst = std::isnan(error) ? kInfinity : std::max(worst, error);
+    }
+    breaks({"Lenses", "fixed point of film and object, just above the nearest distance", "3 distances", "broken copy",
+            "float64", worst, 1e-9, "of the focus distance"});
+}
+
 TEST_CASE("the object may stand on the first vertex") {
     int count = 0;
     double worst = 0;

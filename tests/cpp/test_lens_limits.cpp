@@ -37,11 +37,14 @@ bool names(const std::string& message, const std::string& part) {
 TEST_CASE("lengths, curvatures, conics and coefficients that no lens has are refused") {
     CHECK(complaint([](LensSystem&) {}).empty());
     CHECK(names(complaint([](LensSystem& l) { l.surfaces[0].thickness = 1e10; }), "surface 1: the thickness"));
-    CHECK(names(complaint([](LensSystem& l) { l.surfaces[1].clear_semi_diameter = 1e10; }), "surface 2: the clear semi"));
-    CHECK(names(complaint([](LensSystem& l) { l.surfaces[1].clear_semi_diameter = 1e-7; }), "surface 2: the clear semi"));
+    CHECK(
+        names(complaint([](LensSystem& l) { l.surfaces[1].clear_semi_diameter = 1e10; }), "surface 2: the clear semi"));
+    CHECK(
+        names(complaint([](LensSystem& l) { l.surfaces[1].clear_semi_diameter = 1e-7; }), "surface 2: the clear semi"));
     CHECK(names(complaint([](LensSystem& l) { l.surfaces[2].conic = -1e7; }), "surface 3: the conic"));
     CHECK(names(complaint([](LensSystem& l) { l.surfaces[2].conic = 1e7, l.surfaces[2].curvature = 0; }), "the conic"));
-    CHECK(names(complaint([](LensSystem& l) { l.surfaces[2].conic = -2, l.surfaces[2].curvature = 1e10; }), "curvature"));
+    CHECK(
+        names(complaint([](LensSystem& l) { l.surfaces[2].conic = -2, l.surfaces[2].curvature = 1e10; }), "curvature"));
     CHECK(names(complaint([](LensSystem& l) { l.surfaces[0].aspheric = {0, 1e39}; }), "aspheric"));
     CHECK(names(complaint([](LensSystem& l) { l.surfaces[0].aspheric = {1e10}; }), "aspheric"));
     CHECK(names(complaint([](LensSystem& l) { l.film_width = 1e10; }), "film"));

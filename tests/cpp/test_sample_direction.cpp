@@ -91,7 +91,7 @@ Bins about_axis(Vec3f axis, float exponent, Sampler&& sampler, unsigned seed) {
 
 TEST_CASE("sample_disc follows disc_pdf") {
     ChiSquareTests tests("sample_disc");
-    for (const unsigned seed : {1u, 2u, 3u}) tests.add(on_disc(sample_disc, seed));
+    for (const unsigned seed : {1u, 2u, 3u}) tests.add(on_disc([](Vec2f u) { return sample_disc(u); }, seed));
     tests.hold();
 
     ChiSquareTests broken("sample_disc without the square root");

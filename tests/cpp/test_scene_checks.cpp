@@ -52,6 +52,14 @@ TEST_CASE("validate: a scene from arrays") {
     CHECK(says(message([](Scene& s) { s.environment.constant.y = nan; }), "environment"));
     CHECK(says(message([](Scene& s) { s.environment.pixels.resize(3); }), "environment: width x height"));
 
+    // The ends of the range, at which pictures are still finite.
+    CHECK(says(message([](Scene& s) { s.positions_m[0].z = -1.1e12; }), "at most 1e12 m"));
+    CHECK(says(message([](Scene& s) { s.materials[0].emission.x = 1.1e20f; }), "between 0 and 1e20 cd/m^2"));
+    CHECK(says(message([](Scene& s) { s.materials[0].shininess = 1.1e9f; }), "between 0 and 1e9"));
+    CHECK(says(message([](Scene& s) { s.points = {{{0, 0, 0}, {1, 2e30f, 1}}}; }), "between 0 and 1e30 cd"));
+    CHECK(says(message([](Scene& s) { s.suns = {{{0, -1, 0}, {1, 2e20f, 1}}}; }), "between 0 and 1e20 lux"));
+    CHECK(says(message([](Scene& s) { s.positions_m[0].z = -1e12, s.materials[0].shininess = 1e9f; }), "no error"));
+
     Scene thin = good;
     thin.triangles.push_back({{0, 1, 1}, 0});
     CHECK(io::drop_degenerate_triangles(thin) == 1);

@@ -48,10 +48,26 @@ public:
     /// Any number at all: what a file or a caller may hold.
     double any() {
         using Limits = std::numeric_limits<double>;
-        static constexpr double special[] = {0.0, -0.0, 1.0, -1.0, Limits::denorm_min(), Limits::min(), Limits::max(),
-                                             Limits::lowest(), Limits::infinity(), -Limits::infinity(),
-                                             Limits::quiet_NaN(), Limits::epsilon(), 1 - 0x1p-53, 1 + 0x1p-52, 0x1p24,
-                                             3.5e38, 1e-46, 1e18, 1.0000000001e18, -1e18};
+        static constexpr double special[] = {0.0,
+                                             -0.0,
+                                             1.0,
+                                             -1.0,
+                                             Limits::denorm_min(),
+                                             Limits::min(),
+                                             Limits::max(),
+                                             Limits::lowest(),
+                                             Limits::infinity(),
+                                             -Limits::infinity(),
+                                             Limits::quiet_NaN(),
+                                             Limits::epsilon(),
+                                             1 - 0x1p-53,
+                                             1 + 0x1p-52,
+                                             0x1p24,
+                                             3.5e38,
+                                             1e-46,
+                                             1e18,
+                                             1.0000000001e18,
+                                             -1e18};
         switch (below(4)) {
             case 0: return special[below(static_cast<int>(sizeof special / sizeof *special))];
             case 1: return sign() * decades(-320, 308);

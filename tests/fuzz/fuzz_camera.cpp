@@ -40,19 +40,23 @@ void sample_absurd_points(Bytes& in) {
     const double n = std::sqrt(static_cast<double>(pupil.index_squared));
     for (int i = 0; i < 64; ++i) {
         const auto length_of = [&] {
-            const double value = in.chance(128) ? in.between(-1.5, 1.5) * static_cast<double>(pupil.image_radius) : in.any();
+            const double value =
+                in.chance(128) ? in.between(-1.5, 1.5) * static_cast<double>(pupil.image_radius) : in.any();
             return std::isfinite(value) ? static_cast<float>(std::clamp(value, -1e9, 1e9)) : 0.0f;
         };
-        const auto fraction = [&] { return in.chance(16) ? 1 - 0x1p-24f : in.chance(16) ? 0.0f : unit_float(in.word()); };
+        const auto fraction = [&] {
+            return in.chance(16) ? 1 - 0x1p-24f : in.chance(16) ? 0.0f : unit_float(in.word());
+        };
         const float x = length_of(), y = length_of(), u = fraction(), v = fraction();
         const PupilSample sample = sample_pupil(pupil, x, y, u, v);
         const float pdf = pupil_pdf(pupil, x, y, sample.direction.x, sample.direction.y);
         const double size = length(static_cast<Vec3d>(sample.direction));
         const auto say = [&](const char* what) {
             report(what, "%s: film (%.9g, %.9g), u %.9g, v %.9g -> (%.9g %.9g %.9g), weight %.9g, pdf %.9g",
-                   setup.camera().lens.name.c_str(), static_cast<double>(x), static_cast<double>(y), static_cast<double>(u),
-                   static_cast<double>(v), static_cast<double>(sample.direction.x), static_cast<double>(sample.direction.y),
-                   static_cast<double>(sample.direction.z), static_cast<double>(sample.weight), static_cast<double>(pdf));
+                   setup.camera().lens.name.c_str(), static_cast<double>(x), static_cast<double>(y),
+                   static_cast<double>(u), static_cast<double>(v), static_cast<double>(sample.direction.x),
+                   static_cast<double>(sample.direction.y), static_cast<double>(sample.direction.z),
+                   static_cast<double>(sample.weight), static_cast<double>(pdf));
         };
         if (!finite(sample.direction)) say("a pupil sample is not finite");
         if (!(sample.weight >= 0) || !std::isfinite(sample.weight)) say("a pupil sample's weight is no weight");
@@ -110,13 +114,17 @@ void check_rays(Bytes& in, const Camera& camera) {
     const int rays = request.pixel_count * static_cast<int>(request.sample_count);
     findings().camera_rays += static_cast<std::uint64_t>(rays);
     for (int i = 0; i < rays; ++i) {
-        const float *o = origins.data() + 3 * i, *d = directions.data() + 3 * i, w = weights[static_cast<std::size_t>(i)];
+        const float *o = origins.data() + 3 * i, *d = directions.data() + 3 * i,
+                    w = weights[static_cast<std::size_t>(i)];
         const auto say = [&](const char* what) {
-            report(what, "%s, model %d, film %.9g x %.9g mm, %d x %d, film distance %.9g: o (%.9g %.9g %.9g), d (%.9g %.9g %.9g), weight %.9g",
-                   camera.lens.name.c_str(), static_cast<int>(camera.model), camera.film.width_mm, camera.film.height_mm,
-                   camera.film.width, camera.film.height, camera.lens.film_distance, static_cast<double>(o[0]),
-                   static_cast<double>(o[1]), static_cast<double>(o[2]), static_cast<double>(d[0]), static_cast<double>(d[1]),
-                   static_cast<double>(d[2]), static_cast<double>(w));
+            report(what,
+                   "%s, model %d, film %.9g x %.9g mm, %d x %d, film distance %.9g: o (%.9g %.9g %.9g), d (%.9g %.9g "
+                   "%.9g), weight %.9g",
+                   camera.lens.name.c_str(), static_cast<int>(camera.model), camera.film.width_mm,
+                   camera.film.height_mm, camera.film.width, camera.film.height, camera.lens.film_distance,
+                   static_cast<double>(o[0]), static_cast<double>(o[1]), static_cast<double>(o[2]),
+                   static_cast<double>(d[0]), static_cast<double>(d[1]), static_cast<double>(d[2]),
+                   static_cast<double>(w));
         };
         if (!finite({o[0], o[1], o[2]})) say("a camera ray's origin is not finite");
         if (!finite({d[0], d[1], d[2]})) say("a camera ray's direction is not finite");

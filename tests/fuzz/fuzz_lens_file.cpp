@@ -107,9 +107,30 @@ std::vector<Span> lines_of(const std::string& text) {
 }
 
 std::string number_or_not(Bytes& in) {
-    static constexpr const char* odd[] = {"nan", "-nan", "inf", "-inf", "0", "-0.0", "1e400", "-1e-400", "0x10", "0b1",
-                                          "1_000", "1__0", "true", "''", "\"1\"", "[]", "[1]", "[[1.0, 2.0]]", "{}",
-                                          "1979-05-27", "9223372036854775807", "9223372036854775808", "1e18", "."};
+    static constexpr const char* odd[] = {"nan",
+                                          "-nan",
+                                          "inf",
+                                          "-inf",
+                                          "0",
+                                          "-0.0",
+                                          "1e400",
+                                          "-1e-400",
+                                          "0x10",
+                                          "0b1",
+                                          "1_000",
+                                          "1__0",
+                                          "true",
+                                          "''",
+                                          "\"1\"",
+                                          "[]",
+                                          "[1]",
+                                          "[[1.0, 2.0]]",
+                                          "{}",
+                                          "1979-05-27",
+                                          "9223372036854775807",
+                                          "9223372036854775808",
+                                          "1e18",
+                                          "."};
     if (in.chance(128)) return odd[in.below(static_cast<int>(sizeof odd / sizeof *odd))];
     char text[40];
     std::snprintf(text, sizeof text, "%.17g", in.chance(128) ? in.any() : in.sign() * in.decades(-3, 3));

@@ -47,8 +47,8 @@ void say(const char* what, const Case& test, const BlockResult& out, int i, doub
            "%s %s, %zu surfaces, %s; o (%.17g %.17g %.17g), d (%.17g %.17g %.17g) -> (%.9g %.9g %.9g), (%.9g %.9g "
            "%.9g), path %.9g, status %d, surface %d: %.9g",
            name_of(T()), test.kernels.instruction_set, test.lens.surfaces.size(),
-           test.way == LightDirection::to_film ? "to film" : "to scene", o.x, o.y, o.z, d.x, d.y, d.z, a.x, a.y, a.z, b.x,
-           b.y, b.z, out.path[i], out.status[i], out.surface_index[i], value);
+           test.way == LightDirection::to_film ? "to film" : "to scene", o.x, o.y, o.z, d.x, d.y, d.z, a.x, a.y, a.z,
+           b.x, b.y, b.z, out.path[i], out.status[i], out.surface_index[i], value);
 }
 
 template <class T>
@@ -57,19 +57,24 @@ void check_results(const Case& test, const LensPath<T>& path, const BlockResult&
     for (int i = 0; i < kRays; ++i) {
         const int status = out.status[i];
         findings().passed += status == 0;
-        if (status < 0 || status > static_cast<int>(RayStatus::bad_input))
-            say<T>("no status", test, out, i, status);
+        if (status < 0 || status > static_cast<int>(RayStatus::bad_input)) say<T>("no status", test, out, i, status);
         const bool bad = is_bad(test.rays.origin[i], test.rays.direction[i], path.entry_position);
-        if (bad != (status == static_cast<int>(RayStatus::bad_input))) say<T>("bad input is not told", test, out, i, bad);
+        if (bad != (status == static_cast<int>(RayStatus::bad_input)))
+            say<T>("bad input is not told", test, out, i, bad);
         const int last = test.way == LightDirection::to_film ? surfaces - 1 : 0;
         const int index = out.surface_index[i];
         if (index < (bad ? -1 : 0) || index >= surfaces || (status == 0 && index != last))
             say<T>("a ray ends at no surface", test, out, i, index);
         if (!finite(out.origin[i]) || !finite(out.direction[i]) || !std::isfinite(out.path[i]))
-            say<T>(std::fabs(test.rays.direction[i].z) < 1e-30*length(test.rays.direction[i]) || !std::isfinite(length(test.rays.direction[i]))? "inf F1" : "a number is not finite", test, out, i, 0);
+            say<T>(std::fabs(test.rays.direction[i].z) < 1e-30 * length(test.rays.direction[i]) ||
+                           !std::isfinite(length(test.rays.direction[i]))
+                       ? "inf F1"
+                       : "a number is not finite",
+                   test, out, i, 0);
         // The backends make it a unit vector in double.
         const double size = length(out.direction[i]);
-        if (!(bad ? size == 0 : std::fabs(size - 1) < 1e-15 * 4)) say<T>("a direction is not a unit vector", test, out, i, size - 1);
+        if (!(bad ? size == 0 : std::fabs(size - 1) < 1e-15 * 4))
+            say<T>("a direction is not a unit vector", test, out, i, size - 1);
     }
 }
 
@@ -92,7 +97,8 @@ void check_no_record(const Case& test, const LensPath<T>& path, const BlockResul
             const double moved = length(o - out.origin[i]), turned = length(d - out.direction[i]);
             // Fused products are fused as the compiler sees fit.
             const double same = test.kernels.instruction_set == std::string("x86-64-v2") ? 0 : 1e-4;
-            if (!(moved <= same * (length(o) + std::sqrt(static_cast<double>(path.view().steps[0].rim_squared))))) say<T>("a record moves a ray", test, out, i, moved);
+            if (!(moved <= same * (length(o) + std::sqrt(static_cast<double>(path.view().steps[0].rim_squared)))))
+                say<T>("a record moves a ray", test, out, i, moved);
             if (!(turned <= same)) say<T>("a record turns a ray", test, out, i, turned);
         }
     }
@@ -103,7 +109,9 @@ void trace_without_record(const Case& test, const LensPath<float>& path, LensRay
     const LensView<float> view = path.view();
     test.kernels.trace_block(&view, &rays);
 }
-void trace_without_record(const Case&, const LensPath<double>& path, LensRays<double, kRays>& rays, BlockResult& out) {
+void trace_without_record(const Case& test, const LensPath<double>& path, LensRays<double, kRays>& rays,
+                          BlockResult& out) {
+    const LensRays<double, kRays> start = rays;
     LensRays<double, kRays> recorded = rays;
     PathRecord<double, kRays> record{};
     trace_lens(path.view(), recorded, record);
@@ -113,6 +121,8 @@ void trace_without_record(const Case&, const LensPath<double>& path, LensRays<do
         out.origin[i].z += path.exit_position;
         out.direction[i] = (1 / length(recorded.direction[i])) * recorded.direction[i];
         out.status[i] = recorded.status[i];
+        if (i % 32 == 0 && start.status[i] == 0 && !same_alone(path, start, recorded, i))
+            say<double>("a ray ends otherwise when it is alone", test, out, i, 0);
     }
 }
 

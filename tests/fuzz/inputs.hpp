@@ -15,7 +15,8 @@ using Target = int (*)(const std::uint8_t* data, std::size_t size);
 using Input = std::vector<std::uint8_t>;
 
 inline Input input_of(std::uint32_t seed, std::uint64_t number) {
-    const std::uint32_t key = hash32(hash32(static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32)), seed);
+    const std::uint32_t key =
+        hash32(hash32(static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32)), seed);
     Input bytes(8 + key % 250);
     for (std::size_t i = 0; i < bytes.size(); ++i)
         bytes[i] = static_cast<std::uint8_t>(hash32(static_cast<std::uint32_t>(i), key) >> 24);

@@ -83,23 +83,26 @@ int print(const Run& run, const NamedTarget& target) {
     std::printf("%s: %.4g %s of %llu inputs in %.1f s, %.3g/s; slowest input %.3f s; %llu broken\n", target.name,
                 static_cast<double>(count), target.unit, static_cast<unsigned long long>(run.inputs), run.seconds,
                 static_cast<double>(count) / run.seconds, run.slowest, static_cast<unsigned long long>(all.broken));
-    if (all.rays) std::printf("  %.3g of the rays left their lens\n", static_cast<double>(all.passed) / static_cast<double>(all.rays));
+    if (all.rays)
+        std::printf("  %.3g of the rays left their lens\n",
+                    static_cast<double>(all.passed) / static_cast<double>(all.rays));
     if (all.files) std::printf("  %llu of the files were lenses\n", static_cast<unsigned long long>(all.files_read));
     if (all.cameras)
         std::printf("  %llu of %llu cameras took %llu rays\n", static_cast<unsigned long long>(all.cameras_made),
                     static_cast<unsigned long long>(all.cameras), static_cast<unsigned long long>(all.camera_rays));
     for (const auto& [kind, found] : all.kinds)
-        std::printf("  %llu x %s, first in input %llu\n    %s\n", static_cast<unsigned long long>(found.count), kind.c_str(),
-                    static_cast<unsigned long long>(found.first_input), found.first.c_str());
+        std::printf("  %llu x %s, first in input %llu\n    %s\n", static_cast<unsigned long long>(found.count),
+                    kind.c_str(), static_cast<unsigned long long>(found.first_input), found.first.c_str());
     return all.broken == 0 ? 0 : 1;
 }
 
 int usage() {
-    std::fprintf(stderr,
-                 "realcam_fuzz TARGET COUNT [SEED] [FILE]   runs COUNT rays, files or samples; FILE is where the first\n"
-                 "                                          input that breaks something is saved (fuzz-input.bin)\n"
-                 "realcam_fuzz TARGET replay FILE           runs one saved input\n"
-                 "targets: lens_trace, lens_file, camera\n");
+    std::fprintf(
+        stderr,
+        "realcam_fuzz TARGET COUNT [SEED] [FILE]   runs COUNT rays, files or samples; FILE is where the first\n"
+        "                                          input that breaks something is saved (fuzz-input.bin)\n"
+        "realcam_fuzz TARGET replay FILE           runs one saved input\n"
+        "targets: lens_trace, lens_file, camera\n");
     return 2;
 }
 

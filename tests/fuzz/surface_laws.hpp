@@ -27,7 +27,11 @@ template <class T>
 class SurfaceLaws {
 public:
     SurfaceLaws(const LensStep<T>& step, const Iris<T>& iris)
-        : step_(step), iris_(iris), c_(step.curvature), q_(step.conic_factor), bend_(std::fabs(c_) * (1 + std::fabs(q_ - 1))) {}
+        : step_(step),
+          iris_(iris),
+          c_(step.curvature),
+          q_(step.conic_factor),
+          bend_(std::fabs(c_) * (1 + std::fabs(q_ - 1))) {}
 
     void check(const Crossing& ray) const {
         const bool on_surface = ray.status != RayStatus::missed && ray.status != RayStatus::no_convergence;
@@ -36,12 +40,17 @@ public:
         if (!on_surface) {
             if (!same(ray.at, ray.before)) broken("a ray that ended has moved", ray, 0, 0);
             if (!same(ray.after, ray.along)) broken("a ray that ended has turned", ray, 0, 0);
-            if (ray.status == RayStatus::missed) check_miss(ray);
+            if (step_.kind == StepKind::asphere) {
+                check_search(ray);
+            } else {
+                check_miss(ray);
+            }
             return;
         }
         // Past the region of the search the surface is another, which nothing passes.
         const double r2 = ray.at.x * ray.at.x + ray.at.y * ray.at.y;
-        if (step_.kind == StepKind::asphere && r2 > static_cast<double>(step_.search_squared)) return check_aperture(ray);
+        if (step_.kind == StepKind::asphere && r2 > static_cast<double>(step_.search_squared))
+            return check_aperture(ray);
         if (r2 > 1e4 * static_cast<double>(step_.rim_squared)) return check_aperture(ray);  // lost, however far
         const Near near = step_.kind == StepKind::asphere ? asphere_at(ray) : conic_at(ray);
         if (!(near.distance <= near.distance_bound))
@@ -60,7 +69,6 @@ private:
     static constexpr double eps = std::numeric_limits<T>::epsilon();
     /// Squares of smaller numbers are none.
     static constexpr double tiny = std::numeric_limits<T>::digits == 24 ? 0x1p-63 : 0x1p-511;
-
 
     struct Near {
         double distance, distance_bound;  ///< of the hit from the surface, mm
@@ -95,16 +103,18 @@ private:
         const Vec3d o = ray.before, at = ray.at;
         const long double r2 = static_cast<long double>(at.x) * at.x + static_cast<long double>(at.y) * at.y;
         const long double root = std::sqrt(std::max(0.0L, 1 - static_cast<long double>(q_) * c_ * c_ * r2));
+        const long double inverse = step_.inverse_search_squared, u = r2 * inverse;
         long double polynomial = 0, slope = 0;
         double sizes = 0, slope_sizes = 0;
         for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
-            slope = slope * r2 + polynomial;
-            polynomial = polynomial * r2 + step_.aspheric[i];
-            sizes = sizes * static_cast<double>(r2) + std::fabs(static_cast<double>(step_.aspheric[i]));
-            slope_sizes += (i + 2) * std::fabs(static_cast<double>(step_.aspheric[i])) * std::pow(static_cast<double>(r2), i + 1);
+            slope = slope * u + polynomial;
+            polynomial = polynomial * u + step_.aspheric[i];
+            const double size = std::fabs(static_cast<double>(step_.aspheric[i]));
+            sizes = sizes * static_cast<double>(u) + size;
+            slope_sizes += (i + 2) * size * std::pow(static_cast<double>(u), i + 1) * static_cast<double>(inverse);
         }
-        const double sag = static_cast<double>(c_ * r2 / (1 + root) + r2 * r2 * polynomial);
-        const double derivative = static_cast<double>(c_ / (2 * root) + r2 * (2 * polynomial + r2 * slope));
+        const double sag = static_cast<double>(c_ * r2 / (1 + root) + u * u * polynomial);
+        const double derivative = static_cast<double>(c_ / (2 * root) + inverse * u * (2 * polynomial + u * slope));
         const double square = static_cast<double>(r2), r = std::sqrt(square);
         // Rounding of 1 - (1 + k) c^2 r^2, which the root makes large at the edge.
         const double edge = std::min(std::sqrt(kRoundings * eps), kRoundings * eps / static_cast<double>(root)) *
@@ -115,17 +125,21 @@ private:
         const double axial = std::fabs(o.z) + std::fabs(at.z - o.z) + std::fabs(sag) +
                              static_cast<double>(step_.sag_max - step_.sag_min) / 16;
         const double lateral = steep * (length(o) + way);
-        const double height = kRoundings * eps * (axial + std::min(lateral, axial / std::sqrt(eps)) + square * square * sizes) +
-                              std::fabs(c_) * square * edge + tiny;
+        const double height =
+            kRoundings * eps *
+                (axial + std::min(lateral, axial / std::sqrt(eps)) + static_cast<double>(u * u) * sizes) +
+            std::fabs(c_) * square * edge + tiny;
         const Vec3d gradient{-2 * derivative * at.x, -2 * derivative * at.y, 1};
         const double g = std::isfinite(derivative) ? length(gradient) : 0;
         const double conic_share = std::fabs(c_) * r * edge / std::max(static_cast<double>(root * root), eps);
-        const double turn = g > 0 ? (kRoundings * eps * (g + slope_sizes * r) + conic_share) / (g * g) + kRoundings * eps : 2;
+        const double turn =
+            g > 0 ? (kRoundings * eps * (g + slope_sizes * r) + conic_share) / (g * g) + kRoundings * eps : 2;
         return {std::fabs(at.z - sag), height, g > 0 ? (1 / g) * gradient : Vec3d{0, 0, 1}, turn, turn};
     }
 
     void check_refraction(const Crossing& ray, const Near& near) const {
-        const double p = length(ray.along), out = length(ray.after), n = std::sqrt(1 + static_cast<double>(step_.relative_step));
+        const double p = length(ray.along), out = length(ray.after),
+                     n = std::sqrt(1 + static_cast<double>(step_.relative_step));
         const Vec3d change = ray.after - ray.along;
         const double turned = length(cross(change, near.normal));
         // A sphere's normal is (-cx, -cy, 1 - cz) as it is, longer or shorter where the hit is not on the sphere.
@@ -137,7 +151,8 @@ private:
         const double turn_bound = length(change) * near.normal_bound + kRoundings * eps * (p + out) + length_bound;
         if (!(turned <= turn_bound)) broken("Snell's law: the change is not along the normal", ray, turned, turn_bound);
         const double length_error = std::fabs(out - n * p);
-        if (!(length_error <= length_bound)) broken("Snell's law: the length is not the index", ray, length_error, length_bound);
+        if (!(length_error <= length_bound))
+            broken("Snell's law: the length is not the index", ray, length_error, length_bound);
         const double in_sense = dot(ray.along, near.normal) * static_cast<double>(step_.sense_in);
         const double out_sense = dot(ray.after, near.normal) * static_cast<double>(step_.sense_out);
         const double bound = p * near.incidence_bound + turn_bound;
@@ -184,7 +199,8 @@ private:
         const double h = static_cast<double>(iris_.apothem), k = static_cast<double>(iris_.curvature);
         double extent = -1e300;
         for (int i = 0; i < iris_.blades; ++i)
-            extent = std::max(extent, at.x * static_cast<double>(iris_.cos[i]) + at.y * static_cast<double>(iris_.sin[i]));
+            extent =
+                std::max(extent, at.x * static_cast<double>(iris_.cos[i]) + at.y * static_cast<double>(iris_.sin[i]));
         const double r2 = at.x * at.x + at.y * at.y;
         scale = kRoundings * eps * (k * (r2 + h * h) + 2 * (1 + k * h) * std::sqrt(r2) + 2 * h);
         return k * (r2 + h * h) + 2 * (1 - k * h) * extent - 2 * h;
@@ -193,7 +209,6 @@ private:
     /// A conic that is met squarely must be met. How much of the discriminant, and of the near cap, rounding can take
     /// away depends on how far the ray comes from; a hundredth is past that, or the case is left out.
     void check_miss(const Crossing& ray) const {
-        if (step_.kind == StepKind::asphere) return;
         using Long = long double;
         const Vec3d od = ray.before, pd = ray.along;
         const Long k = q_ - 1, c = c_, ox = od.x, oy = od.y, oz = od.z, px = pd.x, py = pd.y, pz = pd.z;
@@ -212,20 +227,47 @@ private:
         const double reach = length(od) + std::fabs(static_cast<double>(t)) * std::sqrt(p2);
         if (!(reach < 1e6 * std::sqrt(static_cast<double>(step_.rim_squared)))) return;
         if (gz > 0.01L && gz > 1e4L * static_cast<Long>(eps) * (1 + bend_ * static_cast<Long>(reach)))
-            broken("a surface that is met counts as missed", ray, static_cast<double>(gz), static_cast<double>(discriminant));
+            broken("a surface that is met counts as missed", ray, static_cast<double>(gz),
+                   static_cast<double>(discriminant));
+    }
+
+    /// A ray that enters the rim's cylinder on the near side of an asphere and leaves it on the far side crosses it.
+    void check_search(const Crossing& ray) const {
+        const Vec3d o = ray.before, p = ray.along;
+        const double across = p.x * p.x + p.y * p.y, rim = std::sqrt(static_cast<double>(step_.rim_squared));
+        const double middle = -(o.x * p.x + o.y * p.y) / across, x = o.x + middle * p.x, y = o.y + middle * p.y;
+        const double room = 0.99 * rim * rim - x * x - y * y;
+        if (!(across > 1e-12 * dot(p, p)) || !(room > 0.01 * rim * rim) || !(length(o) < 100 * rim)) return;
+        const double half = std::sqrt(room / across), sense = static_cast<double>(step_.sense_in);
+        const auto beyond = [&](double t) {
+            const Vec3d at = o + t * p;
+            const auto r2 = static_cast<T>(at.x * at.x + at.y * at.y);
+            return sense * (at.z - static_cast<double>(asphere_sag(step_, r2).height));
+        };
+        // Outside, the surface goes on as a plane. Whether a ray that meets its edge crosses the one or the other is
+        // open.
+        const double to_edge = (static_cast<double>(step_.sag_edge) - o.z) / p.z;
+        const double ex = o.x + to_edge * p.x, ey = o.y + to_edge * p.y,
+                     search = static_cast<double>(step_.search_squared);
+        if (std::fabs(ex * ex + ey * ey - search) < 1e-4 * search) return;
+        const double near = beyond(middle - half), far = beyond(middle + half), clear = 1e-3 * rim;
+        if (near < -clear && far > clear) broken("an asphere that is met counts as missed", ray, near, far);
     }
 
     static bool same(Vec3d a, Vec3d b) { return length(a - b) <= 4 * eps * length(b) + tiny; }
 
-    __attribute__((noinline, cold)) void broken(const char* what, const Crossing& ray, double error, double bound) const {
-        report(what,
-               "%s, kind %d, c %.17g, 1+k %.17g, sense %g to %g, n'^2/n^2-1 %.17g, rim^2 %.9g; o (%.17g %.17g %.17g), p "
-               "(%.17g %.17g %.17g), at (%.17g %.17g %.17g), p' (%.17g %.17g %.17g), path %.17g, status %d: %.6g, bound %.6g",
-               eps < 1e-10 ? "float64" : "float32", static_cast<int>(step_.kind), c_, q_, static_cast<double>(step_.sense_in),
-               static_cast<double>(step_.sense_out), static_cast<double>(step_.relative_step),
-               static_cast<double>(step_.rim_squared), ray.before.x, ray.before.y, ray.before.z, ray.along.x, ray.along.y,
-               ray.along.z, ray.at.x, ray.at.y, ray.at.z, ray.after.x, ray.after.y, ray.after.z, ray.path,
-               static_cast<int>(ray.status), error, bound);
+    __attribute__((noinline, cold)) void broken(const char* what, const Crossing& ray, double error,
+                                                double bound) const {
+        report(
+            what,
+            "%s, kind %d, c %.17g, 1+k %.17g, sense %g to %g, n'^2/n^2-1 %.17g, rim^2 %.9g; o (%.17g %.17g %.17g), p "
+            "(%.17g %.17g %.17g), at (%.17g %.17g %.17g), p' (%.17g %.17g %.17g), path %.17g, status %d: %.6g, bound "
+            "%.6g",
+            eps < 1e-10 ? "float64" : "float32", static_cast<int>(step_.kind), c_, q_,
+            static_cast<double>(step_.sense_in), static_cast<double>(step_.sense_out),
+            static_cast<double>(step_.relative_step), static_cast<double>(step_.rim_squared), ray.before.x,
+            ray.before.y, ray.before.z, ray.along.x, ray.along.y, ray.along.z, ray.at.x, ray.at.y, ray.at.z,
+            ray.after.x, ray.after.y, ray.after.z, ray.path, static_cast<int>(ray.status), error, bound);
     }
 
     const LensStep<T>& step_;

@@ -16,9 +16,9 @@ int fuzz_camera(const std::uint8_t* data, std::size_t size);
 
 /// libFuzzer takes one target for each program.
 #if defined(REALCAM_LIBFUZZER)
-#define REALCAM_FUZZ_TARGET(target)                                                        \
+#define REALCAM_FUZZ_TARGET(target)                                                     \
     extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) { \
-        return realcam::fuzz::target(data, size);                                        \
+        return realcam::fuzz::target(data, size);                                       \
     }
 #else
 #define REALCAM_FUZZ_TARGET(target)

@@ -33,7 +33,8 @@ struct KernelTrace {
     double entry_position, exit_position, entry_index, entry_reach;
 
     template <class T>
-    void operator()(const realcam_kernels& kernels, const LensView<T>& view, const RayBlock& rays, BlockResult& out) const {
+    void operator()(const realcam_kernels& kernels, const LensView<T>& view, const RayBlock& rays,
+                    BlockResult& out) const {
         realcam_trace request{};
         request.lens_view = &view;
         request.entry_position = entry_position;
@@ -63,6 +64,19 @@ __attribute__((noinline)) void enter(const RayBlock& rays, const KernelTrace& tr
         out.direction.set(i, static_cast<Vec3<T>>(entry.direction));
         out.status[i] = static_cast<int>(entry.status);
     }
+}
+
+/// A ray among others, whose search for a hit may go on longer, ends as it does alone on a GPU's thread.
+template <class T>
+bool same_alone(const LensPath<T>& path, const LensRays<T, kRays>& start, const LensRays<T, kRays>& end, int i) {
+    LensRays<T, 1> ray;
+    PathRecord<T, 1> record{};
+    ray.origin.set(0, start.origin[i]);
+    ray.direction.set(0, start.direction[i]);
+    ray.status[0] = start.status[i];
+    trace_lens(path.view(), ray, record);
+    return ray.status[0] == end.status[i] && length(ray.origin[0] - end.origin[i]) == 0 &&
+           length(ray.direction[0] - end.direction[i]) == 0;
 }
 
 /// Surface by surface in one go: the numbers between the surfaces are those that the whole trace has there.
@@ -114,6 +128,7 @@ void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, con
         trace(kernels, LensView<T>{&step, 1, lens.iris}, rays, out);
         int alive = 0;
         for (int i = 0; i < kRays; ++i) {
+            ended[i] |= before.status[i] != 0;  // by now too far away to be taken in
             if (ended[i]) continue;
             Vec3<T> o = before.origin[i];
             o.z -= step.shift;
@@ -122,7 +137,6 @@ void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, con
             const double size = length(along) * (passed ? std::sqrt(1 + static_cast<double>(step.relative_step)) : 1);
             laws.check({static_cast<Vec3d>(o), along, out.origin[i], size * out.direction[i], out.path[i],
                         static_cast<RayStatus>(out.status[i])});
-            if (findings().input == 6789 && out.status[i]==5) printf("in dir %g %g %g org %g %g %g idx %g surface %d of %d: o %g %g %g p %g %g %g -> %g %g %g  %g %g %g rel %g c %g\n", rays.direction[i].x,rays.direction[i].y,rays.direction[i].z,rays.origin[i].x,rays.origin[i].y,rays.origin[i].z,index,k, lens.count, (double)o.x,(double)o.y,(double)o.z, along.x,along.y,along.z,out.origin[i].x,out.origin[i].y,out.origin[i].z,out.direction[i].x,out.direction[i].y,out.direction[i].z,(double)step.relative_step,(double)step.curvature);
             ended[i] = !passed;
             alive += passed;
             rays.origin[i] = out.origin[i];

@@ -1,10 +1,14 @@
 """Lenses without a focus: infinite figures, and errors that say so."""
 
+import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 import realcam as rc
+from realcam.cli import app
+from typer.testing import CliRunner
 
 
 def galilean(film_distance_mm: float | None = 40.0) -> rc.Lens:
@@ -57,14 +61,14 @@ def test_a_camera_without_a_lens_is_a_pinhole() -> None:
     """A stop alone, which is afocal: every model gives the same picture, and a stop of 0.1 mm cos^4 of it."""
     hole = rc.Lens(surfaces=[rc.Stop(clear_semi_diameter_mm=0.1)], name="hole", film_distance_mm=20.0)
     mean = {}
-    for model in ("pinhole", "thin_lens", "thick_lens", "full_lens"):
+    for model in ("pinhole", "thin", "thick", "full"):
         camera = rc.Camera(hole, film=rc.Film(width_mm=20, height_mm=20, resolution=(8, 8)), model=model)
         rays = camera.generate_rays(spp=256)
         assert np.isfinite(rays.weights).all() and np.isfinite(rays.directions).all()
         mean[model] = rays.weights.mean()
     for model, value in mean.items():
         # The hole's own size changes the cosines by (0.1 / 20)^2; 1% of the full lens's samples miss.
-        assert value == pytest.approx(mean["full_lens"], rel=0.003), model
+        assert value == pytest.approx(mean["full"], rel=0.003), model
 
 
 def test_an_object_nearer_than_the_nearest_is_refused_with_the_nearest() -> None:
@@ -75,3 +79,19 @@ def test_an_object_nearer_than_the_nearest_is_refused_with_the_nearest() -> None
     near = lens.focused(1.01 * nearest_m)
     object_m = 1.01 * nearest_m - near.film_position_mm / 1000
     assert near.best_focus_mm(object_m) == pytest.approx(near.film_distance_mm, rel=1e-9)
+
+
+def test_the_command_line_writes_infinite_figures_as_json_that_anyone_reads(tmp_path: Path) -> None:
+    path = tmp_path / "hole.toml"
+    path.write_text(
+        "format = 1\nname = 'hole'\nfilm_distance_mm = 20\n[[surface]]\ntype = 'stop'\nclear_semi_diameter_mm = 0.1\n"
+    )
+
+    def no_json(constant: str) -> None:
+        pytest.fail(f"{constant} is no JSON")
+
+    result = CliRunner().invoke(app, ["lens", "info", str(path), "--json"])
+    data = json.loads(result.stdout, parse_constant=no_json)["first_order"]
+    assert data["effective_focal_length_mm"] is None
+    assert data["entrance_pupil_diameter_mm"] == pytest.approx(0.2)
+    assert "inf" in CliRunner().invoke(app, ["lens", "info", str(path)]).stdout

@@ -143,10 +143,10 @@ def test_nothing_becomes_infinite(time_s: float, device: str, tmp_path: Path) ->
 
 def test_lights_past_all_measure_are_refused() -> None:
     scene = scenes.sky()
-    for bad in (1e21, math.inf, math.nan, -1.0):
-        with pytest.raises(rc.InputError, match="1e20"):
+    for bad in (1e31, math.inf, math.nan, -1.0):
+        with pytest.raises(rc.InputError, match="between 0 and 1e"):
             scene.with_environment(bad)
-        with pytest.raises(rc.InputError, match="1e20"):
+        with pytest.raises(rc.InputError, match="between 0 and 1e"):
             scene.with_point_light((0, 0, 0), (1, bad, 1))
-        with pytest.raises(rc.InputError, match="1e20"):
+        with pytest.raises(rc.InputError, match="between 0 and 1e"):
             scene.with_sun((0, 0, 1), (bad, 1, 1))

@@ -180,7 +180,8 @@ def _as_dict(lens: Lens) -> dict[str, object]:
         "film_mm": list(lens.film_mm),
         "film_distance_mm": lens.film_distance_mm,
         "focus_distance_m": None if math.isinf(lens.focus_distance_m) else lens.focus_distance_m,
-        "first_order": {name: getattr(data, name) for name in names},
+        # JSON has no infinity, which an afocal lens has here.
+        "first_order": {name: value if math.isfinite(value := getattr(data, name)) else None for name in names},
         "surfaces": [
             {
                 "type": surface.type,

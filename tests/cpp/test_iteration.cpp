@@ -1,0 +1,234 @@
+// Every search of the core ends within a stated number of steps, whatever it is given, and gives no point as good that
+// it has not found.
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../../cpp/math/root.hpp"
+#include "../../cpp/optics/best_focus.hpp"
+#include "../../cpp/optics/pupil.hpp"
+#include "measurement.hpp"
+#include "pupil_region.hpp"
+#include "traced_ray.hpp"
+
+using namespace realcam;
+using namespace realcam::test;
+
+namespace {
+
+struct SearchEnd {
+    int steps = 0;
+    bool found = false;
+};
+
+/// The search of cross_asphere for one ray, step by step. The ray is relative to the surface's vertex.
+template <class T>
+SearchEnd search_asphere(const LensStep<T>& step, Vec3<T> o, Vec3<T> p) {
+    T t, below, above, residual = 0, tolerance = 0;
+    const T outside = begin_search(step, o, p, t, below, above);
+    if (outside > T(0) && !find_bracket(step, o, p, t, below, above) && outside > kSideways<T> / 2) return {};
+    SearchEnd end;
+    while (end.steps < kMaxAsphereSteps<T>) {
+        const bool halve = end.steps >= kNewtonSteps && end.steps % 2 == 0;
+        improve_search(step, o, p, halve, t, below, above, residual, tolerance);
+        ++end.steps;
+        if (!(residual > tolerance)) break;
+    }
+    end.found = residual <= tolerance;
+    return end;
+}
+
+struct Steps {
+    int worst = 0, unfound = 0, unfound_but_passed = 0;
+    long rays = 0;
+
+    template <class T>
+    void take(const LensStep<T>& step, Vec3<T> o, Vec3<T> p) {
+        const SearchEnd end = search_asphere(step, o, p);
+        LensRays<T, 1> ray;
+        ray.origin.set(0, o);
+        ray.direction.set(0, p);
+        ray.status[0] = 0;
+        LensStep<T> alone = step;
+        alone.shift = 0;
+        trace_lens(LensView<T>{&alone, 1, {}}, ray, PathRecord<T, 1>{});
+        worst = std::max(worst, end.steps);
+        unfound += static_cast<int>(!end.found);
+        unfound_but_passed += static_cast<int>(!end.found && ray.status[0] == 0);
+        ++rays;
+    }
+};
+
+/// Every asphere of a lens, with the rays that reach it from the film.
+template <class T>
+Steps steps_in_lens(const LensSystem& lens) {
+    const LensPath<T> path(lens, LightDirection::to_scene, lens.wavelength_nm);
+    const LensView<T> view = path.view();
+    Random random(5);
+    Steps steps;
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3d film = point_on_film(lens, random), target = point_on_last_surface(lens, random);
+        LensRays<T, 1> ray;
+        ray.origin.set(0, static_cast<Vec3<T>>(film - Vec3d{0, 0, lens.last_vertex()}));
+        ray.direction.set(0, static_cast<Vec3<T>>(normalized(target - film)));
+        ray.status[0] = 0;
+        for (int k = 0; k < view.count && ray.status[0] == 0; ++k) {
+            const LensStep<T>& step = view.steps[k];
+            Vec3<T> o = ray.origin[0];
+            o.z -= step.shift;
+            if (step.kind == StepKind::asphere) steps.take(step, o, ray.direction[0]);
+            trace_lens(LensView<T>{&step, 1, {}}, ray, PathRecord<T, 1>{});
+        }
+    }
+    return steps;
+}
+
+/// Aspheres whose terms nearly cancel, stand on end at the rim, or are as large as validate() lets them be; rays from
+/// all sides, some of them no numbers.
+template <class T>
+Steps steps_in_absurdities() {
+    Random random(9);
+    Steps steps;
+    const T nan = std::numeric_limits<T>::quiet_NaN(), most = std::numeric_limits<T>::max();
+    for (int trial = 0; trial < 400; ++trial) {
+        const double rim = std::pow(10.0, random.between(-6, 6));
+        Surface surface = refracting(rim * random.between(1.001, 50), 0, Glass::constant(1.5), rim);
+        surface.conic = trial % 2 ? random.between(-20, 0) : 0;
+        const double lift = std::pow(10.0, random.between(-6, 3));
+        for (int i = 0; i < kMaxAsphericTerms; ++i)
+            surface.aspheric.push_back(random.between(-lift, lift) * std::pow(rim, -3 - 2 * i));
+        if (!std::isfinite(static_cast<double>(static_cast<T>(surface.aspheric.back())))) continue;
+        const LensPath<T> path(lens_of({surface}), LightDirection::to_film, kLineD_nm);
+        const LensStep<T> step = path.view().steps[0];
+        for (int i = 0; i < 100; ++i) {
+            const double scale = rim * std::pow(10.0, random.between(-3, 3));
+            const auto any = [&] { return static_cast<T>(scale * random.between(-1, 1)); };
+            const Vec3<T> o{any(), any(), any()};
+            Vec3<T> p = static_cast<Vec3<T>>(
+                normalized(Vec3d{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}));
+            if (i % 10 == 0) p.z = 0;
+            if (i % 10 == 1) p = {0, 0, i % 20 == 1 ? T(1) : T(-1)};
+            steps.take(step, o, p);
+        }
+        for (const T wrong :
+             {nan, most, -most, T(0), std::numeric_limits<T>::denorm_min(), std::numeric_limits<T>::infinity()}) {
+            steps.take(step, {wrong, 0, 0}, {0, 0, 1});
+            steps.take(step, {0, wrong, wrong}, {0, 0, 1});
+            steps.take(step, {0, 0, T(-1)}, {wrong, 0, 1});
+            steps.take(step, {0, 0, T(-1)}, {0, wrong, wrong});
+        }
+    }
+    return steps;
+}
+
+template <class T>
+void check_asphere_search(const char* number_type) {
+    const Steps made = steps_in_lens<T>(io::read_lens("phone-4mm")), absurd = steps_in_absurdities<T>();
+    CHECK(made.unfound_but_passed == 0);
+    CHECK(absurd.unfound_but_passed == 0);
+    hold({"Iteration", "search on the 12 aspheres of a phone lens", std::to_string(made.rays) + " rays", "core",
+          number_type, static_cast<double>(made.worst), kNewtonSteps + 1,
+          "steps"});  // the last one sees that it is there
+    hold({"Iteration", "search on absurd aspheres, some rays no numbers", std::to_string(absurd.rays) + " rays", "core",
+          number_type, static_cast<double>(absurd.worst), kMaxAsphereSteps<T>, "steps"});
+}
+
+/// Calls of find_root, and how near the root it came.
+struct RootEnd {
+    int calls = 0;
+    Root root{};
+};
+template <class F>
+RootEnd root_of(F&& f, double a, double b) {
+    RootEnd end;
+    const double f_a = f(a), f_b = f(b);
+    end.root = find_root([&](double x) { return ++end.calls, f(x); }, a, f_a, b, f_b, 0);
+    return end;
+}
+
+}  // namespace
+
+TEST_CASE("the search on an asphere ends within its bound, and lets no ray pass that it has not placed") {
+    check_asphere_search<double>("float64");
+    check_asphere_search<float>("float32");
+}
+
+TEST_CASE("the root search of focusing ends within its bound, on functions that have no root too") {
+    int worst = 0, count = 0;
+    double off = 0;
+    const auto tried = [&](const RootEnd& end) {
+        worst = std::max(worst, end.calls);
+        ++count;
+        return end.root;
+    };
+    for (const double root : {0.0, 1e-300, 1e-9, 0.3, 7.0, 1e9}) {
+        const double reach = 1e12;
+        for (int power = 1; power <= 9; power += 2) {  // flat ones have many numbers for a root
+            const Root end = tried(root_of([&](double x) { return std::pow(x - root, power); }, -1, reach));
+            if (power == 1) off = std::max(off, std::fabs(end.at - root) / std::max(root, 1e-9));
+        }
+        tried(root_of([&](double x) { return x < root ? -1.0 : 1.0; }, -1, reach));         // a jump
+        tried(root_of([&](double x) { return x < root ? -1e-300 : 1e300; }, -1, reach));
+        const Root pole = tried(root_of([&](double x) { return 1e9 / (x - root); }, root - 1.3, root + 3.1));
+        CHECK_FALSE(std::fabs(pole.value) <= 1e-9);  // which the caller takes for no root
+        tried(root_of([&](double x) { return std::exp(x - root) - 1; }, -700, root + 700));
+        tried(root_of([&](double x) { return x < root ? -1.0 : std::nan(""); }, -1, reach));
+    }
+    CHECK(std::isnan(tried(root_of([](double x) { return x < 0 ? -1.0 : x > 1 ? 1.0 : std::nan(""); }, -1, 3)).value));
+    tried(root_of([](double) { return std::nan(""); }, 0, 1));
+    tried(root_of([](double x) { return x; }, -1e308, 1e308));
+    tried(root_of([](double x) { return x - 1; }, -kInfinity, kInfinity));
+    hold({"Iteration", "root search of focusing: smooth, flat, jumps, poles, NaN", std::to_string(count) + " functions",
+          "core", "float64", static_cast<double>(worst), kMaxRootCalls, "calls"});
+    hold({"Iteration", "root search of focusing: simple roots from 0 to 1e9 in a bracket of 1e12", "6 functions",
+          "core", "float64", off, 0x1p-52, "of the root"});
+}
+
+TEST_CASE("the quadrature of best focus has its nodes to the last digits") {
+    const best_focus_detail::GaussRule<32> rule;
+    double worst = 0;
+    for (int power = 0; power <= 63; ++power) {
+        double sum = 0;
+        for (int k = 0; k < 32; ++k) sum += rule.weight[k] * std::pow(rule.node[k], power);
+        worst = std::max(worst, std::fabs(sum * (power + 1) - 1));
+    }
+    // Powers of a node that is off by half a unit in the last place are off by 32 of them.
+    hold({"Iteration", "Gauss and Legendre, 32 nodes: integrals of x^0 to x^63", "64 powers", "core", "float64", worst,
+          1e-14, "of the integral"});
+}
+
+TEST_CASE("the pupil search ends within its bound, whatever passes") {
+    const LensSystem gauss = io::read_lens("double-gauss-50mm"), fisheye = io::read_lens("fisheye-6mm-220deg");
+    long worst = 0;
+    int count = 0;
+    const auto look = [&](const LensSystem& lens, double film_radius, const std::function<bool(Vec3f, long)>& passes) {
+        long blocks = 0;
+        const Pupil pupil(lens, film_radius, [&](const LensView<float>&, LensRays<float, 256>& rays) {
+            for (int i = 0; i < 256; ++i)
+                rays.status[i] =
+                    passes(rays.direction[i], 256 * blocks + i) ? 0 : static_cast<int>(RayStatus::vignetted);
+            ++blocks;
+        });
+        worst = std::max(worst, blocks);
+        ++count;
+        const PupilView view = pupil.view();
+        for (int i = 0; i <= view.rows; ++i) CHECK(std::isfinite(view.nodes[i].centre + view.nodes[i].half_width));
+        for (int i = 0; i < view.rows * view.sectors; ++i) CHECK(std::isfinite(view.outline[i].x + view.outline[i].dx));
+    };
+    for (const LensSystem& lens : {gauss, fisheye})
+        for (const double radius : {1e-30, 1e-6, 21.0, 1e6, 1e9}) {
+            look(lens, radius, [](Vec3f, long) { return false; });
+            look(lens, radius, [](Vec3f, long) { return true; });
+            look(lens, radius, [](Vec3f, long ray) { return hash32(static_cast<std::uint32_t>(ray)) % 2 == 0; });
+            look(lens, radius, [](Vec3f, long ray) { return hash32(static_cast<std::uint32_t>(ray)) % 1000 == 0; });
+            look(lens, radius, [](Vec3f d, long) { return std::fmod(std::fabs(d.x), 0.01f) < 0.003f; });  // stripes
+            look(lens, radius, [](Vec3f d, long) { return std::fabs(d.x - 0.31f) < 1e-7f; });
+        }
+    for (const double wrong : {0.0, -1.0, std::nan(""), kInfinity}) CHECK_THROWS_AS(Pupil(gauss, wrong), InputError);
+    hold({"Iteration",
+          "pupil search: nothing, everything, noise, stripes and a needle pass; film radii of 1e-30 to 1e9 mm",
+          std::to_string(count) + " searches", "core", "float32", static_cast<double>(worst), Pupil::kMostBlocks,
+          "blocks of 256 rays"});
+}
