@@ -15,7 +15,13 @@
 
 #include "inputs.hpp"
 
-extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
+/// A sanitizer's finding becomes a signal, which saves the input.
+extern "C" const char* __asan_default_options() {
+    return "abort_on_error=1";
+}
+extern "C" const char* __ubsan_default_options() {
+    return "abort_on_error=1:print_stacktrace=1";
+}
 
 namespace {
 
@@ -52,24 +58,19 @@ void save(const Input& input) {
     close(file);
 }
 
-void save_current() {
+[[noreturn]] void end(int signal) {
     save(current);
-}
-
-[[noreturn]] void stop(int signal) {
-    save_current();
     const char* what = signal == SIGPROF ? "realcam_fuzz: an input does not end\n" : "realcam_fuzz: crashed\n";
     if (write(STDERR_FILENO, what, std::strlen(what)) < 0) _exit(4);
     _exit(3);
 }
 
+/// Asked to stop, it tells how far it came.
+volatile std::sig_atomic_t stopped = 0;
+
 void watch() {
-    std::signal(SIGPROF, stop);
-    if (__sanitizer_set_death_callback) {
-        __sanitizer_set_death_callback(save_current);
-    } else {
-        for (const int signal : {SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGABRT}) std::signal(signal, stop);
-    }
+    for (const int signal : {SIGPROF, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGABRT}) std::signal(signal, end);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopped = 1; });
 }
 
 void start_clock() {
@@ -126,7 +127,7 @@ int main(int argc, char** argv) {
     if (argc > 4) saved_as = argv[4];
     watch();
     const Run run = run_inputs(
-        target->target, seed, [&] { return static_cast<double>(findings().*target->counts) >= count; },
+        target->target, seed, [&] { return stopped || static_cast<double>(findings().*target->counts) >= count; },
         [](const Input& input) {
             current = input;
             start_clock();
