@@ -35,26 +35,55 @@ struct Camera {
     double iso = 100;
 };
 
+namespace camera_detail {
+
+// Numbers beyond these are no camera's, and those of its rays would leave the range of float32.
+inline constexpr double kSmallestFilm = 1e-6, kLargestFilm = 1e9;  ///< each way, mm, as a lens: from a few atoms on
+inline constexpr double kFarthestPlace = 1e12;                     ///< each coordinate, m, as a scene's corners
+inline constexpr double kNearestLook = 1e-9;                       ///< look_at from position, m
+inline constexpr double kShortestUp = 1e-100, kLongestUp = 1e100;  ///< squares of both are numbers
+/// Light crosses an atom in the one; the universe is half as old as the other.
+inline constexpr double kShortestExposure = 1e-18, kLongestExposure = 1e18;
+/// The exposure that becomes middle grey, 10 / ISO lux seconds, is a float32 with all its digits.
+inline constexpr double kLeastIso = 1e-37, kMostIso = 1e38;
+
+inline bool lies_between(double least, double value, double most) {
+    return value >= least && value <= most;
+}
+
+inline bool is_place(Vec3d v) {
+    const auto in_reach = [](double x) { return std::fabs(x) <= kFarthestPlace; };
+    return in_reach(v.x) && in_reach(v.y) && in_reach(v.z);
+}
+
+}  // namespace camera_detail
+
 /// Throws InputError where the camera cannot take a picture.
 inline void validate(const Camera& camera) {
+    using namespace camera_detail;
     const Film& film = camera.film;
     if (film.width < 1 || film.height < 1 || film.width > kMaxResolution || film.height > kMaxResolution)
         throw InputError("the resolution is " + std::to_string(film.width) + " x " + std::to_string(film.height) +
                          " pixels; 1 to " + std::to_string(kMaxResolution) + " each way are wanted");
-    if (!(film.width_mm > 0) || !(film.height_mm > 0) || !std::isfinite(film.width_mm * film.height_mm))
-        throw InputError("the film's width and height must be positive lengths");
-    if (!(camera.exposure_time_s > 0) || !std::isfinite(camera.exposure_time_s))
-        throw InputError("the exposure time must be a positive number of seconds");
-    if (!(camera.iso > 0) || !std::isfinite(camera.iso)) throw InputError("the ISO number must be positive");
+    if (!lies_between(kSmallestFilm, film.width_mm, kLargestFilm) ||
+        !lies_between(kSmallestFilm, film.height_mm, kLargestFilm))
+        throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
+    if (!lies_between(kShortestExposure, camera.exposure_time_s, kLongestExposure))
+        throw InputError("the exposure time must be a positive number of seconds, from 1e-18 to 1e18");
+    if (!lies_between(kLeastIso, camera.iso, kMostIso))
+        throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
     if (!(camera.lens.film_distance > 0) || !std::isfinite(camera.lens.film_distance))
         throw InputError("the film must lie behind the last surface of the lens");
     if (!(camera.lens.stop_semi_diameter >= 0))
         throw InputError("the radius of the lens's open stop must be a length of 0 or more");
-    const Vec3d forward = camera.pose.look_at_m - camera.pose.position_m;
-    const double length_of_cross = length(cross(forward, camera.pose.up));
-    if (!std::isfinite(length_of_cross))
-        throw InputError("the camera's position, look_at and up must be finite numbers");
-    if (!(length_of_cross > 1e-9 * length(forward) * length(camera.pose.up)))
+    const Pose& pose = camera.pose;
+    if (!is_place(pose.position_m) || !is_place(pose.look_at_m))
+        throw InputError("the camera's position and look_at must be finite numbers of at most 1e12 m");
+    if (!lies_between(kShortestUp, length(pose.up), kLongestUp))
+        throw InputError("the camera's up direction must have a length, from 1e-100 to 1e100");
+    const Vec3d forward = pose.look_at_m - pose.position_m;
+    const double distance = length(forward);
+    if (!(distance > kNearestLook) || !(length(cross(forward, pose.up)) > 1e-9 * distance * length(pose.up)))
         throw InputError("the camera must look at a point other than its position, and not along its up direction");
 }
 

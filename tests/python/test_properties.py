@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from . import drawn
+from . import drawn, scenes
 from .drawn import ANY, Drawn
 
 settings.register_profile(
@@ -232,3 +232,40 @@ def test_any_wavelength_is_traced_or_refused(name: str, wavelength_nm: float, se
     except rc.InputError:
         return
     check_sane(out, len(lens.surfaces))
+
+
+PLACES = st.tuples(ANY, ANY, ANY)
+USUAL = st.floats(0.1, 10)
+
+
+@given(
+    st.sampled_from(["pinhole", "thin", "thick", "full"]),
+    st.one_of(st.none(), st.builds(rc.Film, st.one_of(USUAL, ANY), st.one_of(USUAL, ANY), st.just((3, 2)))),
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "position": PLACES,
+            "look_at": PLACES,
+            "up": PLACES,
+            "exposure_time_s": ANY,
+            "iso": ANY,
+        },
+    ),
+    SEEDS,
+)
+def test_any_camera_takes_finite_pictures_or_is_refused(
+    model: str, film: rc.Film | None, options: dict[str, object], seed: int
+) -> None:
+    film = film or rc.Film(36, 24, (3, 2))
+    try:
+        camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=film, model=model, **options)
+        rays = camera.generate_rays(spp=2, seed=seed)
+        image = rc.render(scenes.sky(1.0), camera, spp=2, seed=seed)
+    except rc.InputError:
+        return
+    assert np.isfinite(rays.origins_m).all()
+    np.testing.assert_allclose(np.linalg.norm(rays.directions, axis=1), 1, atol=1e-5)
+    assert np.isfinite(rays.weights).all()
+    assert (rays.weights >= 0).all()
+    assert np.isfinite(image.pixels).all()
+    assert (image.pixels >= 0).all()
