@@ -66,7 +66,8 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
     if (!coefficients) return values;
     for (const auto& [key, node] : coefficients->raw()) {
         const std::string power_text(key.str());
-        const bool digits = power_text.find_first_not_of("0123456789") == std::string::npos && power_text.size() < 3;
+        const bool digits = power_text.find_first_not_of("0123456789") == std::string::npos && !power_text.empty() &&
+                            power_text.size() < 3;
         const int power = digits ? std::stoi(power_text) : 0;
         const int largest = 2 * kMaxAsphericTerms + 2;
         if (power < 4 || power > largest || power % 2)

@@ -126,6 +126,10 @@ TEST_CASE("bad numbers of a surface are named with file, line and surface") {
                     "less than the clear semi-diameter");
     check_complaint(with_line(10, "aspheric_coefficients = { 5 = 1e-5 }"), "probe.toml:10: surface 1",
                     "even powers from 4 to 18");
+    check_complaint(with_line(10, "aspheric_coefficients = { \"\" = 1e-5 }"), "probe.toml:10: surface 1",
+                    "even powers from 4 to 18");
+    check_complaint(with_line(10, "aspheric_coefficients = { 44444444444444444444 = 1e-5 }"),
+                    "probe.toml:10: surface 1", "even powers from 4 to 18");
     check_complaint(with_line(10, "aspheric_coefficients = { 4 = nan }"), "probe.toml:10: surface 1", "r^4");
     check_complaint(with_line(10, "conic = inf"), "probe.toml:10: surface 1", "must be a finite number");
     check_complaint(with_line(12, "type = \"stopp\""), "probe.toml:12: surface 2", "unknown type \"stopp\"");
