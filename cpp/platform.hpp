@@ -1,6 +1,9 @@
 #pragma once
 // What the compiler and the chip decide. This is the one file of the core that looks at __CUDACC__.
 
+#include <bit>
+#include <cstdint>
+
 #if defined(__CUDACC__)
 #define REALCAM_HD __host__ __device__
 #else
@@ -41,6 +44,75 @@ REALCAM_INLINE unsigned reverse_bits(unsigned v) {
     v = ((v & 0x33333333u) << 2) | ((v >> 2) & 0x33333333u);
     v = ((v & 0x0f0f0f0fu) << 4) | ((v >> 4) & 0x0f0f0f0fu);
     return __builtin_bswap32(v);
+#endif
+}
+
+REALCAM_INLINE unsigned count_bits(unsigned v) {
+#if defined(__CUDA_ARCH__)
+    return static_cast<unsigned>(__popc(static_cast<int>(v)));
+#else
+    return static_cast<unsigned>(std::popcount(v));
+#endif
+}
+
+/// Memory that nobody writes while the kernel runs, 128 bits at a time.
+template <class T>
+REALCAM_INLINE T load_constant(const T* from) {
+    static_assert(sizeof(T) % 16 == 0 && alignof(T) == 16);
+#if defined(__CUDA_ARCH__)
+    struct Quads {
+        uint4 quad[sizeof(T) / 16];
+    } quads;
+#pragma unroll
+    for (unsigned i = 0; i < sizeof(T) / 16; ++i) quads.quad[i] = __ldg(reinterpret_cast<const uint4*>(from) + i);
+    return __builtin_bit_cast(T, quads);
+#else
+    return *from;
+#endif
+}
+
+inline constexpr std::uint32_t kBitsOf32768 = 0x47000000u;
+
+/// 32768 + byte number `index` (from the lowest) of a word, exactly: one permutation of bytes instead of a shift, a
+/// mask and a conversion, which GPUs have few units for. `bits_of_32768` is what its name says.
+REALCAM_INLINE float byte_above_32768(std::uint32_t word, unsigned index, std::uint32_t bits_of_32768) {
+#if defined(__CUDA_ARCH__)
+    return __uint_as_float(__byte_perm(word, bits_of_32768, 0x7604u | index << 4));
+#else
+    return std::bit_cast<float>(bits_of_32768 | (word >> (8 * index) & 0xffu) << 8);
+#endif
+}
+
+// Positive floats are ordered as their bits are. On integers, Hopper takes the largest of four in one instruction.
+
+/// The largest of three floats and 0, none of them NaN.
+REALCAM_INLINE float largest_or_zero(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+    return __int_as_float(__vimax3_s32_relu(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
+#else
+    const float ab = a > b ? a : b, abc = ab > c ? ab : c;
+    return abc > 0.0f ? abc : 0.0f;
+#endif
+}
+
+/// The smallest of four floats, none of them NaN. Where one is negative: any of the negative ones.
+REALCAM_INLINE float smallest_if_positive(float a, float b, float c, float d) {
+#if defined(__CUDA_ARCH__)
+    const int abc = __vimin3_s32(__float_as_int(a), __float_as_int(b), __float_as_int(c));
+    const int bits = __float_as_int(d);
+    return __int_as_float(abc < bits ? abc : bits);
+#else
+    const float ab = a < b ? a : b, cd = c < d ? c : d;
+    return ab < cd ? ab : cd;
+#endif
+}
+
+/// The bits moved up by one, and the sign of v below them.
+REALCAM_INLINE unsigned append_sign(unsigned bits, float v) {
+#if defined(__CUDA_ARCH__)
+    return __funnelshift_l(__float_as_uint(v), bits, 1);
+#else
+    return bits << 1 | std::bit_cast<std::uint32_t>(v) >> 31;
 #endif
 }
 

@@ -72,15 +72,15 @@ inline void validate(const Camera& camera) {
         throw InputError("the exposure time must be a positive number of seconds, from 1e-18 to 1e18");
     if (!lies_between(kLeastIso, camera.iso, kMostIso))
         throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
-    if (!(camera.lens.film_distance > 0) || !std::isfinite(camera.lens.film_distance))
-        throw InputError("the film must lie behind the last surface of the lens");
+    if (!(camera.lens.film_distance > 0) || !(camera.lens.film_distance <= kLongest))
+        throw InputError("the film must lie behind the last surface of the lens, at most 1e9 mm away");
     if (!(camera.lens.stop_semi_diameter >= 0))
         throw InputError("the radius of the lens's open stop must be a length of 0 or more");
     const Pose& pose = camera.pose;
     if (!is_place(pose.position_m) || !is_place(pose.look_at_m))
         throw InputError("the camera's position and look_at must be finite numbers of at most 1e12 m");
     if (!lies_between(kShortestUp, length(pose.up), kLongestUp))
-        throw InputError("the camera's up direction must have a length, from 1e-100 to 1e100");
+        throw InputError("the camera's up direction must have a finite length, from 1e-100 to 1e100");
     const Vec3d forward = pose.look_at_m - pose.position_m;
     const double distance = length(forward);
     if (!(distance > kNearestLook) || !(length(cross(forward, pose.up)) > 1e-9 * distance * length(pose.up)))

@@ -125,7 +125,8 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
-        place_ray(camera, rays, i, {inside.origin[i], inside.direction[i], rays.weight[i]}, passed);
+        // The trace leaves a length of about 1: to 1e-4 for a ray that comes from far beside the lens.
+        place_ray(camera, rays, i, {inside.origin[i], normalized(inside.direction[i]), rays.weight[i]}, passed);
         rays.passed[i] = select(passed, 1, 0);
     }
 }

@@ -75,7 +75,7 @@ REALCAM_INLINE float pupil_weight(const PupilView& pupil, const PupilPlace& plac
 /// A ray's start direction.
 struct PupilSample {
     Vec3f direction;  ///< optical, from the film point to the scene, lens frame
-    float weight;     ///< one over pupil_pdf; 0 outside the image circle
+    float weight;     ///< one over pupil_pdf; 0 outside the image circle, and where the direction does not exist
 };
 
 /// Chooses a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the row.
@@ -95,8 +95,10 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
     const float l = place.centre + place.half_width * x;
     const float m = place.half_height * select(lower, -y, y);
     const float l_film = l * place.cos - m * place.sin, m_film = l * place.sin + m * place.cos;
-    const float towards_scene = sqrt_or_zero(pupil.index_squared - l * l - m * m);
-    return {{l_film, m_film, -towards_scene}, pupil_weight(pupil, place, sector)};
+    // Past the edge of the half-space, to which the sectors of a film point far out beside the lens may reach, there
+    // are no directions.
+    const float rest = pupil.index_squared - l * l - m * m;
+    return {{l_film, m_film, -sqrt_or_zero(rest)}, select(rest > 0.0f, pupil_weight(pupil, place, sector), 0.0f)};
 }
 
 /// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 where it never goes.
@@ -116,8 +118,9 @@ REALCAM_INLINE float pupil_pdf(const PupilView& pupil, float film_x, float film_
     const PupilSector& s = row[first];
     const float reach = (x * s.dy - y * s.dx) / (s.x * s.dy - s.y * s.dx);
     const bool inside = reach <= 1.0f && reach * reach >= s.hole_squared;
+    const bool exists = l * l + m * m < pupil.index_squared;
     const float weight = pupil_weight(pupil, place, s);
-    return select(inside && weight > 0.0f, 1.0f / weight, 0.0f);
+    return select(inside && exists && weight > 0.0f, 1.0f / weight, 0.0f);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -98,6 +98,32 @@ TEST_CASE("lanes that are not used make no light and no NaN") {
     }
 }
 
+TEST_CASE("rays from film points far beside the lens are sent in directions that exist, and leave as unit vectors") {
+    Camera camera = camera_with(io::read_lens("achromat-75mm"), CameraModel::full_lens);
+    camera.film = {6000, 2000, 96, 64};
+    const CameraSetup setup(camera);
+    const CameraView view = setup.view({0, 0, 0});
+    float longest = 0, worst = 0;
+    int passed = 0;
+    for (int row = 0; row < 64; row += 3)
+        for (int column = 0; column < 96; column += 3) {
+            const CameraRays<kLanes> rays = rays_of_pixel(view, column, row);
+            for (int i = 0; i < kLanes; ++i) {
+                const Vec2f at = film_point(view, column, row, {0.5f, 0.5f}), u = sample_2d(pixel_stream(i, 0), 0, 1);
+                const PupilSample sample = sample_pupil(view.pupil, at.x, at.y, u.x, u.y);
+                const Vec3f d = sample.direction;
+                if (sample.weight > 0) longest = std::max(longest, dot(d, d));
+                if (!rays.passed[i]) continue;
+                worst = std::max(worst, std::fabs(length(rays.direction[i]) - 1));
+                ++passed;
+            }
+        }
+    CHECK(passed > 10000);
+    CHECK(longest < 1 + 1e-6f);
+    CHECK(worst < 1e-6f);
+    CHECK(pupil_pdf(view.pupil, 2900, 0, -1.001f, 0) == 0);
+}
+
 TEST_CASE("a camera that cannot take a picture is refused with the reason") {
     const auto complaint = [](auto&& change) -> std::string {
         Camera camera = camera_with(io::read_lens("double-gauss-50mm"), CameraModel::pinhole);
@@ -118,6 +144,7 @@ TEST_CASE("a camera that cannot take a picture is refused with the reason") {
     CHECK(complaint([&](Camera& c) { c.exposure_time_s = nan; }).find("exposure time") != std::string::npos);
     CHECK(complaint([](Camera& c) { c.iso = 0; }).find("ISO") != std::string::npos);
     CHECK(complaint([](Camera& c) { c.lens.film_distance = -1; }).find("behind the last surface") != std::string::npos);
+    CHECK(complaint([](Camera& c) { c.lens.film_distance = 1e200; }).find("at most 1e9 mm") != std::string::npos);
     CHECK(complaint([](Camera& c) { c.pose.look_at_m = c.pose.position_m; }).find("other than its position") !=
           std::string::npos);
     CHECK(complaint([](Camera& c) { c.pose.up = {0, 0, 5}; }).find("not along its up") != std::string::npos);

@@ -1,0 +1,129 @@
+#include "binary_tree.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../embree/embree_api.hpp"
+#include "../error.hpp"
+
+namespace realcam {
+namespace {
+
+[[noreturn]] void fail(RTCError code) {
+    if (code == RTC_ERROR_OUT_OF_MEMORY) throw DeviceError("Embree ran out of memory while it built the scene's BVH");
+    throw DeviceError("Embree could not build the scene's BVH (error " + std::to_string(code) + ")");
+}
+
+std::vector<RTCBuildPrimitive> primitives_of(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+    std::vector<RTCBuildPrimitive> primitives(triangles.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const std::uint32_t* corner = triangles[i].vertices;
+            const Box box = box_of({positions[corner[0]], 0, positions[corner[1]], 0, positions[corner[2]], 0});
+            primitives[i] = {box.lower.x, box.lower.y, box.lower.z, 0,
+                             box.upper.x, box.upper.y, box.upper.z, static_cast<unsigned>(i)};
+        }
+    });
+    return primitives;
+}
+
+void* create_inner(RTCThreadLocalAllocator allocator, unsigned, void*) {
+    auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(InnerNode), 16)) InnerNode;
+    node->triangles = 0;  // known later; not a leaf
+    return node;
+}
+
+void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* p, std::size_t, void*) {
+    const Box box = {{p->lower_x, p->lower_y, p->lower_z}, {p->upper_x, p->upper_y, p->upper_z}};
+    return new (rtcThreadLocalAlloc(allocator, sizeof(BinaryNode), 16)) BinaryNode{box, 1, p->primID};
+}
+
+void set_children(void* node, void** children, unsigned, void*) {
+    for (int i = 0; i < 2; ++i) static_cast<InnerNode*>(node)->child[i] = static_cast<BinaryNode*>(children[i]);
+}
+
+void set_bounds(void*, const RTCBounds**, unsigned, void*) {}
+
+}  // namespace
+
+struct BinaryTree::Memory {
+    RTCDevice device = rtcNewDevice(nullptr);
+    RTCBVH bvh = device ? rtcNewBVH(device) : nullptr;
+
+    Memory() = default;
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+    ~Memory() {
+        if (bvh) rtcReleaseBVH(bvh);
+        if (device) rtcReleaseDevice(device);
+    }
+};
+
+BinaryTree::BinaryTree(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+    auto memory = std::make_unique<Memory>();
+    if (!memory->bvh) fail(rtcGetDeviceError(memory->device));
+    std::vector<RTCBuildPrimitive> primitives = primitives_of(positions, triangles);
+    RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    arguments.bvh = memory->bvh;
+    arguments.primitives = primitives.data();
+    arguments.primitiveCount = arguments.primitiveArrayCapacity = primitives.size();
+    arguments.maxLeafSize = 1;
+    arguments.maxDepth = 1024;  // chains are dealt with later, see balance()
+    arguments.createNode = create_inner;
+    arguments.createLeaf = create_leaf;
+    arguments.setNodeChildren = set_children;
+    arguments.setNodeBounds = set_bounds;
+    root_ = static_cast<BinaryNode*>(rtcBuildBVH(&arguments));
+    if (!root_) fail(rtcGetDeviceError(memory->device));
+    memory_ = memory.release();
+}
+
+BinaryTree::~BinaryTree() {
+    delete memory_;
+}
+
+namespace {
+
+void collect(BinaryNode& node, std::vector<BinaryNode*>& leaves, std::vector<InnerNode*>& inner_nodes) {
+    if (node.is_leaf()) {
+        leaves.push_back(&node);
+        return;
+    }
+    inner_nodes.push_back(&node.inner());
+    for (BinaryNode* child : node.inner().child) collect(*child, leaves, inner_nodes);
+}
+
+BinaryNode* halves(std::span<BinaryNode*> leaves, InnerNode**& next) {
+    if (leaves.size() == 1) return leaves.front();
+    Box box = leaves.front()->box;
+    for (const BinaryNode* leaf : leaves) grow(box, leaf->box);
+    const Vec3f size = box.upper - box.lower;
+    const auto axis =
+        size.x > size.y ? (size.x > size.z ? &Vec3f::x : &Vec3f::z) : (size.y > size.z ? &Vec3f::y : &Vec3f::z);
+    const auto middle = leaves.begin() + static_cast<std::ptrdiff_t>(leaves.size() / 2);
+    std::nth_element(leaves.begin(), middle, leaves.end(), [axis](const BinaryNode* a, const BinaryNode* b) {
+        return 0.5f * (a->box.lower.*axis) + 0.5f * (a->box.upper.*axis) <
+               0.5f * (b->box.lower.*axis) + 0.5f * (b->box.upper.*axis);
+    });
+    InnerNode* node = *next++;
+    node->child[0] = halves({leaves.begin(), middle}, next);
+    node->child[1] = halves({middle, leaves.end()}, next);
+    return node;
+}
+
+}  // namespace
+
+void balance(InnerNode& node) {
+    std::vector<BinaryNode*> leaves;
+    std::vector<InnerNode*> inner_nodes;
+    collect(node, leaves, inner_nodes);
+    InnerNode** next = inner_nodes.data();  // the first is `node` itself
+    halves(leaves, next);
+}
+
+}  // namespace realcam

@@ -1,0 +1,150 @@
+#include "build_wide_bvh.hpp"
+
+#include <tbb/task_group.h>
+
+#include <string>
+
+#include "../error.hpp"
+#include "collapse.hpp"
+#include "slot_order.hpp"
+
+namespace realcam {
+namespace {
+
+/// Levels of wide nodes that follow the surface area heuristic. What lies below is halved by number, one level of
+/// halves a node at least, which is 28 levels for the largest scene.
+constexpr int kLevelsByArea = 20;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 28;
+static_assert(kLevelsByArea + 28 <= kMaxBvhDepth);
+
+/// Subtrees of fewer triangles are not worth a task.
+constexpr std::uint32_t kTaskSize = 2048;
+
+/// Counts the wide nodes below and with `node`, so that each subtree knows its place beforehand.
+void count_wide_nodes(InnerNode& node, int level) {
+    if (level == kLevelsByArea) {
+        balance(node);
+        plan_collapse(node);
+        keep_as_node(node);
+    }
+    const WideChildren children = children_of(node);
+    tbb::task_group tasks;
+    for (unsigned c = 0; c < children.count; ++c) {
+        if (in_one_slot(*children.node[c])) continue;
+        InnerNode& child = children.node[c]->inner();
+        if (child.triangles >= kTaskSize)
+            tasks.run([&child, level] { count_wide_nodes(child, level + 1); });
+        else
+            count_wide_nodes(child, level + 1);
+    }
+    tasks.wait();
+    node.wide_nodes = 1;
+    for (unsigned c = 0; c < children.count; ++c)
+        if (!in_one_slot(*children.node[c])) node.wide_nodes += children.node[c]->inner().wide_nodes;
+}
+
+class Writer {
+public:
+    Writer(std::span<const Vec3f> positions, std::span<const Triangle> triangles, WideBvh& bvh)
+        : positions_(positions), triangles_(triangles), bvh_(bvh) {}
+
+    /// Writes a node with the children given, and what lies below.
+    void write(const WideChildren& children, std::uint32_t index, std::uint32_t first_below,
+               std::uint32_t first_triangle) {
+        Box boxes[kSlots] = {};
+        unsigned slot_of[kSlots];
+        for (unsigned c = 0; c < children.count; ++c) boxes[c] = children.node[c]->box;
+        order_slots(boxes, children.count, slot_of);
+        const BinaryNode* in_slot[kSlots] = {};
+        Box slot_boxes[kSlots] = {};
+        unsigned used = 0;
+        for (unsigned c = 0; c < children.count; ++c) {
+            in_slot[slot_of[c]] = children.node[c];
+            slot_boxes[slot_of[c]] = boxes[c];
+            used |= 1u << slot_of[c];
+        }
+        WideNode& node = bvh_.nodes[index];
+        node.first_child = first_below;
+        node.first_triangle = first_triangle;
+        node.content = 0;
+        quantise_boxes(node, slot_boxes, used);
+        std::uint32_t inner_children = 0;
+        for (unsigned s = 0; s < kSlots; ++s) {
+            if (!in_slot[s]) continue;
+            if (in_one_slot(*in_slot[s])) {
+                node.content |= ((1u << in_slot[s]->triangles) - 1) << (3 * s);
+                write_triangles(*in_slot[s], first_triangle);
+            } else {
+                node.content |= 1u << (24 + s);
+                ++inner_children;
+            }
+        }
+        std::uint32_t child_index = first_below, below = first_below + inner_children;
+        tbb::task_group tasks;
+        for (unsigned s = 0; s < kSlots; ++s) {
+            if (!in_slot[s] || in_one_slot(*in_slot[s])) continue;
+            const InnerNode& child = in_slot[s]->inner();
+            const auto descend = [this, &child, child_index, below, first_triangle] {
+                write(children_of(child), child_index, below, first_triangle);
+            };
+            if (child.triangles >= kTaskSize)
+                tasks.run(descend);
+            else
+                descend();
+            ++child_index;
+            below += child.wide_nodes - 1;
+            first_triangle += child.triangles;
+        }
+        tasks.wait();
+    }
+
+private:
+    void write_triangles(const BinaryNode& node, std::uint32_t& next) {
+        if (!node.is_leaf()) {
+            for (const BinaryNode* child : node.inner().child) write_triangles(*child, next);
+            return;
+        }
+        const std::uint32_t* corner = triangles_[node.triangle].vertices;
+        bvh_.triangles[next] = {
+            positions_[corner[0]], node.triangle, positions_[corner[1]], 0, positions_[corner[2]], 0};
+        bvh_.corners[next] = {{corner[0], corner[1], corner[2]}};
+        ++next;
+    }
+
+    std::span<const Vec3f> positions_;
+    std::span<const Triangle> triangles_;
+    WideBvh& bvh_;
+};
+
+}  // namespace
+
+WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+    if (triangles.size() > kMostTriangles)
+        throw DeviceError("the scene has " + std::to_string(triangles.size()) + " triangles; a BVH holds " +
+                          std::to_string(kMostTriangles));
+    WideBvh bvh;
+    if (triangles.empty()) {
+        bvh.nodes.resize(1);
+        quantise_boxes(bvh.nodes[0], {}, 0);
+        return bvh;
+    }
+    BinaryTree tree(positions, triangles);
+    BinaryNode& root = tree.root();
+    WideChildren top;
+    std::uint32_t node_count = 1;
+    if (root.is_leaf()) {
+        top.node[top.count++] = &root;
+    } else {
+        plan_collapse(root);
+        count_wide_nodes(root.inner(), 0);
+        top = children_of(root.inner());
+        node_count = root.inner().wide_nodes;
+    }
+    bvh.nodes.resize(node_count);
+    bvh.triangles.resize(triangles.size());
+    bvh.corners.resize(triangles.size());
+    Writer(positions, triangles, bvh).write(top, 0, 1, 0);
+    return bvh;
+}
+
+}  // namespace realcam

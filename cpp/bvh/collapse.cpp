@@ -1,0 +1,111 @@
+#include "collapse.hpp"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+
+namespace realcam {
+namespace {
+
+/// Levels of the tree whose halves are worth a task each.
+constexpr int kParallelLevels = 12;
+
+struct Planner {
+    double per_length;  ///< areas in units of the whole scene's, or 1e18 m squared would overflow
+
+    float half_area(const Box& box) const {
+        const double x = (static_cast<double>(box.upper.x) - static_cast<double>(box.lower.x)) * per_length;
+        const double y = (static_cast<double>(box.upper.y) - static_cast<double>(box.lower.y)) * per_length;
+        const double z = (static_cast<double>(box.upper.z) - static_cast<double>(box.lower.z)) * per_length;
+        return static_cast<float>(x * y + y * z + z * x);
+    }
+
+    /// The least cost of the triangles below a node as at most `roots` children of some wide node.
+    float cost(const BinaryNode& node, unsigned roots) const {
+        return node.is_leaf() ? kTriangleCost * half_area(node.box) : node.inner().cost[roots - 1];
+    }
+
+    void plan(InnerNode& node) const {
+        float left[kSlots], right[kSlots];
+        for (unsigned i = 1; i < kSlots; ++i) {
+            left[i] = cost(*node.child[0], i);
+            right[i] = cost(*node.child[1], i);
+        }
+        const float area = half_area(node.box);
+        float split_cost[kSlots + 1];
+        for (unsigned roots = 2; roots <= kSlots; ++roots) {
+            split_cost[roots] = left[1] + right[roots - 1];
+            node.left_share[roots - 2] = 1;
+            for (unsigned share = 2; share < roots; ++share) {
+                const float c = left[share] + right[roots - share];
+                if (!(c < split_cost[roots])) continue;
+                split_cost[roots] = c;
+                node.left_share[roots - 2] = static_cast<std::uint8_t>(share);
+            }
+        }
+        const float as_node = split_cost[kSlots] + area;
+        const float as_slot = kTriangleCost * area * static_cast<float>(node.triangles);
+        node.as_one_slot = node.triangles <= kTrianglesPerSlot && as_slot <= as_node;
+        node.cost[0] = node.as_one_slot ? as_slot : as_node;
+        for (unsigned roots = 2; roots < kSlots; ++roots) {
+            const bool split = split_cost[roots] < node.cost[roots - 2];
+            node.cost[roots - 1] = split ? split_cost[roots] : node.cost[roots - 2];
+            if (!split) node.left_share[roots - 2] = 0;  // one root fewer
+        }
+    }
+
+    template <class Visit>
+    static void bottom_up(BinaryNode& node, int level, const Visit& visit) {
+        if (node.is_leaf()) return;
+        BinaryNode &left = *node.inner().child[0], &right = *node.inner().child[1];
+        if (level < kParallelLevels) {
+            tbb::parallel_invoke([&] { bottom_up(left, level + 1, visit); },
+                                 [&] { bottom_up(right, level + 1, visit); });
+        } else {
+            bottom_up(left, level + 1, visit);
+            bottom_up(right, level + 1, visit);
+        }
+        visit(node.inner());
+    }
+};
+
+void gather(BinaryNode& node, unsigned roots, WideChildren& children);
+
+void gather_split(const InnerNode& node, unsigned roots, WideChildren& children) {
+    const unsigned share = node.left_share[roots - 2];
+    gather(*node.child[0], share, children);
+    gather(*node.child[1], roots - share, children);
+}
+
+void gather(BinaryNode& node, unsigned roots, WideChildren& children) {
+    if (!node.is_leaf())
+        while (roots > 1 && node.inner().left_share[roots - 2] == 0) --roots;
+    if (node.is_leaf() || roots == 1)
+        children.node[children.count++] = &node;
+    else
+        gather_split(node.inner(), roots, children);
+}
+
+}  // namespace
+
+void plan_collapse(BinaryNode& root) {
+    Planner::bottom_up(root, 0, [](InnerNode& node) {
+        node.box = node.child[0]->box;
+        grow(node.box, node.child[1]->box);
+        node.triangles = node.child[0]->triangles + node.child[1]->triangles;
+    });
+    const Box& box = root.box;
+    const double size = std::max({static_cast<double>(box.upper.x) - static_cast<double>(box.lower.x),
+                                  static_cast<double>(box.upper.y) - static_cast<double>(box.lower.y),
+                                  static_cast<double>(box.upper.z) - static_cast<double>(box.lower.z)});
+    const Planner planner{size > 0 ? 1 / size : 0};
+    Planner::bottom_up(root, 0, [&](InnerNode& node) { planner.plan(node); });
+}
+
+WideChildren children_of(const InnerNode& node) {
+    WideChildren children;
+    gather_split(node, kSlots, children);
+    return children;
+}
+
+}  // namespace realcam

@@ -1,0 +1,71 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "build_wide_bvh.hpp"
+#include "quantised_boxes.hpp"
+
+namespace realcam {
+namespace {
+
+/// Levels of nodes whose children are worth a task each.
+constexpr int kParallelLevels = 3;
+
+/// Boxes of a node's slots, from the triangles up; the node's own is returned.
+Box refit_node(WideBvh& bvh, std::uint32_t index, int level) {
+    WideNode& node = bvh.nodes[index];
+    Box boxes[kSlots] = {};
+    unsigned used = 0;
+    std::uint32_t child[kSlots], triangle = node.first_triangle, next_child = node.first_child;
+    for (unsigned s = 0; s < kSlots; ++s) {
+        if (node.content >> (24 + s) & 1u) {
+            child[s] = next_child++;
+            used |= 1u << s;
+            continue;
+        }
+        for (unsigned left = count_bits(node.content >> (3 * s) & 7u); left > 0; --left) {
+            const Box box = box_of(bvh.triangles[triangle++]);
+            if (used >> s & 1u)
+                grow(boxes[s], box);
+            else
+                boxes[s] = box;
+            used |= 1u << s;
+        }
+    }
+    const auto refit_child = [&](unsigned s) {
+        if (node.content >> (24 + s) & 1u) boxes[s] = refit_node(bvh, child[s], level + 1);
+    };
+    if (level < kParallelLevels)
+        tbb::parallel_for(0u, kSlots, refit_child);
+    else
+        for (unsigned s = 0; s < kSlots; ++s) refit_child(s);
+
+    quantise_boxes(node, boxes, used);
+    Box whole = {};
+    bool first = true;
+    for (unsigned s = 0; s < kSlots; ++s) {
+        if (!(used >> s & 1u)) continue;
+        if (first)
+            whole = boxes[s];
+        else
+            grow(whole, boxes[s]);
+        first = false;
+    }
+    return whole;
+}
+
+}  // namespace
+
+void refit(WideBvh& bvh, std::span<const Vec3f> positions) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bvh.triangles.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const std::uint32_t* vertex = bvh.corners[i].vertices;
+            BvhTriangle& triangle = bvh.triangles[i];
+            triangle.a = positions[vertex[0]];
+            triangle.b = positions[vertex[1]];
+            triangle.c = positions[vertex[2]];
+        }
+    });
+    refit_node(bvh, 0, 0);
+}
+
+}  // namespace realcam

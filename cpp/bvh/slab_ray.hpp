@@ -1,0 +1,100 @@
+#pragma once
+#include "../scene/surface_point.hpp"
+#include "wide_bvh.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A ray as the boxes of a node are tested with, all eight at once.
+///
+/// The test must find the box of every triangle that meets_triangle would accept, or light leaks through edges. It sees
+/// corners displaced by up to 6 roundings of their distance from the ray's origin (measured along the largest axis),
+/// and the parameter of a plane, taken back to a place on the axis, is off by up to 7. All boxes of a node are
+/// therefore made larger by 16 roundings of the distance of its farthest corner, and no other tolerance is needed.
+struct SlabRay {
+    Vec3f origin, per_axis;  ///< ray parameter for each unit along the axis
+    unsigned near_first, near_second, near_third;  ///< slots on the near side, of the dominant axis first
+    bool down_x, down_y, down_z;
+    std::uint32_t bits_of_32768;  ///< hidden from the compiler: an instruction has room for one constant
+
+    /// The components have a modulus in [0, 4), the largest of at least 1.
+    REALCAM_INLINE SlabRay(Vec3f from, Vec3f direction) : origin(from) {
+        down_x = direction.x < 0;
+        down_y = direction.y < 0;
+        down_z = direction.z < 0;
+        bits_of_32768 = kBitsOf32768 | std::bit_cast<std::uint32_t>(direction.x - direction.x);
+        per_axis = {reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z)};
+        const unsigned near_x = down_x ? 0xaau : 0x55u, near_y = down_y ? 0xccu : 0x33u,
+                       near_z = down_z ? 0xf0u : 0x0fu;
+        const float x = std::fabs(direction.x), y = std::fabs(direction.y), z = std::fabs(direction.z);
+        const bool x_first = x > y && x > z, y_first = !x_first && y > z;
+        near_first = x_first ? near_x : y_first ? near_y : near_z;
+        near_second = x_first   ? (y > z ? near_y : near_z)
+                      : y_first ? (x > z ? near_x : near_z)
+                      : x > y   ? near_x
+                                : near_y;
+        near_third = near_x ^ near_y ^ near_z ^ near_first ^ near_second;
+    }
+
+    /// A bit for each slot whose box the ray meets at a parameter in [0, far]. Bits of empty slots mean nothing.
+    REALCAM_INLINE unsigned slots_met(const WideNode& node, float far) const {
+        const Vec3f to = node.origin - origin;
+        // The reach holds, besides the farthest plane, 2^-8 of a step over 2^-20: what subtracting 32768 steps costs.
+        const float reach = std::bit_cast<float>(node.step_z_reach << 16);
+        const float slack = 0x1p-20f * (largest_coordinate(to) + reach);
+        const Axis x(to.x, std::bit_cast<float>(node.steps_xy & 0xffff0000u), per_axis.x, slack);
+        const Axis y(to.y, std::bit_cast<float>(node.steps_xy << 16), per_axis.y, slack);
+        const Axis z(to.z, std::bit_cast<float>(node.step_z_reach & 0xffff0000u), per_axis.z, slack);
+        unsigned missed = 0;
+        for (int half = 1; half >= 0; --half) {
+            const std::uint32_t near_x = down_x ? node.upper[0][half] : node.lower[0][half];
+            const std::uint32_t near_y = down_y ? node.upper[1][half] : node.lower[1][half];
+            const std::uint32_t near_z = down_z ? node.upper[2][half] : node.lower[2][half];
+            const std::uint32_t far_x = down_x ? node.lower[0][half] : node.upper[0][half];
+            const std::uint32_t far_y = down_y ? node.lower[1][half] : node.upper[1][half];
+            const std::uint32_t far_z = down_z ? node.lower[2][half] : node.upper[2][half];
+            for (unsigned i = 4; i-- > 0;) {
+                const float enter =
+                    largest_or_zero(x.near(byte(near_x, i)), y.near(byte(near_y, i)), z.near(byte(near_z, i)));
+                const float leave =
+                    smallest_if_positive(x.far(byte(far_x, i)), y.far(byte(far_y, i)), z.far(byte(far_z, i)), far);
+                missed = append_sign(missed, leave - enter);
+            }
+        }
+        return ~missed & 0xffu;
+    }
+
+    /// The slot, as a bit, that comes first along the ray. `slots` is not 0.
+    REALCAM_INLINE unsigned nearest(unsigned slots) const {
+        slots = slots & near_first ? slots & near_first : slots;
+        slots = slots & near_second ? slots & near_second : slots;
+        return slots & near_third ? slots & near_third : slots;
+    }
+
+private:
+    /// The planes of one axis as ray parameters.
+    struct Axis {
+        float step, near_start, far_start;
+
+        REALCAM_INLINE Axis(float to, float box_step, float per_axis, float slack) : step(box_step * per_axis) {
+            const float start = std::fma(-32768.0f, step, to * per_axis);
+            near_start = std::fma(-slack, std::fabs(per_axis), start);
+            far_start = std::fma(slack, std::fabs(per_axis), start);
+        }
+        REALCAM_INLINE float near(float plane) const { return std::fma(plane, step, near_start); }
+        REALCAM_INLINE float far(float plane) const { return std::fma(plane, step, far_start); }
+    };
+
+    REALCAM_INLINE float byte(std::uint32_t planes, unsigned i) const {
+        return byte_above_32768(planes, i, bits_of_32768);
+    }
+
+    /// A component of less than 2^-40 of the largest is raised to it: that moves the ray by less than a rounding, and
+    /// no plane is at infinity, or at 0 times infinity.
+    REALCAM_INLINE static float reciprocal(float component) {
+        // The sign of -0 is that of its bool above.
+        const float least = component < 0 ? -0x1p-40f : 0x1p-40f;
+        return 1.0f / (std::fabs(component) < 0x1p-40f ? least : component);
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE
