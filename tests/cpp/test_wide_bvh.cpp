@@ -1,6 +1,6 @@
 // The BVH of the CUDA backend, whose traversal runs on the host too: against every triangle in double precision, and
 // against Embree.
-#if REALCAM_HAS_EMBREE
+#if defined(REALCAM_HAS_BVH)
 
 #include <algorithm>
 #include <cmath>
