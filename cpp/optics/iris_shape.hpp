@@ -41,7 +41,8 @@ inline double iris_area(const IrisShape& shape, double apothem, double rim) {
 /// the same light with and without blades. Wide open the blades are behind the rim.
 inline Iris<double> open_iris(const IrisShape& shape, double circle_radius, double rim) {
     const double wanted = std::numbers::pi * circle_radius * circle_radius;
-    double low = 0.5 * circle_radius, high = 2 * rim;  // the area grows with the apothem
+    // The area grows with the apothem; the opening holds the circle of its apothem, and lies in one of twice it.
+    double low = 0.5 * circle_radius, high = circle_radius > 0 && circle_radius < rim ? circle_radius : 2 * rim;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
         (iris_area(shape, middle, rim) < wanted ? low : high) = middle;

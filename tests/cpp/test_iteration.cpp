@@ -199,6 +199,26 @@ TEST_CASE("the quadrature of best focus has its nodes to the last digits") {
           1e-14, "of the integral"});
 }
 
+TEST_CASE("the blades leave open the area of their circle, however small") {
+    double worst = 0;
+    int count = 0;
+    for (const int blades : {3, 5, kMaxIrisBlades})
+        for (const double rounding : {0.0, 0.3, 1.0})
+            for (const double rim : {1e-6, 10.0, 1e9})
+                for (const double share : {0.99, 0.5, 1e-3, 1e-9, 1e-15, 1e-18, 1e-30}) {
+                    const IrisShape shape{blades, rounding, 0.1};
+                    const double radius = share * rim, apothem = open_iris(shape, radius, rim).apothem;
+                    worst = std::max(worst, std::fabs(iris_area(shape, apothem, rim) / (M_PI * radius * radius) - 1));
+                    ++count;
+                }
+    const Iris<double> closed = open_iris({5, 0.3, 0}, 0, 10);
+    CHECK(std::isfinite(closed.apothem + closed.curvature));
+    CHECK(closed.apothem < 1e-15);
+    // 60 halvings of an interval as large as its middle; sums of 2048 terms.
+    hold({"Iteration", "opening of the iris, 0.99 to 1e-30 of its rim: area", std::to_string(count) + " openings",
+          "core", "float64", worst, 1e-12, "of the circle's"});
+}
+
 TEST_CASE("the pupil search ends within its bound, whatever passes") {
     const LensSystem gauss = io::read_lens("double-gauss-50mm"), fisheye = io::read_lens("fisheye-6mm-220deg");
     long worst = 0;
