@@ -1,14 +1,17 @@
 # The sources of each library: one folder, one library. CONFIGURE_DEPENDS notices a file that is added or removed.
 macro(realcam_sources variable folder)
-  file(GLOB ${variable} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.${ARGV2})
+  file(GLOB ${variable} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cpp
+       ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cu)
 endmacro()
 
-realcam_sources(REALCAM_IO_SOURCES io cpp)
-realcam_sources(REALCAM_IMAGE_IO_SOURCES image_io cpp)
-realcam_sources(REALCAM_EMBREE_SOURCES embree cpp)
-realcam_sources(REALCAM_APP_SOURCES app cpp)
-realcam_sources(REALCAM_BINDINGS_SOURCES bindings cpp)
-realcam_sources(REALCAM_CUDA_SOURCES cuda cu)
+realcam_sources(REALCAM_IO_SOURCES io)
+realcam_sources(REALCAM_IMAGE_IO_SOURCES image_io)
+realcam_sources(REALCAM_EMBREE_SOURCES embree)
+realcam_sources(REALCAM_APP_SOURCES app)
+realcam_sources(REALCAM_BINDINGS_SOURCES bindings)
+realcam_sources(REALCAM_BVH_SOURCES bvh)
+realcam_sources(REALCAM_CUDA_SOURCES cuda)
+realcam_sources(REALCAM_DEVICES_SOURCES devices)
 
 # Built once for each instruction set, see RealcamInstructionSets.cmake.
 list(FILTER REALCAM_EMBREE_SOURCES EXCLUDE REGEX "/kernels\\.cpp$")
@@ -28,10 +31,11 @@ elseif(REALCAM_CUDA_SOURCES)
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER)
     if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-      # The last entry carries PTX too, for chips that come later.
-      set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 90)
+      # Turing to Blackwell; the last entry carries PTX too, for chips that come later.
+      set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real 90-real 100-real 120)
     endif()
     enable_language(CUDA)
+    find_package(CUDAToolkit REQUIRED)
     # CMake 3.25.1, of Debian 12, does not know that nvcc has C++20.
     if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
       set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)

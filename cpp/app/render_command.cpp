@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "../devices/devices.hpp"
 #include "../image_io/image_file.hpp"
 #include "../render/daylight.hpp"
 #include "../render/metering.hpp"
-#include "devices.hpp"
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
 #include "render_options.hpp"

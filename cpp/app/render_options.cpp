@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "../camera/default_film.hpp"
+#include "../devices/devices.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/free_memory.hpp"
 #include "../io/lens_file.hpp"
-#include "devices.hpp"
 #include "values.hpp"
 
 namespace realcam::app {

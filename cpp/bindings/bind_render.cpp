@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "../camera/develop.hpp"
-#include "../embree/embree_backend.hpp"
+#include "../devices/devices.hpp"
 #include "../render/backend.hpp"
 #include "bindings.hpp"
 #include "render_turn.hpp"
@@ -17,17 +19,20 @@ using namespace py::literals;
 
 namespace {
 
-Backend& cpu() {
-    static auto* backend =
-        new std::unique_ptr<Backend>(make_embree_backend());  // never torn down under running threads
-    return **backend;
+/// One for each device name that was asked for, kept for the next picture. Never torn down under running threads.
+std::map<std::string, std::unique_ptr<Backend>>& backends() {
+    static auto* map = new std::map<std::string, std::unique_ptr<Backend>>;
+    return *map;
 }
 
 }  // namespace
 
 Backend& backend_for(const std::string& device) {
-    if (device == "auto" || device == "cpu") return cpu();
-    throw DeviceError("there is no device \"" + device + "\"; auto or cpu is wanted");
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    std::unique_ptr<Backend>& backend = backends()[device];
+    if (!backend) backend = make_backend(device);
+    return *backend;
 }
 
 Progress progress_of(const py::object& callback) {
@@ -97,8 +102,14 @@ void bind_render(py::module_& m) {
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");
     m.def(
-        "devices", [] { return std::vector<std::string>{"cpu: " + cpu().name()}; },
-        "What this machine can render with, a line each.");
+        "devices",
+        [] {
+            std::vector<std::string> lines;
+            for (const Device& device : devices()) lines.push_back(device.name + ": " + device.description);
+            return lines;
+        },
+        "What this machine can render with, a line each: the name for device=..., a colon and a blank, and what it "
+        "is.");
 }
 
 }  // namespace realcam::bindings

@@ -164,16 +164,27 @@ inline void validate_ideal(const LensSystem& lens, CameraModel model) {
 
 }  // namespace camera_detail
 
+/// Whether a scene that was placed about this origin serves the camera. It is moved to the camera, and stays where it
+/// is while the camera moves by little: at ten focus distances (or 10 m) float32 still resolves a hundredth of a
+/// pixel's width at the plane in focus.
+inline bool lies_near(const Camera& camera, Vec3d origin_m) {
+    const double focus_m = std::isfinite(camera.lens.focus_distance) ? camera.lens.focus_distance / 1000 : 1.0;
+    return length(camera.pose.position_m - origin_m) <= 10 * focus_m;
+}
+
 /// A camera made ready: owns the tables that its view points to.
 class CameraSetup {
 public:
-    /// Throws InputError. `tracer`: see Pupil.
-    explicit CameraSetup(const Camera& camera, PupilTracer tracer = nullptr)
+    /// Throws InputError. `tracer`: see Pupil. `last`: a set-up whose pupil is taken over if it is the same one: finding
+    /// it is most of the work, and a camera that only moves keeps it.
+    explicit CameraSetup(const Camera& camera, PupilTracer tracer = nullptr, const CameraSetup* last = nullptr)
         : camera_(camera), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
         validate(camera);
-        if (camera.model == CameraModel::full_lens)
-            pupil_ = std::make_unique<Pupil>(camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm),
-                                             std::move(tracer));
+        if (last && last->has_pupil_of(camera))
+            pupil_ = last->pupil_;
+        else if (camera.model == CameraModel::full_lens)
+            pupil_ = std::make_shared<const Pupil>(
+                camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm), std::move(tracer));
         if (!pupil_) {
             camera_detail::validate_ideal(camera.lens, camera.model);
             return;
@@ -221,9 +232,14 @@ public:
     const Camera& camera() const { return camera_; }
 
 private:
+    bool has_pupil_of(const Camera& camera) const {
+        return pupil_ && camera.model == CameraModel::full_lens && camera_.lens == camera.lens &&
+               camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm;
+    }
+
     Camera camera_;
     LensPath<float> path_;
-    std::unique_ptr<Pupil> pupil_;
+    std::shared_ptr<const Pupil> pupil_;
 };
 
 }  // namespace REALCAM_NAMESPACE

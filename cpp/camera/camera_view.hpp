@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+
 #include "../optics/lens_view.hpp"
 #include "../optics/pupil_view.hpp"
 
@@ -41,5 +43,17 @@ struct CameraView {
     Vec3f position;                ///< of the film's middle, relative to the origin of the placed scene, metres
     Vec3f right, up, backward;     ///< axes of the camera in the scene: x, y, z of the lens frame
 };
+
+/// A camera's view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.
+template <class Copy>
+CameraView with_copied_arrays(CameraView view, Copy&& copy) {
+    const auto move = [&](auto*& array, int count) {
+        if (array) array = copy(array, static_cast<std::size_t>(count));
+    };
+    move(view.lens.steps, view.lens.count);
+    move(view.pupil.nodes, view.pupil.rows + 1);
+    move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
+    return view;
+}
 
 }  // namespace REALCAM_NAMESPACE

@@ -11,10 +11,11 @@ namespace REALCAM_NAMESPACE {
 /// Which samples a block of lanes takes. Unused lanes have used = 0 and otherwise valid numbers.
 template <int N>
 struct SampleBlock {
-    alignas(64) std::int32_t column[N], row[N];  ///< of the pixel; row 0 at the top of the picture
-    alignas(64) std::int32_t used[N];
-    alignas(64) std::uint32_t stream[N];  ///< pixel_stream() of the pixel
-    alignas(64) std::uint32_t sample[N];
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t column[N],
+        row[N];  ///< of the pixel; row 0 at the top of the picture
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t used[N];
+    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t stream[N];  ///< pixel_stream() of the pixel
+    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t sample[N];
 
     REALCAM_INLINE Vec2f random(int lane, std::uint32_t dimension) const {
         return sample_2d(stream[lane], sample[lane], dimension);
@@ -35,9 +36,10 @@ inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce
 template <int N>
 struct CameraRays {
     Vec3Lanes<float, N> origin, direction;
-    alignas(64) float weight[N];        ///< times the radiance seen: the sample's irradiance on the film
-    alignas(64) std::int32_t sampled[N];  ///< 1 where a ray was sent into the lens
-    alignas(64) std::int32_t passed[N];   ///< 1 where it left the lens
+    alignas(
+        kLaneAlignment<float, N>) float weight[N];  ///< times the radiance seen: the sample's irradiance on the film
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N];  ///< 1 where a ray was sent into the lens
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t passed[N];  ///< 1 where it left the lens
 };
 
 /// Film point of a sample, mm (source paper, equation 1). The lens turns the picture upside down, so the film's axes
@@ -104,7 +106,7 @@ REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const Sampl
     }
 }
 
-template <int N>
+template <LensShapes shapes, int N>
 REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     LensRays<float, N> inside;
     REALCAM_LANES
@@ -121,7 +123,7 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
         rays.sampled[i] = select(rays.weight[i] > 0.0f, block.used[i], 0);
         inside.status[i] = select(rays.sampled[i] == 0, static_cast<int>(RayStatus::vignetted), 0);
     }
-    trace_lens(camera.lens, inside);
+    trace_lens<shapes>(camera.lens, inside);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
@@ -132,8 +134,8 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
 }
 
 /// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the
-/// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis.
-template <int N>
+/// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `shapes`: at least those of the lens.
+template <LensShapes shapes = LensShapes::any, int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     switch (camera.model) {
         case CameraModel::pinhole:
@@ -149,7 +151,7 @@ REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock
             generate_ideal_rays(camera, block, rays,
                                 [&](Vec2f film, Vec2f u) { return thick_lens_ray(camera, film, u); });
             break;
-        case CameraModel::full_lens: generate_lens_rays(camera, block, rays); break;
+        case CameraModel::full_lens: generate_lens_rays<shapes>(camera, block, rays); break;
     }
 }
 

@@ -7,13 +7,10 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
 #include <mutex>
-#include <thread>
 
-#include "../camera/develop.hpp"
-#include "../math/lanes.hpp"
+#include "../render/pixel_sum.hpp"
+#include "../render/run_with_progress.hpp"
 #include "embree_scene.hpp"
 #include "kernels.hpp"
 
@@ -31,7 +28,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// The film while it is exposed.
 struct ExposingFilm {
     int width, height;
-    std::vector<realcam_pixel_sum> sums;
+    std::vector<PixelSum> sums;
 
     ExposingFilm(int w, int h) : width(w), height(h), sums(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
 
@@ -42,10 +39,10 @@ struct ExposingFilm {
         image.spp = spp;
         image.exposure.reserve(3 * sums.size());
         image.depth.reserve(sums.size());
-        for (const realcam_pixel_sum& sum : sums) {
-            for (double e : sum.irradiance) image.exposure.push_back(film_exposure(e * exposure_time_s / spp));
-            image.depth.push_back(sum.hits > 0 ? static_cast<float>(sum.depth / sum.hits)
-                                               : std::numeric_limits<float>::infinity());
+        for (const PixelSum& sum : sums) {
+            for (int channel = 0; channel < 3; ++channel)
+                image.exposure.push_back(sum.exposure(channel, exposure_time_s, spp));
+            image.depth.push_back(sum.mean_depth());
         }
         return image;
     }
@@ -93,14 +90,10 @@ public:
     }
 
 private:
-    /// The scene is moved to the camera. It stays where it is while the camera moves by little: at ten focus distances
-    /// (or 10 m) float32 still resolves a hundredth of a pixel's width at the plane in focus.
     void place(const std::shared_ptr<const Scene>& scene, const Camera& camera) {
-        const double focus = std::isfinite(camera.lens.focus_distance) ? camera.lens.focus_distance / 1000 : 1.0;
-        const Vec3d position = camera.pose.position_m;
-        if (scene_ && scene_->scene() == scene && length(position - scene_->placed().origin_m()) <= 10 * focus) return;
+        if (scene_ && scene_->scene() == scene && lies_near(camera, scene_->placed().origin_m())) return;
         scene_.reset();
-        scene_ = std::make_unique<EmbreeScene>(device_, scene, position);
+        scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m);
     }
 
     void expose(tbb::task_arena& arena, const SceneView& scene_view, const CameraView& camera_view,
@@ -123,19 +116,14 @@ private:
             tile.sample_count = count;
             tile.seed = settings.seed;
             tile.max_bounces = settings.max_bounces;
-            std::vector<realcam_pixel_sum> sums(static_cast<std::size_t>(tile.width * tile.height));
+            std::vector<PixelSum> sums(static_cast<std::size_t>(tile.width * tile.height));
             tile.sums = sums.data();
             kernels().render_tile(&tile);
             for (int y = 0; y < tile.height; ++y)
-                for (int x = 0; x < tile.width; ++x) {
-                    const realcam_pixel_sum& from = sums[static_cast<std::size_t>(y * tile.width + x)];
-                    realcam_pixel_sum& to =
-                        film.sums[static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(film.width) +
-                                  static_cast<std::size_t>(tile.x + x)];
-                    for (int c = 0; c < 3; ++c) to.irradiance[c] += from.irradiance[c];
-                    to.depth += from.depth;
-                    to.hits += from.hits;
-                }
+                for (int x = 0; x < tile.width; ++x)
+                    film.sums[static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(film.width) +
+                              static_cast<std::size_t>(tile.x + x)] +=
+                        sums[static_cast<std::size_t>(y * tile.width + x)];
             done += static_cast<std::int64_t>(count) * tile.width * tile.height;
             const std::lock_guard lock(stats_mutex);
             stats.lens_seconds += tile.lens_seconds;
@@ -156,46 +144,6 @@ private:
         const double total = static_cast<double>(all) * film.width * film.height;
         run_with_progress(work, [&] { return static_cast<double>(done) / total; }, progress, stop);
         if (stop) throw Cancelled();
-    }
-
-    /// Runs `work` on a thread of its own, so that the caller's thread is free to report and to stop it.
-    template <class Work, class Share>
-    static void run_with_progress(Work&& work, Share&& share, const Progress& progress, std::atomic<bool>& stop) {
-        if (!progress) {
-            work();
-            return;
-        }
-        std::mutex mutex;
-        std::condition_variable finished;
-        bool over = false;
-        std::exception_ptr failure;
-        std::thread worker([&] {
-            try {
-                work();
-            } catch (...) {
-                failure = std::current_exception();
-            }
-            const std::lock_guard lock(mutex);
-            over = true;
-            finished.notify_all();
-        });
-        std::exception_ptr callers_failure;
-        std::unique_lock lock(mutex);
-        while (!finished.wait_for(lock, std::chrono::milliseconds(50), [&] { return over; })) {
-            lock.unlock();
-            try {
-                if (!stop && !progress(share())) stop = true;
-            } catch (...) {
-                callers_failure = std::current_exception();
-                stop = true;
-            }
-            lock.lock();
-        }
-        lock.unlock();
-        worker.join();
-        if (callers_failure) std::rethrow_exception(callers_failure);
-        if (failure) std::rethrow_exception(failure);
-        if (!stop) progress(1.0);
     }
 
     RTCDevice device_;

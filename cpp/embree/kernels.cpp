@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include "../optics/lens_entry.hpp"
+#include "../render/pixel_sum.hpp"
 #include "packet_scene.hpp"
 
 // Built once for each instruction set, see cmake/RealcamInstructionSets.cmake.
@@ -51,7 +52,8 @@ void render_tile(realcam_tile* tile) {
     const PixelOrder order{tile->width, tile->height};
     SampleBlock<kLanes> block;
     SampleResults<kLanes> results;
-    realcam_pixel_sum* target[kLanes];
+    PixelSum* target[kLanes];
+    auto* const sums = static_cast<PixelSum*>(tile->sums);
     StageClock clock;
     PacketScene scene{static_cast<RTCScene>(tile->embree_scene), RayOrder::coherent, 0};
     const int pixels = order.count();
@@ -73,7 +75,7 @@ void render_tile(realcam_tile* tile) {
                     block.used[lanes + k] = 1;
                     block.stream[lanes + k] = stream;
                     block.sample[lanes + k] = tile->first_sample + sample + static_cast<std::uint32_t>(k);
-                    target[lanes + k] = tile->sums + y * tile->width + x;
+                    target[lanes + k] = sums + y * tile->width + x;
                 }
                 lanes += take;
                 sample += static_cast<std::uint32_t>(take);
@@ -90,13 +92,7 @@ void render_tile(realcam_tile* tile) {
         scene.order = RayOrder::coherent;
         render_samples(view, camera, tile->max_bounces, block, scene, clock, results);
         for (int k = 0; k < lanes; ++k) {
-            target[k]->irradiance[0] += static_cast<double>(results.irradiance.x[k]);
-            target[k]->irradiance[1] += static_cast<double>(results.irradiance.y[k]);
-            target[k]->irradiance[2] += static_cast<double>(results.irradiance.z[k]);
-            if (results.depth[k] >= 0) {
-                target[k]->depth += static_cast<double>(results.depth[k]);
-                ++target[k]->hits;
-            }
+            target[k]->add(results, k);
             tile->sampled_rays += static_cast<std::uint64_t>(results.sampled[k]);
             tile->passed_rays += static_cast<std::uint64_t>(results.passed[k]);
         }

@@ -7,13 +7,6 @@
 
 extern "C" {
 
-/// Sums over the samples of one pixel.
-struct realcam_pixel_sum {
-    double irradiance[3];
-    double depth;
-    std::uint32_t hits;  // samples that met something
-};
-
 struct realcam_tile {
     const void* scene_view;   // SceneView
     const void* camera_view;  // CameraView
@@ -21,7 +14,7 @@ struct realcam_tile {
     int x, y, width, height;  // pixels
     std::uint32_t first_sample, sample_count, seed;
     int max_bounces;
-    realcam_pixel_sum* sums;  // of the tile, row by row; added to
+    void* sums;               // PixelSum of the tile, row by row; added to
     double lens_seconds, scene_seconds, other_seconds;
     std::uint64_t sampled_rays, passed_rays, scene_rays;
 };

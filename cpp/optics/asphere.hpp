@@ -22,12 +22,12 @@ REALCAM_INLINE Sag<T> asphere_sag(const LensStep<T>& step, T radius_squared) {
     const T u = r2 * step.inverse_search_squared;
     T polynomial = 0, slope = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative
     // Always all terms, zeros too: a constant count unrolls, and the loop over the lanes becomes vector code.
-#pragma GCC unroll 8
+    REALCAM_UNROLL
     for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
         slope = slope * u + polynomial;
         polynomial = polynomial * u + step.aspheric[i];
     }
-    const T height = step.curvature * r2 / (T(1) + root) + u * u * polynomial;
+    const T height = quotient(step.curvature * r2, T(1) + root) + u * u * polynomial;
     const T derivative =
         step.curvature / (T(2) * root) + step.inverse_search_squared * u * (T(2) * polynomial + u * slope);
     return {height, select(radius_squared <= step.search_squared, derivative, T(0))};
@@ -38,8 +38,8 @@ REALCAM_INLINE Sag<T> asphere_sag(const LensStep<T>& step, T radius_squared) {
 /// crossing in the right sense lies between them. NaN: the ray does not meet the surface.
 template <class T, int N>
 struct AsphereSearch {
-    alignas(64) T t[N], below[N], above[N];
-    alignas(64) T residual[N], tolerance[N];  ///< |f|, and what rounding alone can leave of it
+    alignas(kLaneAlignment<T, N>) T t[N], below[N], above[N];
+    alignas(kLaneAlignment<T, N>) T residual[N], tolerance[N];  ///< |f|, and what rounding alone can leave of it
 };
 
 /// Newton's steps alone for as long as they do on a lens that can be made; then every other step halves the bracket,

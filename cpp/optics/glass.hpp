@@ -24,6 +24,8 @@ public:
     /// One measured point.
     struct TablePoint {
         double wavelength_nm, index;
+
+        bool operator==(const TablePoint&) const = default;
     };
 
     static Glass constant(double index) { return {Formula::cauchy, {index}, {}}; }
@@ -67,6 +69,8 @@ public:
     }
 
     bool is_air() const { return formula_ == Formula::cauchy && coefficients_ == std::vector<double>{1.0}; }
+
+    bool operator==(const Glass&) const = default;
 
     /// As the lens's author wrote it: a name, a number, a pair; empty for air.
     std::string label;

@@ -12,6 +12,8 @@ struct IrisShape {
     int blades = 0;
     double rounding = 0;      ///< 0: straight edges; 1: the opening is a circle
     double rotation_rad = 0;  ///< of the first blade, from the x axis towards y
+
+    bool operator==(const IrisShape&) const = default;
 };
 
 /// Distance from the axis to a blade's edge in the direction that makes an angle of this cosine with the blade's

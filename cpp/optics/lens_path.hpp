@@ -45,7 +45,11 @@ public:
         exit_position = direction == LightDirection::to_film ? z.back() : z.front();
     }
 
-    LensView<T> view() const { return {steps_.data(), static_cast<int>(steps_.size()), iris_}; }
+    LensView<T> view() const {
+        const bool spheres = std::all_of(steps_.begin(), steps_.end(),
+                                         [](const LensStep<T>& step) { return step.kind == StepKind::sphere; });
+        return {steps_.data(), static_cast<int>(steps_.size()), spheres ? LensShapes::spheres : LensShapes::any, iris_};
+    }
 
     double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by
     double entry_reach = 0;     ///< rays from farther away than this are to start nearer (enter_lens), mm

@@ -26,6 +26,7 @@ struct FocusingRule {
     int group_last = -1;
 
     bool moves_group() const { return group_first >= 0; }
+    bool operator==(const FocusingRule&) const = default;
 };
 
 /// A lens in one state of its rings: a value. Owns its data; LensPath makes the views that kernels use.
@@ -42,6 +43,8 @@ struct LensSystem {
     double stop_semi_diameter = 0;    ///< radius of the circle that has the diaphragm's open area
     IrisShape iris;
     FocusingRule focusing;
+
+    bool operator==(const LensSystem&) const = default;
 
     int stop_index() const {
         for (std::size_t i = 0; i < surfaces.size(); ++i)

@@ -12,7 +12,7 @@ template <class T, int N>
 struct LensRays {
     Vec3Lanes<T, N> origin;
     Vec3Lanes<T, N> direction;
-    alignas(64) int status[N];
+    alignas(kLaneAlignment<int, N>) int status[N];
 };
 
 /// What a trace may write down besides the rays. `NoRecord` is for pictures: rays that end are only marked, as
@@ -25,8 +25,10 @@ struct NoRecord {
 template <class T, int N>
 struct PathRecord {
     static constexpr bool enabled = true;
-    alignas(64) T optical_path[N];     ///< sum of index times distance, mm; from the origin to the last surface met
-    alignas(64) int surface_index[N];  ///< surface at which the ray ended, in the lens system's order
+    alignas(kLaneAlignment<T, N>) T
+        optical_path[N];     ///< sum of index times distance, mm; from the origin to the last surface met
+    alignas(
+        kLaneAlignment<int, N>) int surface_index[N];  ///< surface at which the ray ended, in the lens system's order
 };
 
 /// Parameters beyond are those of rays that miss. Their squares still fit in float32.
@@ -44,8 +46,8 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
     const bool clear = (r2 <= step.rim_squared) & (r2 >= step.hole_squared);
-    // A ray along a plane meets it at infinity.
-    const bool met = alive & hit.met() & (std::fabs(hit.parameter) <= kFarthest<T>);
+    // A ray along a plane meets it at infinity, which is outside the rim.
+    const bool met = alive & hit.met() & (!Record::enabled | (std::fabs(hit.parameter) <= kFarthest<T>));
     const bool passes = met & clear & (refracted.radicand >= T(0));
     if constexpr (Record::enabled) {
         const int cause = select(met,
@@ -93,7 +95,7 @@ REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays
 template <class T, int N, class Record>
 REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
     AsphereSearch<T, N> search;
-    alignas(64) T outside[N];
+    alignas(kLaneAlignment<T, N>) T outside[N];
     int ended = 0, uncertain = 0;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
@@ -145,7 +147,7 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
 /// its largest extent towards any blade.
 template <class T, int N>
 REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
-    alignas(64) T extent[N];
+    alignas(kLaneAlignment<T, N>) T extent[N];
     REALCAM_LANES
     for (int i = 0; i < N; ++i) extent[i] = -std::numeric_limits<T>::max();
     for (int blade = 0; blade < iris.blades; ++blade) {
@@ -170,17 +172,20 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
 /// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
 /// vertex of the last one; directions are optical ones in the lens frame, before and after (LensPath::entry_index).
 /// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
-/// loops into vector code.
-template <class T, int N, class Record = NoRecord>
+/// loops into vector code. `shapes`: at least those of the lens.
+template <LensShapes shapes = LensShapes::any, class T, int N, class Record = NoRecord>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {}) {
     for (int k = 0; k < lens.count; ++k) {
         const LensStep<T> step = lens.steps[k];  // a copy: lane stores cannot alias it
-        switch (step.kind) {
-            case StepKind::sphere: cross_sphere(step, rays, record); break;
-            case StepKind::conic: cross_conic(step, rays, record); break;
-            case StepKind::asphere: cross_asphere(step, rays, record); break;
-        }
+        if (shapes == LensShapes::spheres || step.kind == StepKind::sphere)
+            cross_sphere(step, rays, record);
+        else if (step.kind == StepKind::conic)
+            cross_conic(step, rays, record);
+        else
+            cross_asphere(step, rays, record);
         if (step.has_blades) cross_iris(lens.iris, rays);
+        if constexpr (N == 1)
+            if (rays.status[0] != 0) return;
     }
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "../platform.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -8,21 +10,22 @@ inline constexpr int kMaxIrisBlades = 24;
 
 enum class StepKind : int { sphere, conic, asphere };
 
-/// One surface in the order in which the light meets it. Lengths in mm.
+/// One surface in the order in which the light meets it. Lengths in mm. What every ray needs comes first, in pieces
+/// that a GPU loads at once.
 template <class T>
-struct LensStep {
-    StepKind kind;
-    int surface_index;     ///< in the lens system, 0 at the front
-    bool has_blades;       ///< the stop of a lens that has an iris
+struct alignas(16) LensStep {
     T shift;               ///< axial distance from the vertex before this one
     T curvature;           ///< 0: plane
-    T conic_factor;        ///< 1 + k
     T sense_in;            ///< +1 where the ray crosses towards the film, -1 towards the scene (a mirror turns it)
     T sense_out;
-    T index_squared;       ///< n^2 of the medium before the surface
     T relative_step;       ///< n'^2 / n^2 - 1
     T rim_squared;         ///< squared clear semi-diameter
     T hole_squared;        ///< squared radius inside which light is blocked; negative: none
+    T index_squared;       ///< n^2 of the medium before the surface
+    StepKind kind;
+    std::int32_t has_blades;     ///< 1: the stop of a lens that has an iris
+    std::int32_t surface_index;  ///< in the lens system, 0 at the front
+    T conic_factor;        ///< 1 + k
     T sag_min, sag_max;    ///< aspheres: bounds of the sag inside the search radius
     T sag_edge;            ///< aspheres: the sag at the search radius
     T search_squared;      ///< aspheres: the sag is continued as constant outside this squared radius
@@ -41,12 +44,16 @@ struct Iris {
     T cos[kMaxIrisBlades], sin[kMaxIrisBlades];
 };
 
+/// Which surfaces a lens has: code for spheres alone (and planes) needs fewer registers, of which a GPU has few.
+enum class LensShapes : int { spheres, any };
+
 /// A lens in one state of focus and stop, at one wavelength and in one direction of the light.
 /// Trivially copyable; the steps belong to a LensPath.
 template <class T>
 struct LensView {
     const LensStep<T>* steps;
     int count;
+    LensShapes shapes;
     Iris<T> iris;
 };
 

@@ -47,7 +47,7 @@ REALCAM_INLINE SurfaceHit<T> intersect_conic(Vec3<T> o, Vec3<T> p, T curvature, 
     const T discriminant = G * G - A * F;
     const T s = sense * sqrt_or_zero(discriminant);
     const bool same_sign = G * sense >= T(0);
-    const T t = select(same_sign, F, G - s) / select(same_sign, G + s, A);
+    const T t = quotient(select(same_sign, F, G - s), select(same_sign, G + s, A));
     const Vec3<T> at = o + t * p;
     const Vec3<T> gradient = {-c * at.x, -c * at.y, T(1) - c * conic_factor * at.z};
     const T inverse_length = T(1) / length(gradient);
@@ -73,7 +73,7 @@ REALCAM_INLINE SurfaceHit<T> intersect_sphere(Vec3<T> o, Vec3<T> p, T curvature,
     const T discriminant = G * G - A * F;
     const T s = sense * sqrt_or_zero(discriminant);
     const bool same_sign = G * sense >= T(0);
-    const T t = select(same_sign, F, G - s) / select(same_sign, G + s, A);
+    const T t = quotient(select(same_sign, F, G - s), select(same_sign, G + s, A));
     const Vec3<T> at = o + t * p;
     return {t, G - A * t, {-c * at.x, -c * at.y, T(1) - c * at.z}, discriminant};
 }

@@ -25,6 +25,8 @@ struct Surface {
     double clear_semi_diameter = 0;
     double inner_semi_diameter = 0;  ///< light closer to the axis is blocked; 0: none
 
+    bool operator==(const Surface&) const = default;
+
     bool bends_light() const { return type == SurfaceType::refracting || type == SurfaceType::mirror; }
     bool is_asphere() const {
         return std::any_of(aspheric.begin(), aspheric.end(), [](double a) { return a != 0; });

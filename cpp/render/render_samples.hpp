@@ -8,16 +8,17 @@ namespace REALCAM_NAMESPACE {
 template <int N>
 struct SceneRays {
     Vec3Lanes<float, N> origin, direction;
-    alignas(64) float far[N];  ///< how far along the ray to look, in lengths of the direction
-    alignas(64) std::int32_t active[N];
+    alignas(kLaneAlignment<float, N>) float far[N];  ///< how far along the ray to look, in lengths of the direction
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t active[N];
 };
 
 /// What a block of samples saw. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
 template <int N>
 struct SampleResults {
     Vec3Lanes<float, N> irradiance;
-    alignas(64) float depth[N];  ///< of the first hit along the camera's axis from the film, metres; < 0: none
-    alignas(64) std::int32_t sampled[N], passed[N];
+    alignas(kLaneAlignment<float, N>) float depth[N];  ///< of the first hit along the camera's axis from the film,
+                                                       ///< metres; < 0: none
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N], passed[N];
 };
 
 enum class RenderStage { lens, scene, other };
@@ -25,8 +26,8 @@ enum class RenderStage { lens, scene, other };
 /// Takes one block of samples from the film, through the lens, to the scene and its lights: the whole path.
 ///
 /// `SceneT` offers intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` offers enter(RenderStage) and
-/// costs nothing where nobody asks for the time. A GPU thread runs this with N = 1.
-template <int N, class SceneT, class Probe>
+/// costs nothing where nobody asks for the time. `shapes`: at least those of the lens. A GPU thread runs this with N = 1.
+template <LensShapes shapes = LensShapes::any, int N, class SceneT, class Probe>
 REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& camera, int max_bounces,
                                       const SampleBlock<N>& block, SceneT&& scene, Probe&& probe,
                                       SampleResults<N>& results) {
@@ -34,10 +35,10 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
     SceneRays<N> rays, shadow;
     Hits<N> hits;
     Vec3Lanes<float, N> throughput, unshadowed;
-    alignas(64) std::int32_t hidden[N];
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
 
     probe.enter(RenderStage::lens);
-    generate_rays(camera, block, camera_rays);
+    generate_rays<shapes>(camera, block, camera_rays);
     probe.enter(RenderStage::other);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {

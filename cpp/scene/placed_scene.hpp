@@ -38,7 +38,11 @@ public:
         view.points = points_.data();
         view.suns = scene_.suns.data();
         view.areas = areas_.data();
-        view.area_cdf = area_cdf_.data();
+        view.area_cdf = area_cdf_.empty() ? nullptr : area_cdf_.data();
+        view.triangle_count = static_cast<std::int32_t>(triangles().size());
+        view.vertex_count = static_cast<std::int32_t>(positions_.size());
+        view.material_count = static_cast<std::int32_t>(scene_.materials.size());
+        view.texture_count = static_cast<std::int32_t>(textures_.size());
         view.point_count = static_cast<std::int32_t>(points_.size());
         view.sun_count = static_cast<std::int32_t>(scene_.suns.size());
         view.area_count = static_cast<std::int32_t>(areas_.size());

@@ -70,6 +70,7 @@ struct EnvironmentView {
     std::int32_t width, height;
 };
 
+/// Every array of it is also named in scene_arrays.hpp.
 struct SceneView {
     const Triangle* triangles;
     const TrianglePlane* planes;  ///< one for each triangle
@@ -81,7 +82,8 @@ struct SceneView {
     const PointLight* points;
     const SunLight* suns;
     const AreaLight* areas;
-    const float* area_cdf;  ///< area_count + 1 values
+    const float* area_cdf;  ///< area_count + 1 values; null: no area light
+    std::int32_t triangle_count, vertex_count, material_count, texture_count;
     std::int32_t point_count, sun_count, area_count;
     bool has_environment;
     EnvironmentView environment;

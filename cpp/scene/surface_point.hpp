@@ -16,9 +16,9 @@ struct Hit {
 
 template <int N>
 struct Hits {
-    alignas(64) float distance[N];
-    alignas(64) std::uint32_t triangle[N];
-    alignas(64) float u[N], v[N];
+    alignas(kLaneAlignment<float, N>) float distance[N];
+    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t triangle[N];
+    alignas(kLaneAlignment<float, N>) float u[N], v[N];
 
     REALCAM_INLINE Hit operator[](int lane) const { return {distance[lane], triangle[lane], u[lane], v[lane]}; }
 };

@@ -1,0 +1,213 @@
+#include <algorithm>
+#include <chrono>
+
+#include "../bvh/build_wide_bvh.hpp"
+#include "../bvh/traverse_wide_bvh.hpp"
+#include "../camera/generate_rays.hpp"
+#include "../scene/placed_scene.hpp"
+#include "../scene/scene_arrays.hpp"
+#include "../scene/shade.hpp"
+#include "bench_kernels.hpp"
+#include "cuda_stream.hpp"
+#include "device_arrays.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kBlockSize = 128, kRounds = 5;
+
+struct BenchRay {
+    Vec3f origin, direction;
+};
+
+__device__ SampleBlock<1> block_of(const CameraView& camera, std::int32_t pixel, std::uint32_t sample) {
+    SampleBlock<1> block;
+    block.column[0] = pixel % camera.width;
+    block.row[0] = pixel / camera.width;
+    block.used[0] = 1;
+    block.stream[0] = pixel_stream(pixel, 0);
+    block.sample[0] = sample;
+    return block;
+}
+
+template <LensShapes shapes>
+__global__ void generate(const __grid_constant__ CameraView camera, int samples, unsigned long long* passed,
+                         float* sink) {
+    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+    std::uint32_t count = 0;
+    float sum = 0;
+    for (int s = 0; s < samples && pixel < camera.width * camera.height; ++s) {
+        CameraRays<1> rays;
+        generate_rays<shapes>(camera, block_of(camera, pixel, static_cast<std::uint32_t>(s)), rays);
+        count += static_cast<std::uint32_t>(rays.passed[0]);
+        sum += rays.weight[0] + rays.origin.x[0] + rays.direction.x[0];
+    }
+    atomicAdd(passed, static_cast<unsigned long long>(count));
+    if (sum == 12345.678f) *sink = sum;  // no compiler knows that it is not
+}
+
+/// The rays that generate_rays would send into the lens.
+__global__ void sample_lens_rays(const __grid_constant__ CameraView camera, BenchRay* rays) {
+    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+    if (pixel >= camera.width * camera.height) return;
+    const SampleBlock<1> block = block_of(camera, pixel, 0);
+    const Vec2f film = film_point(camera, block.column[0], block.row[0], block.random(0, dimension::film));
+    const Vec2f u = block.random(0, dimension::pupil);
+    const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);
+    rays[pixel] = {{film.x, film.y, camera.film_distance}, pupil.direction};
+}
+
+template <LensShapes shapes>
+__global__ void trace(const __grid_constant__ CameraView camera, const BenchRay* rays, int repeats,
+                      unsigned long long* passed, float* sink) {
+    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+    if (pixel >= camera.width * camera.height) return;
+    const BenchRay start = rays[pixel];
+    std::uint32_t count = 0;
+    float sum = 0;
+    for (int i = 0; i < repeats; ++i) {
+        LensRays<float, 1> inside;
+        Vec3f origin = start.origin;
+        origin.x += 1e-4f * static_cast<float>(i);
+        inside.origin.set(0, origin);
+        inside.direction.set(0, start.direction);
+        inside.status[0] = 0;
+        trace_lens<shapes>(camera.lens, inside);
+        count += inside.status[0] == 0 ? 1u : 0u;
+        sum += inside.origin.x[0] + inside.direction.x[0];
+    }
+    atomicAdd(passed, static_cast<unsigned long long>(count));
+    if (sum == 12345.678f) *sink = sum;
+}
+
+__global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay* rays) {
+    const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
+    if (pixel >= camera.width * camera.height) return;
+    CameraRays<1> made;
+    generate_rays(camera, block_of(camera, pixel, 0), made);
+    rays[pixel] = {made.origin[0], made.direction[0]};
+}
+
+/// Replaces each ray by one that leaves the point where it meets the scene. Rays that meet nothing stay.
+__global__ void bounce(const __grid_constant__ SceneView scene, WideBvhView bvh, BenchRay* rays, int count,
+                       bool uniform) {
+    const int i = static_cast<int>(blockIdx.x * kBlockSize + threadIdx.x);
+    if (i >= count) return;
+    const BenchRay ray = rays[i];
+    const Hit hit = closest_hit(bvh, ray.origin, ray.direction, kFarAway);
+    if (hit.triangle == kNoTriangle) return;
+    const SurfacePoint point = surface_point(scene, hit, ray.origin, ray.direction);
+    const Vec2f u = sample_2d(pixel_stream(i, 1), 0, 7);
+    Vec3f direction = sample_cosine(point.geometric_normal, u);
+    if (uniform) {
+        const float z = 1.0f - 2.0f * u.x, r = std::sqrt(1.0f - z * z), azimuth = 6.2831853f * u.y;
+        direction = {r * std::cos(azimuth), r * std::sin(azimuth), z};
+        if (dot(direction, point.geometric_normal) < 0) direction = -direction;
+    }
+    rays[i] = {point.position + point.self_offset * point.geometric_normal, direction};
+}
+
+__global__ void hit_all(WideBvhView bvh, const BenchRay* rays, int count, float* distances) {
+    const int i = static_cast<int>(blockIdx.x * kBlockSize + threadIdx.x);
+    if (i >= count) return;
+    const BenchRay ray = rays[i];
+    distances[i] = closest_hit(bvh, ray.origin, ray.direction, kFarAway).distance;
+}
+
+/// Work per second, `count` pieces to a launch.
+template <class Launch>
+double rate_of(cudaStream_t stream, double count, Launch&& launch) {
+    CudaEvent start, end;
+    double best = 0;
+    for (int i = 0; i < kRounds; ++i) {
+        start.record(stream);
+        launch();
+        check_cuda(cudaGetLastError(), "starting a benchmark");
+        end.record(stream);
+        end.wait();
+        best = std::max(best, 1000 * count / end.ms_since(start));
+    }
+    return best;
+}
+
+unsigned blocks_for(int threads) {
+    return static_cast<unsigned>((threads + kBlockSize - 1) / kBlockSize);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer tracer) {
+    check_cuda(cudaSetDevice(ordinal), "choosing it");
+    CudaStream stream;
+    DeviceArrays arrays;
+    const CameraSetup setup(camera, std::move(tracer));
+    const CameraView view =
+        with_copied_arrays(setup.view(camera.pose.position_m),
+                           [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); });
+    const int pixels = view.width * view.height;
+    const bool spheres = view.lens.shapes == LensShapes::spheres;
+    DeviceArray<unsigned long long> passed(1);
+    DeviceArray<float> sink(1);
+    DeviceArray<BenchRay> rays(static_cast<std::size_t>(pixels));
+    passed.clear(stream);
+
+    constexpr int kSamples = 64;
+    LensRayRates rates{};
+    const double count = static_cast<double>(pixels) * kSamples;
+    rates.generated = rate_of(stream, count, [&] {
+        (spheres ? generate<LensShapes::spheres> : generate<LensShapes::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, kSamples, passed.data(), sink.data());
+    });
+    unsigned long long total = 0;
+    passed.download(&total, stream);
+    stream.wait("running a benchmark");
+    rates.passed = static_cast<double>(total) / (count * kRounds);
+    sample_lens_rays<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data());
+    rates.traced = rate_of(stream, count, [&] {
+        (spheres ? trace<LensShapes::spheres> : trace<LensShapes::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data(), kSamples, passed.data(), sink.data());
+    });
+    return rates;
+}
+
+HitRates hit_rates(int ordinal, const Scene& scene, const Camera& camera, PupilTracer tracer) {
+    check_cuda(cudaSetDevice(ordinal), "choosing it");
+    CudaStream stream;
+    DeviceArrays arrays;
+    HitRates rates{};
+    const auto copy = [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); };
+    const PlacedScene placed(scene, camera.pose.position_m);
+    const auto building = std::chrono::steady_clock::now();
+    const WideBvh bvh = build_wide_bvh(placed.positions(), placed.triangles());
+    rates.build_seconds = seconds_since(building);
+    const auto uploading = std::chrono::steady_clock::now();
+    const SceneView scene_view = with_copied_arrays(placed.view(), copy);
+    const WideBvhView bvh_view{copy(bvh.nodes.data(), bvh.nodes.size()),
+                               copy(bvh.triangles.data(), bvh.triangles.size())};
+    stream.wait("copying the scene to it");
+    rates.upload_seconds = seconds_since(uploading);
+
+    const CameraSetup setup(camera, std::move(tracer));
+    const CameraView view = with_copied_arrays(setup.view(placed.origin_m()), copy);
+    const int pixels = view.width * view.height;
+    DeviceArray<BenchRay> rays(static_cast<std::size_t>(pixels));
+    DeviceArray<float> distances(static_cast<std::size_t>(pixels));
+    const auto measure = [&] {
+        return rate_of(stream, pixels, [&] {
+            hit_all<<<blocks_for(pixels), kBlockSize, 0, stream>>>(bvh_view, rays.data(), pixels, distances.data());
+        });
+    };
+    const auto shoot = [&] { camera_rays<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data()); };
+    shoot();
+    rates.camera_rays = measure();
+    for (const bool uniform : {false, true}) {
+        shoot();
+        bounce<<<blocks_for(pixels), kBlockSize, 0, stream>>>(scene_view, bvh_view, rays.data(), pixels, uniform);
+        (uniform ? rates.uniform_rays : rates.bounce_rays) = measure();
+    }
+    return rates;
+}
+
+}  // namespace realcam

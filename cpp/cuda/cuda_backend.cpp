@@ -1,0 +1,164 @@
+#include "cuda_backend.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <optional>
+
+#include "../render/run_with_progress.hpp"
+#include "cuda_devices.hpp"
+#include "device_renderer.hpp"
+
+namespace realcam {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+class CudaBackend final : public Backend {
+public:
+    CudaBackend(const std::vector<int>& ordinals, PupilTracer tracer) : tracer_(std::move(tracer)) {
+        const std::vector<CudaDevice> devices = cuda_devices();
+        if (devices.empty()) throw DeviceError(why_no_cuda_device());
+        for (const int ordinal : ordinals) {
+            if (ordinal < 0 || ordinal >= static_cast<int>(devices.size()))
+                throw DeviceError("there is no GPU " + std::to_string(ordinal) + "; this machine has " +
+                                  std::to_string(devices.size()) + ", counted from 0");
+            const CudaDevice& device = devices[static_cast<std::size_t>(ordinal)];
+            name_ += (name_.empty() ? "" : " + ") + device.name;
+            renderers_.push_back(std::make_unique<DeviceRenderer>(ordinal));
+        }
+    }
+
+    std::string name() const override { return "GPU (" + name_ + ")"; }
+
+    Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera, const RenderSettings& settings,
+                 const Progress& progress) override {
+        const auto start = std::chrono::steady_clock::now();
+        validate(settings);
+        if (!scene || scene->triangles.empty()) throw InputError("the scene is empty; at least one triangle is wanted");
+        CameraSetup setup(camera, tracer_, setup_ ? &*setup_ : nullptr);
+        setup_ = std::move(setup);
+        place(scene, camera);
+        const CameraView view = setup_->view(placed_->origin_m());
+        for (const auto& renderer : renderers_) renderer->set_camera(view);
+
+        Image image;
+        image.width = camera.film.width;
+        image.height = camera.film.height;
+        image.spp = settings.spp;
+        image.stats.setup_seconds = seconds_since(start);
+        const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+        image.exposure.resize(3 * pixels);
+        image.depth.resize(pixels);
+        const auto exposing = std::chrono::steady_clock::now();
+        expose(settings, camera.exposure_time_s, progress, image);
+        collect_counts(seconds_since(exposing), image.stats);
+        image.stats.device = name();
+        image.stats.seconds = seconds_since(start);
+        return image;
+    }
+
+private:
+    void place(const std::shared_ptr<const Scene>& scene, const Camera& camera) {
+        if (scene_ == scene && placed_ && lies_near(camera, placed_->origin_m())) return;
+        placed_.reset();
+        scene_ = scene;
+        auto placed = std::make_unique<PlacedScene>(*scene, camera.pose.position_m);
+        const WideBvh bvh = build_wide_bvh(placed->positions(), placed->triangles());
+        for (const auto& renderer : renderers_) renderer->set_scene(*placed, bvh);
+        placed_ = std::move(placed);
+    }
+
+    void expose(const RenderSettings& settings, double exposure_time_s, const Progress& progress, Image& image) {
+        std::atomic<bool> stop{false};
+        std::atomic<std::int64_t> done{0};
+        const double total = static_cast<double>(settings.spp) * image.width * image.height;
+        const auto work = [&] {
+            int rows = make_room(image);
+            for (int row = 0; row < image.height && !stop; row += rows) {
+                rows = std::min(rows, image.height - row);
+                expose_band(row, rows, settings, stop, done);
+                const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width);
+                if (!stop)
+                    renderers_.front()->develop(settings.spp, exposure_time_s, image.exposure.data() + 3 * first,
+                                                image.depth.data() + first);
+            }
+        };
+        run_with_progress(work, [&] { return static_cast<double>(done) / total; }, progress, stop);
+        if (stop) throw Cancelled();
+    }
+
+    /// How many rows of the picture fit into every GPU's memory at once.
+    int make_room(const Image& image) {
+        for (int rows = image.height;; rows = (rows + 1) / 2) {
+            try {
+                for (const auto& renderer : renderers_)
+                    renderer->clear_film(static_cast<std::int64_t>(rows) * image.width);
+                return rows;
+            } catch (const OutOfDeviceMemory&) {
+                if (rows == 1) throw;
+            }
+        }
+    }
+
+    /// All samples of some rows: each GPU takes a range of them. One that fails stops the others.
+    void expose_band(int first_row, int rows, const RenderSettings& settings, std::atomic<bool>& stop,
+                     std::atomic<std::int64_t>& done) {
+        const auto share = [&](std::size_t i) {
+            return static_cast<std::uint32_t>(static_cast<std::uint64_t>(settings.spp) * i / renderers_.size());
+        };
+        std::vector<std::future<void>> others;
+        const auto expose_share = [&](std::size_t i) {
+            try {
+                DeviceRenderer& renderer = *renderers_[i];
+                renderer.clear_film(static_cast<std::int64_t>(rows) * setup_->camera().film.width);
+                renderer.expose({first_row, rows, share(i), share(i + 1) - share(i)}, settings, stop, done);
+            } catch (...) {
+                stop = true;
+                throw;
+            }
+        };
+        for (std::size_t i = 1; i < renderers_.size(); ++i)
+            others.push_back(std::async(std::launch::async, expose_share, i));
+        expose_share(0);
+        for (std::future<void>& other : others) other.get();
+        for (std::size_t i = 1; i < renderers_.size() && !stop; ++i) renderers_.front()->merge_film(*renderers_[i]);
+    }
+
+    void collect_counts(double seconds, RenderStats& stats) {
+        RenderCounts sum{};
+        for (const auto& renderer : renderers_) {
+            const RenderCounts counts = renderer->take_counts();
+            sum.sampled_rays += counts.sampled_rays;
+            sum.passed_rays += counts.passed_rays;
+            sum.scene_rays += counts.scene_rays;
+            sum.lens_clocks += counts.lens_clocks;
+            sum.scene_clocks += counts.scene_clocks;
+            sum.all_clocks += counts.all_clocks;
+        }
+        stats.sampled_rays = sum.sampled_rays;
+        stats.passed_rays = sum.passed_rays;
+        stats.scene_rays = sum.scene_rays;
+        const double per_clock = sum.all_clocks > 0 ? seconds / static_cast<double>(sum.all_clocks) : 0;
+        stats.lens_seconds = per_clock * static_cast<double>(sum.lens_clocks);
+        stats.scene_seconds = per_clock * static_cast<double>(sum.scene_clocks);
+        stats.other_seconds = seconds - stats.lens_seconds - stats.scene_seconds;
+    }
+
+    PupilTracer tracer_;
+    std::string name_;
+    std::vector<std::unique_ptr<DeviceRenderer>> renderers_;
+    std::optional<CameraSetup> setup_;
+    std::shared_ptr<const Scene> scene_;
+    std::unique_ptr<PlacedScene> placed_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_cuda_backend(const std::vector<int>& ordinals, PupilTracer tracer) {
+    return std::make_unique<CudaBackend>(ordinals, std::move(tracer));
+}
+
+}  // namespace realcam

@@ -1,0 +1,40 @@
+#include "cuda_devices.hpp"
+
+#include "cuda_error.hpp"
+
+namespace realcam {
+namespace {
+
+int device_count() {
+    // Where the driver is older than the runtime the count is left alone, and only the code tells.
+    int count = 0;
+    check_cuda(cudaGetDeviceCount(&count), "looking for GPUs");
+    return count;
+}
+
+}  // namespace
+
+std::vector<CudaDevice> cuda_devices() {
+    std::vector<CudaDevice> devices;
+    try {
+        const int count = device_count();
+        for (int i = 0; i < count; ++i) {
+            cudaDeviceProp p{};
+            check_cuda(cudaGetDeviceProperties(&p, i), "asking for its properties");
+            devices.push_back({i, p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem});
+        }
+    } catch (const DeviceError&) {
+        // why_no_cuda_device tells whoever asks for a GPU.
+    }
+    return devices;
+}
+
+std::string why_no_cuda_device() {
+    try {
+        return device_count() > 0 ? "" : "there is no NVIDIA GPU on this machine";
+    } catch (const DeviceError& error) {
+        return error.what();
+    }
+}
+
+}  // namespace realcam

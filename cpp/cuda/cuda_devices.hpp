@@ -1,0 +1,22 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace realcam {
+
+struct CudaDevice {
+    int ordinal;
+    std::string name;       ///< as "NVIDIA H100 80GB HBM3"
+    int major, minor;       ///< compute capability
+    int multiprocessors;
+    std::size_t memory;     ///< bytes
+};
+
+/// The GPUs that can be used: none where there is no driver, or where it is too old.
+std::vector<CudaDevice> cuda_devices();
+
+/// Why that list is empty, as a DeviceError's message; empty where there are some.
+std::string why_no_cuda_device();
+
+}  // namespace realcam

@@ -1,0 +1,33 @@
+#pragma once
+#include <cuda_runtime.h>
+
+#include <string>
+
+#include "../error.hpp"
+
+namespace realcam {
+
+/// More memory was wanted than the GPU has free; less may do.
+class OutOfDeviceMemory : public DeviceError {
+    using DeviceError::DeviceError;
+};
+
+/// Throws DeviceError where a call of the CUDA runtime failed. `doing`: what was tried, as "copying the scene".
+inline void check_cuda(cudaError_t code, const std::string& doing) {
+    if (code == cudaSuccess) return;
+    cudaGetLastError();  // a failure that leaves the device usable is not to be reported twice
+    const std::string cause = std::string(cudaGetErrorString(code)) + " (" + cudaGetErrorName(code) + ")";
+    switch (code) {
+        case cudaErrorNoKernelImageForDevice:
+            throw DeviceError("this build of realcam has no code for the GPU's architecture: " + cause +
+                              "; build it with CMAKE_CUDA_ARCHITECTURES=native, or use device=\"cpu\"");
+        case cudaErrorInsufficientDriver:
+            throw DeviceError("there is no NVIDIA driver, or it is older than the CUDA runtime " +
+                              std::to_string(CUDART_VERSION / 1000) + "." + std::to_string(CUDART_VERSION % 1000 / 10) +
+                              " of this build; a newer one is wanted, or device=\"cpu\"");
+        case cudaErrorNoDevice: throw DeviceError("there is no NVIDIA GPU, or the driver is not running: " + cause);
+        default: throw DeviceError("the GPU failed while " + doing + ": " + cause);
+    }
+}
+
+}  // namespace realcam

@@ -1,0 +1,68 @@
+#pragma once
+#include <cstddef>
+#include <utility>
+
+#include "cuda_error.hpp"
+
+namespace realcam {
+
+/// Memory of the current device. Grows when more is wanted and never shrinks, so that what changes with every frame
+/// does not allocate with every frame.
+template <class T>
+class DeviceArray {
+public:
+    DeviceArray() = default;
+    explicit DeviceArray(std::size_t count) { resize(count); }
+    ~DeviceArray() { cudaFree(data_); }
+    DeviceArray(DeviceArray&& other) noexcept { *this = std::move(other); }
+    DeviceArray& operator=(DeviceArray&& other) noexcept {
+        std::swap(data_, other.data_);
+        std::swap(capacity_, other.capacity_);
+        std::swap(size_, other.size_);
+        return *this;
+    }
+
+    T* data() const { return data_; }
+    std::size_t size() const { return size_; }
+
+    /// Contents are lost where the array grows. Throws DeviceError with what was wanted and what was free.
+    void resize(std::size_t count) {
+        if (count > capacity_) {
+            cudaFree(std::exchange(data_, nullptr));
+            capacity_ = size_ = 0;
+            const cudaError_t code = cudaMalloc(reinterpret_cast<void**>(&data_), count * sizeof(T));
+            if (code == cudaErrorMemoryAllocation) throw_out_of_memory(count * sizeof(T));
+            check_cuda(code, "allocating memory");
+            capacity_ = count;
+        }
+        size_ = count;
+    }
+    void upload(const T* from, std::size_t count, cudaStream_t stream) {
+        resize(count);
+        if (count == 0) return;
+        check_cuda(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream), "copying to it");
+    }
+    void download(T* to, cudaStream_t stream) const {
+        if (size_ == 0) return;
+        check_cuda(cudaMemcpyAsync(to, data_, size_ * sizeof(T), cudaMemcpyDeviceToHost, stream), "copying from it");
+    }
+    void clear(cudaStream_t stream) {
+        if (size_ == 0) return;
+        check_cuda(cudaMemsetAsync(data_, 0, size_ * sizeof(T), stream), "clearing memory");
+    }
+
+private:
+    [[noreturn]] static void throw_out_of_memory(std::size_t wanted) {
+        cudaGetLastError();
+        std::size_t free = 0, total = 0;
+        cudaMemGetInfo(&free, &total);
+        const auto mib = [](std::size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; };
+        throw OutOfDeviceMemory("the GPU is out of memory: " + mib(wanted) + " more were wanted, and " + mib(free) +
+                                " of " + mib(total) + " are free");
+    }
+
+    T* data_ = nullptr;
+    std::size_t capacity_ = 0, size_ = 0;
+};
+
+}  // namespace realcam

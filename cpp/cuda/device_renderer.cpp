@@ -1,0 +1,152 @@
+#include "device_renderer.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace realcam {
+namespace {
+
+/// How long a launch may take: short enough that a stop is obeyed within 50 ms with two of them under way, long enough
+/// that starting it costs nothing.
+constexpr double kLaunch_ms = 10;
+/// The first launch, of a GPU whose speed is not known yet.
+constexpr double kFirstSamples = 1 << 20;
+
+/// Launch after launch of one part: all samples of some rows, or a few samples of all.
+class LaunchPlan {
+public:
+    LaunchPlan(const FilmPart& part, int columns) : part_(part), columns_(columns), row_(0), sample_(0) {}
+
+    bool over() const { return sample_ == part_.sample_count; }
+
+    /// The next piece of about so many samples.
+    FilmPart next(double samples) {
+        const double row = columns_;
+        const int rows_left = part_.row_count - row_;
+        FilmPart piece = part_;
+        piece.first_row = part_.first_row + row_;
+        piece.first_sample = part_.first_sample + sample_;
+        piece.row_count = rows_left;
+        piece.sample_count = 1;
+        if (row_ == 0 && samples >= row * part_.row_count) {
+            const double all = part_.sample_count - sample_;
+            piece.sample_count = static_cast<std::uint32_t>(std::min(all, samples / (row * part_.row_count)));
+            sample_ += piece.sample_count;
+            return piece;
+        }
+        piece.row_count = static_cast<int>(std::clamp(samples / row, 1.0, static_cast<double>(rows_left)));
+        row_ += piece.row_count;
+        if (row_ == part_.row_count) {
+            row_ = 0;
+            ++sample_;
+        }
+        return piece;
+    }
+
+private:
+    FilmPart part_;
+    int columns_, row_;
+    std::uint32_t sample_;
+};
+
+int bound(int ordinal) {
+    check_cuda(cudaSetDevice(ordinal), "choosing GPU " + std::to_string(ordinal));
+    return ordinal;
+}
+
+}  // namespace
+
+DeviceRenderer::DeviceRenderer(int ordinal) : ordinal_(bound(ordinal)), counts_(1) {
+    counts_.clear(stream_);
+}
+
+DeviceRenderer::~DeviceRenderer() {
+    cudaSetDevice(ordinal_);
+}
+
+void DeviceRenderer::bind() const {
+    bound(ordinal_);
+}
+
+void DeviceRenderer::set_scene(const PlacedScene& scene, const WideBvh& bvh) {
+    bind();
+    scene_arrays_.restart();
+    const auto copy = [&](const auto* from, std::size_t count) { return scene_arrays_.copy(from, count, stream_); };
+    scene_ = with_copied_arrays(scene.view(), copy);
+    bvh_ = {copy(bvh.nodes.data(), bvh.nodes.size()), copy(bvh.triangles.data(), bvh.triangles.size())};
+    stream_.wait("copying the scene to it");
+}
+
+void DeviceRenderer::set_camera(const CameraView& camera) {
+    bind();
+    camera_arrays_.restart();
+    camera_ = with_copied_arrays(
+        camera, [&](const auto* from, std::size_t count) { return camera_arrays_.copy(from, count, stream_); });
+}
+
+void DeviceRenderer::clear_film(std::int64_t pixels) {
+    bind();
+    sums_.resize(static_cast<std::size_t>(pixels));
+    sums_.clear(stream_);
+}
+
+void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings, const std::atomic<bool>& stop,
+                            std::atomic<std::int64_t>& done) {
+    bind();
+    // Two launches are under way at any time, so that the GPU never waits for the host.
+    std::array<CudaEvent, 3> ends;
+    std::array<std::int64_t, 3> sizes{};
+    LaunchPlan plan(part, camera_.width);
+    ends[2].record(stream_);
+    std::size_t started = 0, finished = 0;
+    const auto finish_one = [&] {
+        const std::size_t i = finished++ % 3;
+        ends[i].wait();
+        done += sizes[i];
+        const double ms = ends[i].ms_since(ends[(i + 2) % 3]);
+        if (ms > 0) samples_per_ms_ = static_cast<double>(sizes[i]) / ms;
+    };
+    while (!plan.over() && !stop) {
+        if (started - finished == 2) finish_one();
+        const FilmPart piece = plan.next(samples_per_ms_ > 0 ? kLaunch_ms * samples_per_ms_ : kFirstSamples);
+        PixelSum* sums = sums_.data() + static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
+        launch_render({scene_, bvh_, camera_, sums, counts_.data(), settings.max_bounces, settings.seed,
+                       piece.first_sample, piece.sample_count, piece.first_row, piece.row_count},
+                      started == 0, stream_);
+        const std::size_t i = started++ % 3;
+        ends[i].record(stream_);
+        sizes[i] = static_cast<std::int64_t>(piece.sample_count) * piece.row_count * camera_.width;
+    }
+    while (finished < started) finish_one();
+}
+
+void DeviceRenderer::merge_film(const DeviceRenderer& other) {
+    bind();
+    others_.resize(other.sums_.size());
+    check_cuda(cudaMemcpyPeerAsync(others_.data(), ordinal_, other.sums_.data(), other.ordinal_,
+                                   other.sums_.size() * sizeof(PixelSum), stream_),
+               "copying from GPU " + std::to_string(other.ordinal_));
+    launch_merge(sums_.data(), others_.data(), static_cast<std::int64_t>(sums_.size()), stream_);
+}
+
+void DeviceRenderer::develop(int samples, double exposure_time_s, float* exposure, float* depth) {
+    bind();
+    exposure_.resize(3 * sums_.size());
+    depth_.resize(sums_.size());
+    launch_develop(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, exposure_.data(),
+                   depth_.data(), stream_);
+    exposure_.download(exposure, stream_);
+    depth_.download(depth, stream_);
+    stream_.wait("copying the picture from it");
+}
+
+RenderCounts DeviceRenderer::take_counts() {
+    bind();
+    RenderCounts counts{};
+    counts_.download(&counts, stream_);
+    stream_.wait("rendering");
+    counts_.clear(stream_);
+    return counts;
+}
+
+}  // namespace realcam

@@ -1,0 +1,66 @@
+#pragma once
+#include <atomic>
+#include <string>
+
+#include "../bvh/build_wide_bvh.hpp"
+#include "../render/backend.hpp"
+#include "../scene/placed_scene.hpp"
+#include "../scene/scene_arrays.hpp"
+#include "cuda_stream.hpp"
+#include "device_arrays.hpp"
+#include "render_kernel.hpp"
+
+namespace realcam {
+
+/// A range of rows of the picture, and of the samples of each of its pixels.
+struct FilmPart {
+    int first_row, row_count;
+    std::uint32_t first_sample, sample_count;
+};
+
+/// One GPU with its copy of scene, camera and film. Used by one thread at a time, which every member function binds to
+/// the device; all of them throw DeviceError.
+class DeviceRenderer {
+public:
+    explicit DeviceRenderer(int ordinal);
+    ~DeviceRenderer();
+
+    int ordinal() const { return ordinal_; }
+
+    /// Copies a scene, or what changes with every frame of a camera's. The host's copies may go afterwards.
+    void set_scene(const PlacedScene& scene, const WideBvh& bvh);
+    void set_camera(const CameraView& camera);
+
+    /// Makes room for the sums of so many pixels, and sets them to 0.
+    void clear_film(std::int64_t pixels);
+
+    /// Adds samples to the film, which holds the part's rows. Returns when they are done, or within two launches of a
+    /// few milliseconds after `stop` was set. `done` counts samples.
+    void expose(const FilmPart& part, const RenderSettings& settings, const std::atomic<bool>& stop,
+                std::atomic<std::int64_t>& done);
+
+    /// Adds what another GPU has collected of the same pixels.
+    void merge_film(const DeviceRenderer& other);
+
+    /// Exposure and depth of the film's pixels after `samples` samples, into the host's memory.
+    void develop(int samples, double exposure_time_s, float* exposure, float* depth);
+
+    /// Since the last call.
+    RenderCounts take_counts();
+
+private:
+    void bind() const;
+
+    int ordinal_;
+    CudaStream stream_;
+    DeviceArrays scene_arrays_, camera_arrays_;
+    SceneView scene_{};
+    WideBvhView bvh_{};
+    CameraView camera_{};
+    DeviceArray<PixelSum> sums_, others_;
+    DeviceArray<float> exposure_, depth_;
+    DeviceArray<RenderCounts> counts_;
+    double samples_per_ms_ = 0;  ///< 0: not known yet
+};
+
+}  // namespace realcam

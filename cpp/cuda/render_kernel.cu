@@ -1,0 +1,162 @@
+#include "render_kernel.hpp"
+
+#include "bvh_scene.hpp"
+#include "cuda_error.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kBlockSize = 128, kWarpSize = 32;
+#ifndef MINB
+#define MINB 4
+#endif
+constexpr int kBlocksPerMultiprocessor = MINB;
+
+/// Where the threads of a launch stand in the picture: warps side by side, each over a small rectangle of pixels, so
+/// that its rays meet the same part of the scene; `lanes` threads share a pixel's samples.
+struct WarpTiles {
+    int lanes, width, height;  ///< threads of a pixel; pixels of a warp
+
+    __host__ __device__ explicit WarpTiles(int lanes_per_pixel) : lanes(lanes_per_pixel), width(1), height(1) {
+        for (int pixels = kWarpSize / lanes; pixels > 1; pixels /= 2) (width > height ? height : width) *= 2;
+    }
+    __host__ __device__ std::int64_t across(int columns) const { return (columns + width - 1) / width; }
+    __host__ __device__ std::int64_t down(int rows) const { return (rows + height - 1) / height; }
+};
+
+struct NoClock {
+    __device__ void enter(RenderStage) {}
+    __device__ void report(RenderCounts*) const {}
+};
+
+/// Clocks of one thread. Of each stage 32 bits: a thread's share of a launch is short.
+struct StageClock {
+    std::uint32_t clocks[3] = {0, 0, 0};
+    std::uint32_t since;
+    RenderStage stage = RenderStage::other;
+
+    __device__ StageClock() : since(now()) {}
+    __device__ void enter(RenderStage next) {
+        const std::uint32_t time = now();
+        for (int i = 0; i < 3; ++i) clocks[i] += i == static_cast<int>(stage) ? time - since : 0u;
+        since = time;
+        stage = next;
+    }
+    __device__ static std::uint32_t now() {
+        std::uint32_t time;
+        asm volatile("mov.u32 %0, %%clock;" : "=r"(time));
+        return time;
+    }
+    __device__ void report(RenderCounts* counts) const {
+        const unsigned long long lens = clocks[static_cast<int>(RenderStage::lens)],
+                                 scene = clocks[static_cast<int>(RenderStage::scene)];
+        atomicAdd(&counts->lens_clocks, lens);
+        atomicAdd(&counts->scene_clocks, scene);
+        atomicAdd(&counts->all_clocks, lens + scene + clocks[static_cast<int>(RenderStage::other)]);
+    }
+};
+
+template <class T>
+__device__ T sum_of_neighbours(T value, int lanes) {
+    for (int step = lanes / 2; step > 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
+    return value;
+}
+
+template <LensShapes shapes, class Clock>
+__global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor) render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
+    const WarpTiles tiles(lanes_per_pixel);
+    const std::int64_t warp = (static_cast<std::int64_t>(blockIdx.x) * kBlockSize + threadIdx.x) / kWarpSize;
+    const int lane = threadIdx.x % kWarpSize, place = lane / tiles.lanes;
+    const std::int64_t across = tiles.across(job.camera.width);
+    const int column = static_cast<int>(warp % across) * tiles.width + place % tiles.width;
+    const int row = static_cast<int>(warp / across) * tiles.height + place / tiles.width;
+    const bool inside = column < job.camera.width && row < job.row_count;
+
+    PixelSum sum{};
+    std::uint32_t sampled = 0, passed = 0;
+    BvhScene scene{job.bvh, 0};
+    Clock clock;
+    if (inside) {
+        SampleBlock<1> block;
+        SampleResults<1> results;
+        block.column[0] = column;
+        block.row[0] = job.first_row + row;
+        block.used[0] = 1;
+        block.stream[0] = pixel_stream(block.row[0] * job.camera.width + column, job.seed);
+        for (std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes); s < job.sample_count;
+             s += static_cast<std::uint32_t>(tiles.lanes)) {
+            block.sample[0] = job.first_sample + s;
+            render_samples<shapes>(job.scene, job.camera, job.max_bounces, block, scene, clock, results);
+            sum.add(results, 0);
+            sampled += static_cast<std::uint32_t>(results.sampled[0]);
+            passed += static_cast<std::uint32_t>(results.passed[0]);
+        }
+        clock.enter(RenderStage::other);
+    }
+    for (double& e : sum.irradiance) e = sum_of_neighbours(e, tiles.lanes);
+    sum.depth = sum_of_neighbours(sum.depth, tiles.lanes);
+    sum.hits = sum_of_neighbours(sum.hits, tiles.lanes);
+    if (inside && lane % tiles.lanes == 0) job.sums[static_cast<std::int64_t>(row) * job.camera.width + column] += sum;
+
+    sampled = sum_of_neighbours(sampled, kWarpSize);
+    passed = sum_of_neighbours(passed, kWarpSize);
+    const std::uint32_t traced = sum_of_neighbours(scene.rays_traced, kWarpSize);
+    if (lane == 0) {
+        atomicAdd(&job.counts->sampled_rays, sampled);
+        atomicAdd(&job.counts->passed_rays, passed);
+        atomicAdd(&job.counts->scene_rays, traced);
+    }
+    if (inside) clock.report(job.counts);
+}
+
+__global__ void develop(const PixelSum* sums, std::int64_t pixels, int samples, double exposure_time_s, float* exposure,
+                        float* depth) {
+    const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+    if (i >= pixels) return;
+    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, samples);
+    depth[i] = sums[i].mean_depth();
+}
+
+__global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels) {
+    const std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+    if (i < pixels) sums[i] += other[i];
+}
+
+unsigned blocks_for(std::int64_t threads) {
+    return static_cast<unsigned>((threads + kBlockSize - 1) / kBlockSize);
+}
+
+/// As many threads for a pixel as fill the largest GPU several times over, but none without a sample.
+int lanes_for(const RenderJob& job) {
+    constexpr std::int64_t kWanted = 1 << 22;
+    const std::int64_t pixels = static_cast<std::int64_t>(job.camera.width) * job.row_count;
+    int lanes = 1;
+    while (lanes < kWarpSize && pixels * lanes < kWanted && 2 * lanes <= static_cast<int>(job.sample_count)) lanes *= 2;
+    return lanes;
+}
+
+}  // namespace
+
+void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
+    const int lanes = lanes_for(job);
+    const WarpTiles tiles(lanes);
+    const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
+    const bool spheres = job.camera.lens.shapes == LensShapes::spheres;
+    const auto kernel = spheres ? (timed ? render<LensShapes::spheres, StageClock> : render<LensShapes::spheres, NoClock>)
+                                : (timed ? render<LensShapes::any, StageClock> : render<LensShapes::any, NoClock>);
+    kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
+    check_cuda(cudaGetLastError(), "starting to render");
+}
+
+void launch_develop(const PixelSum* sums, std::int64_t pixels, int samples, double exposure_time_s, float* exposure,
+                    float* depth, cudaStream_t stream) {
+    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, samples, exposure_time_s, exposure, depth);
+    check_cuda(cudaGetLastError(), "starting to develop");
+}
+
+void launch_merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels, cudaStream_t stream) {
+    merge<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, other, pixels);
+    check_cuda(cudaGetLastError(), "starting to add sums");
+}
+
+}  // namespace realcam

@@ -1,0 +1,41 @@
+#pragma once
+#include <cuda_runtime.h>
+
+#include <cstdint>
+
+#include "../bvh/wide_bvh.hpp"
+#include "../camera/camera_view.hpp"
+#include "../render/pixel_sum.hpp"
+#include "../scene/scene_view.hpp"
+
+namespace realcam {
+
+/// What the threads of all launches have counted.
+struct RenderCounts {
+    unsigned long long sampled_rays, passed_rays, scene_rays;
+    unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< of the launches that looked at the clock
+};
+
+/// One launch: some samples of some rows of pixels. All pointers are the device's.
+struct RenderJob {
+    SceneView scene;
+    WideBvhView bvh;
+    CameraView camera;
+    PixelSum* sums;  ///< of the rows of the job's band, row by row; added to
+    RenderCounts* counts;
+    int max_bounces;
+    std::uint32_t seed, first_sample, sample_count;
+    int first_row, row_count;  ///< of the picture
+};
+
+/// Starts a job. `timed`: also counts clocks. Throws DeviceError.
+void launch_render(const RenderJob& job, bool timed, cudaStream_t stream);
+
+/// Sums as exposure (3 per pixel, lux seconds) and depth (metres).
+void launch_develop(const PixelSum* sums, std::int64_t pixels, int samples, double exposure_time_s, float* exposure,
+                    float* depth, cudaStream_t stream);
+
+/// sums += other, for each of `pixels`.
+void launch_merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels, cudaStream_t stream);
+
+}  // namespace realcam

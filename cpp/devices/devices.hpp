@@ -1,0 +1,23 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../render/backend.hpp"
+
+namespace realcam {
+
+/// What pictures can be taken with, by the name that make_backend takes.
+struct Device {
+    std::string name;         ///< cpu, cuda:0, cuda:1, ...
+    std::string description;  ///< for people
+};
+
+/// All devices of this machine, the CPU first.
+std::vector<Device> devices();
+
+/// "auto": the GPU if there is one, else the CPU. "cpu". "cuda": all GPUs; "cuda:1", "cuda:0,1": those.
+/// Throws InputError for another name, and DeviceError where the device is not there or does not work.
+std::unique_ptr<Backend> make_backend(const std::string& device);
+
+}  // namespace realcam

@@ -1,0 +1,43 @@
+#pragma once
+#include <limits>
+
+#include "../camera/develop.hpp"
+#include "render_samples.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What one pixel has collected. Sums in double: a million samples in float would drift by a thousandth.
+struct PixelSum {
+    double irradiance[3];  ///< lux, summed over the samples
+    double depth;          ///< metres, summed over those that met something
+    std::uint32_t hits;    ///< samples that met something
+
+    REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
+        for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
+        depth += other.depth;
+        hits += other.hits;
+        return *this;
+    }
+
+    template <int N>
+    REALCAM_INLINE void add(const SampleResults<N>& results, int lane) {
+        irradiance[0] += static_cast<double>(results.irradiance.x[lane]);
+        irradiance[1] += static_cast<double>(results.irradiance.y[lane]);
+        irradiance[2] += static_cast<double>(results.irradiance.z[lane]);
+        if (results.depth[lane] >= 0) {
+            depth += static_cast<double>(results.depth[lane]);
+            ++hits;
+        }
+    }
+
+    /// Lux seconds on the film after `samples` samples.
+    REALCAM_HD float exposure(int channel, double exposure_time_s, int samples) const {
+        return film_exposure(irradiance[channel] * exposure_time_s / samples);
+    }
+    /// Mean depth, metres; infinite where nothing was met.
+    REALCAM_HD float mean_depth() const {
+        return hits > 0 ? static_cast<float>(depth / hits) : std::numeric_limits<float>::infinity();
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,53 @@
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "backend.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Runs `work` on a thread of its own, so that the caller's thread is free to report and to stop it.
+template <class Work, class Share>
+void run_with_progress(Work&& work, Share&& share, const Progress& progress, std::atomic<bool>& stop) {
+    if (!progress) {
+        work();
+        return;
+    }
+    std::mutex mutex;
+    std::condition_variable finished;
+    bool over = false;
+    std::exception_ptr failure;
+    std::thread worker([&] {
+        try {
+            work();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        const std::lock_guard lock(mutex);
+        over = true;
+        finished.notify_all();
+    });
+    std::exception_ptr callers_failure;
+    std::unique_lock lock(mutex);
+    while (!finished.wait_for(lock, std::chrono::milliseconds(50), [&] { return over; })) {
+        lock.unlock();
+        try {
+            if (!stop && !progress(share())) stop = true;
+        } catch (...) {
+            callers_failure = std::current_exception();
+            stop = true;
+        }
+        lock.lock();
+    }
+    lock.unlock();
+    worker.join();
+    if (callers_failure) std::rethrow_exception(callers_failure);
+    if (failure) std::rethrow_exception(failure);
+    if (!stop) progress(1.0);
+}
+
+}  // namespace REALCAM_NAMESPACE
