@@ -40,7 +40,8 @@ struct SlabRay {
         const Vec3f to = node.origin - origin;
         // The reach holds, besides the farthest plane, 2^-8 of a step over 2^-20: what subtracting 32768 steps costs.
         const float reach = std::bit_cast<float>(node.step_z_reach << 16);
-        const float slack = 0x1p-20f * (largest_coordinate(to) + reach);
+        const float slack =
+            0x1p-20f * (std::fmax(std::fmax(std::fabs(to.x), std::fabs(to.y)), std::fabs(to.z)) + reach);
         const Axis x(to.x, std::bit_cast<float>(node.steps_xy & 0xffff0000u), per_axis.x, slack);
         const Axis y(to.y, std::bit_cast<float>(node.steps_xy << 16), per_axis.y, slack);
         const Axis z(to.z, std::bit_cast<float>(node.step_z_reach & 0xffff0000u), per_axis.z, slack);

@@ -32,17 +32,17 @@ REALCAM_INLINE unsigned triple_bits(unsigned slots) {
 /// (`far` may be infinite), or without a direction of normal floating-point size, meets nothing.
 template <bool any, class Probe = NoTraversalProbe>
 REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far, Probe&& probe = {}) {
-    Hit hit = {far, kNoTriangle, 0, 0};
+    const Hit none = {far, kNoTriangle, 0, 0};
     const float size = largest_coordinate(direction);
     const float sum = origin.x + origin.y + origin.z + direction.x + direction.y + direction.z;
-    if (!(sum - sum == 0) || !(size >= 0x1p-126f)) return hit;
+    if (!(sum - sum == 0) || !(size >= 0x1p-126f)) return none;
     // A power of two makes the largest component 1 to 2 (4 at the end of the range), so that nothing overflows.
     std::uint32_t exponent = std::bit_cast<std::uint32_t>(size) >> 23;
     exponent = exponent < 253u ? exponent : 253u;
     const float scale = std::bit_cast<float>((254u - exponent) << 23);
     direction = scale * direction;
-    float nearest = far * std::bit_cast<float>(exponent << 23);
-    if (!(nearest > 0)) return hit;
+    Hit hit = {far * std::bit_cast<float>(exponent << 23), kNoTriangle, 0, 0};  // the end, until there is a hit
+    if (!(hit.distance > 0)) return none;
 
     const SlabRay slabs(origin, direction);
     const ShearedRay sheared(origin, direction);
@@ -57,7 +57,7 @@ REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direc
 
         const WideNode node = load_constant(bvh.nodes + index);
         probe.node();
-        const unsigned met = slabs.slots_met(node, nearest);
+        const unsigned met = slabs.slots_met(node, hit.distance);
         const unsigned children = node.content >> 24;
         pending = {node.first_child, (met & children) | children << 8};
         for (unsigned triangles = traversal_detail::triple_bits(met) & node.content; triangles;) {
@@ -66,18 +66,15 @@ REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direc
             const std::uint32_t number = node.first_triangle + count_bits(node.content & 0xffffffu & (first - 1u));
             const BvhTriangle triangle = load_constant(bvh.triangles + number);
             probe.triangle();
-            if (meets_triangle(sheared, triangle, nearest, hit)) {
-                nearest = hit.distance;
-                if (any) return hit;
-            }
+            if (meets_triangle(sheared, triangle, hit) && any) return hit;
         }
         if (!(pending.slots & 0xffu)) {
             if (waiting == 0) break;
             pending = stack[--waiting];
         }
     }
-    hit.distance = hit.triangle == kNoTriangle ? far : hit.distance * scale;
-    return hit;
+    hit.distance *= scale;
+    return hit.triangle == kNoTriangle ? none : hit;
 }
 
 /// The nearest triangle at a distance in [0, far), in lengths of the direction, which need not be 1. Barycentrics as

@@ -45,8 +45,8 @@ private:
     }
 };
 
-/// Whether the ray meets the triangle, from either side, at a parameter in [0, far). If so, `hit` says where.
-REALCAM_INLINE bool meets_triangle(const ShearedRay& ray, const BvhTriangle& triangle, float far, Hit& hit) {
+/// Whether the ray meets the triangle, from either side, at a parameter in [0, hit.distance). If so, `hit` says where.
+REALCAM_INLINE bool meets_triangle(const ShearedRay& ray, const BvhTriangle& triangle, Hit& hit) {
     const Vec3f a = ray.sheared(triangle.a), b = ray.sheared(triangle.b), c = ray.sheared(triangle.c);
     const float u = difference_of_products(c.x, b.y, c.y, b.x);
     const float v = difference_of_products(a.x, c.y, a.y, c.x);
@@ -57,7 +57,7 @@ REALCAM_INLINE bool meets_triangle(const ShearedRay& ray, const BvhTriangle& tri
     const float share = 1.0f / (u + v + w);
     const float u_share = u * share, v_share = v * share, w_share = w * share;
     const float t = (u_share * a.z + v_share * b.z + w_share * c.z) * ray.per_z;
-    if (!(t >= 0 && t < far)) return false;
+    if (!(t >= 0 && t < hit.distance)) return false;
     hit = {t, triangle.index, v_share, w_share};
     return true;
 }
