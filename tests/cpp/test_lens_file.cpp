@@ -203,6 +203,7 @@ TEST_CASE("text that is not TOML is named with file and line") {
     check_complaint(with_line(9, "clear_semi_diameter_mm = = 8"), "probe.toml:9", "not valid TOML");
     check_complaint(with_line(11, "[[surface]"), "probe.toml:11", "not valid TOML");
     check_complaint(with_line(8, "material = 1.5\nmaterial = 1.6"), "probe.toml:9", "not valid TOML");
+    check_complaint(with_line(7, "thickness_mm\u00e9 = 4.0"), "probe.toml:7", "not valid TOML");
     check_complaint(std::string("\x7f\x45LF\x02\x01\0\0\xff\xfe", 10), "probe.toml:1", "not valid TOML");
 }
 

@@ -152,7 +152,7 @@ inline LensSystem draw_lens(Bytes& in) {
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter * (in.chance(64) ? in.unit() : 1.0);
     // Rarely: to find the blades' place takes as long as a thousand rays.
     if (in.chance(1)) lens.iris = {3 + in.below(22), in.unit(), in.between(-10, 10)};
-    if (in.chance(8) && !std::getenv("NOSPOIL")) spoil(in, lens);
+    if (in.chance(8)) spoil(in, lens);
     return lens;
 }
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "../../cpp/camera/camera.hpp"
-#include "../../cpp/embree/embree_backend.hpp"
 #include "../../cpp/embree/kernels.hpp"
 #include "../../cpp/io/lens_file.hpp"
 #include "draw_lens.hpp"
@@ -18,6 +17,11 @@ bool finite(Vec3f v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+PupilTracer tracer() {
+    const auto trace = kernels().trace_block;
+    return [trace](const LensView<float>& view, LensRays<float, 256>& rays) { trace(&view, &rays); };
+}
+
 /// Lenses with a hole, with crescents at the edge of the image, with blades: their pupils are found once.
 const std::vector<std::unique_ptr<CameraSetup>>& known_cameras() {
     static const std::vector<std::unique_ptr<CameraSetup>> all = [] {
@@ -26,7 +30,7 @@ const std::vector<std::unique_ptr<CameraSetup>>& known_cameras() {
             Camera camera{io::read_lens(name), {}, {}};
             camera.film.width_mm = camera.lens.film_width;
             camera.film.height_mm = camera.lens.film_height;
-            list.push_back(std::make_unique<CameraSetup>(camera, fast_pupil_tracer()));
+            list.push_back(std::make_unique<CameraSetup>(camera, tracer()));
         }
         return list;
     }();
@@ -97,7 +101,7 @@ Camera draw_camera(Bytes& in) {
 
 void check_rays(Bytes& in, const Camera& camera) {
     constexpr int kCount = 256;
-    const CameraSetup setup(camera, fast_pupil_tracer());
+    const CameraSetup setup(camera, tracer());
     const CameraView view = setup.view(camera.pose.position_m);
     const int pixels = camera.film.width * camera.film.height;
     std::vector<float> origins(3 * kCount), directions(3 * kCount), weights(kCount);

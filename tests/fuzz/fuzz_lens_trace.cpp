@@ -66,11 +66,7 @@ void check_results(const Case& test, const LensPath<T>& path, const BlockResult&
         if (index < (bad ? -1 : 0) || index >= surfaces || (status == 0 && index != last))
             say<T>("a ray ends at no surface", test, out, i, index);
         if (!finite(out.origin[i]) || !finite(out.direction[i]) || !std::isfinite(out.path[i]))
-            say<T>(std::fabs(test.rays.direction[i].z) < 1e-30 * length(test.rays.direction[i]) ||
-                           !std::isfinite(length(test.rays.direction[i]))
-                       ? "inf F1"
-                       : "a number is not finite",
-                   test, out, i, 0);
+            say<T>("a number is not finite", test, out, i, 0);
         // The backends make it a unit vector in double.
         const double size = length(out.direction[i]);
         if (!(bad ? size == 0 : std::fabs(size - 1) < 1e-15 * 4))

@@ -57,12 +57,11 @@ public:
             broken("a hit is not on the surface", ray, near.distance, near.distance_bound);
         check_path(ray);
         check_aperture(ray);
-        if (ray.status == RayStatus::ok) {
-            check_refraction(ray, near);
-        } else {
-            if (!same(ray.after, ray.along)) broken("a ray that ended has turned", ray, 0, 0);
-            if (ray.status == RayStatus::total_internal_reflection) check_reflection(ray, near);
-        }
+        if (ray.status != RayStatus::ok && !same(ray.after, ray.along))
+            broken("a ray that ended has turned", ray, 0, 0);
+        if (!(near.distance_bound * bend_ < 0.01)) return;  // nobody knows the normal
+        if (ray.status == RayStatus::ok) check_refraction(ray, near);
+        if (ray.status == RayStatus::total_internal_reflection) check_reflection(ray, near);
     }
 
 private:
@@ -99,42 +98,54 @@ private:
         return static_cast<double>(c * (x * x + y * y + q * z * z) - 2 * z);
     }
 
+    /// An asphere at a distance from the axis. The sums of magnitudes are what roundings of the polynomial scale with.
+    struct Profile {
+        double sag, slope, root;  ///< slope: d sag / dr; root: of 1 - (1 + k) c^2 r^2
+        double sizes, slope_sizes;
+    };
+    Profile profile_at(long double r2) const {
+        const long double c = c_, root = std::sqrt(std::max(0.0L, 1 - q_ * c * c * r2)), r = std::sqrt(r2);
+        const long double inverse = step_.inverse_search_squared, u = r2 * inverse;
+        long double polynomial = 0, derivative = 0, sizes = 0, slope_sizes = 0;
+        for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
+            const long double term = step_.aspheric[i];
+            derivative = derivative * u + polynomial;
+            polynomial = polynomial * u + term;
+            slope_sizes = slope_sizes * u + (i + 2) * std::fabs(term);
+            sizes = sizes * u + std::fabs(term);
+        }
+        const long double slope = c * r / root + 2 * r * inverse * u * (2 * polynomial + u * derivative);
+        return {static_cast<double>(c * r2 / (1 + root) + u * u * polynomial), static_cast<double>(slope),
+                static_cast<double>(root), static_cast<double>(u * u * sizes),
+                static_cast<double>(2 * r * inverse * u * slope_sizes)};
+    }
+
     Near asphere_at(const Crossing& ray) const {
         const Vec3d o = ray.before, at = ray.at;
         const long double r2 = static_cast<long double>(at.x) * at.x + static_cast<long double>(at.y) * at.y;
-        const long double root = std::sqrt(std::max(0.0L, 1 - static_cast<long double>(q_) * c_ * c_ * r2));
-        const long double inverse = step_.inverse_search_squared, u = r2 * inverse;
-        long double polynomial = 0, slope = 0;
-        double sizes = 0, slope_sizes = 0;
-        for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
-            slope = slope * u + polynomial;
-            polynomial = polynomial * u + step_.aspheric[i];
-            const double size = std::fabs(static_cast<double>(step_.aspheric[i]));
-            sizes = sizes * static_cast<double>(u) + size;
-            slope_sizes += (i + 2) * size * std::pow(static_cast<double>(u), i + 1) * static_cast<double>(inverse);
-        }
-        const double sag = static_cast<double>(c_ * r2 / (1 + root) + u * u * polynomial);
-        const double derivative = static_cast<double>(c_ / (2 * root) + inverse * u * (2 * polynomial + u * slope));
+        const Profile here = profile_at(r2);
         const double square = static_cast<double>(r2), r = std::sqrt(square);
         // Rounding of 1 - (1 + k) c^2 r^2, which the root makes large at the edge.
-        const double edge = std::min(std::sqrt(kRoundings * eps), kRoundings * eps / static_cast<double>(root)) *
+        const double edge = std::min(std::sqrt(kRoundings * eps), kRoundings * eps / here.root) *
                             (1 + std::fabs(q_) * c_ * c_ * square);
-        const double steep = 2 * std::fabs(derivative) * r;
-        const double way = length(at - o);
         // The search's tolerance knows the surface's own height too.
-        const double axial = std::fabs(o.z) + std::fabs(at.z - o.z) + std::fabs(sag) +
+        const double axial = std::fabs(o.z) + std::fabs(at.z - o.z) + std::fabs(here.sag) +
                              static_cast<double>(step_.sag_max - step_.sag_min) / 16;
-        const double lateral = steep * (length(o) + way);
-        const double height =
-            kRoundings * eps *
-                (axial + std::min(lateral, axial / std::sqrt(eps)) + static_cast<double>(u * u) * sizes) +
-            std::fabs(c_) * square * edge + tiny;
-        const Vec3d gradient{-2 * derivative * at.x, -2 * derivative * at.y, 1};
-        const double g = std::isfinite(derivative) ? length(gradient) : 0;
-        const double conic_share = std::fabs(c_) * r * edge / std::max(static_cast<double>(root * root), eps);
-        const double turn =
-            g > 0 ? (kRoundings * eps * (g + slope_sizes * r) + conic_share) / (g * g) + kRoundings * eps : 2;
-        return {std::fabs(at.z - sag), height, g > 0 ? (1 / g) * gradient : Vec3d{0, 0, 1}, turn, turn};
+        const double lateral = std::fabs(here.slope) * (length(o) + length(at - o));
+        const double height = kRoundings * eps * (axial + std::min(lateral, axial / std::sqrt(eps)) + here.sizes) +
+                              std::fabs(c_) * square * edge + tiny;
+        // A wall's slope has no bound, but the angle of its normal has.
+        const double angle = std::atan(here.slope);
+        double turn = 0;
+        for (const double side : {-kRoundings * eps, kRoundings * eps}) {
+            const Profile moved = profile_at(r2 * (1 + side));
+            turn = std::max(turn, std::fabs(std::atan(moved.slope + side * moved.slope_sizes) - angle));
+            turn = std::max(turn, std::fabs(std::atan(moved.slope - side * moved.slope_sizes) - angle));
+        }
+        turn += kRoundings * eps;
+        const Vec3d outwards = r > 0 ? (1 / r) * Vec3d{at.x, at.y, 0} : Vec3d{1, 0, 0};
+        return {std::fabs(at.z - here.sag), height, std::cos(angle) * Vec3d{0, 0, 1} - std::sin(angle) * outwards, turn,
+                turn};
     }
 
     void check_refraction(const Crossing& ray, const Near& near) const {
@@ -146,7 +157,6 @@ private:
         const double stretch = step_.kind == StepKind::sphere ? 2 * bend_ * near.distance_bound : 0;
         const double length_bound = kRoundings * eps * (p + n * p) +
                                     length(change) * (p * near.incidence_bound + length(change) * stretch) / out;
-        if (!(near.distance_bound * bend_ < 0.01)) return;  // nobody knows the normal
         // A length that was made right again turns the part along the surface.
         const double turn_bound = length(change) * near.normal_bound + kRoundings * eps * (p + out) + length_bound;
         if (!(turned <= turn_bound)) broken("Snell's law: the change is not along the normal", ray, turned, turn_bound);
@@ -251,7 +261,14 @@ private:
                      search = static_cast<double>(step_.search_squared);
         if (std::fabs(ex * ex + ey * ey - search) < 1e-4 * search) return;
         const double near = beyond(middle - half), far = beyond(middle + half), clear = 1e-3 * rim;
-        if (near < -clear && far > clear) broken("an asphere that is met counts as missed", ray, near, far);
+        if (!(near < -clear && far > clear)) return;
+        double low = middle - half, high = middle + half;
+        for (int i = 0; i < 60; ++i) (beyond(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
+        const Vec3d at = o + high * p;
+        const double slope = profile_at(at.x * at.x + at.y * at.y).slope, r = std::hypot(at.x, at.y);
+        const double inwards = sense * (p.z - slope * (at.x * p.x + at.y * p.y) / std::max(r, tiny));
+        // Where it grazes, several crossings may lie within the roundings of one, and the sense is that of any of them.
+        if (inwards > 1e-3 * length(p)) broken("an asphere that is met counts as missed", ray, near, far);
     }
 
     static bool same(Vec3d a, Vec3d b) { return length(a - b) <= 4 * eps * length(b) + tiny; }
