@@ -176,6 +176,20 @@ TEST_CASE("a lens times a power of two has the same rays, by every backend and b
               type == 0 ? "float64" : "float32", static_cast<double>(found[type]), 0, "numbers"});
 }
 
+TEST_CASE("aspheric coefficients may leave the range of float32") {
+    const double factor = std::ldexp(1.0, -14);
+    const LensSystem phone = io::read_lens("phone-4mm"), small = scaled(phone, factor);
+    double largest = 0;
+    for (const Surface& surface : small.surfaces)
+        for (const double a : surface.aspheric) largest = std::max(largest, std::fabs(a));
+    CHECK(largest > 1e39);
+    CHECK_NOTHROW(validate(small));
+    Differences differences(factor);
+    compare_rays(phone, small, factor, core_trace<float>, differences);
+    CHECK(differences.compared > 0);
+    CHECK(differences.found == 0);
+}
+
 TEST_CASE("a lens times a power of two has the same first order, focus, pupil and pictures") {
     Differences all(1);
     for (const LensSystem& lens : lenses_to_scale())
