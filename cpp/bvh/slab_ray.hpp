@@ -94,7 +94,7 @@ private:
     REALCAM_INLINE static float reciprocal(float component) {
         // The sign of -0 is that of its bool above.
         const float least = component < 0 ? -0x1p-40f : 0x1p-40f;
-        return 1.0f / (std::fabs(component) < 0x1p-40f ? least : component);
+        return quotient(1.0f, std::fabs(component) < 0x1p-40f ? least : component);
     }
 };
 

@@ -10,71 +10,113 @@ struct NoTraversalProbe {
     REALCAM_INLINE void triangle() const {}
 };
 
-namespace traversal_detail {
-
-/// Slots of one node that a ray has met and not entered yet.
-struct Pending {
+/// Slots of one node that a ray meets and has not entered yet.
+struct PendingSlots {
     std::uint32_t first_child;
     std::uint32_t slots;  ///< bits 0 to 7: to be entered; bits 8 to 15: all that hold nodes
 };
 
-/// Each of the lower eight bits three times, as the triangles of a node lie.
-REALCAM_INLINE unsigned triple_bits(unsigned slots) {
-    slots = (slots | slots << 8) & 0x00f00fu;
-    slots = (slots | slots << 4) & 0x0c30c3u;
-    slots = (slots | slots << 2) & 0x249249u;
-    return slots * 7u;
-}
+/// Where a ray has still to go; each level of the hierarchy puts at most one entry here. Not a part of Traversal: an
+/// array with a running index lies in memory on a GPU, and would draw the whole ray after it.
+using TraversalStack = PendingSlots[kMaxBvhDepth];
 
-}  // namespace traversal_detail
+/// A ray on its way through the hierarchy. It can be left after each step, so that a GPU's lanes whose rays have ended
+/// can take new ones before the longest of the warp has.
+///
+/// For `any`, it ends at the first triangle that is found. A ray with a number that is not finite (`far` may be
+/// infinite), or without a direction of normal floating-point size, meets nothing.
+template <bool any>
+class Traversal {
+public:
+    REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far)
+        : Traversal(origin, direction, far, exponent_of(largest_coordinate(direction))) {}
 
-/// The nearest triangle that a ray meets, or for `any`: the first that is found. A ray with a number that is not finite
-/// (`far` may be infinite), or without a direction of normal floating-point size, meets nothing.
+    REALCAM_INLINE bool active() const { return ((pending_.slots & 0xffu) | triangles_) != 0; }
+
+    /// One node, unless triangles of the last one are left, and up to kTrianglesPerStep triangles. The ray is active.
+    template <class Probe = NoTraversalProbe>
+    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, Probe&& probe = {}) {
+        if (!triangles_) {
+            probe.node();
+            enter_node(bvh, stack);
+        }
+        for (int i = 0; i < kTrianglesPerStep; ++i) {
+            if (!triangles_) break;
+            probe.triangle();
+            const unsigned first = triangles_ & (0u - triangles_);
+            triangles_ ^= first;
+            const std::uint32_t number = first_triangle_ + count_bits(content_ & 0xffffffu & (first - 1u));
+            if (meets_triangle(sheared_, load_constant(bvh.triangles + number), hit_) && any) {
+                pending_.slots = triangles_ = 0;
+                return;
+            }
+        }
+        if (!active() && waiting_ > 0) pending_ = stack[--waiting_];
+    }
+
+    /// After the last step. No hit: kNoTriangle, and `far` as the distance.
+    REALCAM_INLINE Hit hit(float far) const {
+        if (hit_.triangle == kNoTriangle) return {far, kNoTriangle, 0, 0};
+        return {hit_.distance * scale_, hit_.triangle, hit_.u, hit_.v};
+    }
+
+private:
+    /// Nodes with more are rare, and the other lanes would wait.
+    static constexpr int kTrianglesPerStep = 2;
+
+    REALCAM_INLINE static std::uint32_t exponent_of(float size) {
+        const std::uint32_t exponent = std::bit_cast<std::uint32_t>(size) >> 23;
+        return exponent < 253u ? exponent : 253u;
+    }
+
+    /// A power of two makes the largest component 1 to 2 (4 at the end of the range), so that nothing overflows.
+    REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far, std::uint32_t exponent)
+        : scale_(std::bit_cast<float>((254u - exponent) << 23)),
+          slabs_(origin, scale_ * direction),
+          sheared_(origin, scale_ * direction),
+          hit_{far * std::bit_cast<float>(exponent << 23), kNoTriangle, 0, 0} {
+        const float sum = origin.x + origin.y + origin.z + direction.x + direction.y + direction.z;
+        if (!(sum - sum == 0) || exponent == 0 || !(hit_.distance > 0)) pending_.slots = 0;
+    }
+
+    /// Goes to the next node in order, and leaves in `pending_` and `triangles_` what the ray meets there.
+    REALCAM_INLINE void enter_node(const WideBvhView& bvh, TraversalStack& stack) {
+        const unsigned slot = slabs_.nearest(pending_.slots & 0xffu);
+        const std::uint32_t index = pending_.first_child + count_bits(pending_.slots >> 8 & (slot - 1u));
+        pending_.slots ^= slot;
+        if (pending_.slots & 0xffu) stack[waiting_++] = pending_;
+        const WideNode node = load_constant(bvh.nodes + index);
+        const unsigned met = slabs_.slots_met(node, hit_.distance);
+        const unsigned children = node.content >> 24;
+        pending_ = {node.first_child, (met & children) | children << 8};
+        content_ = node.content;
+        first_triangle_ = node.first_triangle;
+        triangles_ = triple_bits(met) & content_;
+    }
+
+    /// Each of the lower eight bits three times, as the triangles of a node lie.
+    REALCAM_INLINE static unsigned triple_bits(unsigned slots) {
+        slots = (slots | slots << 8) & 0x00f00fu;
+        slots = (slots | slots << 4) & 0x0c30c3u;
+        slots = (slots | slots << 2) & 0x249249u;
+        return slots * 7u;
+    }
+
+    float scale_;
+    SlabRay slabs_;
+    ShearedRay sheared_;
+    Hit hit_;  ///< the ray's end, until there is one
+    PendingSlots pending_ = {0, 0x0101u};
+    std::uint32_t triangles_ = 0, content_ = 0, first_triangle_ = 0;  ///< of the last node
+    int waiting_ = 0;
+};
+
 template <bool any, class Probe = NoTraversalProbe>
 REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far, Probe&& probe = {}) {
-    const Hit none = {far, kNoTriangle, 0, 0};
-    const float size = largest_coordinate(direction);
-    const float sum = origin.x + origin.y + origin.z + direction.x + direction.y + direction.z;
-    if (!(sum - sum == 0) || !(size >= 0x1p-126f)) return none;
-    // A power of two makes the largest component 1 to 2 (4 at the end of the range), so that nothing overflows.
-    std::uint32_t exponent = std::bit_cast<std::uint32_t>(size) >> 23;
-    exponent = exponent < 253u ? exponent : 253u;
-    const float scale = std::bit_cast<float>((254u - exponent) << 23);
-    direction = scale * direction;
-    Hit hit = {far * std::bit_cast<float>(exponent << 23), kNoTriangle, 0, 0};  // the end, until there is a hit
-    if (!(hit.distance > 0)) return none;
-
-    const SlabRay slabs(origin, direction);
-    const ShearedRay sheared(origin, direction);
-    traversal_detail::Pending stack[kMaxBvhDepth];
-    int waiting = 0;
-    traversal_detail::Pending pending = {0, 0x0101u};
-    for (;;) {
-        const unsigned slot = slabs.nearest(pending.slots & 0xffu);
-        const std::uint32_t index = pending.first_child + count_bits(pending.slots >> 8 & (slot - 1u));
-        pending.slots ^= slot;
-        if (pending.slots & 0xffu) stack[waiting++] = pending;
-
-        const WideNode node = load_constant(bvh.nodes + index);
-        probe.node();
-        const unsigned met = slabs.slots_met(node, hit.distance);
-        const unsigned children = node.content >> 24;
-        pending = {node.first_child, (met & children) | children << 8};
-        for (unsigned triangles = traversal_detail::triple_bits(met) & node.content; triangles;) {
-            const unsigned first = triangles & (0u - triangles);
-            triangles ^= first;
-            const std::uint32_t number = node.first_triangle + count_bits(node.content & 0xffffffu & (first - 1u));
-            const BvhTriangle triangle = load_constant(bvh.triangles + number);
-            probe.triangle();
-            if (meets_triangle(sheared, triangle, hit) && any) return hit;
-        }
-        if (!(pending.slots & 0xffu)) {
-            if (waiting == 0) break;
-            pending = stack[--waiting];
-        }
-    }
-    hit.distance *= scale;
-    return hit.triangle == kNoTriangle ? none : hit;
+    Traversal<any> ray(origin, direction, far);
+    TraversalStack stack;
+    while (ray.active()) ray.step(bvh, stack, probe);
+    return ray.hit(far);
 }
 
 /// The nearest triangle at a distance in [0, far), in lengths of the direction, which need not be 1. Barycentrics as

@@ -28,7 +28,7 @@ struct ShearedRay {
         const float x = std::fabs(direction.x), y = std::fabs(direction.y), z = std::fabs(direction.z);
         dominant = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
         const Vec3f d = dominant_last(direction);
-        per_z = 1.0f / d.z;
+        per_z = quotient(1.0f, d.z);
         slope_x = d.x * per_z;
         slope_y = d.y * per_z;
     }
@@ -53,8 +53,9 @@ REALCAM_INLINE bool meets_triangle(const ShearedRay& ray, const BvhTriangle& tri
     const float w = difference_of_products(b.x, a.y, b.y, a.x);
     const bool some_left = u < 0 || v < 0 || w < 0, some_right = u > 0 || v > 0 || w > 0;
     if (some_left == some_right) return false;  // outside, or seen from its edge
-    // No product of a coordinate with an edge function: in a scene of 1e18 m it would overflow.
-    const float share = 1.0f / (u + v + w);
+    // No product of a coordinate with an edge function: in a scene of 1e18 m it would overflow. Twice the area, there
+    // 2^126 at most, still has an inverse that is a normal number.
+    const float share = quotient(1.0f, u + v + w);
     const float u_share = u * share, v_share = v * share, w_share = w * share;
     const float t = (u_share * a.z + v_share * b.z + w_share * c.z) * ray.per_z;
     if (!(t >= 0 && t < hit.distance)) return false;
