@@ -175,8 +175,8 @@ inline bool lies_near(const Camera& camera, Vec3d origin_m) {
 /// A camera made ready: owns the tables that its view points to.
 class CameraSetup {
 public:
-    /// Throws InputError. `tracer`: see Pupil. `last`: a set-up whose pupil is taken over if it is the same one: finding
-    /// it is most of the work, and a camera that only moves keeps it.
+    /// Throws InputError. `tracer`: see Pupil. `last`: a set-up whose pupil is taken over if it is the same one:
+    /// finding it is most of the work, and a camera that only moves keeps it.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = nullptr, const CameraSetup* last = nullptr)
         : camera_(camera), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
         validate(camera);

@@ -45,8 +45,8 @@ struct CameraRays {
 /// Film point of a sample, mm (source paper, equation 1). The lens turns the picture upside down, so the film's axes
 /// point against the picture's.
 REALCAM_INLINE Vec2f film_point(const CameraView& camera, std::int32_t column, std::int32_t row, Vec2f offset) {
-    const float x = 2.0f * (static_cast<float>(column) + offset.x) / static_cast<float>(camera.width) - 1.0f;
-    const float y = 2.0f * (static_cast<float>(row) + offset.y) / static_cast<float>(camera.height) - 1.0f;
+    const float x = quotient(2.0f * (static_cast<float>(column) + offset.x), static_cast<float>(camera.width)) - 1.0f;
+    const float y = quotient(2.0f * (static_cast<float>(row) + offset.y), static_cast<float>(camera.height)) - 1.0f;
     return {-x * camera.film_half_width, y * camera.film_half_height};
 }
 
@@ -106,7 +106,7 @@ REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const Sampl
     }
 }
 
-template <LensShapes shapes, int N>
+template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     LensRays<float, N> inside;
     REALCAM_LANES
@@ -123,7 +123,7 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
         rays.sampled[i] = select(rays.weight[i] > 0.0f, block.used[i], 0);
         inside.status[i] = select(rays.sampled[i] == 0, static_cast<int>(RayStatus::vignetted), 0);
     }
-    trace_lens<shapes>(camera.lens, inside);
+    trace_lens<lens_kind>(camera.lens, inside);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
@@ -134,8 +134,8 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
 }
 
 /// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the
-/// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `shapes`: at least those of the lens.
-template <LensShapes shapes = LensShapes::any, int N>
+/// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `lens_kind`: any, or the lens's own.
+template <LensKind lens_kind = LensKind::any, int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     switch (camera.model) {
         case CameraModel::pinhole:
@@ -151,7 +151,7 @@ REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock
             generate_ideal_rays(camera, block, rays,
                                 [&](Vec2f film, Vec2f u) { return thick_lens_ray(camera, film, u); });
             break;
-        case CameraModel::full_lens: generate_lens_rays<shapes>(camera, block, rays); break;
+        case CameraModel::full_lens: generate_lens_rays<lens_kind>(camera, block, rays); break;
     }
 }
 

@@ -30,7 +30,7 @@ __device__ SampleBlock<1> block_of(const CameraView& camera, std::int32_t pixel,
     return block;
 }
 
-template <LensShapes shapes>
+template <LensKind lens_kind>
 __global__ void generate(const __grid_constant__ CameraView camera, int samples, unsigned long long* passed,
                          float* sink) {
     const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
@@ -38,7 +38,7 @@ __global__ void generate(const __grid_constant__ CameraView camera, int samples,
     float sum = 0;
     for (int s = 0; s < samples && pixel < camera.width * camera.height; ++s) {
         CameraRays<1> rays;
-        generate_rays<shapes>(camera, block_of(camera, pixel, static_cast<std::uint32_t>(s)), rays);
+        generate_rays<lens_kind>(camera, block_of(camera, pixel, static_cast<std::uint32_t>(s)), rays);
         count += static_cast<std::uint32_t>(rays.passed[0]);
         sum += rays.weight[0] + rays.origin.x[0] + rays.direction.x[0];
     }
@@ -57,7 +57,7 @@ __global__ void sample_lens_rays(const __grid_constant__ CameraView camera, Benc
     rays[pixel] = {{film.x, film.y, camera.film_distance}, pupil.direction};
 }
 
-template <LensShapes shapes>
+template <LensKind lens_kind>
 __global__ void trace(const __grid_constant__ CameraView camera, const BenchRay* rays, int repeats,
                       unsigned long long* passed, float* sink) {
     const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
@@ -72,7 +72,7 @@ __global__ void trace(const __grid_constant__ CameraView camera, const BenchRay*
         inside.origin.set(0, origin);
         inside.direction.set(0, start.direction);
         inside.status[0] = 0;
-        trace_lens<shapes>(camera.lens, inside);
+        trace_lens<lens_kind>(camera.lens, inside);
         count += inside.status[0] == 0 ? 1u : 0u;
         sum += inside.origin.x[0] + inside.direction.x[0];
     }
@@ -149,7 +149,7 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
         with_copied_arrays(setup.view(camera.pose.position_m),
                            [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); });
     const int pixels = view.width * view.height;
-    const bool spheres = view.lens.shapes == LensShapes::spheres;
+    const bool plain = view.lens.kind == LensKind::plain;
     DeviceArray<unsigned long long> passed(1);
     DeviceArray<float> sink(1);
     DeviceArray<BenchRay> rays(static_cast<std::size_t>(pixels));
@@ -159,7 +159,8 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
     LensRayRates rates{};
     const double count = static_cast<double>(pixels) * kSamples;
     rates.generated = rate_of(stream, count, [&] {
-        (spheres ? generate<LensShapes::spheres> : generate<LensShapes::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, kSamples, passed.data(), sink.data());
+        (plain ? generate<LensKind::plain> : generate<LensKind::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
+            view, kSamples, passed.data(), sink.data());
     });
     unsigned long long total = 0;
     passed.download(&total, stream);
@@ -167,7 +168,8 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
     rates.passed = static_cast<double>(total) / (count * kRounds);
     sample_lens_rays<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data());
     rates.traced = rate_of(stream, count, [&] {
-        (spheres ? trace<LensShapes::spheres> : trace<LensShapes::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data(), kSamples, passed.data(), sink.data());
+        (plain ? trace<LensKind::plain> : trace<LensKind::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
+            view, rays.data(), kSamples, passed.data(), sink.data());
     });
     return rates;
 }

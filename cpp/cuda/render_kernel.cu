@@ -62,8 +62,9 @@ __device__ T sum_of_neighbours(T value, int lanes) {
     return value;
 }
 
-template <LensShapes shapes, class Clock>
-__global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor) render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
+template <LensKind lens_kind, class Clock>
+__global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
+    render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
     const WarpTiles tiles(lanes_per_pixel);
     const std::int64_t warp = (static_cast<std::int64_t>(blockIdx.x) * kBlockSize + threadIdx.x) / kWarpSize;
     const int lane = threadIdx.x % kWarpSize, place = lane / tiles.lanes;
@@ -86,7 +87,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor) render(c
         for (std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes); s < job.sample_count;
              s += static_cast<std::uint32_t>(tiles.lanes)) {
             block.sample[0] = job.first_sample + s;
-            render_samples<shapes>(job.scene, job.camera, job.max_bounces, block, scene, clock, results);
+            render_samples<lens_kind>(job.scene, job.camera, job.max_bounces, block, scene, clock, results);
             sum.add(results, 0);
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
@@ -141,9 +142,9 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const int lanes = lanes_for(job);
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
-    const bool spheres = job.camera.lens.shapes == LensShapes::spheres;
-    const auto kernel = spheres ? (timed ? render<LensShapes::spheres, StageClock> : render<LensShapes::spheres, NoClock>)
-                                : (timed ? render<LensShapes::any, StageClock> : render<LensShapes::any, NoClock>);
+    const bool plain = job.camera.lens.kind == LensKind::plain;
+    const auto kernel = plain ? (timed ? render<LensKind::plain, StageClock> : render<LensKind::plain, NoClock>)
+                              : (timed ? render<LensKind::any, StageClock> : render<LensKind::any, NoClock>);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }

@@ -2,7 +2,8 @@
 
 #include <time.h>
 
-#include "../optics/lens_entry.hpp"
+#include "../camera/ray_request.hpp"
+#include "../optics/trace_request.hpp"
 #include "../render/pixel_sum.hpp"
 #include "packet_scene.hpp"
 
@@ -104,71 +105,16 @@ void render_tile(realcam_tile* tile) {
     tile->scene_rays += scene.rays_traced;
 }
 
-void generate_rays_of(const realcam_ray_request* request) {
-    const CameraView camera = *static_cast<const CameraView*>(request->camera_view);
-    SampleBlock<kLanes> block;
-    CameraRays<kLanes> rays;
-    const std::int64_t count = static_cast<std::int64_t>(request->pixel_count) * request->sample_count;
-    for (std::int64_t first = 0; first < count; first += kLanes) {
-        const int used = static_cast<int>(count - first < kLanes ? count - first : kLanes);
-        for (int k = 0; k < kLanes; ++k) {
-            const std::int64_t ray = first + (k < used ? k : 0);
-            const auto pixel = static_cast<std::int32_t>(request->first_pixel + ray / request->sample_count);
-            block.column[k] = pixel % camera.width;
-            block.row[k] = pixel / camera.width;
-            block.used[k] = k < used;
-            block.stream[k] = pixel_stream(pixel, request->seed);
-            block.sample[k] = static_cast<std::uint32_t>(ray % request->sample_count);
-        }
-        generate_rays(camera, block, rays);
-        for (int k = 0; k < used; ++k) {
-            const Vec3f o = rays.origin[k], d = rays.direction[k];
-            float* out_origin = request->origins + 3 * (first + k);
-            float* out_direction = request->directions + 3 * (first + k);
-            out_origin[0] = o.x, out_origin[1] = o.y, out_origin[2] = o.z;
-            out_direction[0] = d.x, out_direction[1] = d.y, out_direction[2] = d.z;
-            request->weights[first + k] = rays.passed[k] ? rays.weight[k] : 0.0f;
-        }
-    }
+void generate_all(const void* request) {
+    const RayRequest rays = *static_cast<const RayRequest*>(request);
+    for (std::int64_t first = 0; first < rays.count(); first += kLanes) generate_rays_of<kLanes>(rays, first);
 }
 
 template <class T>
-void trace_recorded(const realcam_trace* request) {
+void trace_all(const void* request) {
     constexpr int kBlock = 64;
-    const LensView<T> lens = *static_cast<const LensView<T>*>(request->lens_view);
-    LensRays<T, kBlock> rays;
-    PathRecord<T, kBlock> record;
-    double path_to_entry[kBlock];
-    for (std::int64_t first = 0; first < request->count; first += kBlock) {
-        const int used = static_cast<int>(request->count - first < kBlock ? request->count - first : kBlock);
-        for (int k = 0; k < kBlock; ++k) {
-            const std::int64_t ray = first + (k < used ? k : 0);
-            const double* o = request->origins + 3 * ray;
-            const double* d = request->directions + 3 * ray;
-            const LensEntry entry = enter_lens({o[0], o[1], o[2] - request->entry_position}, {d[0], d[1], d[2]},
-                                               request->entry_index, request->entry_reach);
-            rays.origin.set(k, static_cast<Vec3<T>>(entry.origin));
-            rays.direction.set(k, static_cast<Vec3<T>>(entry.direction));
-            rays.status[k] = static_cast<int>(entry.status);
-            path_to_entry[k] = entry.optical_path;
-            record.optical_path[k] = 0;
-            record.surface_index[k] = -1;
-        }
-        trace_lens(lens, rays, record);
-        for (int k = 0; k < used; ++k) {
-            double* o = request->out_origins + 3 * (first + k);
-            double* d = request->out_directions + 3 * (first + k);
-            const bool bad = rays.status[k] == static_cast<int>(RayStatus::bad_input);
-            o[0] = rays.origin.x[k], o[1] = rays.origin.y[k];
-            o[2] = bad ? 0.0 : static_cast<double>(rays.origin.z[k]) + request->exit_position;
-            const Vec3d optical = static_cast<Vec3d>(rays.direction[k]);
-            const double size = length(optical), unit = size > 0 ? 1 / size : 0.0;
-            d[0] = unit * optical.x, d[1] = unit * optical.y, d[2] = unit * optical.z;
-            request->optical_path[first + k] = path_to_entry[k] + static_cast<double>(record.optical_path[k]);
-            request->status[first + k] = rays.status[k];
-            request->surface_index[first + k] = record.surface_index[k];
-        }
-    }
+    const TraceRequest<T> rays = *static_cast<const TraceRequest<T>*>(request);
+    for (std::int64_t first = 0; first < rays.count; first += kBlock) trace_rays_of<kBlock>(rays, first);
 }
 
 void trace_block(const void* lens_view, void* rays) {
@@ -185,5 +131,5 @@ void trace_block(const void* lens_view, void* rays) {
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA),       realcam::render_tile,          realcam::generate_rays_of, realcam::trace_block,
-    realcam::trace_recorded<double>, realcam::trace_recorded<float>};
+    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile,       realcam::generate_all,
+    realcam::trace_block,      realcam::trace_all<double>, realcam::trace_all<float>};

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "../camera/ray_request.hpp"
 #include "embree_backend.hpp"
 
 namespace realcam {
@@ -19,25 +20,17 @@ void in_chunks(std::int64_t count, F&& f) {
 }
 
 template <class T>
-void trace_with(const LensPath<T>& path, double exit_position, int surface_count, void (*kernel)(const realcam_trace*),
-                std::int64_t count, const double* origins, const double* directions, const TracedRays& out) {
-    LensView<T> view = path.view();
-    view.count = surface_count;
-    in_chunks(count, [&](std::int64_t first, std::int64_t last) {
-        realcam_trace request{};
-        request.lens_view = &view;
-        request.entry_position = path.entry_position;
-        request.exit_position = exit_position;
-        request.entry_index = path.entry_index;
-        request.entry_reach = path.entry_reach;
-        request.origins = origins + 3 * first;
-        request.directions = directions + 3 * first;
-        request.out_origins = out.origins + 3 * first;
-        request.out_directions = out.directions + 3 * first;
-        request.optical_path = out.optical_path + first;
-        request.status = out.status + first;
-        request.surface_index = out.surface_index + first;
+void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*)) {
+    in_chunks(all.count, [&](std::int64_t first, std::int64_t last) {
+        TraceRequest<T> request = all;
         request.count = last - first;
+        request.origins += 3 * first;
+        request.directions += 3 * first;
+        request.out_origins += 3 * first;
+        request.out_directions += 3 * first;
+        request.optical_path += first;
+        request.status += first;
+        request.surface_index += first;
         kernel(&request);
     });
 }
@@ -47,21 +40,13 @@ void trace_with(const LensPath<T>& path, double exit_position, int surface_count
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                 int surface_count, std::int64_t count, const double* origins, const double* directions,
                 const TracedRays& out, const realcam_kernels* on) {
-    if (!(wavelength_nm >= 100 && wavelength_nm <= 20000))
-        throw InputError("the wavelength must lie between 100 and 20000 nm");
-    const int all = static_cast<int>(lens.surfaces.size());
-    if (surface_count < 0) surface_count = all;
-    if (surface_count < 1 || surface_count > all)
-        throw InputError("the number of surfaces to trace must lie between 1 and " + std::to_string(all));
-    const int last = direction == LightDirection::to_film ? surface_count - 1 : all - surface_count;
-    const double exit_position = lens.vertices()[static_cast<std::size_t>(last)];
     const realcam_kernels& chosen = on ? *on : kernels();
     if (precision == Precision::float64) {
-        const LensPath<double> path(lens, direction, wavelength_nm);
-        trace_with(path, exit_position, surface_count, chosen.trace_f64, count, origins, directions, out);
+        const TracePath<double> path(lens, direction, wavelength_nm, surface_count);
+        trace_with(path.request(count, origins, directions, out), chosen.trace_f64);
     } else {
-        const LensPath<float> path(lens, direction, wavelength_nm);
-        trace_with(path, exit_position, surface_count, chosen.trace_f32, count, origins, directions, out);
+        const TracePath<float> path(lens, direction, wavelength_nm, surface_count);
+        trace_with(path.request(count, origins, directions, out), chosen.trace_f32);
     }
 }
 
@@ -69,21 +54,20 @@ void generate_camera_rays(const Camera& camera, std::uint32_t spp, std::uint32_t
                           float* directions, float* weights) {
     const CameraSetup setup(camera, fast_pupil_tracer());
     const CameraView view = setup.view(camera.pose.position_m);
-    const std::int64_t pixels = static_cast<std::int64_t>(camera.film.width) * camera.film.height;
-    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, pixels, kChunk / spp + 1),
-                      [&](const tbb::blocked_range<std::int64_t>& range) {
-                          const std::int64_t first = range.begin() * spp,
+    const std::int32_t pixels = camera.film.width * camera.film.height;
+    tbb::parallel_for(tbb::blocked_range<std::int32_t>(0, pixels, static_cast<std::size_t>(kChunk / spp + 1)),
+                      [&](const tbb::blocked_range<std::int32_t>& range) {
+                          const std::int64_t first = static_cast<std::int64_t>(range.begin()) * spp,
                                              count = static_cast<std::int64_t>(range.size()) * spp;
                           std::vector<float> origins(static_cast<std::size_t>(3 * count));
-                          realcam_ray_request request{};
-                          request.camera_view = &view;
-                          request.first_pixel = static_cast<int>(range.begin());
-                          request.pixel_count = static_cast<int>(range.size());
-                          request.sample_count = spp;
-                          request.seed = seed;
-                          request.origins = origins.data();
-                          request.directions = directions + 3 * first;
-                          request.weights = weights + first;
+                          const RayRequest request{view,
+                                                   range.begin(),
+                                                   static_cast<std::int32_t>(range.size()),
+                                                   spp,
+                                                   seed,
+                                                   origins.data(),
+                                                   directions + 3 * first,
+                                                   weights + first};
                           kernels().generate_rays(&request);
                           // The camera's place is added in double: far from the scene's origin float would lose the
                           // pupil.

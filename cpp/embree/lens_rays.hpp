@@ -2,20 +2,11 @@
 #include <cstdint>
 
 #include "../camera/camera.hpp"
+
+#include "../optics/trace_path.hpp"
 #include "kernels.hpp"
 
 namespace realcam {
-
-enum class Precision { float32, float64 };
-
-/// Results of a trace, arrays of `count` rays that the caller owns.
-struct TracedRays {
-    double* origins;       ///< count x 3, mm, lens frame: on the last surface met
-    double* directions;    ///< count x 3, unit
-    double* optical_path;  ///< count, mm: sum of index times distance up to there
-    int* status;           ///< count, RayStatus
-    int* surface_index;    ///< count: the last surface met or missed, from 0; -1 for bad input
-};
 
 /// Traces rays through a lens on all cores. Origins in mm and directions (of any length) in the lens frame,
 /// count x 3. Rays with a component that is not finite, a direction of length zero or an origin beyond kFarthestOrigin

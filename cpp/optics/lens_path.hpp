@@ -46,9 +46,10 @@ public:
     }
 
     LensView<T> view() const {
-        const bool spheres = std::all_of(steps_.begin(), steps_.end(),
-                                         [](const LensStep<T>& step) { return step.kind == StepKind::sphere; });
-        return {steps_.data(), static_cast<int>(steps_.size()), spheres ? LensShapes::spheres : LensShapes::any, iris_};
+        const bool plain = std::all_of(steps_.begin(), steps_.end(), [](const LensStep<T>& step) {
+            return step.kind == StepKind::sphere && step.hole_squared < T(0) && !step.has_blades;
+        });
+        return {steps_.data(), static_cast<int>(steps_.size()), plain ? LensKind::plain : LensKind::any, iris_};
     }
 
     double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by

@@ -36,7 +36,7 @@ template <class T>
 inline constexpr T kFarthest = T(1e18);
 
 /// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
-template <class T, int N, class Record>
+template <LensKind lens_kind, class T, int N, class Record>
 REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays, Record& record, int lane, Vec3<T> o,
                                   Vec3<T> p, SurfaceHit<T> hit, int failure) {
     const Vec3<T> at = o + hit.parameter * p;
@@ -45,7 +45,7 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
 
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
-    const bool clear = (r2 <= step.rim_squared) & (r2 >= step.hole_squared);
+    const bool clear = (r2 <= step.rim_squared) & ((lens_kind == LensKind::plain) | (r2 >= step.hole_squared));
     // A ray along a plane meets it at infinity, which is outside the rim.
     const bool met = alive & hit.met() & (!Record::enabled | (std::fabs(hit.parameter) <= kFarthest<T>));
     const bool passes = met & clear & (refracted.radicand >= T(0));
@@ -66,7 +66,7 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
     }
 }
 
-template <class T, int N, class Record>
+template <LensKind lens_kind, class T, int N, class Record>
 REALCAM_HD inline void cross_sphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
@@ -74,7 +74,7 @@ REALCAM_HD inline void cross_sphere(const LensStep<T>& step, LensRays<T, N>& ray
         const Vec3<T> p = rays.direction[i];
         o.z -= step.shift;
         const SurfaceHit<T> hit = intersect_sphere(o, p, step.curvature, step.sense_in);
-        cross_surface(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
+        cross_surface<lens_kind>(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
@@ -88,7 +88,7 @@ REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays
         const T approach = to_vertex_plane(o, p);
         SurfaceHit<T> hit = intersect_conic(o + approach * p, p, step.curvature, step.conic_factor, step.sense_in);
         hit.parameter += approach;
-        cross_surface(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
+        cross_surface<LensKind::any>(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
@@ -138,7 +138,7 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
         // Without a bracket both are NaN.
         const int failure =
             select(slack < T(0), static_cast<int>(RayStatus::no_convergence), static_cast<int>(RayStatus::missed));
-        cross_surface(step, rays, record, i, o, p, hit, failure);
+        cross_surface<LensKind::any>(step, rays, record, i, o, p, hit, failure);
     }
 }
 
@@ -172,18 +172,21 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
 /// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
 /// vertex of the last one; directions are optical ones in the lens frame, before and after (LensPath::entry_index).
 /// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
-/// loops into vector code. `shapes`: at least those of the lens.
-template <LensShapes shapes = LensShapes::any, class T, int N, class Record = NoRecord>
+/// loops into vector code. `lens_kind`: any, or the lens's own.
+template <LensKind lens_kind = LensKind::any, class T, int N, class Record = NoRecord>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {}) {
     for (int k = 0; k < lens.count; ++k) {
         const LensStep<T> step = lens.steps[k];  // a copy: lane stores cannot alias it
-        if (shapes == LensShapes::spheres || step.kind == StepKind::sphere)
-            cross_sphere(step, rays, record);
-        else if (step.kind == StepKind::conic)
-            cross_conic(step, rays, record);
-        else
-            cross_asphere(step, rays, record);
-        if (step.has_blades) cross_iris(lens.iris, rays);
+        if (lens_kind == LensKind::plain) {
+            cross_sphere<lens_kind>(step, rays, record);
+        } else {
+            switch (step.kind) {
+                case StepKind::sphere: cross_sphere<lens_kind>(step, rays, record); break;
+                case StepKind::conic: cross_conic(step, rays, record); break;
+                case StepKind::asphere: cross_asphere(step, rays, record); break;
+            }
+            if (step.has_blades) cross_iris(lens.iris, rays);
+        }
         if constexpr (N == 1)
             if (rays.status[0] != 0) return;
     }

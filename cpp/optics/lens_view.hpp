@@ -44,8 +44,11 @@ struct Iris {
     T cos[kMaxIrisBlades], sin[kMaxIrisBlades];
 };
 
-/// Which surfaces a lens has: code for spheres alone (and planes) needs fewer registers, of which a GPU has few.
-enum class LensShapes : int { spheres, any };
+/// What a lens consists of. Code for plain ones alone needs fewer registers and instructions, of which a GPU has few.
+enum class LensKind : int {
+    plain,  ///< spheres and planes, open up to their rims, and a stop without blades
+    any,
+};
 
 /// A lens in one state of focus and stop, at one wavelength and in one direction of the light.
 /// Trivially copyable; the steps belong to a LensPath.
@@ -53,7 +56,7 @@ template <class T>
 struct LensView {
     const LensStep<T>* steps;
     int count;
-    LensShapes shapes;
+    LensKind kind;
     Iris<T> iris;
 };
 

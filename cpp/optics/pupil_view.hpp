@@ -46,8 +46,10 @@ struct PupilPlace {
 };
 
 REALCAM_INLINE PupilPlace pupil_place(const PupilView& pupil, float film_x, float film_y) {
-    const float radius = std::sqrt(film_x * film_x + film_y * film_y);
-    const float inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
+    const float squared = film_x * film_x + film_y * film_y;
+    const bool off_axis = squared > 0.0f;
+    const float radius = sqrt_or_zero(squared);
+    const float inverse = quotient(1.0f, select(off_axis, radius, 1.0f));
     const float position =
         static_cast<float>(pupil.rows) * (1.0f - sqrt_or_zero(1.0f - radius * pupil.inverse_image_radius));
     int row = static_cast<int>(position);
@@ -55,7 +57,7 @@ REALCAM_INLINE PupilPlace pupil_place(const PupilView& pupil, float film_x, floa
     const float f = position - static_cast<float>(row);
     const PupilNode& near = pupil.nodes[row];
     const PupilNode& far = pupil.nodes[row + 1];
-    return {select(radius > 0.0f, film_x * inverse, 1.0f),
+    return {select(off_axis, film_x * inverse, 1.0f),
             film_y * inverse,
             near.centre + f * (far.centre - near.centre),
             near.half_width + f * (far.half_width - near.half_width),
@@ -88,7 +90,7 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
     const bool lower = index >= pupil.sectors;
     index = select(lower, index - pupil.sectors, index);
     const PupilSector& sector = pupil.outline[place.row * pupil.sectors + index];
-    const float reach = std::sqrt(sector.hole_squared + v * (1.0f - sector.hole_squared));
+    const float reach = sqrt_or_zero(sector.hole_squared + v * (1.0f - sector.hole_squared));
     const float x = reach * (sector.x + along * sector.dx);
     const float y = reach * (sector.y + along * sector.dy);
 

@@ -26,8 +26,9 @@ enum class RenderStage { lens, scene, other };
 /// Takes one block of samples from the film, through the lens, to the scene and its lights: the whole path.
 ///
 /// `SceneT` offers intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` offers enter(RenderStage) and
-/// costs nothing where nobody asks for the time. `shapes`: at least those of the lens. A GPU thread runs this with N = 1.
-template <LensShapes shapes = LensShapes::any, int N, class SceneT, class Probe>
+/// costs nothing where nobody asks for the time. `lens_kind`: any, or the lens's own. A GPU thread runs this with N
+/// = 1.
+template <LensKind lens_kind = LensKind::any, int N, class SceneT, class Probe>
 REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& camera, int max_bounces,
                                       const SampleBlock<N>& block, SceneT&& scene, Probe&& probe,
                                       SampleResults<N>& results) {
@@ -38,7 +39,7 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
 
     probe.enter(RenderStage::lens);
-    generate_rays<shapes>(camera, block, camera_rays);
+    generate_rays<lens_kind>(camera, block, camera_rays);
     probe.enter(RenderStage::other);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {

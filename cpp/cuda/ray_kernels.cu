@@ -1,0 +1,48 @@
+#include "cuda_error.hpp"
+#include "ray_kernels.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kBlockSize = 128;
+
+__device__ std::int64_t thread_index() {
+    return static_cast<std::int64_t>(blockIdx.x) * kBlockSize + threadIdx.x;
+}
+
+template <class T>
+__global__ void __launch_bounds__(kBlockSize) trace(const __grid_constant__ TraceRequest<T> request) {
+    if (thread_index() < request.count) trace_rays_of<1>(request, thread_index());
+}
+
+__global__ void __launch_bounds__(kBlockSize) generate(const __grid_constant__ RayRequest request) {
+    if (thread_index() < request.count()) generate_rays_of<1>(request, thread_index());
+}
+
+unsigned blocks_for(std::int64_t count) {
+    return static_cast<unsigned>((count + kBlockSize - 1) / kBlockSize);
+}
+
+template <class T>
+void launch(const TraceRequest<T>& request, cudaStream_t stream) {
+    if (request.count == 0) return;
+    trace<<<blocks_for(request.count), kBlockSize, 0, stream>>>(request);
+    check_cuda(cudaGetLastError(), "starting to trace");
+}
+
+}  // namespace
+
+void launch_trace(const TraceRequest<double>& request, cudaStream_t stream) {
+    launch(request, stream);
+}
+void launch_trace(const TraceRequest<float>& request, cudaStream_t stream) {
+    launch(request, stream);
+}
+
+void launch_generate(const RayRequest& request, cudaStream_t stream) {
+    if (request.count() == 0) return;
+    generate<<<blocks_for(request.count()), kBlockSize, 0, stream>>>(request);
+    check_cuda(cudaGetLastError(), "starting to generate rays");
+}
+
+}  // namespace realcam
