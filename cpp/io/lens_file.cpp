@@ -138,7 +138,8 @@ void read_focusing(const TomlTable& file, LensSystem& lens) {
     lens.focusing.nearest_mm = 1000 * nearest.value_or(0);
     const std::vector<double> group = focus->numbers("group", 2);
     if (group.empty()) return;
-    if (group[0] != std::floor(group[0]) || group[1] != std::floor(group[1]) || !(group[0] >= 1) || !(group[1] < 1e6))
+    const auto is_number = [](double n) { return n == std::floor(n) && n >= 1 && n < 1e6; };
+    if (!is_number(group[0]) || !is_number(group[1]))
         focus->fail("\"group\" must be the numbers of its first and last surface, from 1", focus->find("group"));
     lens.focusing.group_first = static_cast<int>(group[0]) - 1;
     lens.focusing.group_last = static_cast<int>(group[1]) - 1;

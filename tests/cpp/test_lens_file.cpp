@@ -192,6 +192,8 @@ TEST_CASE("bad lenses are named with their file") {
     check_complaint(joined(kGoodLines) + "[iris]\nblades = 5\nrounding = 1.5\n", "probe.toml", "rounding");
     check_complaint(joined(kGoodLines) + "[focus]\ngroup = [2, 9]\n", "probe.toml", "focusing group");
     check_complaint(joined(kGoodLines) + "[focus]\ngroup = [3, 1]\n", "probe.toml", "focusing group");
+    check_complaint(joined(kGoodLines) + "[focus]\ngroup = [1e18, 2]\n", "probe.toml:21", "first and last surface");
+    check_complaint(joined(kGoodLines) + "[focus]\ngroup = [1, -1e18]\n", "probe.toml:21", "first and last surface");
     check_complaint(joined(kGoodLines) + "[focus]\nnearest_m = -1.0\n", "probe.toml:21", "positive distance");
     check_complaint("", "probe.toml:1", "is missing");
     check_complaint("format = 1\nname = \"x\"\n", "probe.toml:1", "the lens has no surfaces");
