@@ -42,10 +42,8 @@ inline constexpr double kSmallestFilm = 1e-6, kLargestFilm = 1e9;  ///< each way
 inline constexpr double kFarthestPlace = 1e12;                     ///< each coordinate, m, as a scene's corners
 inline constexpr double kNearestLook = 1e-9;                       ///< look_at from position, m
 inline constexpr double kShortestUp = 1e-100, kLongestUp = 1e100;  ///< squares of both are numbers
-/// Light crosses an atom in the one; the universe is half as old as the other.
-inline constexpr double kShortestExposure = 1e-18, kLongestExposure = 1e18;
-/// The exposure that becomes middle grey, 10 / ISO lux seconds, is a float32 with all its digits.
-inline constexpr double kLeastIso = 1e-37, kMostIso = 1e38;
+/// Exposure time, s, and ISO number: they and the exposure of middle grey, 10 / ISO, are float32 with all their digits.
+inline constexpr double kLeastDial = 1e-37, kMostDial = 1e38;
 
 inline bool lies_between(double least, double value, double most) {
     return value >= least && value <= most;
@@ -68,9 +66,9 @@ inline void validate(const Camera& camera) {
     if (!lies_between(kSmallestFilm, film.width_mm, kLargestFilm) ||
         !lies_between(kSmallestFilm, film.height_mm, kLargestFilm))
         throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
-    if (!lies_between(kShortestExposure, camera.exposure_time_s, kLongestExposure))
-        throw InputError("the exposure time must be a positive number of seconds, from 1e-18 to 1e18");
-    if (!lies_between(kLeastIso, camera.iso, kMostIso))
+    if (!lies_between(kLeastDial, camera.exposure_time_s, kMostDial))
+        throw InputError("the exposure time must be a positive number of seconds, from 1e-37 to 1e38");
+    if (!lies_between(kLeastDial, camera.iso, kMostDial))
         throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
     if (!(camera.lens.film_distance > 0) || !(camera.lens.film_distance <= kLongest))
         throw InputError("the film must lie behind the last surface of the lens, at most 1e9 mm away");
