@@ -17,6 +17,8 @@ inline constexpr int kMaxSurfaces = 256;
 inline constexpr double kLongest = 1e9;         ///< any length, mm
 inline constexpr double kShortestRadius = 1e-6;  ///< of curvature, and clear semi-diameter, mm
 inline constexpr double kLargestConic = 1e6;
+/// Of an asphere, whatever its unit. Float32 rays need no such limit, but some pictures through lenses past it are NaN.
+inline constexpr double kLargestCoefficient = 1e37;
 
 /// How the focusing ring moves the glass.
 struct FocusingRule {
@@ -115,8 +117,8 @@ inline void validate(const LensSystem& lens) {
         double power = s.clear_semi_diameter * s.clear_semi_diameter;
         for (double a : s.aspheric) {
             power *= s.clear_semi_diameter * s.clear_semi_diameter;
-            if (std::fabs(a) * power > kLongest)
-                fail(i, "an aspheric coefficient is too large: its term is past 1e9 mm at the rim");
+            if (std::fabs(a) > kLargestCoefficient || std::fabs(a) * power > kLongest)
+                fail(i, "an aspheric coefficient is too large: it is past 1e37, or its term past 1e9 mm at the rim");
         }
         if (!(s.inner_semi_diameter >= 0) || s.inner_semi_diameter >= s.clear_semi_diameter)
             fail(i, "the inner semi-diameter must be at least 0 and less than the clear semi-diameter");

@@ -183,7 +183,6 @@ TEST_CASE("aspheric coefficients may leave the range of float32") {
     for (const Surface& surface : small.surfaces)
         for (const double a : surface.aspheric) largest = std::max(largest, std::fabs(a));
     CHECK(largest > 1e39);
-    CHECK_NOTHROW(validate(small));
     Differences differences(factor);
     compare_rays(phone, small, factor, core_trace<float>, differences);
     CHECK(differences.compared > 0);
