@@ -23,7 +23,7 @@ inline constexpr double kLargestCoefficient = 1e37;
 /// How the focusing ring moves the glass.
 struct FocusingRule {
     double nearest_mm = 0;  ///< nearest object plane, measured to the film; 0: as near as the optics can
-    int group_first = -1;   ///< first and last surface (from 0) of the moving group; -1: the whole lens moves
+    int group_first = -1;  ///< first and last surface (from 0) of the moving group; -1: the whole lens moves
     int group_last = -1;
 
     bool moves_group() const { return group_first >= 0; }
@@ -39,9 +39,9 @@ struct LensSystem {
     std::vector<Surface> surfaces;
     double wavelength_nm = kLineD_nm;  ///< design wavelength, used where none is given
     double film_width = 36, film_height = 24;
-    double film_distance = 0;         ///< last vertex to film
+    double film_distance = 0;  ///< last vertex to film
     double focus_distance = kInfinity;  ///< object plane to film
-    double stop_semi_diameter = 0;    ///< radius of the circle that has the diaphragm's open area
+    double stop_semi_diameter = 0;  ///< radius of the circle that has the diaphragm's open area
     IrisShape iris;
     FocusingRule focusing;
 
