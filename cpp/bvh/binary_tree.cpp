@@ -34,13 +34,14 @@ std::vector<RTCBuildPrimitive> primitives_of(std::span<const Vec3f> positions, s
 
 void* create_inner(RTCThreadLocalAllocator allocator, unsigned, void*) {
     auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(InnerNode), 16)) InnerNode;
-    node->triangles = 0;  // known later; not a leaf
+    node->triangles = 0;  // not a leaf
+    node->parent = nullptr;
     return node;
 }
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* p, std::size_t, void*) {
     const Box box = {{p->lower_x, p->lower_y, p->lower_z}, {p->upper_x, p->upper_y, p->upper_z}};
-    return new (rtcThreadLocalAlloc(allocator, sizeof(BinaryNode), 16)) BinaryNode{box, 1, p->primID};
+    return new (rtcThreadLocalAlloc(allocator, sizeof(BinaryNode), 16)) BinaryNode{box, 1, p->primID, nullptr};
 }
 
 void set_children(void* node, void** children, unsigned, void*) {

@@ -14,6 +14,7 @@ struct BinaryNode {
     Box box;
     std::uint32_t triangles;  ///< below it; 1: a leaf
     std::uint32_t triangle;  ///< a leaf's
+    InnerNode* parent;  ///< null: the root
 
     bool is_leaf() const { return triangles == 1; }
     const InnerNode& inner() const;
@@ -36,8 +37,14 @@ inline InnerNode& BinaryNode::inner() {
     return static_cast<InnerNode&>(*this);
 }
 
+/// In double, because 1e18 m squared is too much for float.
+inline double half_area(const Box& box) {
+    const Vec3d size = static_cast<Vec3d>(box.upper) - static_cast<Vec3d>(box.lower);
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
 /// A binary tree over triangles, split where the surface area heuristic says (Embree's builder, on all threads).
-/// Boxes and triangle counts of inner nodes are not filled in yet.
+/// It has not been measured: what inner nodes have besides their children is open, and so are the parents.
 class BinaryTree {
 public:
     /// Throws DeviceError (out of memory, for one). There is at least one triangle.

@@ -6,6 +6,7 @@
 
 #include "../error.hpp"
 #include "collapse.hpp"
+#include "reinsertion.hpp"
 #include "slot_order.hpp"
 
 namespace realcam {
@@ -24,6 +25,7 @@ constexpr std::uint32_t kTaskSize = 2048;
 void count_wide_nodes(InnerNode& node, int level) {
     if (level == kLevelsByArea) {
         balance(node);
+        measure(node);
         plan_collapse(node);
         keep_as_node(node);
     }
@@ -135,6 +137,8 @@ WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangl
     if (root.is_leaf()) {
         top.node[top.count++] = &root;
     } else {
+        measure(root);
+        reinsert_largest(root);
         plan_collapse(root);
         count_wide_nodes(root.inner(), 0);
         top = children_of(root.inner());

@@ -2,27 +2,33 @@
 
 #include <tbb/parallel_invoke.h>
 
-#include <algorithm>
-
 namespace realcam {
 namespace {
 
 /// Levels of the tree whose halves are worth a task each.
 constexpr int kParallelLevels = 12;
 
-struct Planner {
-    double per_length;  ///< areas in units of the whole scene's, or 1e18 m squared would overflow
-
-    float half_area(const Box& box) const {
-        const double x = (static_cast<double>(box.upper.x) - static_cast<double>(box.lower.x)) * per_length;
-        const double y = (static_cast<double>(box.upper.y) - static_cast<double>(box.lower.y)) * per_length;
-        const double z = (static_cast<double>(box.upper.z) - static_cast<double>(box.lower.z)) * per_length;
-        return static_cast<float>(x * y + y * z + z * x);
+template <class Visit>
+void bottom_up(BinaryNode& node, int level, const Visit& visit) {
+    if (node.is_leaf()) return;
+    BinaryNode &left = *node.inner().child[0], &right = *node.inner().child[1];
+    if (level < kParallelLevels) {
+        tbb::parallel_invoke([&] { bottom_up(left, level + 1, visit); }, [&] { bottom_up(right, level + 1, visit); });
+    } else {
+        bottom_up(left, level + 1, visit);
+        bottom_up(right, level + 1, visit);
     }
+    visit(node.inner());
+}
+
+struct Planner {
+    double per_area;  ///< costs are in units of the whole scene's area
+
+    float area_of(const BinaryNode& node) const { return static_cast<float>(half_area(node.box) * per_area); }
 
     /// The least cost of the triangles below a node as at most `roots` children of some wide node.
     float cost(const BinaryNode& node, unsigned roots) const {
-        return node.is_leaf() ? kTriangleCost * half_area(node.box) : node.inner().cost[roots - 1];
+        return node.is_leaf() ? kTriangleCost * area_of(node) : node.inner().cost[roots - 1];
     }
 
     void plan(InnerNode& node) const {
@@ -31,7 +37,7 @@ struct Planner {
             left[i] = cost(*node.child[0], i);
             right[i] = cost(*node.child[1], i);
         }
-        const float area = half_area(node.box);
+        const float area = area_of(node);
         float split_cost[kSlots + 1];
         for (unsigned roots = 2; roots <= kSlots; ++roots) {
             split_cost[roots] = left[1] + right[roots - 1];
@@ -52,20 +58,6 @@ struct Planner {
             node.cost[roots - 1] = split ? split_cost[roots] : node.cost[roots - 2];
             if (!split) node.left_share[roots - 2] = 0;  // one root fewer
         }
-    }
-
-    template <class Visit>
-    static void bottom_up(BinaryNode& node, int level, const Visit& visit) {
-        if (node.is_leaf()) return;
-        BinaryNode &left = *node.inner().child[0], &right = *node.inner().child[1];
-        if (level < kParallelLevels) {
-            tbb::parallel_invoke([&] { bottom_up(left, level + 1, visit); },
-                                 [&] { bottom_up(right, level + 1, visit); });
-        } else {
-            bottom_up(left, level + 1, visit);
-            bottom_up(right, level + 1, visit);
-        }
-        visit(node.inner());
     }
 };
 
@@ -88,18 +80,19 @@ void gather(BinaryNode& node, unsigned roots, WideChildren& children) {
 
 }  // namespace
 
-void plan_collapse(BinaryNode& root) {
-    Planner::bottom_up(root, 0, [](InnerNode& node) {
+void measure(BinaryNode& root) {
+    bottom_up(root, 0, [](InnerNode& node) {
         node.box = node.child[0]->box;
         grow(node.box, node.child[1]->box);
         node.triangles = node.child[0]->triangles + node.child[1]->triangles;
+        node.child[0]->parent = node.child[1]->parent = &node;
     });
-    const Box& box = root.box;
-    const double size = std::max({static_cast<double>(box.upper.x) - static_cast<double>(box.lower.x),
-                                  static_cast<double>(box.upper.y) - static_cast<double>(box.lower.y),
-                                  static_cast<double>(box.upper.z) - static_cast<double>(box.lower.z)});
-    const Planner planner{size > 0 ? 1 / size : 0};
-    Planner::bottom_up(root, 0, [&](InnerNode& node) { planner.plan(node); });
+}
+
+void plan_collapse(BinaryNode& root) {
+    const double area = half_area(root.box);
+    const Planner planner{area > 0 ? 1 / area : 0};
+    bottom_up(root, 0, [&](InnerNode& node) { planner.plan(node); });
 }
 
 WideChildren children_of(const InnerNode& node) {

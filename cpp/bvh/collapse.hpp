@@ -7,10 +7,12 @@ namespace REALCAM_NAMESPACE {
 // whole is the least: dynamic programming from the leaves up (Ylitie, Karras and Laine 2017, section 3.1).
 
 /// Cost of testing a triangle, where that of a node with its eight boxes is 1.
-inline constexpr float kTriangleCost = 0.3f;
+inline constexpr float kTriangleCost = 0.5f;
 
-/// Fills in boxes, triangle counts, and the choices that `children_of` follows, for a node and all below it, in
-/// parallel. `area_unit` is the area of the whole scene's box.
+/// Fills in boxes, triangle counts and parents of a node and all below it, in parallel.
+void measure(BinaryNode& node);
+
+/// Finds the choices that `children_of` follows for a node and all below it, which have been measured; in parallel.
 void plan_collapse(BinaryNode& node);
 
 /// Keeps a node what its parent takes it for, a wide node, after it has been planned again.

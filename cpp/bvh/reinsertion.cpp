@@ -1,0 +1,135 @@
+#include "reinsertion.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace realcam {
+namespace {
+
+// One in sixty of the nodes gets all but a few percent of what moving every node would; the rest would cost more time
+// than the whole tree.
+constexpr std::size_t kTrianglesForEach = 32;
+constexpr std::size_t kMostMoved = 1 << 15;
+constexpr int kRounds = 3;
+/// Nodes looked at for the place of one: thirty are usual. A bound for scenes where everything overlaps.
+constexpr int kMostVisited = 512;
+
+Box both(Box a, const Box& b) {
+    grow(a, b);
+    return a;
+}
+
+bool smaller(const BinaryNode* a, const BinaryNode* b) {
+    return half_area(a->box) < half_area(b->box);
+}
+
+/// Boxes and counts from a node to the root.
+void measure_upwards(InnerNode* node) {
+    for (; node; node = node->parent) {
+        node->box = both(node->child[0]->box, node->child[1]->box);
+        node->triangles = node->child[0]->triangles + node->child[1]->triangles;
+    }
+}
+
+class Reinsertion {
+public:
+    explicit Reinsertion(BinaryNode& root) : root_(root) {}
+
+    void round(std::size_t count) {
+        find_largest(count);
+        for (BinaryNode* node : largest_) move(*node);
+    }
+
+private:
+    /// A node's children are smaller than itself, so the largest are found from above.
+    void find_largest(std::size_t count) {
+        largest_.clear();
+        std::vector<BinaryNode*> heap = {&root_};
+        while (!heap.empty() && largest_.size() < count) {
+            std::pop_heap(heap.begin(), heap.end(), smaller);
+            BinaryNode* node = heap.back();
+            heap.pop_back();
+            largest_.push_back(node);
+            if (node->is_leaf()) continue;
+            for (BinaryNode* child : node->inner().child) {
+                heap.push_back(child);
+                std::push_heap(heap.begin(), heap.end(), smaller);
+            }
+        }
+    }
+
+    /// The parent goes with the node, and the sibling takes its place.
+    void move(BinaryNode& node) {
+        InnerNode* parent = node.parent;
+        if (!parent || !parent->parent) return;  // the root stays the root
+        BinaryNode* sibling = parent->child[parent->child[0] == &node ? 1 : 0];
+        double gain = half_area(parent->box);
+        replace(parent, sibling);
+        for (InnerNode* above = sibling->parent; above; above = above->parent) {
+            const Box without = both(above->child[0]->box, above->child[1]->box);
+            gain += half_area(above->box) - half_area(without);
+            above->box = without;
+            above->triangles -= node.triangles;
+        }
+        BinaryNode* beside = best_place(node, sibling, gain);
+        replace(beside, parent);
+        parent->child[0] = beside;
+        parent->child[1] = &node;
+        beside->parent = node.parent = parent;
+        measure_upwards(parent);
+    }
+
+    static void replace(BinaryNode* node, BinaryNode* by) {
+        InnerNode* above = node->parent;
+        above->child[above->child[0] == node ? 0 : 1] = by;
+        by->parent = above;
+    }
+
+    /// The node beside which `node` adds the least area; `known` costs `known_cost`. Best first: what lies below a node
+    /// costs at least what its ancestors grow by, and a parent as large as `node`.
+    BinaryNode* best_place(const BinaryNode& node, BinaryNode* known, double known_cost) {
+        const double own = half_area(node.box);
+        BinaryNode* best = known;
+        double best_cost = known_cost;
+        const auto dearer = [](const Candidate& a, const Candidate& b) { return a.growth_above > b.growth_above; };
+        queue_.assign(1, {0, &root_});
+        for (int visited = 0; !queue_.empty() && visited < kMostVisited; ++visited) {
+            std::pop_heap(queue_.begin(), queue_.end(), dearer);
+            const Candidate candidate = queue_.back();
+            queue_.pop_back();
+            if (candidate.growth_above + own >= best_cost) break;
+            const double joined = half_area(both(candidate.node->box, node.box));
+            const double cost = candidate.growth_above + joined;
+            if (cost < best_cost && candidate.node != &root_) {
+                best_cost = cost;
+                best = candidate.node;
+            }
+            const double growth = cost - half_area(candidate.node->box);
+            if (candidate.node->is_leaf() || growth + own >= best_cost) continue;
+            for (BinaryNode* child : candidate.node->inner().child) {
+                queue_.push_back({growth, child});
+                std::push_heap(queue_.begin(), queue_.end(), dearer);
+            }
+        }
+        return best;
+    }
+
+    struct Candidate {
+        double growth_above;
+        BinaryNode* node;
+    };
+
+    BinaryNode& root_;
+    std::vector<BinaryNode*> largest_;
+    std::vector<Candidate> queue_;
+};
+
+}  // namespace
+
+void reinsert_largest(BinaryNode& root) {
+    Reinsertion reinsertion(root);
+    const std::size_t count = std::min(root.triangles / kTrianglesForEach + 16, kMostMoved);
+    for (int i = 0; i < kRounds; ++i) reinsertion.round(count);
+}
+
+}  // namespace realcam
