@@ -26,7 +26,7 @@ public:
         result.steps_[static_cast<std::size_t>(stop)].rim_squared *= 1 + 1e-9;
         return result;
     }
-    LensView<double> view() const { return {steps_.data(), static_cast<int>(steps_.size()), iris_}; }
+    LensView<double> view() const { return {steps_.data(), static_cast<int>(steps_.size()), LensKind::any, iris_}; }
 
 private:
     explicit AimingPath(const LensPath<double>& path) {
