@@ -16,6 +16,8 @@ inline constexpr int kMaxResolution = 32768;
 struct Film {
     double width_mm = 36, height_mm = 24;
     int width = 960, height = 640;
+
+    bool operator==(const Film&) const = default;
 };
 
 /// Where the camera stands: the middle of its film, and its axes, in the scene (metres, right-handed, y up).
@@ -23,6 +25,8 @@ struct Pose {
     Vec3d position_m = {0, 0, 0};
     Vec3d look_at_m = {0, 0, -1};
     Vec3d up = {0, 1, 0};
+
+    bool operator==(const Pose&) const = default;
 };
 
 /// Lens, film, pose and the two dials.

@@ -30,6 +30,11 @@ public:
 
     void record(cudaStream_t stream) { check_cuda(cudaEventRecord(event_, stream), "starting to render"); }
     void wait() const { check_cuda(cudaEventSynchronize(event_), "rendering"); }
+    bool reached() const {
+        const cudaError_t code = cudaEventQuery(event_);
+        if (code != cudaErrorNotReady) check_cuda(code, "rendering");
+        return code == cudaSuccess;
+    }
     double ms_since(const CudaEvent& earlier) const {
         float ms = 0;
         check_cuda(cudaEventElapsedTime(&ms, earlier.event_, event_), "rendering");

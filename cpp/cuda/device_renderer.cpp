@@ -110,7 +110,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         if (started - finished == 2) finish_one();
         const FilmPart piece = plan.next(samples_per_ms_ > 0 ? kLaunch_ms * samples_per_ms_ : kFirstSamples);
         PixelSum* sums = sums_.data() + static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
-        launch_render({scene_, bvh_, camera_, sums, counts_.data(), settings.max_bounces, settings.seed,
+        launch_render({scene_, bvh_, camera_, sums, counts_.data(), nullptr, settings.max_bounces, settings.seed,
                        piece.first_sample, piece.sample_count, piece.first_row, piece.row_count},
                       started == 0, stream_);
         const std::size_t i = started++ % 3;
@@ -118,6 +118,22 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         sizes[i] = static_cast<std::int64_t>(piece.sample_count) * piece.row_count * camera_.width;
     }
     while (finished < started) finish_one();
+}
+
+void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings, const volatile int* stop) {
+    bind();
+    launch_render({scene_, bvh_, camera_, sums_.data(), counts_.data(), stop, settings.max_bounces, settings.seed,
+                   part.first_sample, part.sample_count, part.first_row, part.row_count},
+                  false, stream_);
+}
+
+void DeviceRenderer::develop_codes(int samples, double exposure_time_s, double iso, ToneCurve curve,
+                                   std::uint8_t* codes) {
+    bind();
+    codes_.resize(3 * sums_.size());
+    launch_develop_codes(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, iso, curve,
+                         codes_.data(), stream_);
+    codes_.download(codes, stream_);
 }
 
 void DeviceRenderer::merge_film(const DeviceRenderer& other) {

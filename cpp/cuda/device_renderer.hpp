@@ -39,6 +39,15 @@ public:
     void expose(const FilmPart& part, const RenderSettings& settings, const std::atomic<bool>& stop,
                 std::atomic<std::int64_t>& done);
 
+    /// Starts to add samples, and returns at once. `stop`: see RenderJob.
+    void add(const FilmPart& part, const RenderSettings& settings, const volatile int* stop);
+
+    /// Starts to develop the film as 8-bit sRGB, 3 per pixel, into memory of the host that it can write to.
+    void develop_codes(int samples, double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
+
+    /// In which all of this runs.
+    cudaStream_t stream() const { return stream_; }
+
     /// Adds what another GPU has collected of the same pixels.
     void merge_film(const DeviceRenderer& other);
 
@@ -59,6 +68,7 @@ private:
     CameraView camera_{};
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<float> exposure_, depth_;
+    DeviceArray<std::uint8_t> codes_;
     DeviceArray<RenderCounts> counts_;
     double samples_per_ms_ = 0;  ///< 0: not known yet
 };

@@ -14,6 +14,8 @@ template <class T>
 struct Vec3 {
     T x, y, z;
 
+    constexpr bool operator==(const Vec3&) const = default;
+
     template <class U>
     REALCAM_INLINE explicit constexpr operator Vec3<U>() const {
         return {static_cast<U>(x), static_cast<U>(y), static_cast<U>(z)};

@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "../camera/develop.hpp"
+#include "../render/backend.hpp"
+
+namespace realcam {
+
+/// One picture of a live view, on its way from the GPU. May outlive the view.
+class LiveFrame {
+public:
+    virtual ~LiveFrame() = default;
+    virtual int width() const = 0;
+    virtual int height() const = 0;
+    virtual int samples() const = 0;  ///< per pixel, collected up to this frame
+    virtual bool ready() const = 0;
+    /// height x width x 3, 8-bit sRGB; waits for it. Throws DeviceError, and Cancelled where the view was cancelled.
+    virtual const std::uint8_t* codes() const = 0;
+};
+
+/// A scene before a camera that changes with every frame, on one GPU. Only what changed is copied there: the camera,
+/// never the scene. Samples are collected for as long as the camera stays the same. Not for two threads at once, but
+/// for cancel.
+class LiveView {
+public:
+    /// Throws InputError and DeviceError.
+    LiveView(int ordinal, std::shared_ptr<const Scene> scene, PupilTracer tracer);
+    ~LiveView();
+    LiveView(const LiveView&) = delete;
+    LiveView& operator=(const LiveView&) = delete;
+
+    /// Starts to take settings.spp more samples of each pixel, and returns while they are taken: the next frame may be
+    /// started before this one is there. With kFramesInFlight under way it waits for the oldest. A different camera,
+    /// seed or number of bounces begins a new picture; exposure time, ISO and tone curve only develop it anew.
+    std::shared_ptr<const LiveFrame> shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve);
+
+    /// Gives up all frames under way, within some milliseconds, from any thread. The next one begins a new picture.
+    void cancel();
+
+    static constexpr int kFramesInFlight = 3;
+
+private:
+    class Work;
+    std::unique_ptr<Work> work_;
+};
+
+}  // namespace realcam
