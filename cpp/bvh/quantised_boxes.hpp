@@ -88,7 +88,7 @@ REALCAM_HD inline void quantise_boxes(WideNode& node, const Box (&boxes)[kSlots]
     std::uint32_t largest = step[0] > step[1] ? step[0] : step[1];
     largest = largest > step[2] ? largest : step[2];
     const std::uint32_t reach =
-        largest ? bfloat16_above(17 * 255 * static_cast<double>(std::bit_cast<float>(largest))) : 0;
+        largest ? bfloat16_above(18 * 255 * static_cast<double>(std::bit_cast<float>(largest))) : 0;
     node.steps_xy = step[0] | step[1] >> 16;
     node.step_z_reach = step[2] | reach >> 16;
 }

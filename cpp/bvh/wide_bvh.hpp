@@ -21,7 +21,7 @@ inline constexpr unsigned kMaxBvhDepth = 48;
 struct alignas(16) WideNode {
     Vec3f origin;
     std::uint32_t steps_xy;  ///< two bfloat16 numbers, x in the upper half
-    std::uint32_t step_z_reach;  ///< likewise the step of z, and 17 * 255 times the largest step
+    std::uint32_t step_z_reach;  ///< likewise the step of z, and 18 * 255 times the largest step
     std::uint32_t first_child;  ///< the node in the first slot that holds one; the others follow in the order of slots
     std::uint32_t first_triangle;  ///< likewise
     std::uint32_t content;  ///< bits 3 s to 3 s + 2: triangles in slot s; bit 24 + s: it holds a node
