@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../../cpp/camera/camera.hpp"
+#include "../../cpp/camera/ray_request.hpp"
 #include "../../cpp/embree/kernels.hpp"
 #include "../../cpp/io/lens_file.hpp"
 #include "draw_lens.hpp"
@@ -105,15 +106,11 @@ void check_rays(Bytes& in, const Camera& camera) {
     const CameraView view = setup.view(camera.pose.position_m);
     const int pixels = camera.film.width * camera.film.height;
     std::vector<float> origins(3 * kCount), directions(3 * kCount), weights(kCount);
-    realcam_ray_request request{};
-    request.camera_view = &view;
+    RayRequest request{view, 0, 0, 0, 0, origins.data(), directions.data(), weights.data()};
     request.sample_count = in.chance(128) ? 1 : 8;
     request.pixel_count = std::min(pixels, kCount / static_cast<int>(request.sample_count));
     request.first_pixel = static_cast<int>(in.word() % static_cast<unsigned>(pixels - request.pixel_count + 1));
     request.seed = in.word();
-    request.origins = origins.data();
-    request.directions = directions.data();
-    request.weights = weights.data();
     kernels().generate_rays(&request);
     const int rays = request.pixel_count * static_cast<int>(request.sample_count);
     findings().camera_rays += static_cast<std::uint64_t>(rays);

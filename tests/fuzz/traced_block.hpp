@@ -2,8 +2,8 @@
 // A block of fuzz rays through a lens, as the backends trace it, and surface by surface.
 
 #include "../../cpp/embree/kernels.hpp"
-#include "../../cpp/optics/lens_entry.hpp"
 #include "../../cpp/optics/lens_path.hpp"
+#include "../../cpp/optics/trace_request.hpp"
 #include "surface_laws.hpp"
 
 namespace realcam::fuzz {
@@ -35,20 +35,10 @@ struct KernelTrace {
     template <class T>
     void operator()(const realcam_kernels& kernels, const LensView<T>& view, const RayBlock& rays,
                     BlockResult& out) const {
-        realcam_trace request{};
-        request.lens_view = &view;
-        request.entry_position = entry_position;
-        request.exit_position = exit_position;
-        request.entry_index = entry_index;
-        request.entry_reach = entry_reach;
-        request.origins = &rays.origin[0].x;
-        request.directions = &rays.direction[0].x;
-        request.out_origins = &out.origin[0].x;
-        request.out_directions = &out.direction[0].x;
-        request.optical_path = out.path;
-        request.status = out.status;
-        request.surface_index = out.surface_index;
-        request.count = kRays;
+        const TraceRequest<T> request{
+            view,     entry_position,    exit_position,        entry_index,      entry_reach,
+            kRays,    &rays.origin[0].x, &rays.direction[0].x, &out.origin[0].x, &out.direction[0].x,
+            out.path, out.status,        out.surface_index};
         recorded(kernels, T())(&request);
     }
 };
