@@ -45,7 +45,7 @@ public:
             probe.triangle();
             const unsigned first = triangles_ & (0u - triangles_);
             triangles_ ^= first;
-            const std::uint32_t number = first_triangle_ + count_bits(content_ & 0xffffffu & (first - 1u));
+            const std::uint32_t number = first_triangle_ + count_bits(content_ & (first - 1u));
             if (meets_triangle(sheared_, load_constant(bvh.triangles + number), hit_) && any) {
                 pending_.slots = triangles_ = 0;
                 return;
