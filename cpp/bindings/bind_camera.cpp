@@ -6,6 +6,8 @@
 #include <tuple>
 
 #include "../camera/default_film.hpp"
+#include "../cuda/ray_arrays.hpp"
+#include "../devices/devices.hpp"
 #include "../embree/embree_backend.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
@@ -50,26 +52,41 @@ Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Tripl
     return camera;
 }
 
+/// Arrays of numpy, or DeviceArrays.
 struct CameraRaysResult {
-    py::array_t<double> origins_m;
-    py::array_t<float> directions, weights;
-    py::array_t<int> pixels;
+    py::object origins_m, directions, weights, pixels;
 };
 
-CameraRaysResult rays_of(const Camera& camera, int spp, std::int64_t seed) {
+CameraRaysResult rays_on_gpu(const Camera& camera, std::uint32_t spp, std::uint32_t seed, int gpu) {
+    const CameraRayArrays rays = [&] {
+        const py::gil_scoped_release release;
+        return generate_ray_arrays(gpu, camera, fast_pupil_tracer(), spp, seed);
+    }();
+    return {py::cast(rays.origins_m), py::cast(rays.directions), py::cast(rays.weights), py::cast(rays.pixels)};
+}
+
+CameraRaysResult rays_on_host(const Camera& camera, std::uint32_t spp, std::uint32_t seed) {
+    const std::int64_t count = static_cast<std::int64_t>(camera.film.width) * camera.film.height * spp;
+    py::array_t<double> origins_m({count, std::int64_t{3}});
+    py::array_t<float> directions({count, std::int64_t{3}}), weights(count);
+    py::array_t<int> pixels(count);
+    double* origins = origins_m.mutable_data();
+    float *ways = directions.mutable_data(), *shares = weights.mutable_data();
+    int* of = pixels.mutable_data();
+    {
+        const py::gil_scoped_release release;
+        generate_camera_rays(camera, spp, seed, origins, ways, shares);
+        for (std::int64_t i = 0; i < count; ++i) of[i] = static_cast<int>(i / spp);
+    }
+    return {origins_m, directions, weights, pixels};
+}
+
+CameraRaysResult rays_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device) {
     if (spp < 1) throw InputError("spp must be at least 1");
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
-    const std::int64_t count = static_cast<std::int64_t>(camera.film.width) * camera.film.height * spp;
-    CameraRaysResult rays{py::array_t<double>({count, std::int64_t{3}}), py::array_t<float>({count, std::int64_t{3}}),
-                          py::array_t<float>(count), py::array_t<int>(count)};
-    double* origins = rays.origins_m.mutable_data();
-    float *directions = rays.directions.mutable_data(), *weights = rays.weights.mutable_data();
-    int* pixels = rays.pixels.mutable_data();
-    const py::gil_scoped_release release;
-    generate_camera_rays(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), origins, directions,
-                         weights);
-    for (std::int64_t i = 0; i < count; ++i) pixels[i] = static_cast<int>(i / spp);
-    return rays;
+    const std::optional<int> gpu = gpu_for_rays(device);
+    return gpu ? rays_on_gpu(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), *gpu)
+               : rays_on_host(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed));
 }
 
 }  // namespace
@@ -81,14 +98,17 @@ void bind_camera(py::module_& m) {
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
         .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); });
-    py::class_<CameraRaysResult>(m, "CameraRays",
-                                 "The rays of a camera, spp for each pixel, row by row from the top left.")
-        .def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3), scene.")
-        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3), unit, scene.")
-        .def_readonly("weights", &CameraRaysResult::weights,
-                      "(N,): irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
-                      "radiance is its irradiance. 0: the lens blocks the ray.")
-        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,): row * columns + column.");
+    py::class_<CameraRaysResult>(
+        m, "CameraRays",
+        "The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or\n"
+        "DeviceArrays.")
+        .def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
+        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
+        .def_readonly(
+            "weights", &CameraRaysResult::weights,
+            "(N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
+            "radiance is its irradiance. 0: the lens blocks the ray.")
+        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.");
     py::class_<Camera>(m, "Camera", "Lens, film, place and exposure. The camera's position is the middle of its film.")
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
              "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
@@ -96,8 +116,11 @@ void bind_camera(py::module_& m) {
              "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
              "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
              "Raises InputError.")
-        .def("generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0,
-             "The rays that render would trace, for any other renderer. Returns CameraRays.")
+        .def(
+            "generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
+            "The rays that render would trace, for any other renderer. Returns CameraRays.\n"
+            "device: \"cpu\": arrays of numpy. \"cuda\", \"cuda:1\": DeviceArrays, made in that GPU's memory and left\n"
+            "there. \"auto\": a GPU if there is one. Raises InputError, DeviceError.")
         .def_readonly("lens", &Camera::lens)
         .def_readonly("film", &Camera::film)
         .def_property_readonly("position", [](const Camera& c) { return triple_of(c.pose.position_m); })

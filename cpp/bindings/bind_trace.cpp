@@ -1,10 +1,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <optional>
 
+#include "../cuda/cuda_rays.hpp"
+#include "../devices/devices.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
+#include "device_array.hpp"
 
 namespace realcam::bindings {
 
@@ -14,10 +18,31 @@ namespace {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
+/// Arrays of numpy, or DeviceArrays.
 struct TraceResult {
-    py::array_t<double> origins_mm, directions, optical_path_mm;
-    py::array_t<int> status, surface_index;
+    py::object origins_mm, directions, optical_path_mm, status, surface_index;
 };
+
+/// What is asked of the rays, checked.
+struct TraceOptions {
+    LightDirection way;
+    double wavelength_nm;
+    Precision precision;
+    int surface_count;
+};
+
+TraceOptions options_of(const LensSystem& lens, std::optional<double> wavelength_nm, const std::string& start,
+                        const py::object& dtype, std::optional<int> surface_count) {
+    if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
+    if (surface_count && *surface_count < 1)
+        throw InputError("surface_count must be 1 or more, or None for all surfaces");
+    const py::dtype type = py::dtype::from_args(dtype);
+    if (type.kind() != 'f' || (type.itemsize() != 4 && type.itemsize() != 8))
+        throw InputError("dtype must be \"float64\" or \"float32\"");
+    return {start == "film" ? LightDirection::to_scene : LightDirection::to_film,
+            wavelength_nm.value_or(lens.wavelength_nm), type.itemsize() == 8 ? Precision::float64 : Precision::float32,
+            surface_count.value_or(-1)};
+}
 
 std::int64_t ray_count(const Array& origins, const Array& directions) {
     const bool fits = origins.ndim() == 2 && origins.shape(1) == 3 && directions.ndim() == 2 &&
@@ -26,29 +51,66 @@ std::int64_t ray_count(const Array& origins, const Array& directions) {
     return origins.shape(0);
 }
 
-TraceResult trace(const LensSystem& lens, const Array& origins, const Array& directions,
-                  std::optional<double> wavelength_nm, const std::string& start, const py::object& dtype,
-                  std::optional<int> surface_count) {
+TraceResult trace_host_arrays(const LensSystem& lens, const Array& origins, const Array& directions,
+                              const TraceOptions& options, std::optional<int> gpu) {
     const std::int64_t count = ray_count(origins, directions);
-    if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
-    if (surface_count && *surface_count < 1)
-        throw InputError("surface_count must be 1 or more, or None for all surfaces");
-    const py::dtype type = py::dtype::from_args(dtype);
-    if (type.kind() != 'f' || (type.itemsize() != 4 && type.itemsize() != 8))
-        throw InputError("dtype must be \"float64\" or \"float32\"");
-    TraceResult result{py::array_t<double>({count, std::int64_t{3}}), py::array_t<double>({count, std::int64_t{3}}),
-                       py::array_t<double>(count), py::array_t<int>(count), py::array_t<int>(count)};
-    const TracedRays out{result.origins_mm.mutable_data(), result.directions.mutable_data(),
-                         result.optical_path_mm.mutable_data(), result.status.mutable_data(),
-                         result.surface_index.mutable_data()};
+    py::array_t<double> to({count, std::int64_t{3}}), towards({count, std::int64_t{3}}), path(count);
+    py::array_t<int> status(count), surface(count);
+    const TracedRays out{to.mutable_data(), towards.mutable_data(), path.mutable_data(), status.mutable_data(),
+                         surface.mutable_data()};
     {
         const py::gil_scoped_release release;
-        trace_rays(lens, start == "film" ? LightDirection::to_scene : LightDirection::to_film,
-                   wavelength_nm.value_or(lens.wavelength_nm),
-                   type.itemsize() == 8 ? Precision::float64 : Precision::float32, surface_count.value_or(-1), count,
-                   origins.data(), directions.data(), out);
+        if (gpu)
+            trace_rays_on_gpu(*gpu, lens, options.way, options.wavelength_nm, options.precision, options.surface_count,
+                              count, origins.data(), directions.data(), out);
+        else
+            trace_rays(lens, options.way, options.wavelength_nm, options.precision, options.surface_count, count,
+                       origins.data(), directions.data(), out);
     }
-    return result;
+    return {to, towards, path, status, surface};
+}
+
+/// The GPU of both inputs, which must be the one that `device` names.
+int gpu_of(const DeviceInput& origins, const DeviceInput& directions, const std::optional<std::string>& device) {
+    const int from = origins.numbers.ordinal, along = directions.numbers.ordinal, there = std::max(from, along);
+    if (from >= 0 && along >= 0 && from != along)
+        throw InputError("origins_mm lies on cuda:" + std::to_string(from) +
+                         " and directions on cuda:" + std::to_string(along) + "; both must lie on the same device");
+    const bool any = !device || *device == "auto" || *device == "cuda";
+    if (there >= 0 && any) return there;
+    const std::optional<int> asked = gpu_for_rays(any ? "cuda" : *device);
+    if (!asked || (there >= 0 && *asked != there))
+        throw InputError("the rays lie on " + (there >= 0 ? "cuda:" + std::to_string(there) : std::string("a GPU")) +
+                         ", and device is \"" + *device + "\"; rays are traced where they lie");
+    return *asked;
+}
+
+TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origins, const DeviceInput& directions,
+                                const TraceOptions& options, const std::optional<std::string>& device) {
+    if (origins.count != directions.count)
+        throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
+    ForeignNumbers from = origins.numbers, along = directions.numbers;
+    from.ordinal = along.ordinal = gpu_of(origins, directions, device);
+    const TracedArrays traced = [&] {
+        const py::gil_scoped_release release;
+        return trace_arrays(lens, options.way, options.wavelength_nm, options.precision, options.surface_count,
+                            origins.count, from, along);
+    }();
+    return {py::cast(traced.origins), py::cast(traced.directions), py::cast(traced.optical_path),
+            py::cast(traced.status), py::cast(traced.surface_index)};
+}
+
+TraceResult trace(const LensSystem& lens, const py::object& origins, const py::object& directions,
+                  std::optional<double> wavelength_nm, const std::string& start, const py::object& dtype,
+                  std::optional<int> surface_count, const std::optional<std::string>& device) {
+    const TraceOptions options = options_of(lens, wavelength_nm, start, dtype, surface_count);
+    const auto from = device_input(origins, "origins_mm"), along = device_input(directions, "directions");
+    if (from && along) return trace_device_arrays(lens, *from, *along, options, device);
+    if (from || along)
+        throw InputError("origins_mm and directions must lie on the same device, and only " +
+                         std::string(from ? "origins_mm" : "directions") + " lies on a GPU");
+    return trace_host_arrays(lens, Array(origins), Array(directions), options,
+                             device ? gpu_for_rays(*device) : std::nullopt);
 }
 
 }  // namespace
@@ -65,7 +127,9 @@ void bind_trace(py::module_& m) {
     py::dict values;
     for (const auto& [name, status] : statuses) values[name] = static_cast<int>(status);
     m.attr("RayStatus") = py::module_::import("enum").attr("IntEnum")("RayStatus", values, "module"_a = "realcam");
-    py::class_<TraceResult>(m, "TraceResult", "Rays after a lens, lens frame.")
+    py::class_<TraceResult>(
+        m, "TraceResult",
+        "Rays after a lens, lens frame. Arrays of numpy; DeviceArrays where the rays came in a GPU's memory.")
         .def_readonly("origins_mm", &TraceResult::origins_mm, "(N, 3): on the last surface met.")
         .def_readonly("directions", &TraceResult::directions, "(N, 3), unit.")
         .def_readonly("optical_path_mm", &TraceResult::optical_path_mm, "(N,): index times distance, from the origin.")
@@ -74,12 +138,19 @@ void bind_trace(py::module_& m) {
                       "(N,): surface at which the ray ended, from 0; -1: bad input.");
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("trace", &trace, "origins_mm"_a, "directions"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
-             "start"_a = "film", "dtype"_a = "float64", "surface_count"_a = py::none(),
+             "start"_a = "film", "dtype"_a = "float64", "surface_count"_a = py::none(), "device"_a = py::none(),
              "Traces rays surface by surface. origins_mm, directions: (N, 3), lens frame.\n"
              "start: \"film\" (towards the scene) or \"scene\" (towards the film).\n"
              "dtype: number type of the computation, float64 or float32; results are float64 arrays.\n"
              "surface_count: cross only the first so many surfaces that the light meets; None: all.\n"
-             "Returns a TraceResult. Raises InputError for wrong shapes; single bad rays end as BAD_INPUT.");
+             "device: for arrays of the host the CPU (None, \"cpu\"), a GPU (\"cuda\", \"cuda:1\"), or a GPU if there "
+             "is\n"
+             "one (\"auto\"); results are arrays of numpy. Arrays with __cuda_array_interface__ or __dlpack__ in a "
+             "GPU's\n"
+             "memory (torch, cupy, DeviceArray: float64 or float32, contiguous) are traced where they lie, and the\n"
+             "results are DeviceArrays.\n"
+             "Returns a TraceResult. Raises InputError for wrong shapes, DeviceError; single bad rays end as "
+             "BAD_INPUT.");
 }
 
 }  // namespace realcam::bindings

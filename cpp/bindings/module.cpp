@@ -6,6 +6,7 @@ PYBIND11_MODULE(_core, m) {
     m.attr("__version__") = REALCAM_VERSION;
     bind_errors(m);
     bind_lens(m);
+    bind_device_array(m);
     bind_trace(m);
     bind_seidel(m);
     bind_analysis(m);

@@ -19,14 +19,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 class CudaBackend final : public Backend {
 public:
     CudaBackend(const std::vector<int>& ordinals, PupilTracer tracer) : tracer_(std::move(tracer)) {
-        const std::vector<CudaDevice> devices = cuda_devices();
-        if (devices.empty()) throw DeviceError(why_no_cuda_device());
+        if (cuda_devices().empty()) throw DeviceError(why_no_cuda_device());
         for (const int ordinal : ordinals) {
-            if (ordinal < 0 || ordinal >= static_cast<int>(devices.size()))
-                throw DeviceError("there is no GPU " + std::to_string(ordinal) + "; this machine has " +
-                                  std::to_string(devices.size()) + ", counted from 0");
-            const CudaDevice& device = devices[static_cast<std::size_t>(ordinal)];
-            name_ += (name_.empty() ? "" : " + ") + device.name;
+            name_ += (name_.empty() ? "" : " + ") + cuda_device(ordinal).name;
             renderers_.push_back(std::make_unique<DeviceRenderer>(ordinal));
         }
     }

@@ -37,4 +37,13 @@ std::string why_no_cuda_device() {
     }
 }
 
+CudaDevice cuda_device(int ordinal) {
+    const std::vector<CudaDevice> devices = cuda_devices();
+    if (devices.empty()) throw DeviceError(why_no_cuda_device());
+    if (ordinal < 0 || ordinal >= static_cast<int>(devices.size()))
+        throw DeviceError("there is no GPU " + std::to_string(ordinal) + "; this machine has " +
+                          std::to_string(devices.size()) + ", counted from 0");
+    return devices[static_cast<std::size_t>(ordinal)];
+}
+
 }  // namespace realcam

@@ -19,4 +19,7 @@ std::vector<CudaDevice> cuda_devices();
 /// Why that list is empty, as a DeviceError's message; empty where there are some.
 std::string why_no_cuda_device();
 
+/// The one of that ordinal. Throws DeviceError where there is none.
+CudaDevice cuda_device(int ordinal);
+
 }  // namespace realcam

@@ -1,6 +1,7 @@
 #include "cuda_rays.hpp"
 
 #include "cuda_stream.hpp"
+#include "current_device.hpp"
 #include "device_arrays.hpp"
 #include "ray_kernels.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 template <class T>
 void trace_with(int ordinal, const TracePath<T>& path, std::int64_t count, const double* origins,
                 const double* directions, const TracedRays& out) {
-    check_cuda(cudaSetDevice(ordinal), "choosing GPU " + std::to_string(ordinal));
+    const CurrentDevice current(ordinal);
     const CudaStream stream;
     DeviceArrays arrays;
     TraceRequest<T> request = path.request(count, origins, directions, out);
@@ -35,7 +36,7 @@ void trace_rays_on_device(int ordinal, const LensSystem& lens, LightDirection di
 void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direction, double wavelength_nm,
                        Precision precision, int surface_count, std::int64_t count, const double* origins,
                        const double* directions, const TracedRays& out) {
-    check_cuda(cudaSetDevice(ordinal), "choosing GPU " + std::to_string(ordinal));
+    const CurrentDevice current(ordinal);
     const CudaStream stream;
     const auto rays = static_cast<std::size_t>(count);
     DeviceArray<double> from, along, to, towards, path;
@@ -60,7 +61,7 @@ void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direc
 
 void generate_camera_rays_on_device(int ordinal, const Camera& camera, const PupilTracer& tracer, std::uint32_t spp,
                                     std::uint32_t seed, float* origins, float* directions, float* weights) {
-    check_cuda(cudaSetDevice(ordinal), "choosing GPU " + std::to_string(ordinal));
+    const CurrentDevice current(ordinal);
     const CudaStream stream;
     DeviceArrays arrays;
     const CameraSetup setup(camera, tracer);

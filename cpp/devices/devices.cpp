@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include "../embree/embree_backend.hpp"
-#include "../error.hpp"
-#if defined(REALCAM_HAS_CUDA)
 #include "../cuda/cuda_backend.hpp"
 #include "../cuda/cuda_devices.hpp"
-#endif
+#include "../embree/embree_backend.hpp"
+#include "../error.hpp"
 
 namespace realcam {
 namespace {
@@ -34,8 +32,6 @@ std::vector<int> ordinals_of(const std::string& device) {
     }
 }
 
-#if defined(REALCAM_HAS_CUDA)
-
 std::vector<Device> gpus() {
     std::vector<Device> list;
     for (const CudaDevice& gpu : cuda_devices())
@@ -52,18 +48,6 @@ std::unique_ptr<Backend> make_gpu_backend(std::vector<int> ordinals) {
     return make_cuda_backend(ordinals, fast_pupil_tracer());
 }
 
-#else
-
-std::vector<Device> gpus() {
-    return {};
-}
-
-std::unique_ptr<Backend> make_gpu_backend(const std::vector<int>&) {
-    throw DeviceError("this build of realcam has no CUDA backend; it was made without nvcc");
-}
-
-#endif
-
 }  // namespace
 
 std::vector<Device> devices() {
@@ -77,6 +61,14 @@ std::unique_ptr<Backend> make_backend(const std::string& device) {
     if (device == "auto") return gpus().empty() ? make_embree_backend() : make_gpu_backend({0});
     if (device == "cuda" || device.starts_with("cuda:")) return make_gpu_backend(ordinals_of(device));
     fail_unknown(device);
+}
+
+std::optional<int> gpu_for_rays(const std::string& device) {
+    if (device == "cpu" || (device == "auto" && cuda_devices().empty())) return std::nullopt;
+    if (device != "auto" && device != "cuda" && !device.starts_with("cuda:")) fail_unknown(device);
+    const std::vector<int> ordinals = device == "auto" ? std::vector<int>() : ordinals_of(device);
+    if (ordinals.size() > 1) throw InputError("rays are traced on one GPU; device=\"cuda:0\", say, is wanted");
+    return cuda_device(ordinals.empty() ? 0 : ordinals.front()).ordinal;
 }
 
 }  // namespace realcam

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,5 +20,9 @@ std::vector<Device> devices();
 /// "auto": the GPU if there is one, else the CPU. "cpu". "cuda": all GPUs; "cuda:1", "cuda:0,1": those.
 /// Throws InputError for another name, and DeviceError where the device is not there or does not work.
 std::unique_ptr<Backend> make_backend(const std::string& device);
+
+/// The one GPU that rays alone are traced on, by its ordinal; none for the CPU. "cuda" is the first; for the rest, and
+/// for errors, see make_backend.
+std::optional<int> gpu_for_rays(const std::string& device);
 
 }  // namespace realcam

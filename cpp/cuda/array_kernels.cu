@@ -1,0 +1,47 @@
+#include "array_kernels.hpp"
+
+#include "cuda_error.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kBlockSize = 256;
+
+__device__ std::int64_t thread_index() {
+    return static_cast<std::int64_t>(blockIdx.x) * kBlockSize + threadIdx.x;
+}
+
+unsigned blocks_for(std::int64_t count) {
+    return static_cast<unsigned>((count + kBlockSize - 1) / kBlockSize);
+}
+
+__global__ void widen(const float* from, std::int64_t count, double* to) {
+    if (thread_index() < count) to[thread_index()] = static_cast<double>(from[thread_index()]);
+}
+
+__global__ void place(const __grid_constant__ PlaceRays rays) {
+    const std::int64_t ray = thread_index();
+    if (ray >= rays.count) return;
+    const float* from = rays.relative + 3 * ray;
+    double* to = rays.origins + 3 * ray;
+    to[0] = rays.place.x + static_cast<double>(from[0]);
+    to[1] = rays.place.y + static_cast<double>(from[1]);
+    to[2] = rays.place.z + static_cast<double>(from[2]);
+    rays.pixels[ray] = static_cast<int>(ray / rays.sample_count);
+}
+
+}  // namespace
+
+void launch_widen(const float* from, std::int64_t count, double* to, cudaStream_t stream) {
+    if (count == 0) return;
+    widen<<<blocks_for(count), kBlockSize, 0, stream>>>(from, count, to);
+    check_cuda(cudaGetLastError(), "starting to convert an array");
+}
+
+void launch_place(const PlaceRays& rays, cudaStream_t stream) {
+    if (rays.count == 0) return;
+    place<<<blocks_for(rays.count), kBlockSize, 0, stream>>>(rays);
+    check_cuda(cudaGetLastError(), "starting to place rays");
+}
+
+}  // namespace realcam

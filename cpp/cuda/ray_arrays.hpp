@@ -1,0 +1,36 @@
+#pragma once
+#include "../camera/camera.hpp"
+#include "../optics/trace_path.hpp"
+#include "shared_device_array.hpp"
+
+namespace realcam {
+
+/// Numbers in a GPU's memory that somebody else owns: float32 or float64, in C order.
+struct ForeignNumbers {
+    const void* data;
+    int ordinal;
+    NumberType type;
+};
+
+/// As TracedRays, in arrays of their own.
+struct TracedArrays {
+    SharedDeviceArray origins, directions, optical_path;
+    SharedDeviceArray status, surface_index;
+};
+
+/// As trace_rays_on_device. Both inputs are count x 3 numbers on one GPU, which traces them. Throws InputError and
+/// DeviceError.
+TracedArrays trace_arrays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
+                          int surface_count, std::int64_t count, ForeignNumbers origins, ForeignNumbers directions);
+
+/// As generate_camera_rays of the CPU, in arrays of their own.
+struct CameraRayArrays {
+    SharedDeviceArray origins_m, directions, weights;
+    SharedDeviceArray pixels;  ///< row * width + column
+};
+
+/// Throws InputError and DeviceError.
+CameraRayArrays generate_ray_arrays(int ordinal, const Camera& camera, const PupilTracer& tracer, std::uint32_t spp,
+                                    std::uint32_t seed);
+
+}  // namespace realcam

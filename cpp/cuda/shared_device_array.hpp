@@ -1,0 +1,47 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace realcam {
+
+enum class NumberType { float32, float64, int32, uint8 };
+
+constexpr std::size_t size_of(NumberType type) {
+    return type == NumberType::float64 ? 8 : type == NumberType::uint8 ? 1 : 4;
+}
+
+/// Numbers in a GPU's memory, in C order, as other libraries are given them. Copies share the memory, and the last one
+/// frees it, on any thread. Nothing that writes there is under way.
+class SharedDeviceArray {
+public:
+    /// See `share` for what DeviceArray holds. `memory` frees itself without throwing.
+    SharedDeviceArray(std::shared_ptr<void> memory, int ordinal, NumberType type, std::vector<std::int64_t> shape)
+        : memory_(std::move(memory)), ordinal_(ordinal), type_(type), shape_(std::move(shape)) {}
+
+    const std::shared_ptr<void>& memory() const { return memory_; }
+    void* data() const { return memory_.get(); }
+    int ordinal() const { return ordinal_; }
+    NumberType type() const { return type_; }
+    const std::vector<std::int64_t>& shape() const { return shape_; }
+    std::size_t bytes() const {
+        std::size_t product = size_of(type_);
+        for (const std::int64_t extent : shape_) product *= static_cast<std::size_t>(extent);
+        return product;
+    }
+
+    /// Copies all of it to the host's memory. Throws DeviceError.
+    void download(void* to) const;
+    /// The same numbers in memory of their own, on the same GPU. Throws DeviceError.
+    SharedDeviceArray duplicate() const;
+
+private:
+    std::shared_ptr<void> memory_;
+    int ordinal_;
+    NumberType type_;
+    std::vector<std::int64_t> shape_;
+};
+
+}  // namespace realcam
