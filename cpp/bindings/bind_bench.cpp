@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 
+#include "../cuda/bench_kernels.hpp"
+#include "../devices/devices.hpp"
 #include "../embree/embree_backend.hpp"
 #include "../embree/kernels.hpp"
 #include "../math/random.hpp"
@@ -65,6 +67,12 @@ std::map<std::string, double> lens_ray_rates(const LensSystem& lens, double seco
     return rates;
 }
 
+int gpu_for_bench(const std::string& device) {
+    const std::optional<int> gpu = gpu_for_rays(device);
+    if (!gpu) throw InputError("this benchmark is for a GPU; device cuda is wanted");
+    return *gpu;
+}
+
 }  // namespace
 
 void bind_bench(py::module_& m) {
@@ -75,6 +83,27 @@ void bind_bench(py::module_& m) {
             return lens_ray_rates(lens, seconds);
         },
         "lens"_a, "seconds"_a);
+    m.def(
+        "_gpu_lens_ray_rates",
+        [](const Camera& camera, const std::string& device) {
+            const py::gil_scoped_release release;
+            const LensRayRates rates = lens_ray_rates(gpu_for_bench(device), camera, fast_pupil_tracer());
+            return std::map<std::string, double>{
+                {"traced", rates.traced}, {"generated", rates.generated}, {"passed", rates.passed}};
+        },
+        "camera"_a, "device"_a);
+    m.def(
+        "_gpu_hit_rates",
+        [](const Scene& scene, const Camera& camera, const std::string& device) {
+            const py::gil_scoped_release release;
+            const HitRates rates = hit_rates(gpu_for_bench(device), scene, camera, fast_pupil_tracer());
+            return std::map<std::string, double>{{"build_seconds", rates.build_seconds},
+                                                 {"upload_seconds", rates.upload_seconds},
+                                                 {"camera", rates.camera_rays},
+                                                 {"cosine", rates.bounce_rays},
+                                                 {"uniform", rates.uniform_rays}};
+        },
+        "scene"_a, "camera"_a, "device"_a);
 }
 
 }  // namespace realcam::bindings

@@ -35,6 +35,12 @@ Backend& backend_for(const std::string& device) {
     return *backend;
 }
 
+ToneCurve tone_curve_from(const std::string& name) {
+    if (name == "film") return ToneCurve::film;
+    if (name == "linear") return ToneCurve::linear;
+    throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
+}
+
 Progress progress_of(const py::object& callback) {
     return [&callback](double done) {
         const py::gil_scoped_acquire acquire;
@@ -71,10 +77,8 @@ py::tuple render(const std::shared_ptr<Scene>& scene, const Camera& camera, int 
 
 py::array_t<std::uint8_t> develop(const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure,
                                   double iso, const std::string& tone) {
-    if (tone != "film" && tone != "linear")
-        throw InputError("unknown tone curve \"" + tone + "\"; film or linear is wanted");
+    const ToneCurve curve = tone_curve_from(tone);
     if (!(iso > 0) || !std::isfinite(iso)) throw InputError("the ISO number must be positive");
-    const ToneCurve curve = tone == "film" ? ToneCurve::film : ToneCurve::linear;
     py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));
     const float* from = exposure.data();
     std::uint8_t* to = codes.mutable_data();

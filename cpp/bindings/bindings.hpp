@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "../camera/develop.hpp"
 #include "../io/lens_file.hpp"
 #include "../optics/lens_system.hpp"
 #include "../optics/object_point.hpp"
@@ -24,10 +25,14 @@ void bind_camera(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_render(py::module_& m);
 void bind_view(py::module_& m);
+void bind_live(py::module_& m);
 void bind_bench(py::module_& m);
 
 /// The backend of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
 Backend& backend_for(const std::string& device);
+
+/// "film" or "linear". Throws InputError.
+ToneCurve tone_curve_from(const std::string& name);
 
 /// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without
 /// the interpreter's lock. The callback must outlive the result.

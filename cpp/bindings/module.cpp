@@ -14,5 +14,6 @@ PYBIND11_MODULE(_core, m) {
     bind_scene(m);
     bind_render(m);
     bind_view(m);
+    bind_live(m);
     bind_bench(m);
 }

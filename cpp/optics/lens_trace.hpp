@@ -1,4 +1,6 @@
 #pragma once
+#include <type_traits>
+
 #include "asphere.hpp"
 #include "lens_view.hpp"
 #include "ray_status.hpp"
@@ -187,7 +189,8 @@ REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays,
             }
             if (step.has_blades) cross_iris(lens.iris, rays);
         }
-        if constexpr (N == 1)
+        // With a record, a ray that has ended still has to come to the last vertex.
+        if constexpr (N == 1 && !std::remove_reference_t<Record>::enabled)
             if (rays.status[0] != 0) return;
     }
 }

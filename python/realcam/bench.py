@@ -96,14 +96,14 @@ def pass_share(threads: int) -> Result:
     return {"share": shares, "worst": min(shares.values())}
 
 
-def frame_scene() -> Scene:
-    """50 spheres and 50 boxes on a plane, about 205 000 triangles, one area light and a constant environment."""
+def frame_scene_arrays(spheres: int = 50, boxes: int = 50, rows: int = 32) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Spheres and boxes on a plane under one area light: vertices (m), triangles, a material (1: light) for each."""
     random = np.random.default_rng(1)
     meshes = [_quad([(-50, 0, 50), (50, 0, 50), (50, 0, -50), (-50, 0, -50)])]
-    for _ in range(50):
+    for _ in range(spheres):
         x, z = random.uniform(-4, 4, 2)
-        meshes.append(_sphere((x, 0.3, z - 4), 0.3))
-    for _ in range(50):
+        meshes.append(_sphere((x, 0.3, z - 4), 0.3, 2 * rows, rows))
+    for _ in range(boxes):
         x, z = random.uniform(-4, 4, 2)
         meshes.append(_box((x, 0.25, z - 4), 0.25))
     lamp = _quad([(-2, 6, -6), (2, 6, -6), (2, 6, -2), (-2, 6, -2)])
@@ -113,15 +113,21 @@ def frame_scene() -> Scene:
         vertices.append(points)
         triangles.append(faces + base)
         base += len(points)
-    faces = np.concatenate(triangles)
-    materials = np.zeros(len(faces), int)
+    materials = np.zeros(sum(len(faces) for faces in triangles), int)
     materials[-len(lamp[1]) :] = 1
-    return Scene.from_arrays(
-        np.concatenate(vertices),
-        faces,
+    return np.concatenate(vertices), np.concatenate(triangles), materials
+
+
+def frame_scene(spheres: int = 50, boxes: int = 50, rows: int = 32, sky: float = 100.0) -> Scene:
+    """The scene of frame_scene_arrays under a sky (cd/m^2); with 50 spheres of 32 rows, about 205 000 triangles."""
+    vertices, triangles, materials = frame_scene_arrays(spheres, boxes, rows)
+    scene = Scene.from_arrays(
+        vertices,
+        triangles,
         triangle_materials=materials,
         materials=[Material(), Material(emission=(2000, 2000, 2000))],
-    ).with_environment(100.0)
+    )
+    return scene.with_environment(sky) if sky else scene
 
 
 Mesh = tuple[np.ndarray, np.ndarray]
@@ -174,9 +180,112 @@ def frame(threads: int) -> Result:
     }
 
 
+def _gpu_scene() -> Scene:
+    """410 000 diffuse triangles under one area light."""
+    return frame_scene(spheres=103, boxes=50, sky=0.0)
+
+
+def _gpu_camera(model: str = "full") -> Camera:
+    lens = Lens.load("double-gauss-50mm").focused(5.0)
+    return Camera(lens, film=Film(36, 24, (1920, 1280)), model=model, position=(0, 1.5, 4), look_at=(0, 0.3, -4))
+
+
+def _giga(rate: float) -> float:
+    return round(rate / 1e9, 3)
+
+
+def gpu_lens_rays(threads: int) -> Result:
+    """Rays per second through lenses on a GPU, float32, whole frame: traced alone, and with film and pupil samples."""
+    del threads
+    results = {}
+    for name in ("double-gauss-50mm", "phone-4mm"):
+        lens = Lens.load(name)
+        camera = Camera(lens, film=Film(*lens.film_mm, (1920, 1280)), position=(0, 1.5, 4), look_at=(0, 0.3, -4))
+        rates = _core._gpu_lens_ray_rates(camera, "cuda")
+        results[name] = {
+            "surfaces": len(lens.surfaces),
+            "traced": _giga(rates["traced"]),
+            "generated": _giga(rates["generated"]),
+            "passed_share": round(rates["passed"], 4),
+        }
+    return {"giga_rays_per_second": results}
+
+
+def gpu_hits(threads: int) -> Result:
+    """Closest hits per second of camera rays and of bounces (cosine, uniform), and the time to build hierarchies."""
+    del threads
+    scene = _gpu_scene()
+    rates = _core._gpu_hit_rates(scene, _gpu_camera(), "cuda")
+    large = frame_scene(spheres=100, boxes=0, rows=224, sky=0.0)
+    build = _core._gpu_hit_rates(large, _gpu_camera(), "cuda")
+    return {
+        "triangles": scene.triangle_count,
+        "giga_rays_per_second": {kind: _giga(rates[kind]) for kind in ("camera", "cosine", "uniform")},
+        "build_seconds": {
+            str(scene.triangle_count): round(rates["build_seconds"], 3),
+            str(large.triangle_count): round(build["build_seconds"], 3),
+        },
+    }
+
+
+def gpu_paths(threads: int) -> Result:
+    """Camera ray and shadow ray, 256 samples of 1920 x 1280 pixels: paths per second by camera model."""
+    del threads
+    scene = _gpu_scene()
+    seconds: dict[str, list[float]] = {}
+    for _ in range(4):  # in turns; the first round warms up
+        for model in ("pinhole", "thin", "thick", "full"):
+            stats = render(scene, _gpu_camera(model), spp=256, max_bounces=0, device="cuda").stats
+            seconds.setdefault(model, []).append(stats.seconds - stats.setup_seconds)
+    paths = 256 * 1920 * 1280
+    best = {model: min(times) for model, times in seconds.items()}
+    lens_alone = paths / _core._gpu_lens_ray_rates(_gpu_camera(), "cuda")["generated"]
+    return {
+        "triangles": scene.triangle_count,
+        "giga_paths_per_second": {model: _giga(paths / s) for model, s in best.items()},
+        "full_over_thin": round(best["full"] / best["thin"], 3),
+        "lens_share": round(lens_alone / best["full"], 3),
+    }
+
+
+def gpu_frames(threads: int) -> Result:
+    """Frames per second of a live view, 640 x 640 pixels of 20 samples, while camera, focus or stop change."""
+    del threads
+    view = _core.LiveView(_gpu_scene(), max_bounces=0)
+    lens = Lens.load("double-gauss-50mm").focused(5.0)
+
+    def camera(lens: Lens = lens, x: float = 0.0) -> Camera:
+        return Camera(lens, film=Film(24, 24, (640, 640)), position=(x, 1.5, 4), look_at=(0, 0.3, -4))
+
+    changes: dict[str, Callable[[int], Camera]] = {
+        "pose": lambda i: camera(x=0.001 * i),
+        "focus": lambda i: camera(lens.focused(4 + 0.01 * i)),
+        "stop": lambda i: camera(lens.stopped_down(2.8 + 0.01 * i)),
+    }
+    rates = {}
+    for name, camera_at in changes.items():
+        frames = []
+        for i in range(220):
+            if i == 20:
+                frames[-1].codes.sum()
+                begin = time.perf_counter()
+            frames.append(view.shoot(camera_at(i), spp=20))
+            if len(frames) > 3:
+                frames.pop(0).codes.sum()
+        frames[-1].codes.sum()
+        rates[name] = round(200 / (time.perf_counter() - begin), 1)
+    return {"frames_per_second": rates}
+
+
+GPU_BENCHMARKS = ("gpu-lens-rays", "gpu-hits", "gpu-paths", "gpu-frames")
+
 BENCHMARKS: dict[str, Callable[[int], Result]] = {
     "lens-rays": lens_rays,
     "lens-setup": lens_setup,
     "pass-share": pass_share,
     "frame": frame,
+    "gpu-lens-rays": gpu_lens_rays,
+    "gpu-hits": gpu_hits,
+    "gpu-paths": gpu_paths,
+    "gpu-frames": gpu_frames,
 }

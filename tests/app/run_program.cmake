@@ -85,7 +85,7 @@ expect(2 "look at a point other than its position" render quad.obj -o x.png --po
 expect(2 "scale must be" render quad.obj -o x.png --scale 0)
 expect(2 "full, thick, thin or pinhole" render quad.obj -o x.png --model real)
 expect(2 "film or linear" render quad.obj -o x.png --tone flat)
-expect(2 "auto or cpu" render quad.obj -o x.png --device abacus)
+expect(2 "auto, cpu" render quad.obj -o x.png --device abacus)
 expect(2 "neither a number .* nor a file" render quad.obj -o x.png --environment gone.hdr)
 expect(2 "cannot be read as an environment" render quad.obj -o x.png --environment empty.obj)
 expect(2 "no exposure can be metered" render quad.obj -o x.png ${small} --position 0,0,9 --look-at 0,0,99 --environment 0)

@@ -21,11 +21,12 @@ MAY_INCLUDE = {
     "bvh": {"math", "scene"},
     "embree": {*CORE},
     "cuda": {*CORE, "bvh"},
+    "devices": {*CORE, *BACKENDS},
     "io": {*CORE},
     "image_io": {*CORE, "io"},
     # The extension links no OpenImageIO: image_io is the executable's alone.
-    "bindings": {*CORE, *BACKENDS, "io"},
-    "app": {*CORE, *BACKENDS, "io", "image_io"},
+    "bindings": {*CORE, *BACKENDS, "devices", "io"},
+    "app": {*CORE, *BACKENDS, "devices", "io", "image_io"},
 }
 
 # Which Embree it is stays in one place.
@@ -59,13 +60,16 @@ HOST_ONLY = {
     "optics/spot.hpp",
     "optics/surface.hpp",
     "optics/wavefront.hpp",
+    "optics/trace_path.hpp",
     "render/backend.hpp",
     "render/daylight.hpp",
     "render/default_view.hpp",
     "render/metering.hpp",
+    "render/run_with_progress.hpp",
     "scene/light_tables.hpp",
     "scene/placed_scene.hpp",
     "scene/scene.hpp",
+    "scene/scene_arrays.hpp",
     "scene/split_triangles.hpp",
 }
 

@@ -6,9 +6,9 @@ import pytest
 import realcam as rc
 
 
-@pytest.fixture(params=[line.split(":")[0] for line in rc.devices()])
+@pytest.fixture(params=sorted({line.split(":")[0] for line in rc.devices()}))
 def device(request: pytest.FixtureRequest) -> str:
-    """Each device of this machine in turn, as `device` of rc.render."""
+    """cpu, and cuda where this machine has a GPU, in turn: `device` of rc.render."""
     return str(request.param)
 
 

@@ -8,14 +8,14 @@ from typing import Annotated, Optional
 import typer
 from rich.console import Console
 
-from .._core import InputError
+from .._core import InputError, devices
 
 
 def bench(
     names: Annotated[
         Optional[list[str]],  # noqa: UP045
         typer.Argument(
-            help="lens-rays, lens-setup, pass-share, frame [all].",
+            help="lens-rays, lens-setup, pass-share, frame; gpu-lens-rays, gpu-hits, gpu-paths, gpu-frames [all].",
             metavar="[BENCHMARK]...",
             show_default=False,
         ),
@@ -24,9 +24,10 @@ def bench(
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit.")] = False,
 ) -> None:
     """Measure rays through the lens, pupil set-up, sampling efficiency and a frame on this machine."""
-    from ..bench import BENCHMARKS, machine
+    from ..bench import BENCHMARKS, GPU_BENCHMARKS, machine
 
-    wanted = names or list(BENCHMARKS)
+    has_gpu = any(line.startswith("cuda") for line in devices())
+    wanted = names or [name for name in BENCHMARKS if has_gpu or name not in GPU_BENCHMARKS]
     for name in wanted:
         if name not in BENCHMARKS:
             raise InputError(f'unknown benchmark "{name}"; one of {", ".join(BENCHMARKS)} is wanted')

@@ -1,0 +1,122 @@
+"""Both backends take the same samples of the same scene: their pictures differ by rounding alone.
+
+A sample that passes an edge by less than its rounding may meet another surface on the other backend. Such pixels are
+counted; all others have to agree.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import realcam as rc
+from realcam.bench import frame_scene
+
+pytestmark = pytest.mark.gpu
+
+GPUS = [line.split(":", 2)[1] for line in rc.devices() if line.startswith("cuda:")]
+needs_gpu = pytest.mark.skipif(not GPUS, reason="no GPU: " + rc.devices()[-1] + " is all there is")
+needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"{len(GPUS)} GPUs; two are wanted")
+
+# Where a sample goes astray, a pixel changes by the share of one sample, some percent; roundings alone leave 1e-5 of it
+# at most: 2^-24 times some hundred operations.
+ASTRAY = 1e-3
+# An edge is as wide as the rounding of a hit, 1e-6 of the distance, against a pixel of 1e-3: with up to 64 samples and
+# a few edges in a pixel, one in a thousand pixels.
+ASTRAY_SHARE = 2e-3
+RELATIVE_RMSE = 1e-4  # the issue's bound
+
+
+def textured_scene() -> rc.Scene:
+    """Texture, environment image, mirror-like and diffuse surfaces, all kinds of light."""
+    rng = np.random.default_rng(3)
+    plane = np.array([[-3, 0, 3], [3, 0, 3], [3, 0, -6], [-3, 0, -6]], float)
+    wall = np.array([[-1, 0, -3], [1, 0.2, -3], [1, 1.6, -3.4], [-1, 1.4, -3.2]], float)
+    lamp = np.array([[-0.4, 2, -1], [-0.4, 2, -2], [0.4, 2, -2], [0.4, 2, -1]], float)
+    scene = rc.Scene.from_arrays(
+        np.concatenate([plane, wall, lamp]),
+        [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7], [8, 9, 10], [8, 10, 11]],
+        uvs=np.tile([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]], (3, 1)),
+        triangle_materials=[0, 0, 1, 1, 2, 2],
+        materials=[
+            rc.Material(diffuse=(0.7, 0.6, 0.5)),
+            rc.Material(diffuse=(0.2, 0.2, 0.3), specular=(0.5, 0.5, 0.5), shininess=60),
+            rc.Material(emission=(900, 900, 800)),
+        ],
+    )
+    scene = scene.with_texture(0, rng.integers(0, 255, (32, 32, 3), dtype=np.uint8))
+    scene = scene.with_point_light((1.5, 1.0, -0.5), (300, 200, 100)).with_sun((0.3, -1, -0.2), (500, 500, 600))
+    return scene.with_environment(rng.uniform(1, 200, (16, 32, 3)).astype(np.float32))
+
+
+SCENES = {"area light": lambda: frame_scene(spheres=20, boxes=20), "all kinds": textured_scene}
+
+
+def pictures(scene: rc.Scene, camera: rc.Camera, devices: tuple[str, str], **options: int) -> list[rc.Image]:
+    return [rc.render(scene, camera, device=device, **options) for device in devices]
+
+
+def hold_parity(a: rc.Image, b: rc.Image) -> None:
+    reference, other = a.pixels.astype(float), b.pixels.astype(float)
+    difference = np.abs(other - reference).max(axis=2)
+    astray = difference > ASTRAY * (reference.max(axis=2) + 1e-3 * reference.mean())
+    assert astray.mean() <= ASTRAY_SHARE
+    kept = ~astray
+    rmse = np.sqrt((difference[kept] ** 2).mean() / (reference[kept] ** 2).mean())
+    assert rmse <= RELATIVE_RMSE
+    # Every ray that one sends through the lens, the other sends too; decisions at its rims may differ by rounding.
+    assert a.stats.sampled_rays == b.stats.sampled_rays
+    assert abs(a.stats.passed_rays - b.stats.passed_rays) <= 1 + 1e-5 * a.stats.sampled_rays
+    # Depth is a mean over the samples that met something.
+    met = np.isfinite(a.depth) & np.isfinite(b.depth) & kept
+    np.testing.assert_allclose(b.depth[met], a.depth[met], rtol=1e-3)
+
+
+@needs_gpu
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
+@pytest.mark.parametrize("bounces", [0, 3])
+def test_pictures_agree(scene: str, model: str, bounces: int) -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), model=model, position=(0, 1, 3), look_at=(0, 0.6, -2))
+    hold_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=bounces))
+
+
+@needs_gpu
+@pytest.mark.parametrize("name", rc.lens_names())
+def test_pictures_through_every_lens_agree(name: str) -> None:
+    lens = rc.Lens.load(name)
+    lens = lens.stopped_down(1.4 * lens.first_order().f_number) if lens.first_order().f_number > 0 else lens
+    camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    hold_parity(*pictures(SCENES["area light"](), camera, ("cpu", "cuda"), spp=32, max_bounces=1))
+
+
+@needs_gpu
+@pytest.mark.parametrize("resolution", [(1, 1), (3, 2), (33, 17), (257, 3)])
+@pytest.mark.parametrize("spp", [1, 3, 64, 1000])
+def test_any_number_of_pixels_and_samples(resolution: tuple[int, int], spp: int) -> None:
+    lens = rc.Lens.load("tessar-50mm").focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, resolution), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    a, b = pictures(SCENES["all kinds"](), camera, ("cpu", "cuda"), spp=spp)
+    assert a.stats.sampled_rays == b.stats.sampled_rays == spp * resolution[0] * resolution[1]
+    # One stray sample among few weighs much: the middle of the pixels' errors.
+    errors = np.abs(b.pixels - a.pixels).max(axis=2) / (a.pixels.max(axis=2) + 1e-6 * a.pixels.max())
+    assert np.median(errors) <= RELATIVE_RMSE
+
+
+@needs_gpu
+def test_the_same_picture_twice() -> None:
+    lens = rc.Lens.load("tessar-50mm").focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    a, b = pictures(SCENES["all kinds"](), camera, ("cuda", "cuda"), spp=50)
+    np.testing.assert_array_equal(a.pixels, b.pixels)
+
+
+@needs_two
+def test_several_gpus_take_the_same_picture() -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    one, both = pictures(SCENES["all kinds"](), camera, ("cuda:0", "cuda:0,1"), spp=101)
+    # The same samples; their sums in double are added in another order.
+    np.testing.assert_allclose(both.pixels, one.pixels, rtol=3e-7)
+    assert both.stats.sampled_rays == one.stats.sampled_rays
+    assert both.stats.scene_rays == one.stats.scene_rays
