@@ -38,17 +38,19 @@ class PupilBoxes:
 
 @dataclass(frozen=True)
 class Rays:
-    """Rays from the film: lens frame, unit directions."""
+    """Rays from the film: lens frame, unit directions. `device`: what traces them, as in Lens.trace."""
 
     origins_mm: np.ndarray
     directions: np.ndarray
     film_radius_mm: np.ndarray
+    device: str = "cpu"
 
     def trace(self, lens: rc.Lens, dtype: str, surface_count: int | None = None) -> rc.TraceResult:
-        return lens.trace(self.origins_mm, self.directions, start="film", dtype=dtype, surface_count=surface_count)
+        how = {"start": "film", "dtype": dtype, "surface_count": surface_count, "device": self.device}
+        return lens.trace(self.origins_mm, self.directions, **how)
 
     def __getitem__(self, chosen: np.ndarray) -> Rays:
-        return Rays(self.origins_mm[chosen], self.directions[chosen], self.film_radius_mm[chosen])
+        return Rays(self.origins_mm[chosen], self.directions[chosen], self.film_radius_mm[chosen], self.device)
 
 
 @dataclass(frozen=True)

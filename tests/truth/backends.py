@@ -8,7 +8,9 @@ import realcam as rc
 from .prescription import Prescription, Rays, Row, Traced
 
 # What may trace, and what Lens.trace needs to be told so.
-BACKENDS: dict[str, dict] = {"Embree": {}}
+BACKENDS: dict[str, dict] = {"Embree": {"device": "cpu"}}
+if any(line.startswith("cuda:") for line in rc.devices()):
+    BACKENDS["CUDA"] = {"device": "cuda"}
 
 FATES = {
     rc.RayStatus.OK: "ok",

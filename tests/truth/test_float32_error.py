@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -11,6 +11,7 @@ import realcam as rc
 from ..float32_error import BEYOND_UM, IMAGE_RADIUS_MM, LIMIT_UM, Rays, image_point_errors, rays_over_film_and_pupil
 from ..measurement import Measurement, hold
 from ..ray_decisions import EDGE_LIMIT, SHARE_LIMIT, decided_otherwise, distance_to_edge, rays_at_edges
+from .backends import BACKENDS
 
 
 def half_ball() -> rc.Lens:
@@ -27,16 +28,23 @@ def half_ball() -> rc.Lens:
 class Sampled:
     lens: rc.Lens
     rays: Rays
+    backend: str
 
 
 @pytest.fixture(scope="module", params=rc.lens_names())
-def sampled(request: pytest.FixtureRequest) -> Sampled:
+def rays_of_a_lens(request: pytest.FixtureRequest) -> tuple[rc.Lens, Rays]:
     lens = rc.Lens.load(request.param)
-    return Sampled(lens, rays_over_film_and_pupil(lens))
+    return lens, rays_over_film_and_pupil(lens)
 
 
-def hold_figure(what: str, tried: str, worst: float, limit: float, unit: str) -> None:
-    hold(Measurement("Bundled lenses", what, tried, "Embree", "float32", float(worst), limit, unit))
+@pytest.fixture
+def sampled(rays_of_a_lens: tuple[rc.Lens, Rays], backend: str) -> Sampled:
+    lens, rays = rays_of_a_lens
+    return Sampled(lens, replace(rays, **BACKENDS[backend]), backend)
+
+
+def hold_figure(backend: str, what: str, tried: str, worst: float, limit: float, unit: str) -> None:
+    hold(Measurement("Bundled lenses", what, tried, backend, "float32", float(worst), limit, unit))
 
 
 def test_image_points(sampled: Sampled) -> None:
@@ -47,28 +55,30 @@ def test_image_points(sampled: Sampled) -> None:
     name = sampled.lens.name
     inside = errors.film_radius_mm <= IMAGE_RADIUS_MM.get(name, np.inf)
     tried = f"{inside.sum():,} rays over film and pupil"
-    hold_figure(f"image points of {name}", tried, errors.error_um[inside].max(), LIMIT_UM, "µm")
+    worst = errors.error_um[inside].max()
+    hold_figure(sampled.backend, f"image points of {name}", tried, worst, LIMIT_UM, "µm")
     if not inside.all():
         tried = f"{(~inside).sum():,} rays over film and pupil"
-        hold_figure(f"{name}, beyond its image circle", tried, errors.error_um[~inside].max(), BEYOND_UM, "µm")
+        worst = errors.error_um[~inside].max()
+        hold_figure(sampled.backend, f"{name}, beyond its image circle", tried, worst, BEYOND_UM, "µm")
 
 
 def test_passed_or_blocked(sampled: Sampled) -> None:
     otherwise = decided_otherwise(sampled.lens, sampled.rays)
     tried = f"{len(otherwise):,} rays over film and pupil of each lens"
-    hold_figure("rays that float64 decides otherwise", tried, otherwise.mean(), SHARE_LIMIT, "of all rays")
+    what = "rays that float64 decides otherwise"
+    hold_figure(sampled.backend, what, tried, otherwise.mean(), SHARE_LIMIT, "of all rays")
     if otherwise.any():
         distance = distance_to_edge(sampled.lens, sampled.rays[otherwise])
         assert distance.max() <= EDGE_LIMIT, (sampled.lens.name, distance.max())
 
 
 @pytest.mark.parametrize("lens", [*map(rc.Lens.load, rc.lens_names()), half_ball()], ids=lambda lens: lens.name)
-def test_only_rays_at_an_edge_are_decided_otherwise(lens: rc.Lens) -> None:
-    rays = rays_at_edges(lens)
+def test_only_rays_at_an_edge_are_decided_otherwise(lens: rc.Lens, backend: str) -> None:
+    rays = replace(rays_at_edges(lens), **BACKENDS[backend])
     distance = distance_to_edge(lens, rays[decided_otherwise(lens, rays)])
     # So near to the edges some are: else these rays were not at edges.
     assert len(distance) > 10
     tried = f"{len(rays.directions):,} rays within 0.001 of an edge, of each lens"
-    hold_figure(
-        "distance from an edge of rays that float64 decides otherwise", tried, distance.max(), EDGE_LIMIT, "relative"
-    )
+    what = "distance from an edge of rays that float64 decides otherwise"
+    hold_figure(backend, what, tried, distance.max(), EDGE_LIMIT, "relative")

@@ -51,11 +51,6 @@ BEHIND = 5.0
 VERSIONS, CASES = peer_file.read()
 
 
-@pytest.fixture(params=backends.BACKENDS)
-def backend(request: pytest.FixtureRequest) -> str:
-    return request.param
-
-
 @functools.cache
 def traced(backend: str) -> list[Traced]:
     return [backends.trace(case.lens, case.rays, backend) for case in CASES]
