@@ -152,8 +152,13 @@ std::optional<DeviceInput> device_input(const py::object& array, const char* nam
         const auto& own = array.cast<const SharedDeviceArray&>();
         if (own.type() != NumberType::float32 && own.type() != NumberType::float64)
             refuse_type(name, own.type() == NumberType::int32 ? "int32" : "uint8");
-        return input_of({own.shape(), std::nullopt, own.type(), reinterpret_cast<std::uintptr_t>(own.data())},
-                        own.ordinal(), name, array);
+        DeviceInput input =
+            input_of({own.shape(), std::nullopt, own.type(), reinterpret_cast<std::uintptr_t>(own.data())},
+                     own.ordinal(), name, array);
+        // Whoever shares it may be writing to it.
+        const py::gil_scoped_release release;
+        wait_for_gpu(own.ordinal(), std::nullopt);
+        return input;
     }
     // Tensors of the host have the attribute too, and raise when it is read.
     if (py::hasattr(array, "__cuda_array_interface__"))

@@ -506,6 +506,7 @@ def _render(
     threads: int,
     progress: _Progress | None,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], RenderStats]: ...
+
 @final
 class LiveFrame:
     @property

@@ -264,7 +264,7 @@ def gpu_frames(threads: int) -> Result:
     }
     rates = {}
     for name, camera_at in changes.items():
-        frames = []
+        frames: list[_core.LiveFrame] = []
         for i in range(220):
             if i == 20:
                 frames[-1].codes.sum()

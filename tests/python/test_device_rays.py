@@ -179,29 +179,28 @@ def test_what_torch_and_cupy_hold_and_cannot_be_traced() -> None:
 
 @pytest.mark.gpu
 @needs_gpu
-@pytest.mark.parametrize("library", ["torch", "cupy", "dlpack"])
+@pytest.mark.parametrize("library", ["torch", "cupy", "dlpack", "realcam"])
 def test_the_producers_stream_is_waited_for(library: str) -> None:
     """The numbers are written by a stream that is still at work when trace is called."""
     torch = pytest.importorskip("torch")
-    if library == "cupy":
-        cupy = pytest.importorskip("cupy")
-    origins, directions = film_rays(100_000)
-    ready = on_torch(origins), on_torch(directions)
-    expected = LENS.trace(*ready).optical_path_mm.numpy()
+    ready = [on_torch(array) for array in film_rays(100_000)]
+    first = LENS.trace(*ready)
+    expected = first.optical_path_mm.numpy()
+    own = [first.origins_mm, first.directions]
+    late = [torch.from_dlpack(array) for array in own]
     stream = torch.cuda.Stream()
     torch.cuda.synchronize()
     with torch.cuda.stream(stream):
-        late = [torch.zeros_like(ready[0]), torch.zeros_like(ready[1])]
         torch.cuda._sleep(200_000_000)  # clocks: a tenth of a second
         for array, values in zip(late, ready, strict=True):
             array.copy_(values)
         if library == "cupy":
+            cupy = pytest.importorskip("cupy")
             with cupy.cuda.ExternalStream(stream.cuda_stream):
                 out = LENS.trace(*(cupy.asarray(array) for array in late))
-        elif library == "dlpack":
-            out = LENS.trace(*(Passed(array) for array in late))
         else:
-            out = LENS.trace(*late)
+            inputs = {"torch": late, "dlpack": [Passed(array) for array in late], "realcam": own}[library]
+            out = LENS.trace(*inputs)
     np.testing.assert_array_equal(out.optical_path_mm.numpy(), expected)
 
 
