@@ -23,6 +23,7 @@ SECTIONS = (
     "Samplers",
     "Truth",
     "Other programs",
+    "Parity",
 )
 
 

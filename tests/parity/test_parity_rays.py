@@ -28,7 +28,7 @@ DOUBLE = 1e-12
 
 
 def held(what: str, tried: str, number_type: str, worst: float, limit: float, unit: str) -> None:
-    hold(Measurement("Parity of CPU and GPU", what, tried, "CUDA", number_type, float(worst), limit, unit))
+    hold(Measurement("Parity", what, tried, "CUDA", number_type, float(worst), limit, unit))
 
 
 def magnification(lens: rc.Lens, origins_mm: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, ...]:
