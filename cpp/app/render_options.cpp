@@ -85,7 +85,7 @@ void add_render_options(CLI::App& command, RenderWords& w) {
         ->capture_default_str();
     option("--tone", w.tone, "Of .png: film (soft highlights) or linear (clipped)", "CURVE")->capture_default_str();
     option("--threads", w.threads, "0: all", "N")->capture_default_str();
-    option("--device", w.device, "auto or cpu", "DEVICE")->capture_default_str();
+    option("--device", w.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1", "DEVICE")->capture_default_str();
 }
 
 RenderRequest understand(const RenderWords& w) {

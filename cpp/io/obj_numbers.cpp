@@ -2,6 +2,7 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
+#include <cstdint>
 
 #include <fstream>
 #include <iterator>

@@ -44,6 +44,8 @@ struct TraceBackend {
     TraceRays trace;
 
     const char* number_type() const { return precision == Precision::float64 ? "float64" : "float32"; }
+    /// Whether a product and a sum are rounded once.
+    bool fuses() const { return name != "Embree v2"; }
     double epsilon() const { return precision == Precision::float64 ? 0x1p-52 : 0x1p-23; }
 
     BatchResult operator()(const LensSystem& lens, LightDirection way, const RayBatch& rays) const {

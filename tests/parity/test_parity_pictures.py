@@ -43,7 +43,7 @@ def textured_scene() -> rc.Scene:
             rc.Material(emission=(900, 900, 800)),
         ],
     )
-    scene = scene.with_texture(0, rng.integers(0, 255, (32, 32, 3), dtype=np.uint8))
+    scene = scene.with_texture(0, rng.integers(0, 255, (32, 32, 4), dtype=np.uint8))
     scene = scene.with_point_light((1.5, 1.0, -0.5), (300, 200, 100)).with_sun((0.3, -1, -0.2), (500, 500, 600))
     return scene.with_environment(rng.uniform(1, 200, (16, 32, 3)).astype(np.float32))
 

@@ -59,7 +59,7 @@ def test_what_is_returned() -> None:
         ({"threads": -1}, rc.InputError, "threads"),
         ({"seed": -1}, rc.InputError, "seed"),
         ({"seed": 1 << 32}, rc.InputError, "seed"),
-        ({"device": "toaster"}, rc.DeviceError, "toaster.*cpu"),
+        ({"device": "toaster"}, rc.InputError, "toaster.*cpu"),
     ],
 )
 def test_settings_that_make_no_picture(arguments: dict[str, object], error: type[Exception], says: str) -> None:
