@@ -38,7 +38,7 @@ bench() {
 }
 
 # The suite that exercises every kernel, small enough for tools that slow a GPU down a hundred times.
-sanitized=(tests/python/test_live_view.py tests/python/test_device_arrays.py
+sanitized=(tests/python/test_live_view.py tests/python/test_device_arrays.py tests/parity/test_parity_rays.py
            tests/parity/test_parity_pictures.py::test_any_number_of_pixels_and_samples
            tests/parity/test_parity_pictures.py::test_the_same_picture_twice)
 
@@ -54,8 +54,11 @@ for wanted in "${steps[@]}"; do
             ;;
         sanitize)
             for tool in memcheck racecheck initcheck; do
-                step "$tool" compute-sanitizer --tool "$tool" --target-processes all --error-exitcode 9 \
-                    "$python" -m pytest -q -p no:faulthandler "${sanitized[@]}"
+                # A test asks for more memory than there is: the failed call is no finding.
+                options=(--tool "$tool" --target-processes all --error-exitcode 9)
+                [[ $tool == memcheck ]] && options+=(--report-api-errors no)
+                step "$tool" compute-sanitizer "${options[@]}" "$python" -m pytest -q -p no:faulthandler \
+                    "${sanitized[@]}"
             done
             ;;
         bench)

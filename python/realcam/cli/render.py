@@ -92,7 +92,9 @@ def render(
         str, typer.Option(help="Of .png: film (soft highlights) or linear.", rich_help_panel=PICTURE)
     ] = "film",
     threads: Annotated[int, typer.Option(help="0: all.", min=0, max=4096, rich_help_panel=PICTURE)] = 0,
-    device: Annotated[str, typer.Option(help="auto (a GPU if there is one), cpu, cuda, or cuda:1.", rich_help_panel=PICTURE)] = "auto",
+    device: Annotated[
+        str, typer.Option(help="auto (a GPU if there is one), cpu, cuda, or cuda:1.", rich_help_panel=PICTURE)
+    ] = "auto",
 ) -> None:
     """Photograph a scene through a lens."""
     for path in output:
