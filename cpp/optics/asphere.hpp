@@ -144,8 +144,9 @@ REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p
     // A root that is crossed in the wrong sense is none.
     const bool right_sense = slope * step.sense_in >= T(0);
     residual = select(right_sense, std::fabs(f), std::numeric_limits<T>::max());
+    // Not both where f is 0: a root in the wrong sense would be all that is left.
     below = select(f <= T(0), t, below);
-    above = select(f >= T(0), t, above);
+    above = select(f > T(0), t, above);
     const T newton = t - f / slope;
     const bool inside = (newton - below) * (above - newton) > T(0);
     const T next = select(inside & right_sense & !halve, newton, T(0.5) * (below + above));

@@ -48,8 +48,9 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
     const bool clear = (r2 <= step.rim_squared) & ((lens_kind == LensKind::plain) | (r2 >= step.hole_squared));
-    // A ray along a plane meets it at infinity, which is outside the rim.
-    const bool met = alive & hit.met() & (!Record::enabled | (std::fabs(hit.parameter) <= kFarthest<T>));
+    // A ray along a plane meets it at infinity. Of plain lenses the rim and the near cap already say no to that.
+    constexpr bool always_near = lens_kind == LensKind::plain && !Record::enabled;
+    const bool met = alive & hit.met() & (always_near | (std::fabs(hit.parameter) <= kFarthest<T>));
     const bool passes = met & clear & (refracted.radicand >= T(0));
     if constexpr (Record::enabled) {
         const int cause = select(met,

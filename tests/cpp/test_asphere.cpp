@@ -164,3 +164,35 @@ TEST_CASE("an absurd asphere ends rays with a status, and lets none through that
     CHECK(passed > 1000);
     CHECK(ended > 1000);
 }
+
+TEST_CASE("a guess that is a root to the last digit, but in the wrong sense, does not end the search") {
+    // Found by fuzzing: where the ray meets the base sphere, it grazes the asphere from the other side.
+    LensStep<float> step{};
+    step.kind = StepKind::asphere;
+    step.curvature = -0.000786048942245543f;
+    step.conic_factor = 1;
+    step.sense_in = step.sense_out = -1;
+    step.index_squared = 1;
+    step.rim_squared = 460218.562f;
+    step.hole_squared = -1;
+    step.sag_min = -143.261475f;
+    step.sag_max = 3.48744249f;
+    step.sag_edge = -84.1429596f;
+    step.search_squared = 478811.406f;
+    step.inverse_search_squared = 2.08850497e-06f;
+    step.aspheric[2] = 0.146389484f;
+    step.aspheric[3] = 4.4322176f;
+    step.aspheric[6] = 115.922592f;
+    const Vec3f o{-42.1688385f, -413.224945f, -69.6575089f}, p{1.249142050743103f, -1.3547871112823486f, -0.42072546f};
+
+    LensRays<float, 1> ray;
+    ray.origin.set(0, o);
+    ray.direction.set(0, p);
+    ray.status[0] = 0;
+    trace_lens(LensView<float>{&step, 1, LensKind::any, {}}, ray, PathRecord<float, 1>{});
+    const Vec3f at = ray.origin[0];
+    CHECK(ray.status[0] != static_cast<int>(RayStatus::no_convergence));
+    CHECK(std::fabs(at.z - asphere_sag(step, at.x * at.x + at.y * at.y).height) < 1e-3f);
+    const float slope = asphere_sag(step, at.x * at.x + at.y * at.y).derivative;
+    CHECK(p.z - 2 * slope * (at.x * p.x + at.y * p.y) < 0);
+}
