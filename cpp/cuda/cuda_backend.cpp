@@ -90,7 +90,7 @@ private:
         for (int rows = image.height;; rows = (rows + 1) / 2) {
             try {
                 for (const auto& renderer : renderers_)
-                    renderer->clear_film(static_cast<std::int64_t>(rows) * image.width);
+                    renderer->reserve_film(static_cast<std::int64_t>(rows) * image.width, renderers_.size() > 1);
                 return rows;
             } catch (const OutOfDeviceMemory&) {
                 if (rows == 1) throw;

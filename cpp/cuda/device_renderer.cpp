@@ -84,6 +84,15 @@ void DeviceRenderer::set_camera(const CameraView& camera) {
         camera, [&](const auto* from, std::size_t count) { return camera_arrays_.copy(from, count, stream_); });
 }
 
+void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
+    bind();
+    const auto count = static_cast<std::size_t>(pixels);
+    sums_.resize(count);
+    exposure_.resize(3 * count);
+    depth_.resize(count);
+    if (merges) others_.resize(count);
+}
+
 void DeviceRenderer::clear_film(std::int64_t pixels) {
     bind();
     sums_.resize(static_cast<std::size_t>(pixels));

@@ -31,6 +31,9 @@ public:
     void set_scene(const PlacedScene& scene, const WideBvh& bvh);
     void set_camera(const CameraView& camera);
 
+    /// Makes room for all that exposing, merging and developing so many pixels takes. Throws OutOfDeviceMemory.
+    void reserve_film(std::int64_t pixels, bool merges);
+
     /// Makes room for the sums of so many pixels, and sets them to 0.
     void clear_film(std::int64_t pixels);
 

@@ -1,0 +1,139 @@
+"""What a GPU does when something is wrong: no driver, little memory, another process, Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+import realcam as rc
+from realcam.bench import frame_scene
+
+HAS_GPU = any(line.startswith("cuda:") for line in rc.devices())
+needs_gpu = pytest.mark.skipif(not HAS_GPU, reason="no GPU on this machine")
+
+LENS = rc.Lens.load("tessar-50mm").focused(4.0)
+
+TAKE = """
+import realcam as rc
+from realcam.bench import frame_scene
+lens = rc.Lens.load("tessar-50mm").focused(4.0)
+camera = rc.Camera(lens, film=rc.Film(36, 24, (90, 60)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+scene = frame_scene(spheres=3, boxes=3)
+"""
+
+
+def camera(resolution: tuple[int, int] = (90, 60)) -> rc.Camera:
+    return rc.Camera(LENS, film=rc.Film(36, 24, resolution), position=(0, 1, 3), look_at=(0, 0.6, -2))
+
+
+def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", TAKE + code],
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def test_where_no_gpu_is_to_be_seen_the_cpu_serves() -> None:
+    done = run(
+        """
+assert [line.split(":")[0] for line in rc.devices()] == ["cpu"], rc.devices()
+image = rc.render(scene, camera, spp=1, device="auto")
+assert image.stats.device.startswith("CPU"), image.stats.device
+try:
+    rc.render(scene, camera, spp=1, device="cuda")
+except rc.DeviceError as error:
+    print(error)
+""",
+        CUDA_VISIBLE_DEVICES="",
+    )
+    assert done.returncode == 0, done.stderr
+    assert "GPU" in done.stdout or "driver" in done.stdout or "nvcc" in done.stdout
+
+
+@needs_gpu
+def test_a_gpu_that_is_not_there_is_named() -> None:
+    with pytest.raises(rc.DeviceError, match=r"no GPU 77.*counted from 0"):
+        rc.render(frame_scene(spheres=1, boxes=1), camera(), device="cuda:77")
+
+
+@pytest.mark.parametrize("name", ["gpu", "cuda:", "cuda:x", "cuda:0,", "cuda:-1", "cuda:0,0", "cuda0", ""])
+def test_a_device_that_makes_no_sense_is_the_users_mistake(name: str) -> None:
+    with pytest.raises(rc.InputError, match="no device"):
+        rc.render(frame_scene(spheres=1, boxes=1), camera(), device=name)
+
+
+@needs_gpu
+@pytest.mark.gpu
+def test_two_processes_share_a_gpu() -> None:
+    code = "\nprint(repr(float(rc.render(scene, camera, spp=400, device='cuda').pixels.astype(float).sum())))"
+    processes = [
+        subprocess.Popen([sys.executable, "-c", TAKE + code], stdout=subprocess.PIPE, text=True) for _ in range(2)
+    ]
+    sums = [process.communicate(timeout=300)[0] for process in processes]
+    assert all(process.returncode == 0 for process in processes)
+    assert sums[0] == sums[1] != ""
+
+
+@needs_gpu
+@pytest.mark.gpu
+@pytest.mark.slow
+def test_a_film_that_does_not_fit_is_taken_in_bands() -> None:
+    torch = pytest.importorskip("torch")
+    scene, wide = frame_scene(spheres=3, boxes=3), camera((6000, 4000))
+    expected = rc.render(scene, wide, spp=2, device="cuda:0").pixels
+    # In a process of its own, because a backend keeps the memory that it once had.
+    code = """
+import numpy, torch
+wide = rc.Camera(lens, film=rc.Film(36, 24, (6000, 4000)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+rc.render(scene, camera, spp=1, device="cuda:0")
+free, _ = torch.cuda.mem_get_info(0)
+hog = torch.empty(free - (600 << 20), dtype=torch.uint8, device="cuda:0")  # the film alone has 960 MB of sums
+pixels = rc.render(scene, wide, spp=2, device="cuda:0").pixels.astype(float)
+print(repr(float(pixels.sum())), repr(float(pixels[::-1][:100].sum())))
+"""
+    done = run(code)
+    assert done.returncode == 0, done.stderr
+    sums = [float(text) for text in done.stdout.split()]
+    np.testing.assert_allclose(
+        sums, [expected.astype(float).sum(), expected[::-1][:100].astype(float).sum()], rtol=1e-12
+    )
+    assert torch.cuda.is_available()
+
+
+@needs_gpu
+@pytest.mark.gpu
+def test_progress_stops_a_picture_soon() -> None:
+    scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
+    rc.render(scene, wide, spp=1, device="cuda")
+    shares: list[float] = []
+
+    def progress(share: float) -> bool:
+        shares.append(share)
+        return len(shares) < 3
+
+    start = time.perf_counter()
+    with pytest.raises(rc.Cancelled):
+        rc.render(scene, wide, spp=1 << 20, device="cuda", progress=progress)
+    assert time.perf_counter() - start < 30  # the picture takes many minutes
+    assert rc.render(scene, wide, spp=1, device="cuda").spp == 1
+
+
+@needs_gpu
+@pytest.mark.gpu
+def test_ctrl_c_stops_a_picture() -> None:
+    scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
+    rc.render(scene, wide, spp=1, device="cuda")
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        rc.render(scene, wide, spp=1 << 20, device="cuda")
+    assert rc.render(scene, wide, spp=1, device="cuda").spp == 1
