@@ -9,6 +9,7 @@ namespace REALCAM_NAMESPACE {
 template <class T>
 struct Sag {
     T height;      ///< z of the surface, mm
+    T size;        ///< of the conic's part and the polynomial's, which may cancel: what roundings scale with, mm
     T derivative;  ///< d height / d (r^2)
 };
 
@@ -27,10 +28,11 @@ REALCAM_INLINE Sag<T> asphere_sag(const LensStep<T>& step, T radius_squared) {
         slope = slope * u + polynomial;
         polynomial = polynomial * u + step.aspheric[i];
     }
-    const T height = quotient(step.curvature * r2, T(1) + root) + u * u * polynomial;
+    const T base = quotient(step.curvature * r2, T(1) + root), departure = u * u * polynomial;
     const T derivative =
         step.curvature / (T(2) * root) + step.inverse_search_squared * u * (T(2) * polynomial + u * slope);
-    return {height, select(radius_squared <= step.search_squared, derivative, T(0))};
+    return {base + departure, std::fabs(base) + std::fabs(departure),
+            select(radius_squared <= step.search_squared, derivative, T(0))};
 }
 
 /// Search state of N lanes: a root of f(t) = z(t) - sag(r^2(t)). `below` and `above` are ray parameters with f <= 0
@@ -135,8 +137,7 @@ REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p
     // Rounding of z(t) and of the sag, and what rounding of x(t) and y(t) becomes where the surface is steep. A wall is
     // as steep as one likes: there the bracket has to shrink until the height fits too. And a ray that starts on the
     // vertex has no lengths at all but the surface's own.
-    const T axial =
-        std::fabs(o.z) + std::fabs(t * p.z) + std::fabs(sag.height) + T(0.0625) * (step.sag_max - step.sag_min);
+    const T axial = std::fabs(o.z) + std::fabs(t * p.z) + sag.size + T(0.0625) * (step.sag_max - step.sag_min);
     const T lateral = std::fabs(T(2) * sag.derivative) * (std::fabs(at.x) * (std::fabs(o.x) + std::fabs(t * p.x)) +
                                                           std::fabs(at.y) * (std::fabs(o.y) + std::fabs(t * p.y)));
     const T most = kSteepest<T> * axial;

@@ -132,8 +132,8 @@ private:
         const double axial = std::fabs(o.z) + std::fabs(at.z - o.z) + std::fabs(here.sag) +
                              static_cast<double>(step_.sag_max - step_.sag_min) / 16;
         const double lateral = std::fabs(here.slope) * (length(o) + length(at - o));
-        const double height = kRoundings * eps * (axial + std::min(lateral, axial / std::sqrt(eps)) + here.sizes) +
-                              std::fabs(c_) * square * edge + tiny;
+        // A wall has no height where the place has roundings as large as its slope makes them.
+        const double height = kRoundings * eps * (axial + lateral + here.sizes) + std::fabs(c_) * square * edge + tiny;
         // A wall's slope has no bound, but the angle of its normal has.
         const double angle = std::atan(here.slope);
         double turn = 0;
