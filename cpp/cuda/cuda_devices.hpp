@@ -3,7 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "../error.hpp"
+
 namespace realcam {
+
+/// A GPU of an architecture that this build has no code for.
+class UnsupportedGpu : public DeviceError {
+    using DeviceError::DeviceError;
+};
 
 struct CudaDevice {
     int ordinal;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "../error.hpp"
+#include "cuda_devices.hpp"
 
 namespace realcam {
 
@@ -19,8 +19,8 @@ inline void check_cuda(cudaError_t code, const std::string& doing) {
     const std::string cause = std::string(cudaGetErrorString(code)) + " (" + cudaGetErrorName(code) + ")";
     switch (code) {
         case cudaErrorNoKernelImageForDevice:
-            throw DeviceError("this build of realcam has no code for the GPU's architecture: " + cause +
-                              "; build it with CMAKE_CUDA_ARCHITECTURES=native, or use device=\"cpu\"");
+            throw UnsupportedGpu("this build of realcam has no code for the GPU's architecture: " + cause +
+                                 "; build it with CMAKE_CUDA_ARCHITECTURES=native, or use device=\"cpu\"");
         case cudaErrorInsufficientDriver:
             throw DeviceError("there is no NVIDIA driver, or it is older than the CUDA runtime " +
                               std::to_string(CUDART_VERSION / 1000) + "." + std::to_string(CUDART_VERSION % 1000 / 10) +

@@ -57,6 +57,7 @@ int bound(int ordinal) {
 }  // namespace
 
 DeviceRenderer::DeviceRenderer(int ordinal) : ordinal_(bound(ordinal)), counts_(1) {
+    check_render_code();
     counts_.clear(stream_);
 }
 

@@ -93,7 +93,13 @@ public:
         if (!scene_ || scene_->triangles.empty())
             throw InputError("the scene is empty; at least one triangle is wanted");
     }
-    ~Work() { cancel(); }
+    ~Work() {
+        try {
+            cancel();
+        } catch (const DeviceError&) {
+            // A GPU that is lost has nothing to be stopped.
+        }
+    }
 
     std::shared_ptr<const LiveFrame> shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve) {
         validate(settings);
@@ -134,6 +140,7 @@ public:
 private:
     void begin(const Camera& camera, const RenderSettings& settings) {
         CameraSetup setup(camera, tracer_, setup_ ? &*setup_ : nullptr);
+        setup_.reset();  // whatever fails from here on, the next frame begins anew
         if (!origin_ || !lies_near(camera, *origin_)) {
             origin_.reset();
             const PlacedScene placed(*scene_, camera.pose.position_m);

@@ -147,6 +147,11 @@ int lanes_for(const RenderJob& job) {
 
 }  // namespace
 
+void check_render_code() {
+    cudaFuncAttributes attributes{};
+    check_cuda(cudaFuncGetAttributes(&attributes, render<LensKind::any, NoClock>), "loading its code");
+}
+
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const int lanes = lanes_for(job);
     const WarpTiles tiles(lanes);

@@ -29,6 +29,9 @@ struct RenderJob {
     int first_row, row_count;  ///< of the picture
 };
 
+/// Throws UnsupportedGpu where the current device cannot run this build's code.
+void check_render_code();
+
 /// Starts a job. `timed`: also counts clocks. Throws DeviceError.
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream);
 

@@ -48,6 +48,15 @@ std::unique_ptr<Backend> make_gpu_backend(std::vector<int> ordinals) {
     return make_cuda_backend(ordinals, fast_pupil_tracer());
 }
 
+/// A GPU that is no use to this build is passed over.
+std::unique_ptr<Backend> make_best_backend() {
+    try {
+        if (!cuda_devices().empty()) return make_gpu_backend({0});
+    } catch (const UnsupportedGpu&) {
+    }
+    return make_embree_backend();
+}
+
 }  // namespace
 
 std::vector<Device> devices() {
@@ -58,7 +67,7 @@ std::vector<Device> devices() {
 
 std::unique_ptr<Backend> make_backend(const std::string& device) {
     if (device == "cpu") return make_embree_backend();
-    if (device == "auto") return gpus().empty() ? make_embree_backend() : make_gpu_backend({0});
+    if (device == "auto") return make_best_backend();
     if (device == "cuda" || device.starts_with("cuda:")) return make_gpu_backend(ordinals_of(device));
     fail_unknown(device);
 }

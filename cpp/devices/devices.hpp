@@ -17,8 +17,9 @@ struct Device {
 /// All devices of this machine, the CPU first.
 std::vector<Device> devices();
 
-/// "auto": the GPU if there is one, else the CPU. "cpu". "cuda": all GPUs; "cuda:1", "cuda:0,1": those.
-/// Throws InputError for another name, and DeviceError where the device is not there or does not work.
+/// "auto": the first GPU if there is one that this build has code for, else the CPU. "cpu". "cuda": all GPUs. "cuda:1",
+/// "cuda:0,1": those. Throws InputError for another name, and DeviceError where the device is not there or does not
+/// work.
 std::unique_ptr<Backend> make_backend(const std::string& device);
 
 /// The one GPU that rays alone are traced on, by its ordinal; none for the CPU. "cuda" is the first; for the rest, and
