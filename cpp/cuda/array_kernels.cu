@@ -1,19 +1,10 @@
 #include "array_kernels.hpp"
 
 #include "cuda_error.hpp"
+#include "launch_grid.hpp"
 
 namespace realcam {
 namespace {
-
-constexpr int kBlockSize = 256;
-
-__device__ std::int64_t thread_index() {
-    return static_cast<std::int64_t>(blockIdx.x) * kBlockSize + threadIdx.x;
-}
-
-unsigned blocks_for(std::int64_t count) {
-    return static_cast<unsigned>((count + kBlockSize - 1) / kBlockSize);
-}
 
 __global__ void widen(const float* from, std::int64_t count, double* to) {
     if (thread_index() < count) to[thread_index()] = static_cast<double>(from[thread_index()]);

@@ -4,17 +4,19 @@
 #include "../bvh/build_wide_bvh.hpp"
 #include "../bvh/traverse_wide_bvh.hpp"
 #include "../camera/generate_rays.hpp"
+#include "../render/seconds_since.hpp"
 #include "../scene/placed_scene.hpp"
 #include "../scene/scene_arrays.hpp"
 #include "../scene/shade.hpp"
 #include "bench_kernels.hpp"
 #include "cuda_stream.hpp"
 #include "device_arrays.hpp"
+#include "launch_grid.hpp"
 
 namespace realcam {
 namespace {
 
-constexpr int kBlockSize = 128, kRounds = 5;
+constexpr int kRounds = 5;
 
 struct BenchRay {
     Vec3f origin, direction;
@@ -128,14 +130,6 @@ double rate_of(cudaStream_t stream, double count, Launch&& launch) {
         best = std::max(best, 1000 * count / end.ms_since(start));
     }
     return best;
-}
-
-unsigned blocks_for(int threads) {
-    return static_cast<unsigned>((threads + kBlockSize - 1) / kBlockSize);
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace

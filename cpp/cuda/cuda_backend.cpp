@@ -6,15 +6,12 @@
 #include <optional>
 
 #include "../render/run_with_progress.hpp"
+#include "../render/seconds_since.hpp"
 #include "cuda_devices.hpp"
 #include "device_renderer.hpp"
 
 namespace realcam {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 class CudaBackend final : public Backend {
 public:

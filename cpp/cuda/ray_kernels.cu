@@ -1,14 +1,9 @@
 #include "cuda_error.hpp"
+#include "launch_grid.hpp"
 #include "ray_kernels.hpp"
 
 namespace realcam {
 namespace {
-
-constexpr int kBlockSize = 128;
-
-__device__ std::int64_t thread_index() {
-    return static_cast<std::int64_t>(blockIdx.x) * kBlockSize + threadIdx.x;
-}
 
 template <class T>
 __global__ void __launch_bounds__(kBlockSize) trace(const __grid_constant__ TraceRequest<T> request) {
@@ -17,10 +12,6 @@ __global__ void __launch_bounds__(kBlockSize) trace(const __grid_constant__ Trac
 
 __global__ void __launch_bounds__(kBlockSize) generate(const __grid_constant__ RayRequest request) {
     if (thread_index() < request.count()) generate_rays_of<1>(request, thread_index());
-}
-
-unsigned blocks_for(std::int64_t count) {
-    return static_cast<unsigned>((count + kBlockSize - 1) / kBlockSize);
 }
 
 template <class T>

@@ -11,6 +11,7 @@
 
 #include "../render/pixel_sum.hpp"
 #include "../render/run_with_progress.hpp"
+#include "../render/seconds_since.hpp"
 #include "embree_scene.hpp"
 #include "kernels.hpp"
 
@@ -20,10 +21,6 @@ namespace {
 constexpr int kTileSide = 32;
 /// Samples per pixel after which a tile is left and the next begins: bounds the time until a stop takes effect.
 constexpr std::uint32_t kSamplesPerVisit = 256;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The film while it is exposed.
 struct ExposingFilm {

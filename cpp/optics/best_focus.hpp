@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "../math/gauss_legendre.hpp"
 #include "lens_path.hpp"
 #include "paraxial.hpp"
 
@@ -58,19 +59,9 @@ struct GaussRule {
 
     GaussRule() {
         for (int k = 0; k < N; ++k) {
-            double x = std::cos(std::numbers::pi * (k + 0.75) / (N + 0.5)), slope = 1;
-            for (int step = 0; step < 10; ++step) {  // Newton from there has all digits after four
-                double last = 1, value = x;
-                for (int j = 2; j <= N; ++j) {
-                    const double next = ((2 * j - 1) * x * value - (j - 1) * last) / j;
-                    last = value;
-                    value = next;
-                }
-                slope = N * (x * value - last) / (x * x - 1);
-                x -= value / slope;
-            }
-            node[k] = 0.5 * (1 + x);
-            weight[k] = 1 / ((1 - x * x) * slope * slope);
+            const GaussNode rule = gauss_node(N, k);
+            node[k] = rule.node;
+            weight[k] = rule.weight;
         }
     }
 };

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <vector>
 
+#include "../math/gauss_legendre.hpp"
 #include "iris_shape.hpp"
 #include "lens_system.hpp"
 
@@ -44,19 +45,8 @@ inline std::vector<PupilPoint> hexapolar(int n) {
 inline std::vector<PupilPoint> gauss_rings(int n) {
     std::vector<PupilPoint> points;
     for (int ring = 0; ring < n; ++ring) {
-        double node = std::cos(std::numbers::pi * (ring + 0.75) / (n + 0.5)), slope = 0;
-        for (int iteration = 0; iteration < 20; ++iteration) {  // Newton; five suffice
-            double last = 1, value = node;
-            for (int k = 2; k <= n; ++k) {
-                const double next = ((2 * k - 1) * node * value - (k - 1) * last) / k;
-                last = value;
-                value = next;
-            }
-            slope = n * (node * value - last) / (node * node - 1);
-            node -= value / slope;
-        }
-        const double weight = 1 / ((1 - node * node) * slope * slope) / (4 * n);
-        const double radius = std::sqrt(0.5 * (1 + node));
+        const GaussNode rule = gauss_node(n, ring);
+        const double weight = rule.weight / (4 * n), radius = std::sqrt(rule.node);
         for (int i = 0; i < 4 * n; ++i) {
             const double angle = 2 * std::numbers::pi * (i + 0.5) / (4 * n);
             points.push_back({radius * std::cos(angle), radius * std::sin(angle), weight});

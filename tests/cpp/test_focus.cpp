@@ -6,6 +6,7 @@
 
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "refusal.hpp"
 #include "traced_ray.hpp"
 
 namespace {
@@ -55,20 +56,6 @@ void check_best_focus(const LensSystem& lens) {
     // Of its 256 heights about half pass, so the edge of the pupil is uncertain by 1/250 of its area; with
     // half a millimetre of spherical aberration, as at f/2 here, that moves the focus by a few um.
     CHECK(std::fabs(middle) < 0.3 * step);
-}
-
-template <class F>
-std::string message_of(F&& f) {
-    try {
-        f();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "(no error)";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 // Biconvex, nearly thin, so slow that only paraxial rays pass.

@@ -7,6 +7,7 @@
 #include "hard_lens_list.hpp"
 #include "measurement.hpp"
 #include "oracle.hpp"
+#include "refusal.hpp"
 
 using namespace realcam;
 using namespace realcam::test;
@@ -18,20 +19,6 @@ namespace {
 LensSystem thin_lens() {
     return lens_of(
         {stop_plane(0, 1e-4), refracting(100, 0, Glass::constant(1.5), 5), refracting(-100, 0, Glass::air(), 5)});
-}
-
-template <class F>
-std::string message_of(F&& f) {
-    try {
-        f();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "(no error)";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 double object_of(const LensSystem& focused_lens) {

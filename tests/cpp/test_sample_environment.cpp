@@ -7,6 +7,7 @@
 
 #include "../../cpp/scene/light.hpp"
 #include "../../cpp/scene/placed_scene.hpp"
+#include "bare_scene.hpp"
 #include "chi_square.hpp"
 
 using namespace realcam;
@@ -15,15 +16,6 @@ using namespace realcam::test;
 namespace {
 
 constexpr int kSamples = 1 << 18;
-
-// A scene must have a triangle.
-Scene bare_scene() {
-    Scene scene;
-    scene.positions_m = {{0, 0, 9}, {1, 0, 9}, {0, 1, 9}};
-    scene.triangles = {{{0, 1, 2}, 0}};
-    scene.materials = {Material{}};
-    return scene;
-}
 
 Scene under_image(int height, int width, const std::vector<float>& grey) {
     Scene scene = bare_scene();

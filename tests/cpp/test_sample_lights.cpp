@@ -6,6 +6,7 @@
 
 #include "../../cpp/scene/light.hpp"
 #include "../../cpp/scene/placed_scene.hpp"
+#include "bare_scene.hpp"
 #include "chi_square.hpp"
 
 using namespace realcam;
@@ -14,15 +15,6 @@ using namespace realcam::test;
 namespace {
 
 constexpr int kSamples = 1 << 18;
-
-// A scene must have a triangle.
-Scene bare_scene() {
-    Scene scene;
-    scene.positions_m = {{0, 0, 9}, {1, 0, 9}, {0, 1, 9}};
-    scene.triangles = {{{0, 1, 2}, 0}};
-    scene.materials = {Material{}};
-    return scene;
-}
 
 // A light's points in barycentric coordinates: 4 x 4 parts of the unit square, of which the triangle has the lower left
 // half. The bins of all lights in one list.

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+
+namespace realcam {
+
+/// One thread for each of `count` pieces of work, in blocks of kBlockSize.
+inline constexpr int kBlockSize = 128;
+
+inline unsigned blocks_for(std::int64_t count) {
+    return static_cast<unsigned>((count + kBlockSize - 1) / kBlockSize);
+}
+
+/// The piece of a thread. Past the last one in the last block.
+__device__ inline std::int64_t thread_index() {
+    return static_cast<std::int64_t>(blockIdx.x) * kBlockSize + threadIdx.x;
+}
+
+}  // namespace realcam

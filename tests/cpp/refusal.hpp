@@ -1,0 +1,25 @@
+#pragma once
+// What the user is told when an input is refused.
+
+#include <string>
+
+#include "../../cpp/error.hpp"
+
+namespace realcam::test {
+
+/// The message of the InputError that f throws.
+template <class F>
+std::string message_of(F&& f) {
+    try {
+        f();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "(no error)";
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace realcam::test
