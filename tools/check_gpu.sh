@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds realcam on a machine with an NVIDIA GPU, runs all tests on both backends, looks for memory errors and races,
 # and benchmarks. Needs no network: what is missing is to be there already (CONTRIBUTING.md, "On a GPU machine").
-#   tools/check_gpu.sh FOLDER [build|test|sanitize|bench|mitsuba]...
+#   tools/check_gpu.sh FOLDER [build|test|sanitize|foreign|bench|mitsuba]...
 # Writes FOLDER/gpu.json, FOLDER/gpu.md and a log of each step.
 set -uo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
@@ -27,25 +27,50 @@ step() {  # step NAME COMMAND...: its output goes to a log, of which the end is 
     fi
 }
 
-configure() {
-    local settings=(-DREALCAM_PYTHON=ON "-DPython_EXECUTABLE=$python" -DREALCAM_WERROR=OFF)
-    cmake --preset cuda "${settings[@]}"
-}
+settings=(-DREALCAM_PYTHON=ON "-DPython_EXECUTABLE=$python" -DREALCAM_WERROR=OFF)
 
 bench() {
     "$python" -c 'from realcam.cli import main; main()' bench --json \
         gpu-lens-rays gpu-hits gpu-paths gpu-frames >"$out/gpu.json"
 }
 
+# A build for other chips only: `auto` takes the CPU, and who asks for the GPU is told why there is none.
+foreign() {
+    local chip=120-real
+    [[ $(nvidia-smi --query-gpu=compute_cap --format=csv,noheader | head -n 1) == 12* ]] && chip=75-real
+    cmake --preset cuda -B build/foreign "${settings[@]}" -DCMAKE_CUDA_ARCHITECTURES="$chip" -DREALCAM_TESTS=OFF &&
+        cmake --build build/foreign --target _core || return
+    rm -rf build/foreign/package && mkdir build/foreign/package || return
+    cp -r python/realcam build/foreign/package/ && cp --remove-destination build/foreign/python/_core*.so build/foreign/package/realcam/ || return
+    PYTHONPATH=build/foreign/package "$python" - <<'TEXT'
+import realcam as rc
+from realcam.bench import frame_scene
+
+assert "foreign" in rc.__file__
+print("\n".join(rc.devices()))
+camera = rc.Camera(rc.Lens.load("tessar-50mm").focused(4.0), position=(0, 1, 3), look_at=(0, 0.6, -2))
+scene = frame_scene(spheres=3, boxes=3)
+assert rc.render(scene, camera, spp=1, device="auto").stats.device.startswith("CPU")
+for take in (lambda: rc.render(scene, camera, device="cuda"), lambda: rc.LiveView(scene)):
+    try:
+        take()
+    except rc.DeviceError as error:
+        assert "no code for the GPU's architecture" in str(error), error
+        print(error)
+    else:
+        raise SystemExit("it ran on a chip that it has no code for")
+TEXT
+}
+
 # The suite that exercises every kernel, small enough for tools that slow a GPU down a hundred times.
-sanitized=(tests/python/test_live_view.py tests/python/test_device_arrays.py tests/parity/test_parity_rays.py
+sanitized=(tests/python/test_live_view.py tests/python/test_instances.py tests/python/test_device_arrays.py tests/parity/test_parity_rays.py
            tests/parity/test_parity_pictures.py::test_any_number_of_pixels_and_samples
            tests/parity/test_parity_pictures.py::test_the_same_picture_twice)
 
 for wanted in "${steps[@]}"; do
     case $wanted in
         build)
-            step configure configure
+            step configure cmake --preset cuda "${settings[@]}"
             step build cmake --build build/cuda
             ;;
         test)
@@ -61,6 +86,7 @@ for wanted in "${steps[@]}"; do
                     "${sanitized[@]}"
             done
             ;;
+        foreign) step foreign foreign ;;
         bench)
             step bench bench
             step table "$python" tools/gpu_table.py "$out"

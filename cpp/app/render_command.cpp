@@ -57,7 +57,7 @@ Progress drawing_on(ProgressBar& bar) {
     };
 }
 
-Image expose(Backend& backend, const std::shared_ptr<const Scene>& scene, RenderRequest& request) {
+Image expose(Backend& backend, const Assembly& scene, RenderRequest& request) {
     Camera& camera = request.camera;
     if (request.meters_exposure) {
         ProgressBar bar("metering ");
@@ -73,12 +73,13 @@ Image expose(Backend& backend, const std::shared_ptr<const Scene>& scene, Render
 void run_render(const RenderWords& words) {
     const auto start = std::chrono::steady_clock::now();
     RenderRequest request = understand(words);
-    const auto scene = std::make_shared<Scene>(read_scene(request));
-    set_view(request.camera, *scene, request.view);
+    const auto ground = std::make_shared<Scene>(read_scene(request));
+    const Assembly scene(ground);
+    set_view(request.camera, scene, request.view);
     // An environment that was asked for counts even where it is dark.
     const bool chosen = request.environment_cd_m2 || !request.environment_file.empty();
-    if (!scene->has_light() && !chosen) {
-        add_daylight(*scene, request.camera.pose);
+    if (!scene.has_light() && !chosen) {
+        add_daylight(*ground, request.camera.pose);
         say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
             "cd/m^2");
     }

@@ -94,7 +94,7 @@ void bind_bench(py::module_& m) {
         "camera"_a, "device"_a);
     m.def(
         "_gpu_hit_rates",
-        [](const Scene& scene, const Camera& camera, const std::string& device) {
+        [](const Assembly& scene, const Camera& camera, const std::string& device) {
             const py::gil_scoped_release release;
             const HitRates rates = hit_rates(gpu_for_bench(device), scene, camera, fast_pupil_tracer());
             return std::map<std::string, double>{{"build_seconds", rates.build_seconds},

@@ -20,8 +20,8 @@ struct PythonLiveView {
     int max_bounces;
 };
 
-std::unique_ptr<PythonLiveView> make_live_view(const std::shared_ptr<Scene>& scene, const std::string& device,
-                                               std::int64_t seed, int max_bounces) {
+std::unique_ptr<PythonLiveView> make_live_view(const Assembly& scene, const std::string& device, std::int64_t seed,
+                                               int max_bounces) {
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     const std::optional<int> gpu = gpu_for_rays(device);
     if (!gpu) throw DeviceError("a live view needs a GPU; device=\"cuda\" is wanted, and rc.render for the CPU");
@@ -75,6 +75,10 @@ void bind_live(py::module_& m) {
             "camera"_a, py::kw_only(), "spp"_a = 1, "tone"_a = "film",
             "Starts to take spp more samples of each pixel, developed with the camera's exposure time and ISO and a\n"
             "tone curve (see develop). Returns a LiveFrame at once, or when the oldest of three is there.")
+        .def(
+            "show", [](PythonLiveView& live, const Assembly& scene) { live.view->show(scene); }, "scene"_a,
+            "Another scene for the frames to come. Made for every frame: of one that comes from the last by moved(),\n"
+            "only the places are copied. Raises InputError.")
         .def(
             "cancel", [](PythonLiveView& live) { live.view->cancel(); }, py::call_guard<py::gil_scoped_release>(),
             "Gives up all frames under way within some milliseconds, from any thread.");

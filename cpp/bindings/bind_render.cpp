@@ -59,8 +59,8 @@ py::array_t<float> copy_of(const std::vector<float>& values, std::vector<py::ssi
     return array;
 }
 
-py::tuple render(const std::shared_ptr<Scene>& scene, const Camera& camera, int spp, const std::string& device,
-                 std::int64_t seed, int max_bounces, int threads, const py::object& progress) {
+py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::string& device, std::int64_t seed,
+                 int max_bounces, int threads, const py::object& progress) {
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     Backend& backend = backend_for(device);
     const RenderSettings settings{spp, static_cast<std::uint32_t>(seed), max_bounces, threads};

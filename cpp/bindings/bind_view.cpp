@@ -24,14 +24,13 @@ std::optional<Vec3d> vector_of(const std::optional<Triple>& v) {
     return Vec3d{(*v)[0], (*v)[1], (*v)[2]};
 }
 
-Camera framed(Camera camera, const Scene& scene, const std::optional<Triple>& position,
+Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>& position,
               const std::optional<Triple>& look_at, const Triple& up, std::optional<double> focus_m) {
     set_view(camera, scene, {vector_of(position), vector_of(look_at), Vec3d{up[0], up[1], up[2]}, focus_m});
     return camera;
 }
 
-Camera exposed(Camera camera, const std::shared_ptr<Scene>& scene, const std::string& device,
-               const py::object& progress) {
+Camera exposed(Camera camera, const Assembly& scene, const std::string& device, const py::object& progress) {
     Backend& backend = backend_for(device);
     const Progress report = progress_of(progress);
     const py::gil_scoped_release release;
@@ -54,10 +53,11 @@ void bind_view(py::module_& m) {
           "where its axis meets it. Raises InputError.");
     m.def(
         "with_daylight",
-        [](const Scene& scene, const Camera& camera) {
-            auto lit = std::make_shared<Scene>(scene);
-            add_daylight(*lit, camera.pose);
-            return lit;
+        [](Assembly scene, const Camera& camera) {
+            Scene lit = *scene.ground;
+            add_daylight(lit, camera.pose);
+            scene.ground = std::make_shared<const Scene>(std::move(lit));
+            return scene;
         },
         "scene"_a, "camera"_a,
         "The scene under a sun of 80 klux from the camera's upper left and a sky of 5000 cd/m^2.");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,13 @@ namespace {
     throw DeviceError("Embree could not build the scene's BVH (error " + std::to_string(code) + ")");
 }
 
-std::vector<RTCBuildPrimitive> primitives_of(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
-    std::vector<RTCBuildPrimitive> primitives(triangles.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
+std::vector<RTCBuildPrimitive> primitives_of(std::size_t count, const BoxOf& box_of) {
+    std::vector<RTCBuildPrimitive> primitives(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const std::uint32_t* corner = triangles[i].vertices;
-            const Box box = box_of({positions[corner[0]], 0, positions[corner[1]], 0, positions[corner[2]], 0});
-            primitives[i] = {box.lower.x, box.lower.y, box.lower.z, 0,
-                             box.upper.x, box.upper.y, box.upper.z, static_cast<unsigned>(i)};
+            const auto number = static_cast<std::uint32_t>(i);
+            const Box box = box_of(number);
+            primitives[i] = {box.lower.x, box.lower.y, box.lower.z, 0, box.upper.x, box.upper.y, box.upper.z, number};
         }
     });
     return primitives;
@@ -65,10 +65,10 @@ struct BinaryTree::Memory {
     }
 };
 
-BinaryTree::BinaryTree(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+BinaryTree::BinaryTree(std::size_t triangles, const BoxOf& box_of) {
     auto memory = std::make_unique<Memory>();
     if (!memory->bvh) fail(rtcGetDeviceError(memory->device));
-    std::vector<RTCBuildPrimitive> primitives = primitives_of(positions, triangles);
+    std::vector<RTCBuildPrimitive> primitives = primitives_of(triangles, box_of);
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.bvh = memory->bvh;
     arguments.primitives = primitives.data();

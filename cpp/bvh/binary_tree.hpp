@@ -1,15 +1,17 @@
 #pragma once
 #include <cstddef>
-#include <span>
+#include <functional>
 
-#include "../scene/scene_view.hpp"
 #include "quantised_boxes.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 struct InnerNode;
 
-/// A leaf of the binary tree is a BinaryNode by itself, and holds one triangle.
+/// The box of something that a hierarchy is built over, by its number in the caller's list.
+using BoxOf = std::function<Box(std::uint32_t)>;
+
+/// A leaf of the binary tree is a BinaryNode by itself, and holds one triangle, or whatever else has a box.
 struct BinaryNode {
     Box box;
     std::uint32_t triangles;  ///< below it; 1: a leaf
@@ -48,7 +50,7 @@ inline double half_area(const Box& box) {
 class BinaryTree {
 public:
     /// Throws DeviceError (out of memory, for one). There is at least one triangle.
-    BinaryTree(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
+    BinaryTree(std::size_t triangles, const BoxOf& box_of);
     ~BinaryTree();
     BinaryTree(const BinaryTree&) = delete;
     BinaryTree& operator=(const BinaryTree&) = delete;

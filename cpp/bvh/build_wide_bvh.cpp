@@ -1,5 +1,7 @@
 #include "build_wide_bvh.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
 #include <string>
@@ -47,8 +49,7 @@ void count_wide_nodes(InnerNode& node, int level) {
 
 class Writer {
 public:
-    Writer(std::span<const Vec3f> positions, std::span<const Triangle> triangles, WideBvh& bvh)
-        : positions_(positions), triangles_(triangles), bvh_(bvh) {}
+    explicit Writer(WideNodes& bvh) : bvh_(bvh) {}
 
     /// Writes a node with the children given, and what lies below.
     void write(const WideChildren& children, std::uint32_t index, std::uint32_t first_below,
@@ -102,35 +103,25 @@ public:
 
 private:
     void write_triangles(const BinaryNode& node, std::uint32_t& next) {
-        if (!node.is_leaf()) {
+        if (node.is_leaf())
+            bvh_.order[next++] = node.triangle;
+        else
             for (const BinaryNode* child : node.inner().child) write_triangles(*child, next);
-            return;
-        }
-        const std::uint32_t* corner = triangles_[node.triangle].vertices;
-        bvh_.triangles[next] = {
-            positions_[corner[0]], node.triangle, positions_[corner[1]], 0, positions_[corner[2]], 0};
-        bvh_.corners[next] = {{corner[0], corner[1], corner[2]}};
-        ++next;
     }
 
-    std::span<const Vec3f> positions_;
-    std::span<const Triangle> triangles_;
-    WideBvh& bvh_;
+    WideNodes& bvh_;
 };
 
 }  // namespace
 
-WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
-    if (triangles.size() > kMostTriangles)
-        throw DeviceError("the scene has " + std::to_string(triangles.size()) + " triangles; a BVH holds " +
-                          std::to_string(kMostTriangles));
-    WideBvh bvh;
-    if (triangles.empty()) {
+WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of) {
+    WideNodes bvh;
+    if (count == 0) {
         bvh.nodes.resize(1);
         quantise_boxes(bvh.nodes[0], {}, 0);
         return bvh;
     }
-    BinaryTree tree(positions, triangles);
+    BinaryTree tree(count, box_of);
     BinaryNode& root = tree.root();
     WideChildren top;
     std::uint32_t node_count = 1;
@@ -145,9 +136,31 @@ WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangl
         node_count = root.inner().wide_nodes;
     }
     bvh.nodes.resize(node_count);
+    bvh.order.resize(count);
+    Writer(bvh).write(top, 0, 1, 0);
+    return bvh;
+}
+
+WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+    if (triangles.size() > kMostTriangles)
+        throw DeviceError("the scene has " + std::to_string(triangles.size()) + " triangles; a BVH holds " +
+                          std::to_string(kMostTriangles));
+    const auto corners_of = [&](std::uint32_t number) -> BvhTriangle {
+        const std::uint32_t* vertex = triangles[number].vertices;
+        return {positions[vertex[0]], number, positions[vertex[1]], 0, positions[vertex[2]], 0};
+    };
+    WideNodes tree = build_wide_nodes(triangles.size(), [&](std::uint32_t i) { return box_of(corners_of(i)); });
+    WideBvh bvh;
+    bvh.nodes = std::move(tree.nodes);
     bvh.triangles.resize(triangles.size());
     bvh.corners.resize(triangles.size());
-    Writer(positions, triangles, bvh).write(top, 0, 1, 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            bvh.triangles[i] = corners_of(tree.order[i]);
+            const std::uint32_t* vertex = triangles[tree.order[i]].vertices;
+            bvh.corners[i] = {{vertex[0], vertex[1], vertex[2]}};
+        }
+    });
     return bvh;
 }
 

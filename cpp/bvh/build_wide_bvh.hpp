@@ -3,18 +3,31 @@
 #include <vector>
 
 #include "../scene/scene_view.hpp"
+#include "binary_tree.hpp"
 #include "wide_bvh.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// Owns a hierarchy. Nodes and triangles lie in the order of their depth-first ranges: a node's children and triangles
+/// The nodes of a hierarchy over anything that has a box, in the order of their depth-first ranges: a node's children
 /// come after itself.
+struct WideNodes {
+    std::vector<WideNode> nodes;       ///< at least one
+    std::vector<std::uint32_t> order;  ///< numbers in the caller's list, as the leaves lie one after the other
+};
+
+/// Boxes by the caller's number. Otherwise as build_wide_bvh.
+WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of);
+
+/// Makes the nodes those of other boxes, given by their place in the order of leaves; on all threads.
+void refit(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf);
+
+/// Owns a hierarchy of triangles.
 struct WideBvh {
     struct Corners {
         std::uint32_t vertices[3];
     };
 
-    std::vector<WideNode> nodes;  ///< at least one
+    std::vector<WideNode> nodes;
     std::vector<BvhTriangle> triangles;
     std::vector<Corners> corners;  ///< of each of `triangles`, among the positions: for refit
 

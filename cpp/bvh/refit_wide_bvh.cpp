@@ -10,12 +10,12 @@ namespace {
 /// Levels of nodes whose children are worth a task each.
 constexpr int kParallelLevels = 3;
 
-/// Boxes of a node's slots, from the triangles up; the node's own is returned.
-Box refit_node(WideBvh& bvh, std::uint32_t index, int level) {
-    WideNode& node = bvh.nodes[index];
+/// Boxes of a node's slots, from the leaves up; the node's own is returned.
+Box refit_node(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf, std::uint32_t index, int level) {
+    WideNode& node = nodes[index];
     Box boxes[kSlots] = {};
     unsigned used = 0;
-    std::uint32_t child[kSlots], triangle = node.first_triangle, next_child = node.first_child;
+    std::uint32_t child[kSlots], leaf = node.first_triangle, next_child = node.first_child;
     for (unsigned s = 0; s < kSlots; ++s) {
         if (node.content >> (24 + s) & 1u) {
             child[s] = next_child++;
@@ -23,7 +23,7 @@ Box refit_node(WideBvh& bvh, std::uint32_t index, int level) {
             continue;
         }
         for (unsigned left = count_bits(node.content >> (3 * s) & 7u); left > 0; --left) {
-            const Box box = box_of(bvh.triangles[triangle++]);
+            const Box box = box_of_leaf(leaf++);
             if (used >> s & 1u)
                 grow(boxes[s], box);
             else
@@ -32,7 +32,7 @@ Box refit_node(WideBvh& bvh, std::uint32_t index, int level) {
         }
     }
     const auto refit_child = [&](unsigned s) {
-        if (node.content >> (24 + s) & 1u) boxes[s] = refit_node(bvh, child[s], level + 1);
+        if (node.content >> (24 + s) & 1u) boxes[s] = refit_node(nodes, box_of_leaf, child[s], level + 1);
     };
     if (level < kParallelLevels)
         tbb::parallel_for(0u, kSlots, refit_child);
@@ -55,6 +55,10 @@ Box refit_node(WideBvh& bvh, std::uint32_t index, int level) {
 
 }  // namespace
 
+void refit(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf) {
+    refit_node(nodes, box_of_leaf, 0, 0);
+}
+
 void refit(WideBvh& bvh, std::span<const Vec3f> positions) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bvh.triangles.size(), 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
@@ -65,7 +69,7 @@ void refit(WideBvh& bvh, std::span<const Vec3f> positions) {
             triangle.c = positions[vertex[2]];
         }
     });
-    refit_node(bvh, 0, 0);
+    refit(bvh.nodes, [&](std::uint32_t i) { return box_of(bvh.triangles[i]); });
 }
 
 }  // namespace realcam

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "../math/vec3.hpp"
+#include "../math/affine.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -40,10 +40,25 @@ struct alignas(16) BvhTriangle {
 };
 static_assert(sizeof(BvhTriangle) == 48);
 
-/// What a traversal reads: node 0 is the root.
-struct WideBvhView {
+/// What a traversal reads: node 0 is the root. The slots hold triangles, or in their stead other things.
+template <class Leaf>
+struct WideBvhViewOf {
     const WideNode* nodes;
-    const BvhTriangle* triangles;
+    const Leaf* leaves;
+};
+using WideBvhView = WideBvhViewOf<BvhTriangle>;
+
+/// A place where an object stands, with the object's own hierarchy.
+struct alignas(16) BvhInstance {
+    InverseAffine<float> object_from_placed;
+    WideBvhView object;
+    std::uint32_t index;  ///< in the scene's list
+};
+
+/// The ground's triangles, and the objects.
+struct SceneBvhView {
+    WideBvhView ground;
+    WideBvhViewOf<BvhInstance> instances;
 };
 
 }  // namespace REALCAM_NAMESPACE

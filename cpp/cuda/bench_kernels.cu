@@ -1,16 +1,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include "../bvh/build_wide_bvh.hpp"
-#include "../bvh/traverse_wide_bvh.hpp"
+#include "../bvh/traverse_scene.hpp"
 #include "../camera/generate_rays.hpp"
 #include "../render/seconds_since.hpp"
-#include "../scene/placed_scene.hpp"
-#include "../scene/scene_arrays.hpp"
 #include "../scene/shade.hpp"
 #include "bench_kernels.hpp"
-#include "cuda_stream.hpp"
-#include "device_arrays.hpp"
+#include "device_scene.hpp"
 #include "launch_grid.hpp"
 
 namespace realcam {
@@ -91,12 +87,13 @@ __global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay*
 }
 
 /// Replaces each ray by one that leaves the point where it meets the scene. Rays that meet nothing stay.
-__global__ void bounce(const __grid_constant__ SceneView scene, WideBvhView bvh, BenchRay* rays, int count,
+template <bool instanced>
+__global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh, BenchRay* rays, int count,
                        bool uniform) {
     const int i = static_cast<int>(blockIdx.x * kBlockSize + threadIdx.x);
     if (i >= count) return;
     const BenchRay ray = rays[i];
-    const Hit hit = closest_hit(bvh, ray.origin, ray.direction, kFarAway);
+    const Hit hit = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway);
     if (hit.triangle == kNoTriangle) return;
     const SurfacePoint point = surface_point(scene, hit, ray.origin, ray.direction);
     const Vec2f u = sample_2d(pixel_stream(i, 1), 0, 7);
@@ -109,11 +106,12 @@ __global__ void bounce(const __grid_constant__ SceneView scene, WideBvhView bvh,
     rays[i] = {point.position + point.self_offset * point.geometric_normal, direction};
 }
 
-__global__ void hit_all(WideBvhView bvh, const BenchRay* rays, int count, float* distances) {
+template <bool instanced>
+__global__ void hit_all(SceneBvhView bvh, const BenchRay* rays, int count, float* distances) {
     const int i = static_cast<int>(blockIdx.x * kBlockSize + threadIdx.x);
     if (i >= count) return;
     const BenchRay ray = rays[i];
-    distances[i] = closest_hit(bvh, ray.origin, ray.direction, kFarAway).distance;
+    distances[i] = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway).distance;
 }
 
 /// Work per second, `count` pieces to a launch.
@@ -168,31 +166,32 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
     return rates;
 }
 
-HitRates hit_rates(int ordinal, const Scene& scene, const Camera& camera, PupilTracer tracer) {
+HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer) {
     check_cuda(cudaSetDevice(ordinal), "choosing it");
     CudaStream stream;
-    DeviceArrays arrays;
     HitRates rates{};
-    const auto copy = [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); };
     const PlacedScene placed(scene, camera.pose.position_m);
     const auto building = std::chrono::steady_clock::now();
-    const WideBvh bvh = build_wide_bvh(placed.positions(), placed.triangles());
+    const SceneBvh bvh = build_scene_bvh(placed);
     rates.build_seconds = seconds_since(building);
     const auto uploading = std::chrono::steady_clock::now();
-    const SceneView scene_view = with_copied_arrays(placed.view(), copy);
-    const WideBvhView bvh_view{copy(bvh.nodes.data(), bvh.nodes.size()),
-                               copy(bvh.triangles.data(), bvh.triangles.size())};
-    stream.wait("copying the scene to it");
+    DeviceScene on_device;
+    on_device.set(placed, bvh, stream);
     rates.upload_seconds = seconds_since(uploading);
 
     const CameraSetup setup(camera, std::move(tracer));
-    const CameraView view = with_copied_arrays(setup.view(placed.origin_m()), copy);
+    DeviceArrays arrays;
+    const CameraView view = with_copied_arrays(setup.view(placed.origin_m()), [&](const auto* from, std::size_t count) {
+        return arrays.copy(from, count, stream);
+    });
     const int pixels = view.width * view.height;
+    const bool instanced = on_device.view().instance_count > 0;
     DeviceArray<BenchRay> rays(static_cast<std::size_t>(pixels));
     DeviceArray<float> distances(static_cast<std::size_t>(pixels));
     const auto measure = [&] {
         return rate_of(stream, pixels, [&] {
-            hit_all<<<blocks_for(pixels), kBlockSize, 0, stream>>>(bvh_view, rays.data(), pixels, distances.data());
+            (instanced ? hit_all<true> : hit_all<false>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
+                on_device.bvh(), rays.data(), pixels, distances.data());
         });
     };
     const auto shoot = [&] { camera_rays<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data()); };
@@ -200,7 +199,8 @@ HitRates hit_rates(int ordinal, const Scene& scene, const Camera& camera, PupilT
     rates.camera_rays = measure();
     for (const bool uniform : {false, true}) {
         shoot();
-        bounce<<<blocks_for(pixels), kBlockSize, 0, stream>>>(scene_view, bvh_view, rays.data(), pixels, uniform);
+        (instanced ? bounce<true> : bounce<false>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
+            on_device.view(), on_device.bvh(), rays.data(), pixels, uniform);
         (uniform ? rates.uniform_rays : rates.bounce_rays) = measure();
     }
     return rates;

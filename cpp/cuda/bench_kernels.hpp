@@ -1,6 +1,6 @@
 #pragma once
 #include "../camera/camera.hpp"
-#include "../scene/scene.hpp"
+#include "../scene/assembly.hpp"
 
 namespace realcam {
 
@@ -23,6 +23,6 @@ struct HitRates {
 };
 
 /// Closest hits in a scene as the camera sees it: one ray for each pixel, and one bounce from where it meets something.
-HitRates hit_rates(int ordinal, const Scene& scene, const Camera& camera, PupilTracer tracer);
+HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer);
 
 }  // namespace realcam

@@ -1,27 +1,29 @@
 #pragma once
-#include "../bvh/traverse_wide_bvh.hpp"
+#include "../bvh/traverse_scene.hpp"
 #include "../render/render_samples.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// The SceneT of render_samples on a GPU: one ray of one thread.
+/// The SceneT of render_samples on a GPU: one ray of one thread. `instanced`: whether there is anything but the ground.
+template <bool instanced>
 struct BvhScene {
-    const WideBvhView& bvh;
+    const SceneBvhView& bvh;
     std::uint32_t rays_traced;
 
     REALCAM_INLINE void intersect(const SceneRays<1>& rays, Hits<1>& hits) {
         if (!rays.active[0]) return;
-        const Hit hit = closest_hit(bvh, rays.origin[0], rays.direction[0], rays.far[0]);
+        const Hit hit = closest_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0]);
         hits.distance[0] = hit.distance;
         hits.triangle[0] = hit.triangle;
         hits.u[0] = hit.u;
         hits.v[0] = hit.v;
+        hits.instance[0] = hit.instance;
         ++rays_traced;
     }
     REALCAM_INLINE void occluded(const SceneRays<1>& rays, std::int32_t (&hidden)[1]) {
         hidden[0] = 0;
         if (!rays.active[0]) return;
-        hidden[0] = any_hit(bvh, rays.origin[0], rays.direction[0], rays.far[0]);
+        hidden[0] = any_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0]);
         ++rays_traced;
     }
 };

@@ -9,6 +9,7 @@
 #include "../render/seconds_since.hpp"
 #include "cuda_devices.hpp"
 #include "device_renderer.hpp"
+#include "host_scene.hpp"
 
 namespace realcam {
 namespace {
@@ -20,20 +21,21 @@ public:
         for (const int ordinal : ordinals) {
             name_ += (name_.empty() ? "" : " + ") + cuda_device(ordinal).name;
             renderers_.push_back(std::make_unique<DeviceRenderer>(ordinal));
+            scene_.add(*renderers_.back());
         }
     }
 
     std::string name() const override { return "GPU (" + name_ + ")"; }
 
-    Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera, const RenderSettings& settings,
+    Image render(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                  const Progress& progress) override {
         const auto start = std::chrono::steady_clock::now();
         validate(settings);
-        if (!scene || scene->triangles.empty()) throw InputError("the scene is empty; at least one triangle is wanted");
+        validate(scene);
         CameraSetup setup(camera, tracer_, setup_ ? &*setup_ : nullptr);
         setup_ = std::move(setup);
-        place(scene, camera);
-        const CameraView view = setup_->view(placed_->origin_m());
+        scene_.place(scene, camera);
+        const CameraView view = setup_->view(scene_.origin_m());
         for (const auto& renderer : renderers_) renderer->set_camera(view);
 
         Image image;
@@ -53,16 +55,6 @@ public:
     }
 
 private:
-    void place(const std::shared_ptr<const Scene>& scene, const Camera& camera) {
-        if (scene_ == scene && placed_ && lies_near(camera, placed_->origin_m())) return;
-        placed_.reset();
-        scene_ = scene;
-        auto placed = std::make_unique<PlacedScene>(*scene, camera.pose.position_m);
-        const WideBvh bvh = build_wide_bvh(placed->positions(), placed->triangles());
-        for (const auto& renderer : renderers_) renderer->set_scene(*placed, bvh);
-        placed_ = std::move(placed);
-    }
-
     void expose(const RenderSettings& settings, double exposure_time_s, const Progress& progress, Image& image) {
         std::atomic<bool> stop{false};
         std::atomic<std::int64_t> done{0};
@@ -143,8 +135,7 @@ private:
     std::string name_;
     std::vector<std::unique_ptr<DeviceRenderer>> renderers_;
     std::optional<CameraSetup> setup_;
-    std::shared_ptr<const Scene> scene_;
-    std::unique_ptr<PlacedScene> placed_;
+    HostScene scene_;
 };
 
 }  // namespace

@@ -69,13 +69,14 @@ void DeviceRenderer::bind() const {
     bound(ordinal_);
 }
 
-void DeviceRenderer::set_scene(const PlacedScene& scene, const WideBvh& bvh) {
+void DeviceRenderer::set_scene(const PlacedScene& scene, const SceneBvh& bvh) {
     bind();
-    scene_arrays_.restart();
-    const auto copy = [&](const auto* from, std::size_t count) { return scene_arrays_.copy(from, count, stream_); };
-    scene_ = with_copied_arrays(scene.view(), copy);
-    bvh_ = {copy(bvh.nodes.data(), bvh.nodes.size()), copy(bvh.triangles.data(), bvh.triangles.size())};
-    stream_.wait("copying the scene to it");
+    scene_.set(scene, bvh, stream_);
+}
+
+void DeviceRenderer::set_places(const PlacedScene& scene, const SceneBvh& bvh) {
+    bind();
+    scene_.set_places(scene, bvh, stream_);
 }
 
 void DeviceRenderer::set_camera(const CameraView& camera) {
@@ -120,8 +121,8 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         if (started - finished == 2) finish_one();
         const FilmPart piece = plan.next(samples_per_ms_ > 0 ? kLaunch_ms * samples_per_ms_ : kFirstSamples);
         PixelSum* sums = sums_.data() + static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
-        launch_render({scene_, bvh_, camera_, sums, counts_.data(), nullptr, settings.max_bounces, settings.seed,
-                       piece.first_sample, piece.sample_count, piece.first_row, piece.row_count},
+        launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), nullptr, settings.max_bounces,
+                       settings.seed, piece.first_sample, piece.sample_count, piece.first_row, piece.row_count},
                       started == 0, stream_);
         const std::size_t i = started++ % 3;
         ends[i].record(stream_);
@@ -132,8 +133,8 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
 
 void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings, const volatile int* stop) {
     bind();
-    launch_render({scene_, bvh_, camera_, sums_.data(), counts_.data(), stop, settings.max_bounces, settings.seed,
-                   part.first_sample, part.sample_count, part.first_row, part.row_count},
+    launch_render({scene_.view(), scene_.bvh(), camera_, sums_.data(), counts_.data(), stop, settings.max_bounces,
+                   settings.seed, part.first_sample, part.sample_count, part.first_row, part.row_count},
                   false, stream_);
 }
 

@@ -2,12 +2,8 @@
 #include <atomic>
 #include <string>
 
-#include "../bvh/build_wide_bvh.hpp"
 #include "../render/backend.hpp"
-#include "../scene/placed_scene.hpp"
-#include "../scene/scene_arrays.hpp"
-#include "cuda_stream.hpp"
-#include "device_arrays.hpp"
+#include "device_scene.hpp"
 #include "render_kernel.hpp"
 
 namespace realcam {
@@ -27,8 +23,9 @@ public:
 
     int ordinal() const { return ordinal_; }
 
-    /// Copies a scene, or what changes with every frame of a camera's. The host's copies may go afterwards.
-    void set_scene(const PlacedScene& scene, const WideBvh& bvh);
+    /// Copies a scene, what changes in it as objects move, or a camera. The host's copies may go afterwards.
+    void set_scene(const PlacedScene& scene, const SceneBvh& bvh);
+    void set_places(const PlacedScene& scene, const SceneBvh& bvh);
     void set_camera(const CameraView& camera);
 
     /// Makes room for all that exposing, merging and developing so many pixels takes. Throws OutOfDeviceMemory.
@@ -65,9 +62,8 @@ private:
 
     int ordinal_;
     CudaStream stream_;
-    DeviceArrays scene_arrays_, camera_arrays_;
-    SceneView scene_{};
-    WideBvhView bvh_{};
+    DeviceScene scene_;
+    DeviceArrays camera_arrays_;
     CameraView camera_{};
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<float> exposure_, depth_;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "device_renderer.hpp"
+#include "host_scene.hpp"
 #include "pinned_array.hpp"
 
 namespace realcam {
@@ -88,10 +88,10 @@ bool same_picture(const Camera& a, const Camera& b) {
 
 class LiveView::Work {
 public:
-    Work(int ordinal, std::shared_ptr<const Scene> scene, PupilTracer tracer)
+    Work(int ordinal, Assembly scene, PupilTracer tracer)
         : renderer_(ordinal), scene_(std::move(scene)), tracer_(std::move(tracer)) {
-        if (!scene_ || scene_->triangles.empty())
-            throw InputError("the scene is empty; at least one triangle is wanted");
+        validate(scene_);
+        on_device_.add(renderer_);
     }
     ~Work() {
         try {
@@ -109,7 +109,7 @@ public:
             if (stop_.is_set()) under_way_.front()->cancel();
             under_way_.pop_front();
         }
-        if (!setup_ || !same_picture(camera, setup_->camera()) || settings.seed != settings_.seed ||
+        if (changed_ || !setup_ || !same_picture(camera, setup_->camera()) || settings.seed != settings_.seed ||
             settings.max_bounces != settings_.max_bounces)
             begin(camera, settings);
         const auto pixels = static_cast<std::size_t>(camera.film.width) * static_cast<std::size_t>(camera.film.height);
@@ -123,6 +123,14 @@ public:
         frame->record(renderer_.stream());
         under_way_.push_back(frame);
         return frame;
+    }
+
+    /// What is kept of the last picture is how its pupil was found.
+    void show(Assembly scene) {
+        validate(scene);
+        const std::lock_guard lock(mutex_);
+        scene_ = std::move(scene);
+        changed_ = true;
     }
 
     void cancel() {
@@ -141,33 +149,30 @@ private:
     void begin(const Camera& camera, const RenderSettings& settings) {
         CameraSetup setup(camera, tracer_, setup_ ? &*setup_ : nullptr);
         setup_.reset();  // whatever fails from here on, the next frame begins anew
-        if (!origin_ || !lies_near(camera, *origin_)) {
-            origin_.reset();
-            const PlacedScene placed(*scene_, camera.pose.position_m);
-            renderer_.set_scene(placed, build_wide_bvh(placed.positions(), placed.triangles()));
-            origin_ = camera.pose.position_m;
-        }
-        renderer_.set_camera(setup.view(*origin_));
+        on_device_.place(scene_, camera);
+        renderer_.set_camera(setup.view(on_device_.origin_m()));
         renderer_.clear_film(static_cast<std::int64_t>(camera.film.width) * camera.film.height);
         setup_ = std::move(setup);
         settings_ = settings;
         samples_ = 0;
+        changed_ = false;
     }
 
     DeviceRenderer renderer_;
     StopFlag stop_;
     CodesPool pool_;
     std::mutex mutex_;
-    std::shared_ptr<const Scene> scene_;
+    Assembly scene_;
+    HostScene on_device_;
     PupilTracer tracer_;
-    std::optional<Vec3d> origin_;
     std::optional<CameraSetup> setup_;  ///< of the picture that is being collected
     RenderSettings settings_;
     int samples_ = 0;
+    bool changed_ = false;  ///< the scene, since the picture began
     std::deque<std::shared_ptr<Frame>> under_way_;
 };
 
-LiveView::LiveView(int ordinal, std::shared_ptr<const Scene> scene, PupilTracer tracer)
+LiveView::LiveView(int ordinal, Assembly scene, PupilTracer tracer)
     : work_(std::make_unique<Work>(ordinal, std::move(scene), std::move(tracer))) {}
 
 LiveView::~LiveView() = default;
@@ -175,6 +180,10 @@ LiveView::~LiveView() = default;
 std::shared_ptr<const LiveFrame> LiveView::shoot(const Camera& camera, const RenderSettings& settings,
                                                  ToneCurve curve) {
     return work_->shoot(camera, settings, curve);
+}
+
+void LiveView::show(Assembly scene) {
+    work_->show(std::move(scene));
 }
 
 void LiveView::cancel() {

@@ -19,13 +19,13 @@ public:
     virtual const std::uint8_t* codes() const = 0;
 };
 
-/// A scene before a camera that changes with every frame, on one GPU. Only what changed is copied there: the camera,
-/// never the scene. Samples are collected for as long as the camera stays the same. Not for two threads at once, but
+/// A scene before a camera that changes with every frame, on one GPU. Only what changed is copied there: the camera, or
+/// where objects stand. Samples are collected for as long as both stay the same. Not for two threads at once, but
 /// for cancel.
 class LiveView {
 public:
     /// Throws InputError and DeviceError.
-    LiveView(int ordinal, std::shared_ptr<const Scene> scene, PupilTracer tracer);
+    LiveView(int ordinal, Assembly scene, PupilTracer tracer);
     ~LiveView();
     LiveView(const LiveView&) = delete;
     LiveView& operator=(const LiveView&) = delete;
@@ -34,6 +34,10 @@ public:
     /// started before this one is there. With kFramesInFlight under way it waits for the oldest. A different camera,
     /// seed or number of bounces begins a new picture; exposure time, ISO and tone curve only develop it anew.
     std::shared_ptr<const LiveFrame> shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve);
+
+    /// The scene of the frames to come. Of one that has the same objects in other places only the places are copied.
+    /// Throws InputError.
+    void show(Assembly scene);
 
     /// Gives up all frames under way, within some milliseconds, from any thread. The next one begins a new picture.
     void cancel();

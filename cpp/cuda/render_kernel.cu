@@ -61,7 +61,7 @@ __device__ T sum_of_neighbours(T value, int lanes) {
     return value;
 }
 
-template <LensKind lens_kind, class Clock>
+template <LensKind lens_kind, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
     if (job.stop && *job.stop) return;
@@ -75,7 +75,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
 
     PixelSum sum{};
     std::uint32_t sampled = 0, passed = 0;
-    BvhScene scene{job.bvh, 0};
+    BvhScene<instanced> scene{job.bvh, 0};
     Clock clock;
     if (inside) {
         SampleBlock<1> block;
@@ -133,6 +133,12 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
     if (i < pixels) sums[i] += other[i];
 }
 
+template <LensKind lens_kind>
+auto kernel_for(bool instanced, bool timed) {
+    if (instanced) return timed ? render<lens_kind, true, StageClock> : render<lens_kind, true, NoClock>;
+    return timed ? render<lens_kind, false, StageClock> : render<lens_kind, false, NoClock>;
+}
+
 /// As many threads for a pixel as fill the largest GPU several times over, but none without a sample.
 int lanes_for(const RenderJob& job) {
     constexpr std::int64_t kWanted = 1 << 22;
@@ -146,16 +152,16 @@ int lanes_for(const RenderJob& job) {
 
 void check_render_code() {
     cudaFuncAttributes attributes{};
-    check_cuda(cudaFuncGetAttributes(&attributes, render<LensKind::any, NoClock>), "loading its code");
+    check_cuda(cudaFuncGetAttributes(&attributes, render<LensKind::any, true, NoClock>), "loading its code");
 }
 
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const int lanes = lanes_for(job);
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
-    const bool plain = job.camera.lens.kind == LensKind::plain;
-    const auto kernel = plain ? (timed ? render<LensKind::plain, StageClock> : render<LensKind::plain, NoClock>)
-                              : (timed ? render<LensKind::any, StageClock> : render<LensKind::any, NoClock>);
+    const bool instanced = job.scene.instance_count > 0;
+    const auto kernel = job.camera.lens.kind == LensKind::plain ? kernel_for<LensKind::plain>(instanced, timed)
+                                                                : kernel_for<LensKind::any>(instanced, timed);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }

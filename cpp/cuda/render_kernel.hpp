@@ -19,7 +19,7 @@ struct RenderCounts {
 /// One launch: some samples of some rows of pixels. All pointers are the device's.
 struct RenderJob {
     SceneView scene;
-    WideBvhView bvh;
+    SceneBvhView bvh;
     CameraView camera;
     PixelSum* sums;  ///< of the rows of the job's band, row by row; added to
     RenderCounts* counts;

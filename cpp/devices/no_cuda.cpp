@@ -56,11 +56,14 @@ SharedDeviceArray SharedDeviceArray::duplicate() const {
 }
 
 class LiveView::Work {};
-LiveView::LiveView(int, std::shared_ptr<const Scene>, PupilTracer) {
+LiveView::LiveView(int, Assembly, PupilTracer) {
     fail();
 }
 LiveView::~LiveView() = default;
 std::shared_ptr<const LiveFrame> LiveView::shoot(const Camera&, const RenderSettings&, ToneCurve) {
+    fail();
+}
+void LiveView::show(Assembly) {
     fail();
 }
 void LiveView::cancel() {
@@ -69,7 +72,7 @@ void LiveView::cancel() {
 LensRayRates lens_ray_rates(int, const Camera&, PupilTracer) {
     fail();
 }
-HitRates hit_rates(int, const Scene&, const Camera&, PupilTracer) {
+HitRates hit_rates(int, const Assembly&, const Camera&, PupilTracer) {
     fail();
 }
 

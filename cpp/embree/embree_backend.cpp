@@ -64,11 +64,11 @@ public:
                std::to_string(tbb::this_task_arena::max_concurrency()) + " threads)";
     }
 
-    Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera, const RenderSettings& settings,
+    Image render(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                  const Progress& progress) override {
         const auto start = std::chrono::steady_clock::now();
         validate(settings);
-        if (!scene || scene->triangles.empty()) throw InputError("the scene is empty; at least one triangle is wanted");
+        validate(scene);
         const CameraSetup setup(camera, fast_pupil_tracer());
         tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
         arena.execute([&] { place(scene, camera); });
@@ -87,8 +87,11 @@ public:
     }
 
 private:
-    void place(const std::shared_ptr<const Scene>& scene, const Camera& camera) {
-        if (scene_ && scene_->scene() == scene && lies_near(camera, scene_->placed().origin_m())) return;
+    void place(const Assembly& scene, const Camera& camera) {
+        if (scene_ && lies_near(camera, scene_->placed().origin_m()) && scene_->placed().can_move_to(scene)) {
+            if (!same_places(scene_->placed().assembly(), scene)) scene_->move(scene);
+            return;
+        }
         scene_.reset();
         scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m);
     }

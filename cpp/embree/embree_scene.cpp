@@ -1,51 +1,87 @@
 #include "embree_scene.hpp"
 
-#include <cstring>
+#include <algorithm>
 
 #include "../error.hpp"
 
 namespace realcam {
-namespace {
 
-void check(RTCDevice device) {
-    const RTCError code = rtcGetDeviceError(device);
+void EmbreeScene::check() const {
+    const RTCError code = rtcGetDeviceError(device_);
     if (code == RTC_ERROR_NONE) return;
     if (code == RTC_ERROR_OUT_OF_MEMORY) throw DeviceError("Embree ran out of memory while it built the scene's BVH");
     throw DeviceError("Embree could not build the scene's BVH (error " + std::to_string(code) + ")");
 }
 
-}  // namespace
-
-EmbreeScene::EmbreeScene(RTCDevice device, std::shared_ptr<const Scene> scene, Vec3d origin_m)
-    : scene_(std::move(scene)), placed_(*scene_, origin_m), handle_(rtcNewScene(device)) {
+EmbreeScene::OwnScene EmbreeScene::new_scene() const {
+    OwnScene scene(rtcNewScene(device_));
     // Robust: rays that hit an edge or a sliver's corner must not slip between two triangles.
-    rtcSetSceneFlags(handle_, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(handle_, RTC_BUILD_QUALITY_MEDIUM);
-    const auto& positions = placed_.positions();
-    const auto& triangles = placed_.triangles();
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 sizeof(Vec3f), positions.size()));
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
+    return scene;
+}
+
+EmbreeScene::OwnScene EmbreeScene::build(const PlacedMesh& mesh) const {
+    OwnScene scene = new_scene();
+    const auto& positions = mesh.positions();
+    const auto& triangles = mesh.triangles();
+    if (triangles.empty()) {
+        rtcCommitScene(scene.get());
+        return scene;
+    }
+    const OwnGeometry geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
+    auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                                                 RTC_FORMAT_FLOAT3, sizeof(Vec3f), positions.size()));
     auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
+        geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
     if (vertices && corners) {
         std::copy(positions.begin(), positions.end(), vertices);
         for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].vertices, 3, corners + 3 * i);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(handle_, geometry);
-        rtcCommitScene(handle_);
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometry(scene.get(), geometry.get());
+        rtcCommitScene(scene.get());
     }
-    rtcReleaseGeometry(geometry);
-    try {
-        check(device);
-    } catch (...) {
-        rtcReleaseScene(handle_);
-        throw;
-    }
+    check();
+    return scene;
 }
 
-EmbreeScene::~EmbreeScene() {
-    rtcReleaseScene(handle_);
+EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m)
+    : device_(device), placed_(assembly, origin_m) {
+    meshes_.push_back(build(placed_.ground()));
+    for (const auto& object : placed_.objects()) meshes_.push_back(build(*object));
+    const auto& instances = placed_.instances();
+    if (instances.empty()) return;
+    all_ = new_scene();
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        instances_.push_back(attach(meshes_[1 + instances[i].object], static_cast<unsigned>(i)));
+    if (!placed_.ground().triangles().empty()) {
+        const OwnGeometry ground = attach(meshes_.front(), static_cast<unsigned>(instances.size()));
+        rtcCommitGeometry(ground.get());
+    }
+    stand_objects();
+}
+
+EmbreeScene::OwnGeometry EmbreeScene::attach(const OwnScene& mesh, unsigned number) const {
+    OwnGeometry geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(geometry.get(), mesh.get());
+    rtcAttachGeometryByID(all_.get(), geometry.get(), number);
+    return geometry;
+}
+
+void EmbreeScene::stand_objects() {
+    for (std::size_t i = 0; i < instances_.size(); ++i) {
+        const Affine<float>& map = placed_.instances()[i].placed_from_object;
+        static_assert(sizeof(map) == 12 * sizeof(float));
+        rtcSetGeometryTransform(instances_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &map);
+        rtcCommitGeometry(instances_[i].get());
+    }
+    rtcCommitScene(all_.get());
+    check();
+}
+
+void EmbreeScene::move(const Assembly& assembly) {
+    placed_.move(assembly);
+    if (all_) stand_objects();
 }
 
 }  // namespace realcam

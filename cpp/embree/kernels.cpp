@@ -56,7 +56,8 @@ void render_tile(realcam_tile* tile) {
     PixelSum* target[kLanes];
     auto* const sums = static_cast<PixelSum*>(tile->sums);
     StageClock clock;
-    PacketScene scene{static_cast<RTCScene>(tile->embree_scene), RayOrder::coherent, 0};
+    PacketScene scene{static_cast<RTCScene>(tile->embree_scene), static_cast<std::uint32_t>(view.instance_count),
+                      RayOrder::coherent, 0};
     const int pixels = order.count();
     int pixel = 0;
     std::uint32_t sample = 0;

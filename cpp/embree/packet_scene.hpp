@@ -7,6 +7,7 @@ namespace REALCAM_NAMESPACE {
 /// The SceneT of render_samples on a CPU: hands the lanes to Embree in packets of 16.
 struct PacketScene {
     RTCScene scene;
+    std::uint32_t instance_count;
     RayOrder order;
     std::uint64_t rays_traced;
 
@@ -21,6 +22,7 @@ struct PacketScene {
             for (int k = 0; k < 16; ++k) {
                 packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
                 packet.hit.primID[k] = kNoTriangle;
+                packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
             }
             intersect16(valid, scene, order, &packet);
             REALCAM_LANES
@@ -29,6 +31,9 @@ struct PacketScene {
                 hits.triangle[first + k] = packet.hit.primID[k];
                 hits.u[first + k] = packet.hit.u[k];
                 hits.v[first + k] = packet.hit.v[k];
+                // The ground comes after the objects, or is alone and no instance at all.
+                const std::uint32_t instance = packet.hit.instID[0][k];
+                hits.instance[first + k] = instance < instance_count ? instance : kNoInstance;
             }
             rays_traced += static_cast<std::uint64_t>(used);
         }

@@ -129,9 +129,9 @@ const Json& GltfDocument::material(unsigned assimp_index) const {
     return found == materials_.end() ? nothing : *found->second;
 }
 
-Affine GltfDocument::transform(const aiNode& from) const {
+Affine<double> GltfDocument::transform(const aiNode& from) const {
     const Json& n = node(from);
-    Affine out;
+    Affine<double> out;
     if (const Json& m = n["matrix"]; m.size() == 16) {  // by columns
         const auto column = [&](std::size_t c) {
             return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};

@@ -26,7 +26,7 @@ public:
     /// Null if the file does not have the node, such as the root that assimp puts above several others.
     const Json& node(const aiNode& from) const;
     /// Relative to the parent, in double precision.
-    Affine transform(const aiNode& from) const;
+    Affine<double> transform(const aiNode& from) const;
     /// Null for a mesh without a material.
     const Json& material(unsigned assimp_index) const;
     const Json& root() const { return root_; }

@@ -27,8 +27,8 @@ public:
         }
     }
 
-    void add_node(const aiNode& node, const Affine& parent) {
-        const Affine transform = parent * file_.transform(node);
+    void add_node(const aiNode& node, const Affine<double>& parent) {
+        const Affine<double> transform = parent * file_.transform(node);
         for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(node.mMeshes[i], transform);
         for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], transform);
     }
@@ -55,7 +55,7 @@ private:
         return channel >= 0 && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS ? static_cast<unsigned>(channel) : 0u;
     }
 
-    void add_mesh(unsigned index, const Affine& transform) {
+    void add_mesh(unsigned index, const Affine<double>& transform) {
         const aiMesh& mesh = *file_.content().mMeshes[index];
         const std::size_t first = scene_.positions_m.size();
         if (first + mesh.mNumVertices > std::numeric_limits<std::uint32_t>::max()) {
@@ -76,7 +76,7 @@ private:
         }
     }
 
-    void add_vertices(const aiMesh& mesh, const Affine& transform) {
+    void add_vertices(const aiMesh& mesh, const Affine<double>& transform) {
         const aiVector3D* uvs = mesh.mTextureCoords[uv_channel(mesh)];
         const TextureTransform move_uv(texture_info(mesh));
         aiString texture;
@@ -92,7 +92,7 @@ private:
         }
     }
 
-    Vec3f normal(const aiVector3D& given, const Affine& transform) {
+    Vec3f normal(const aiVector3D& given, const Affine<double>& transform) {
         if (!std::isfinite(given.x + given.y + given.z)) {
             ++bad_normals_;
             return {0, 0, 0};
@@ -122,7 +122,7 @@ private:
 
 void read_geometry(Scene& scene, const ImportedScene& file, const std::string& path, double scale) {
     Flattener flattener(scene, file, path, scale);
-    if (file.content().mRootNode) flattener.add_node(*file.content().mRootNode, Affine());
+    if (file.content().mRootNode) flattener.add_node(*file.content().mRootNode, Affine<double>());
     flattener.finish();
     if (scene.uvs.empty()) {
         for (Material& material : scene.materials) material.diffuse_texture = -1;

@@ -25,7 +25,9 @@ public:
     /// Null for an OBJ.
     const GltfDocument* gltf() const { return gltf_ ? &*gltf_ : nullptr; }
     /// Of a node relative to its parent.
-    Affine transform(const aiNode& node) const { return gltf_ ? gltf_->transform(node) : Affine(node.mTransformation); }
+    Affine<double> transform(const aiNode& node) const {
+        return gltf_ ? gltf_->transform(node) : affine_from(node.mTransformation);
+    }
     /// What assimp complained about and went on.
     const std::vector<std::string>& complaints() const { return complaints_; }
 

@@ -6,7 +6,8 @@ namespace realcam::io {
 namespace {
 
 // A light shines along -z of its node, from its origin. The extension's `range` is no physics, and left out.
-void add_light(Scene& scene, const Json& light, const Affine& transform, const std::string& label, double scale) {
+void add_light(Scene& scene, const Json& light, const Affine<double>& transform, const std::string& label,
+               double scale) {
     const double intensity = light["intensity"].number(1);
     const Json& colour = light["color"];
     const Vec3d strength = {intensity * colour[std::size_t{0}].number(1), intensity * colour[1].number(1),
@@ -33,8 +34,8 @@ void read_lights(Scene& scene, const ImportedScene& file, const std::string& pat
     const GltfDocument* gltf = file.gltf();
     if (!gltf) return;
     const Json& lights = gltf->root()["extensions"]["KHR_lights_punctual"]["lights"];
-    const auto visit = [&](const auto& self, const aiNode& node, const Affine& parent) -> void {
-        const Affine transform = parent * gltf->transform(node);
+    const auto visit = [&](const auto& self, const aiNode& node, const Affine<double>& parent) -> void {
+        const Affine<double> transform = parent * gltf->transform(node);
         const Json& number = gltf->node(node)["extensions"]["KHR_lights_punctual"]["light"];
         if (number.is_number()) {
             const std::size_t i = number.index(lights.size());
@@ -42,7 +43,7 @@ void read_lights(Scene& scene, const ImportedScene& file, const std::string& pat
         }
         for (unsigned i = 0; i < node.mNumChildren; ++i) self(self, *node.mChildren[i], transform);
     };
-    visit(visit, *file.content().mRootNode, Affine());
+    visit(visit, *file.content().mRootNode, Affine<double>());
 }
 
 }  // namespace realcam::io

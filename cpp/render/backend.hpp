@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../camera/camera.hpp"
-#include "../scene/scene.hpp"
+#include "../scene/assembly.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -53,8 +53,8 @@ public:
     virtual std::string name() const = 0;
 
     /// Throws InputError for a camera, scene or settings that make no picture, Cancelled, and DeviceError.
-    virtual Image render(const std::shared_ptr<const Scene>& scene, const Camera& camera,
-                         const RenderSettings& settings, const Progress& progress) = 0;
+    virtual Image render(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                         const Progress& progress) = 0;
 };
 
 /// Throws InputError where the settings make no sense.

@@ -6,7 +6,7 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/field_of_view.hpp"
-#include "../scene/scene.hpp"
+#include "../scene/bounding_box.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -17,41 +17,28 @@ struct ViewRequest {
     std::optional<double> focus_distance_m;  ///< object plane to film; infinity allowed
 };
 
-struct BoundingBox {
-    Vec3d low, high;
-
-    Vec3d middle() const { return 0.5 * (low + high); }
-};
-
-/// Of all triangles, metres. The scene must not be empty.
-inline BoundingBox bounding_box(const Scene& scene) {
-    BoundingBox box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-    for (const Triangle& t : scene.triangles)
-        for (const std::uint32_t vertex : t.vertices) {
-            const Vec3d p = scene.positions_m[vertex];
-            box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-            box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-        }
-    return box;
-}
-
 /// Distance from the film to the first surface on the camera's axis, metres; infinite where there is none. `nearest_m`:
 /// where the lens ends. Asks every triangle: once for a picture, that costs less than a hierarchy.
-inline double distance_on_axis(const Scene& scene, const Pose& pose, double nearest_m) {
-    const Vec3d direction = normalized(pose.look_at_m - pose.position_m);
+inline double distance_on_axis(const Assembly& assembly, const Pose& pose, double nearest_m) {
+    const Vec3d forward = normalized(pose.look_at_m - pose.position_m);
     double found = kInfinity;
-    for (const Triangle& t : scene.triangles) {
-        // Moeller and Trumbore 1997.
-        const Vec3d a = scene.positions_m[t.vertices[0]] - pose.position_m;
-        const Vec3d u = scene.positions_m[t.vertices[1]] - pose.position_m - a;
-        const Vec3d v = scene.positions_m[t.vertices[2]] - pose.position_m - a;
-        const Vec3d p = cross(direction, v), q = cross(u, a);
-        const double determinant = dot(u, p);
-        const double first = -dot(a, p) / determinant, second = dot(direction, q) / determinant;
-        if (!(first >= 0 && second >= 0 && first + second <= 1)) continue;
-        const double distance = dot(v, q) / determinant;
-        if (distance > nearest_m && distance < found) found = distance;
-    }
+    const auto look_at = [&](const Scene& scene, const InverseAffine<double>& into) {
+        const Vec3d origin = into.point(pose.position_m), direction = into.direction(forward);
+        for (const Triangle& t : scene.triangles) {
+            // Moeller and Trumbore 1997.
+            const Vec3d a = scene.positions_m[t.vertices[0]] - origin;
+            const Vec3d u = scene.positions_m[t.vertices[1]] - origin - a;
+            const Vec3d v = scene.positions_m[t.vertices[2]] - origin - a;
+            const Vec3d p = cross(direction, v), q = cross(u, a);
+            const double determinant = dot(u, p);
+            const double first = -dot(a, p) / determinant, second = dot(direction, q) / determinant;
+            if (!(first >= 0 && second >= 0 && first + second <= 1)) continue;
+            const double distance = dot(v, q) / determinant;
+            if (distance > nearest_m && distance < found) found = distance;
+        }
+    };
+    look_at(*assembly.ground, Affine<double>().inverse());
+    for (const Instance& instance : assembly.instances) look_at(*instance.object, instance.scene_from_object.inverse());
     return found;
 }
 
@@ -61,9 +48,9 @@ namespace default_view_detail {
 constexpr double kFilledShare = 0.9;
 
 /// Autofocus: the first surface on the axis; where there is none, the plane through the middle of the scene.
-inline double autofocus_m(const Scene& scene, const BoundingBox& box, const Camera& camera) {
+inline double autofocus_m(const Assembly& assembly, const BoundingBox& box, const Camera& camera) {
     const double lens_end = camera.lens.film_position() / 1000;
-    const double hit = distance_on_axis(scene, camera.pose, lens_end);
+    const double hit = distance_on_axis(assembly, camera.pose, lens_end);
     if (std::isfinite(hit)) return hit;
     const Vec3d forward = normalized(camera.pose.look_at_m - camera.pose.position_m);
     const double middle = dot(forward, box.middle() - camera.pose.position_m);
@@ -111,15 +98,16 @@ inline void stand_back(Camera& camera, Vec3d backward, double pupil_to_target_m)
 /// - focus: the first surface on the camera's axis, or the depth of the scene's middle where the axis meets nothing. A
 ///   camera whose place was chosen steps back where its lens cannot focus that near.
 /// Throws InputError where the lens cannot focus as asked for, and for a scene without triangles.
-inline void set_view(Camera& camera, const Scene& scene, const ViewRequest& request) {
+inline void set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request) {
     using namespace default_view_detail;
-    if (scene.triangles.empty()) throw InputError("the scene is empty; at least one triangle is wanted");
-    const BoundingBox box = bounding_box(scene);
+    validate(assembly);
+    const BoundingBox box = bounding_box(assembly);
     const LensSystem lens = camera.lens;
     camera.pose.up = request.up;
     camera.pose.look_at_m = request.look_at_m.value_or(box.middle());
     const auto focus = [&] {
-        const double distance = request.focus_distance_m ? *request.focus_distance_m : autofocus_m(scene, box, camera);
+        const double distance =
+            request.focus_distance_m ? *request.focus_distance_m : autofocus_m(assembly, box, camera);
         camera.lens = focused(lens, 1000 * distance);
     };
     if (request.position_m) {

@@ -30,8 +30,8 @@ inline double metered_exposure(const Image& image) {
 
 /// Exposure time with which the camera's picture lands on middle grey on average (10 lx s / ISO), from a quick picture
 /// of at most 96 pixels each way. Throws InputError where no light reaches the film, and what Backend::render throws.
-inline double metered_exposure_time(Backend& backend, const std::shared_ptr<const Scene>& scene, Camera camera,
-                                    RenderSettings settings, const Progress& progress) {
+inline double metered_exposure_time(Backend& backend, const Assembly& scene, Camera camera, RenderSettings settings,
+                                    const Progress& progress) {
     constexpr double kLongSide = 96;
     Film& film = camera.film;
     const double scale = std::min(1.0, kLongSide / std::max(film.width, film.height));

@@ -41,8 +41,11 @@ struct Scene {
     Environment environment;
     std::vector<std::string> warnings;  ///< what the reader put up with (a missing texture), for the caller to show
 
-    bool has_light() const {
-        if (!points.empty() || !suns.empty() || environment.shines()) return true;
+    bool has_light() const { return has_lamp() || !suns.empty() || environment.shines(); }
+
+    /// A light that has a place.
+    bool has_lamp() const {
+        if (!points.empty()) return true;
         for (const Triangle& t : triangles) {
             const Vec3f e = materials[t.material].emission;
             if (e.x > 0 || e.y > 0 || e.z > 0) return true;

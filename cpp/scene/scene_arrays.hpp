@@ -5,34 +5,61 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A scene's view with every array replaced by a copy elsewhere: `copy(pointer, count)` copies at once, and returns
-/// where to. This list is all that a device needs to know of what a scene consists of.
+// Views with every array replaced by a copy elsewhere: `copy(pointer, count)` copies at once, and returns where to.
+// These lists are all that a device needs to know of what a scene consists of.
+
+namespace scene_arrays_detail {
+
+template <class T, class Copy>
+void replace(const T*& array, std::int64_t count, Copy&& copy) {
+    if (array) array = copy(array, static_cast<std::size_t>(count));
+}
+
+}  // namespace scene_arrays_detail
+
+template <class Copy>
+MeshView with_copied_arrays(MeshView view, Copy&& copy) {
+    using scene_arrays_detail::replace;
+    std::vector<TextureView> textures(view.textures, view.textures + view.texture_count);
+    for (TextureView& texture : textures) replace(texture.rgba, std::int64_t{4} * texture.width * texture.height, copy);
+    view.textures = textures.data();
+    replace(view.textures, view.texture_count, copy);
+    replace(view.triangles, view.triangle_count, copy);
+    replace(view.planes, view.triangle_count, copy);
+    replace(view.positions, view.vertex_count, copy);
+    replace(view.normals, view.vertex_count, copy);
+    replace(view.uvs, view.vertex_count, copy);
+    replace(view.materials, view.material_count, copy);
+    return view;
+}
+
+/// All but its PlacesView.
 template <class Copy>
 SceneView with_copied_arrays(SceneView view, Copy&& copy) {
-    const auto move = [&](auto*& array, std::int64_t count) {
-        if (array) array = copy(array, static_cast<std::size_t>(count));
-    };
-    std::vector<TextureView> textures(view.textures, view.textures + view.texture_count);
-    for (TextureView& texture : textures) move(texture.rgba, std::int64_t{4} * texture.width * texture.height);
-    view.textures = textures.data();
-    move(view.textures, view.texture_count);
-    move(view.triangles, view.triangle_count);
-    move(view.planes, view.triangle_count);
-    move(view.positions, view.vertex_count);
-    move(view.normals, view.vertex_count);
-    move(view.uvs, view.vertex_count);
-    move(view.materials, view.material_count);
-    move(view.points, view.point_count);
-    move(view.suns, view.sun_count);
-    move(view.areas, view.area_count);
-    move(view.area_cdf, view.area_count + 1);
+    using scene_arrays_detail::replace;
+    static_cast<MeshView&>(view) = with_copied_arrays(static_cast<const MeshView&>(view), copy);
+    std::vector<MeshView> objects(view.objects, view.objects + view.object_count);
+    for (MeshView& object : objects) object = with_copied_arrays(object, copy);
+    view.objects = objects.data();
+    replace(view.objects, view.object_count, copy);
+    replace(view.suns, view.sun_count, copy);
     EnvironmentView& environment = view.environment;
     if (environment.pixels) {
         const std::int64_t height = environment.height, width = environment.width;
-        move(environment.pixels, height * width);
-        move(environment.marginal_cdf, height + 1);
-        move(environment.conditional_cdf, height * (width + 1));
+        replace(environment.pixels, height * width, copy);
+        replace(environment.marginal_cdf, height + 1, copy);
+        replace(environment.conditional_cdf, height * (width + 1), copy);
     }
+    return view;
+}
+
+template <class Copy>
+PlacesView with_copied_arrays(PlacesView view, Copy&& copy) {
+    using scene_arrays_detail::replace;
+    replace(view.instances, view.instance_count, copy);
+    replace(view.points, view.point_count, copy);
+    replace(view.areas, view.area_count, copy);
+    replace(view.area_cdf, view.area_count + 1, copy);
     return view;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "../math/vec3.hpp"
+#include "../math/affine.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -70,8 +70,10 @@ struct EnvironmentView {
     std::int32_t width, height;
 };
 
-/// Every array of it is also named in scene_arrays.hpp.
-struct SceneView {
+// Every array of the following is also named in scene_arrays.hpp.
+
+/// Triangles and what they are made of.
+struct MeshView {
     const Triangle* triangles;
     const TrianglePlane* planes;  ///< one for each triangle
     const Vec3f* positions;
@@ -79,12 +81,31 @@ struct SceneView {
     const Vec2f* uvs;      ///< per vertex; null: none
     const Material* materials;
     const TextureView* textures;
+    std::int32_t triangle_count, vertex_count, material_count, texture_count;
+};
+
+/// One of the places where an object stands.
+struct InstanceView {
+    Affine<float> placed_from_object;
+    InverseAffine<float> object_from_placed;
+    float margin;  ///< how far off in the object's frame a point may be for each unit of its placed coordinates
+    std::uint32_t object;
+};
+
+/// What depends on where objects stand: they themselves, and the lights that may move with them.
+struct PlacesView {
+    const InstanceView* instances;
     const PointLight* points;
-    const SunLight* suns;
     const AreaLight* areas;
     const float* area_cdf;  ///< area_count + 1 values; null: no area light
-    std::int32_t triangle_count, vertex_count, material_count, texture_count;
-    std::int32_t point_count, sun_count, area_count;
+    std::int32_t instance_count, point_count, area_count;
+};
+
+/// The ground's triangles, objects in frames of their own, and lights.
+struct SceneView : MeshView, PlacesView {
+    const MeshView* objects;
+    const SunLight* suns;
+    std::int32_t object_count, sun_count;
     bool has_environment;
     EnvironmentView environment;
 };

@@ -12,11 +12,15 @@ namespace REALCAM_NAMESPACE {
 // what stands on it: a plain of 1e7 m would float half a metre off under the camera's feet. It is cut into pieces, each
 // of about the size of its own distance, whose corners are as exact as they need to be.
 
+enum class LargeTriangles { cut, keep };
+
 /// The triangles of a scene about an origin, the large ones in pieces: the first piece takes the place of the triangle,
 /// the others are appended.
 class SplitTriangles {
 public:
-    SplitTriangles(const Scene& scene, Vec3d origin_m) : scene_(scene), origin_(origin_m) {
+    SplitTriangles(const Scene& scene, Vec3d origin_m, LargeTriangles large = LargeTriangles::cut)
+        : scene_(scene), origin_(origin_m) {
+        if (large == LargeTriangles::keep) return;
         const auto count = static_cast<std::uint32_t>(scene.triangles.size());
         for (std::uint32_t i = 0; i < count; ++i) {
             const Triangle t = scene.triangles[i];

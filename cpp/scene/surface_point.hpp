@@ -6,12 +6,14 @@
 namespace REALCAM_NAMESPACE {
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
+inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
 
 /// What traversal says of a ray: the nearest triangle, and where on it.
 struct Hit {
     float distance;
     std::uint32_t triangle;  ///< kNoTriangle: none
     float u, v;              ///< barycentric, of the second and third corner
+    std::uint32_t instance = kNoInstance;  ///< of which the triangle is a part; none: the ground
 };
 
 template <int N>
@@ -19,8 +21,11 @@ struct Hits {
     alignas(kLaneAlignment<float, N>) float distance[N];
     alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t triangle[N];
     alignas(kLaneAlignment<float, N>) float u[N], v[N];
+    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t instance[N];
 
-    REALCAM_INLINE Hit operator[](int lane) const { return {distance[lane], triangle[lane], u[lane], v[lane]}; }
+    REALCAM_INLINE Hit operator[](int lane) const {
+        return {distance[lane], triangle[lane], u[lane], v[lane], instance[lane]};
+    }
 };
 
 /// A point on a surface, turned to the side from which the ray came.
@@ -39,35 +44,35 @@ REALCAM_INLINE float largest_coordinate(Vec3f p) {
     return x > y ? (x > z ? x : z) : (y > z ? y : z);
 }
 
-/// Where a ray has met the scene.
-REALCAM_INLINE Vec3f hit_position(const SceneView& scene, const TrianglePlane& plane, Hit hit, Vec3f ray_origin,
+/// Where a ray has met the mesh.
+REALCAM_INLINE Vec3f hit_position(const MeshView& mesh, const TrianglePlane& plane, Hit hit, Vec3f ray_origin,
                                   Vec3f ray_direction) {
     // Along the ray: barycentric coordinates of a sliver are uncertain by its aspect ratio times the rounding, and
     // would carry the point along it. Not from afar, where the error of the distance exceeds that of the corners.
-    Vec3f p = ray_origin + hit.distance * ray_direction;
-    if ((largest_coordinate(ray_origin) + hit.distance) * kMarginShare > 16.0f * plane.margin) {
-        const std::uint32_t* corner = scene.triangles[hit.triangle].vertices;
-        p = (1.0f - hit.u - hit.v) * scene.positions[corner[0]] + hit.u * scene.positions[corner[1]] +
-            hit.v * scene.positions[corner[2]];
+    const Vec3f way = hit.distance * ray_direction;
+    Vec3f p = ray_origin + way;
+    if ((largest_coordinate(ray_origin) + largest_coordinate(way)) * kMarginShare > 16.0f * plane.margin) {
+        const std::uint32_t* corner = mesh.triangles[hit.triangle].vertices;
+        p = (1.0f - hit.u - hit.v) * mesh.positions[corner[0]] + hit.u * mesh.positions[corner[1]] +
+            hit.v * mesh.positions[corner[2]];
     }
     return p + (plane.height - dot(p, plane.normal)) * plane.normal;
 }
 
-REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
-    const Triangle triangle = scene.triangles[hit.triangle];
-    const TrianglePlane plane = scene.planes[hit.triangle];
+REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
+    const Triangle triangle = mesh.triangles[hit.triangle];
+    const TrianglePlane plane = mesh.planes[hit.triangle];
     const std::uint32_t* corner = triangle.vertices;
     const float w = 1.0f - hit.u - hit.v;
-    const Material& material = scene.materials[triangle.material];
+    const Material& material = mesh.materials[triangle.material];
 
     SurfacePoint point;
-    point.position = hit_position(scene, plane, hit, ray_origin, ray_direction);
+    point.position = hit_position(mesh, plane, hit, ray_origin, ray_direction);
     const bool from_front = dot(plane.normal, ray_direction) <= 0;
     point.geometric_normal = from_front ? plane.normal : -plane.normal;
     point.normal = point.geometric_normal;
-    if (scene.normals) {
-        const Vec3f n =
-            w * scene.normals[corner[0]] + hit.u * scene.normals[corner[1]] + hit.v * scene.normals[corner[2]];
+    if (mesh.normals) {
+        const Vec3f n = w * mesh.normals[corner[0]] + hit.u * mesh.normals[corner[1]] + hit.v * mesh.normals[corner[2]];
         const float n2 = dot(n, n);
         if (n2 > 0) {
             // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
@@ -76,15 +81,35 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
         }
     }
     point.diffuse = material.diffuse;
-    if (material.diffuse_texture >= 0 && scene.uvs) {
-        const Vec2f ua = scene.uvs[corner[0]], ub = scene.uvs[corner[1]], uc = scene.uvs[corner[2]];
+    if (material.diffuse_texture >= 0 && mesh.uvs) {
+        const Vec2f ua = mesh.uvs[corner[0]], ub = mesh.uvs[corner[1]], uc = mesh.uvs[corner[2]];
         const Vec2f uv = {w * ua.x + hit.u * ub.x + hit.v * uc.x, w * ua.y + hit.u * ub.y + hit.v * uc.y};
-        point.diffuse = point.diffuse * sample_texture(scene.textures[material.diffuse_texture], uv);
+        point.diffuse = point.diffuse * sample_texture(mesh.textures[material.diffuse_texture], uv);
     }
     point.specular = material.specular;
     point.shininess = material.shininess;
     point.emission = from_front ? material.emission : Vec3f{0, 0, 0};
     point.self_offset = plane.margin;
+    return point;
+}
+
+/// Likewise of a whole scene: rays go into the object's frame, with the same distances, and what they find comes back.
+REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
+    if (hit.instance == kNoInstance)
+        return surface_point(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
+    const InstanceView& instance = scene.instances[hit.instance];
+    const InverseAffine<float>& into = instance.object_from_placed;
+    SurfacePoint point =
+        surface_point(scene.objects[instance.object], hit, into.point(ray_origin), into.direction(ray_direction));
+    point.position = instance.placed_from_object.point(point.position);
+    const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
+    const float stretch = 1.0f / length(geometric);  // of lengths along the normal
+    point.geometric_normal = stretch * geometric;
+    point.normal = normalized(dot(shading, geometric) < 0 ? -shading : shading);
+    // The next ray is met in the object's frame again.
+    point.self_offset =
+        stretch *
+        (point.self_offset + instance.margin * (largest_coordinate(point.position) + largest_coordinate(into.origin)));
     return point;
 }
 

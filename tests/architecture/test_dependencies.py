@@ -35,7 +35,9 @@ MAY_INCLUDE_TOO = {"bvh/binary_tree.cpp": {"embree/embree_api.hpp"}}
 # Headers of the core that own memory or raise errors, and so stay on the host. The others run on every
 # device, and include none of these.
 HOST_ONLY = {
+    "bvh/binary_tree.hpp",
     "bvh/build_wide_bvh.hpp",
+    "bvh/scene_bvh.hpp",
     "camera/camera.hpp",
     "camera/default_film.hpp",
     "camera/field_of_view.hpp",
@@ -66,7 +68,10 @@ HOST_ONLY = {
     "render/default_view.hpp",
     "render/metering.hpp",
     "render/run_with_progress.hpp",
+    "scene/assembly.hpp",
+    "scene/bounding_box.hpp",
     "scene/light_tables.hpp",
+    "scene/placed_mesh.hpp",
     "scene/placed_scene.hpp",
     "scene/scene.hpp",
     "scene/scene_arrays.hpp",

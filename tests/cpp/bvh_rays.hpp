@@ -23,6 +23,10 @@ struct Mesh {
         positions.insert(positions.end(), {a, b, c});
         add(first, first + 1, first + 2);
     }
+    Box box(std::uint32_t triangle) const {
+        const std::uint32_t* v = triangles[triangle].vertices;
+        return box_of({positions[v[0]], 0, positions[v[1]], 0, positions[v[2]], 0});
+    }
     WideBvh bvh() const { return build_wide_bvh(positions, triangles); }
 };
 

@@ -105,7 +105,8 @@ TEST_CASE("large triangles come in pieces that fit together and cover the same")
             CHECK(std::fabs(area / (4 * half * half) - 1) < 1e-9);
             const PlacedScene placed(scene, {0, 0, 0});
             const double height = dot(middle, kNormal);
-            worst = std::max(worst, displacement(placed.triangles(), placed.positions(), kNormal, height));
+            worst = std::max(worst,
+                             displacement(placed.ground().triangles(), placed.ground().positions(), kNormal, height));
             std::vector<Vec3f> corners;
             for (const Vec3d& p : scene.positions_m) corners.push_back(static_cast<Vec3f>(p));
             uncut = std::max(uncut, displacement(scene.triangles, corners, kNormal, height));

@@ -48,7 +48,21 @@ def textured_scene() -> rc.Scene:
     return scene.with_environment(rng.uniform(1, 200, (16, 32, 3)).astype(np.float32))
 
 
-SCENES = {"area light": lambda: frame_scene(spheres=20, boxes=20), "all kinds": textured_scene}
+def scene_with_objects() -> rc.Scene:
+    """The textured scene, and copies of it as objects, lamps and all: turned, of several sizes, one mirrored."""
+    scene, turn = textured_scene(), np.array([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
+    for i, size in enumerate((0.3, 0.2, -0.25)):
+        matrix = turn @ np.diag([size, abs(size), abs(size) * 1.5, 1])
+        matrix[:3, 3] = (i - 1, 0.3, -1 - i)
+        scene = scene.with_instance(textured_scene(), matrix)
+    return scene
+
+
+SCENES = {
+    "area light": lambda: frame_scene(spheres=20, boxes=20),
+    "all kinds": textured_scene,
+    "objects": scene_with_objects,
+}
 
 
 def pictures(scene: rc.Scene, camera: rc.Camera, devices: tuple[str, str], **options: int) -> list[rc.Image]:

@@ -8,14 +8,17 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 import realcam as rc
 from realcam.bench import frame_scene
 
-HAS_GPU = any(line.startswith("cuda:") for line in rc.devices())
-needs_gpu = pytest.mark.skipif(not HAS_GPU, reason="no GPU on this machine")
+GPUS = [line.split(":")[1] for line in rc.devices() if line.startswith("cuda:")]
+needs_gpu = pytest.mark.skipif(not GPUS, reason="no GPU on this machine")
+needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"{len(GPUS)} GPUs on this machine; two are wanted")
+one_or_several = pytest.mark.parametrize("device", ["cuda:0", pytest.param("cuda:0,1", marks=needs_two)])
 
 LENS = rc.Lens.load("tessar-50mm").focused(4.0)
 
@@ -112,9 +115,10 @@ print(repr(float(pixels.sum())), repr(float(pixels[::-1][:100].sum())))
 
 @needs_gpu
 @pytest.mark.gpu
-def test_progress_stops_a_picture_soon() -> None:
+@one_or_several
+def test_progress_stops_a_picture_soon(device: str) -> None:
     scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
-    rc.render(scene, wide, spp=1, device="cuda")
+    rc.render(scene, wide, spp=1, device=device)
     shares: list[float] = []
 
     def progress(share: float) -> bool:
@@ -123,17 +127,87 @@ def test_progress_stops_a_picture_soon() -> None:
 
     start = time.perf_counter()
     with pytest.raises(rc.Cancelled):
-        rc.render(scene, wide, spp=1 << 20, device="cuda", progress=progress)
+        rc.render(scene, wide, spp=1 << 20, device=device, progress=progress)
     assert time.perf_counter() - start < 30  # the picture takes many minutes
-    assert rc.render(scene, wide, spp=1, device="cuda").spp == 1
+    assert rc.render(scene, wide, spp=1, device=device).spp == 1
 
 
 @needs_gpu
 @pytest.mark.gpu
-def test_ctrl_c_stops_a_picture() -> None:
+@one_or_several
+def test_ctrl_c_stops_a_picture(device: str) -> None:
     scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
-    rc.render(scene, wide, spp=1, device="cuda")
+    rc.render(scene, wide, spp=1, device=device)
     threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
-        rc.render(scene, wide, spp=1 << 20, device="cuda")
-    assert rc.render(scene, wide, spp=1, device="cuda").spp == 1
+        rc.render(scene, wide, spp=1 << 20, device=device)
+    assert rc.render(scene, wide, spp=1, device=device).spp == 1
+
+
+# A kernel of another library in the same process that traps. From then on every call on that GPU fails until the
+# process ends, as where the GPU falls off its bus: both are errors that stay.
+LOSE = """
+import ctypes, threading, time
+driver = ctypes.CDLL("libcuda.so.1")
+
+def lose(ordinal):
+    def call(name, *arguments):
+        code = getattr(driver, name)(*arguments)
+        assert code == 0, (name, code)
+    context, module, kernel = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
+    call("cuInit", 0)
+    call("cuDevicePrimaryCtxRetain", ctypes.byref(context), ordinal)
+    call("cuCtxSetCurrent", context)
+    text = b".version 7.0\n.target sm_75\n.address_size 64\n.visible .entry fall() { trap; }"
+    call("cuModuleLoadData", ctypes.byref(module), text)
+    call("cuModuleGetFunction", ctypes.byref(kernel), module, b"fall")
+    call("cuLaunchKernel", kernel, 1, 1, 1, 1, 1, 1, 0, None, None, None)
+
+wide = rc.Camera(lens, film=rc.Film(36, 24, (1200, 800)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+"""
+
+
+@needs_gpu
+@pytest.mark.gpu
+@one_or_several
+def test_a_gpu_lost_in_mid_frame(device: str, tmp_path: Path) -> None:
+    picture = tmp_path / "picture.exr"
+    code = f"""
+rc.render(scene, wide, spp=1, device={device!r})
+threading.Timer(0.5, lose, [{device[-1]}]).start()
+start = time.perf_counter()
+for i in range(2):  # it stays lost
+    try:
+        rc.render(scene, wide, spp=1 << 20, device={device!r}).save({str(picture)!r})
+    except rc.DeviceError as error:
+        print(error)
+assert time.perf_counter() - start < 30, "the picture takes many minutes"
+assert rc.render(scene, camera, spp=1, device="cpu").spp == 1
+"""
+    done = run(LOSE + code)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("the GPU failed while") == 2, done.stdout
+    assert not list(tmp_path.iterdir())
+
+
+@needs_gpu
+@pytest.mark.gpu
+def test_a_gpu_lost_under_a_live_view() -> None:
+    code = """
+live = rc.LiveView(scene)
+live.shoot(wide, spp=1).codes
+frame = live.shoot(wide, spp=1 << 14)
+lose(0)
+for shoot in (lambda: frame.codes, lambda: live.shoot(camera, spp=1).codes, lambda: rc.LiveView(scene)):
+    try:
+        shoot()
+    except rc.DeviceError as error:
+        print(error)
+try:
+    live.cancel()
+except rc.DeviceError:
+    pass
+"""
+    done = run(LOSE + code)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("the GPU failed while") == 3, done.stdout

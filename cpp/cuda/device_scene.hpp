@@ -1,0 +1,29 @@
+#pragma once
+#include <vector>
+
+#include "../bvh/scene_bvh.hpp"
+#include "../scene/scene_arrays.hpp"
+#include "cuda_stream.hpp"
+#include "device_arrays.hpp"
+
+namespace realcam {
+
+/// One GPU's copy of a scene and its hierarchies. The host's may go when a function has returned. All throw
+/// DeviceError.
+class DeviceScene {
+public:
+    void set(const PlacedScene& scene, const SceneBvh& bvh, CudaStream& stream);
+    /// Only what changes as objects move.
+    void set_places(const PlacedScene& scene, const SceneBvh& bvh, CudaStream& stream);
+
+    const SceneView& view() const { return view_; }
+    const SceneBvhView& bvh() const { return bvh_; }
+
+private:
+    DeviceArrays arrays_, place_arrays_;
+    SceneView view_{};
+    SceneBvhView bvh_{};
+    std::vector<WideBvhView> objects_;
+};
+
+}  // namespace realcam

@@ -1,0 +1,28 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "device_renderer.hpp"
+
+namespace realcam {
+
+/// The scene that some GPUs have, and what of it the host needs to change it.
+class HostScene {
+public:
+    /// Once for each GPU, before the first scene.
+    void add(DeviceRenderer& renderer) { renderers_.push_back(&renderer); }
+
+    /// Copies what has changed: nothing, where objects stand, or everything; the latter also for a camera that is too
+    /// far from the place of the last. Returns whether anything has. Throws DeviceError; the next call begins anew
+    /// then.
+    bool place(const Assembly& assembly, const Camera& camera);
+
+    Vec3d origin_m() const { return placed_->origin_m(); }
+
+private:
+    std::vector<DeviceRenderer*> renderers_;
+    std::unique_ptr<PlacedScene> placed_;
+    SceneBvh bvh_;
+};
+
+}  // namespace realcam

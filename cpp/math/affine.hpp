@@ -1,0 +1,66 @@
+#pragma once
+#include "vec3.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The inverse of a map, in the form that loses nothing near what the map makes of 0: `origin` is subtracted first.
+template <class T>
+struct InverseAffine {
+    Vec3<T> x, y, z, origin;
+
+    REALCAM_INLINE Vec3<T> direction(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
+    REALCAM_INLINE Vec3<T> point(Vec3<T> p) const { return direction(p - origin); }
+
+    /// What the map itself makes of a plane's normal: on the same side also where it mirrors, longer than 1 where it
+    /// shrinks along the normal.
+    REALCAM_INLINE Vec3<T> normal_of(Vec3<T> n) const { return {dot(x, n), dot(y, n), dot(z, n)}; }
+
+    template <class U>
+    REALCAM_INLINE explicit operator InverseAffine<U>() const {
+        return {static_cast<Vec3<U>>(x), static_cast<Vec3<U>>(y), static_cast<Vec3<U>>(z),
+                static_cast<Vec3<U>>(origin)};
+    }
+};
+
+/// A linear map and a shift, as the images of the axes and of the origin.
+template <class T>
+struct Affine {
+    Vec3<T> x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1}, origin = {0, 0, 0};
+
+    constexpr bool operator==(const Affine&) const = default;
+
+    REALCAM_INLINE Vec3<T> direction(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
+    REALCAM_INLINE Vec3<T> point(Vec3<T> p) const { return direction(p) + origin; }
+    REALCAM_INLINE T determinant() const { return dot(x, cross(y, z)); }
+
+    /// Of a plane's normal; on the same side of the surface also where the map mirrors it. Not unit. The cofactors are
+    /// the inverse transpose times the determinant, and exist where that one does not.
+    REALCAM_INLINE Vec3<T> normal(Vec3<T> n) const {
+        const Vec3<T> m = n.x * cross(y, z) + n.y * cross(z, x) + n.z * cross(x, y);
+        return determinant() < 0 ? -m : m;
+    }
+
+    /// The determinant is not 0.
+    REALCAM_INLINE InverseAffine<T> inverse() const {
+        const T scale = T(1) / determinant();
+        const Vec3<T> a = scale * cross(y, z), b = scale * cross(z, x), c = scale * cross(x, y);
+        return {{a.x, b.x, c.x}, {a.y, b.y, c.y}, {a.z, b.z, c.z}, origin};
+    }
+
+    friend REALCAM_INLINE Affine operator*(const Affine& a, const Affine& b) {
+        Affine c;
+        c.x = a.direction(b.x);
+        c.y = a.direction(b.y);
+        c.z = a.direction(b.z);
+        c.origin = a.point(b.origin);
+        return c;
+    }
+
+    template <class U>
+    REALCAM_INLINE explicit operator Affine<U>() const {
+        return {static_cast<Vec3<U>>(x), static_cast<Vec3<U>>(y), static_cast<Vec3<U>>(z),
+                static_cast<Vec3<U>>(origin)};
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,93 @@
+#pragma once
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../error.hpp"
+#include "../math/affine.hpp"
+#include "scene.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A place where an object stands: triangles and point lights of another scene, whose suns and environment stay behind.
+struct Instance {
+    std::shared_ptr<const Scene> object;
+    Affine<double> scene_from_object;  ///< metres on both sides
+    std::string name;  ///< for messages, and to find it by
+};
+
+/// A scene as a ground, and objects that stand in it, as often as one likes. A value: copies share what is large, and
+/// backends keep what they made of each shared part for as long as it is in use.
+struct Assembly {
+    std::shared_ptr<const Scene> ground;  ///< with the lights; may have no triangles where there are instances
+    std::vector<Instance> instances;
+
+    Assembly() = default;
+    Assembly(std::shared_ptr<const Scene> scene) : ground(std::move(scene)) {}
+    Assembly(Scene scene) : ground(std::make_shared<const Scene>(std::move(scene))) {}
+
+    bool has_light() const {
+        if (ground->has_light()) return true;
+        for (const Instance& instance : instances)
+            if (instance.object->has_lamp()) return true;
+        return false;
+    }
+    std::size_t triangle_count() const {
+        std::size_t count = ground->triangles.size();
+        for (const Instance& instance : instances) count += instance.object->triangles.size();
+        return count;
+    }
+};
+
+/// Whether two assemblies are made of the same parts, of which some may stand elsewhere.
+inline bool same_parts(const Assembly& a, const Assembly& b) {
+    if (a.ground != b.ground || a.instances.size() != b.instances.size()) return false;
+    for (std::size_t i = 0; i < a.instances.size(); ++i)
+        if (a.instances[i].object != b.instances[i].object) return false;
+    return true;
+}
+
+inline bool same_places(const Assembly& a, const Assembly& b) {
+    for (std::size_t i = 0; i < a.instances.size(); ++i)
+        if (a.instances[i].scene_from_object != b.instances[i].scene_from_object) return false;
+    return true;
+}
+
+/// A name for messages.
+inline std::string label(const Assembly& assembly, std::size_t instance) {
+    const std::string& name = assembly.instances[instance].name;
+    return "instance " + std::to_string(instance) + (name.empty() ? "" : " (\"" + name + "\")");
+}
+
+/// Throws InputError where there is nothing to be seen, or where an object cannot stand.
+inline void validate(const Assembly& assembly) {
+    if (!assembly.ground || assembly.triangle_count() == 0)
+        throw InputError("the scene is empty; at least one triangle is wanted");
+    for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
+        const Affine<double>& map = assembly.instances[i].scene_from_object;
+        // Far inside of what float can do, and beyond what anybody has seen.
+        constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
+        const auto within = [](double v, double least, double most) { return v >= least && v <= most; };
+        const double x = length(map.x), y = length(map.y), z = length(map.z);
+        if (!within(x, kLeast, kMost) || !within(y, kLeast, kMost) || !within(z, kLeast, kMost) ||
+            !(length(map.origin) <= kFarthest_m))
+            throw InputError(label(assembly, i) +
+                             ": a transform must be finite and scale each axis by 1e-6 to 1e6, to within 1e12 m");
+        if (!(std::fabs(map.determinant()) > 1e-6 * x * y * z))
+            throw InputError(label(assembly, i) +
+                             ": a transform must keep three directions; this one makes the object flat");
+    }
+}
+
+/// Puts an object into a scene: all that it is made of, by names that begin with `name`.
+inline void add(Assembly& assembly, const Assembly& object, const Affine<double>& scene_from_object,
+                const std::string& name) {
+    if (!object.ground->triangles.empty() || !object.ground->points.empty())
+        assembly.instances.push_back({object.ground, scene_from_object, name});
+    for (const Instance& part : object.instances)
+        assembly.instances.push_back({part.object, scene_from_object * part.scene_from_object, name + '/' + part.name});
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,97 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "light_tables.hpp"
+#include "scene.hpp"
+#include "split_triangles.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A scene's triangles as kernels read them: float, relative to an origin. What is measured between corners (planes,
+/// areas, edges) comes from their double positions. Owns the memory of its view; the Scene must outlive it.
+class PlacedMesh {
+public:
+    PlacedMesh(const Scene& scene, Vec3d origin_m, LargeTriangles large = LargeTriangles::cut)
+        : scene_(scene), origin_(origin_m), split_(scene, origin_m, large) {
+        positions_.reserve(split_.position_count());
+        for (std::size_t i = 0; i < split_.position_count(); ++i)
+            positions_.push_back(static_cast<Vec3f>(split_.position(i)));
+        for (const Texture& t : scene.textures) textures_.push_back({t.rgba.data(), t.width, t.height});
+        add_planes();
+        for (std::uint32_t i = 0; i < triangles().size(); ++i)
+            if (luminance(scene.materials[triangles()[i].material].emission) > 0) lamps_.push_back(i);
+    }
+
+    MeshView view() const {
+        MeshView view{};
+        view.triangles = triangles().data();
+        view.planes = planes_.data();
+        view.positions = positions_.data();
+        view.normals = split_.normals().empty() ? nullptr : split_.normals().data();
+        view.uvs = split_.uvs().empty() ? nullptr : split_.uvs().data();
+        view.materials = scene_.materials.data();
+        view.textures = textures_.data();
+        view.triangle_count = static_cast<std::int32_t>(triangles().size());
+        view.vertex_count = static_cast<std::int32_t>(positions_.size());
+        view.material_count = static_cast<std::int32_t>(scene_.materials.size());
+        view.texture_count = static_cast<std::int32_t>(textures_.size());
+        return view;
+    }
+
+    const Scene& scene() const { return scene_; }
+    Vec3d origin_m() const { return origin_; }
+    const std::vector<Vec3f>& positions() const { return positions_; }
+    /// The scene's, of which those that are large and near are in pieces.
+    const std::vector<Triangle>& triangles() const { return split_.triangles(); }
+
+    const std::vector<TrianglePlane>& planes() const { return planes_; }
+    /// Those of the triangles that give light.
+    const std::vector<std::uint32_t>& lamps() const { return lamps_; }
+
+    /// Corner and edges of a triangle, as exact as the scene gives them.
+    struct Edges {
+        Vec3d corner, u, v;
+    };
+    Edges edges(const Triangle& t) const {
+        return edges_of(t, [&](std::uint32_t v) { return split_.position(v); });
+    }
+
+private:
+    template <class PositionOf>
+    static Edges edges_of(const Triangle& t, PositionOf&& position) {
+        const Vec3d a = position(t.vertices[0]);
+        return {a, position(t.vertices[1]) - a, position(t.vertices[2]) - a};
+    }
+
+    void add_planes() {
+        planes_.reserve(triangles().size());
+        for (std::size_t i = 0; i < triangles().size(); ++i) {
+            // Of the whole triangle, so that its pieces are one plane.
+            const Edges whole = edges_of(scene_.triangles[split_.parent(i)],
+                                         [&](std::uint32_t v) { return scene_.positions_m[v] - origin_; });
+            const Vec3d area = cross(whole.u, whole.v);
+            const double size = length(area);
+            const Vec3d normal = size > 0 ? (1 / size) * area : Vec3d{0, 0, 1};
+            double reach = 0;
+            for (const std::uint32_t v : triangles()[i].vertices) {
+                const Vec3f p = positions_[v];
+                reach = std::max({reach, std::fabs(static_cast<double>(p.x)), std::fabs(static_cast<double>(p.y)),
+                                  std::fabs(static_cast<double>(p.z))});
+            }
+            planes_.push_back({static_cast<Vec3f>(normal), static_cast<float>(dot(normal, whole.corner)),
+                               static_cast<float>(static_cast<double>(kMarginShare) * reach + 1e-12)});
+        }
+    }
+
+    const Scene& scene_;
+    Vec3d origin_;
+    SplitTriangles split_;
+    std::vector<Vec3f> positions_;
+    std::vector<TrianglePlane> planes_;
+    std::vector<std::uint32_t> lamps_;
+    std::vector<TextureView> textures_;
+};
+
+}  // namespace REALCAM_NAMESPACE
