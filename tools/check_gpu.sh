@@ -31,7 +31,7 @@ settings=(-DREALCAM_PYTHON=ON "-DPython_EXECUTABLE=$python" -DREALCAM_WERROR=OFF
 
 bench() {
     "$python" -c 'from realcam.cli import main; main()' bench --json \
-        gpu-lens-rays gpu-hits gpu-paths gpu-frames >"$out/gpu.json"
+        gpu-lens-rays gpu-hits gpu-paths gpu-frames gpu-objects >"$out/gpu.json"
 }
 
 # A build for other chips only: `auto` takes the CPU, and who asks for the GPU is told why there is none.
@@ -42,7 +42,7 @@ foreign() {
         cmake --build build/foreign --target _core || return
     rm -rf build/foreign/package && mkdir build/foreign/package || return
     cp -r python/realcam build/foreign/package/ && cp --remove-destination build/foreign/python/_core*.so build/foreign/package/realcam/ || return
-    PYTHONPATH=build/foreign/package "$python" - <<'TEXT'
+    PYTHONPATH=build/foreign/package:$PYTHONPATH "$python" - <<'TEXT'
 import realcam as rc
 from realcam.bench import frame_scene
 

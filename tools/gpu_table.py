@@ -36,6 +36,12 @@ def rows(results: dict, peer: dict) -> list[tuple[str, str, str]]:
     add("lens rays alone over the whole, time", paths["lens_share"], "")
     for change, rate in results["gpu-frames"]["frames_per_second"].items():
         add(f"live view, 640 x 640 x 20, {change} changes", rate, "frames/s")
+    objects = results["gpu-objects"]
+    for kind, rate in objects["giga_paths_per_second"].items():
+        add(f"103 spheres as {kind}, pinhole, camera and shadow ray", rate, "G paths/s")
+    for kind, rate in objects["giga_bounces_per_second"].items():
+        add(f"103 spheres as {kind}, closest hits, cosine", rate, "G rays/s")
+    add("live view, 640 x 640 x 20, one of 103 objects moves", objects["frames_per_second"], "frames/s")
     return table
 
 

@@ -93,6 +93,15 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
     exposure_.resize(3 * count);
     depth_.resize(count);
     if (merges) others_.resize(count);
+    rehearse();
+}
+
+void DeviceRenderer::rehearse() {
+    for (const bool timed : {false, true})
+        launch_render({scene_.view(), scene_.bvh(), camera_, sums_.data(), counts_.data(), nullptr, 0, 0, 0, 0, 0, 0},
+                      timed, stream_);
+    launch_develop(sums_.data(), 0, 1, 1, exposure_.data(), depth_.data(), stream_);
+    launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
 void DeviceRenderer::clear_film(std::int64_t pixels) {

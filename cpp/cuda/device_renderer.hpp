@@ -59,6 +59,8 @@ public:
 
 private:
     void bind() const;
+    /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
+    void rehearse();
 
     int ordinal_;
     CudaStream stream_;

@@ -6,8 +6,9 @@ namespace realcam {
 /// One thread for each of `count` pieces of work, in blocks of kBlockSize.
 inline constexpr int kBlockSize = 128;
 
+/// At least one, so that nothing may be done.
 inline unsigned blocks_for(std::int64_t count) {
-    return static_cast<unsigned>((count + kBlockSize - 1) / kBlockSize);
+    return static_cast<unsigned>(count > kBlockSize ? (count + kBlockSize - 1) / kBlockSize : 1);
 }
 
 /// The piece of a thread. Past the last one in the last block.

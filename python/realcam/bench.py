@@ -277,7 +277,54 @@ def gpu_frames(threads: int) -> Result:
     return {"frames_per_second": rates}
 
 
-GPU_BENCHMARKS = ("gpu-lens-rays", "gpu-hits", "gpu-paths", "gpu-frames")
+def frame_objects(spheres: int) -> Scene:
+    """The spheres of frame_scene, in the same places and without a sky, as objects that share one."""
+    scene = frame_scene(spheres=0, boxes=0, sky=0.0)
+    points, faces = _sphere((0, 0, 0), 0.3)
+    sphere = Scene.from_arrays(points, faces)
+    random = np.random.default_rng(1)
+    for i in range(spheres):
+        matrix = np.eye(4)
+        x, z = random.uniform(-4, 4, 2)
+        matrix[:3, 3] = x, 0.3, z - 4
+        scene = scene.with_instance(sphere, matrix, name=str(i))
+    return scene
+
+
+def gpu_objects(threads: int) -> Result:
+    """The price of two levels: 103 spheres as objects against their triangles alone; and moving one of them."""
+    del threads
+    scenes = {"triangles": frame_scene(spheres=103, boxes=0, sky=0.0), "objects": frame_objects(103)}
+    camera = _gpu_camera("pinhole")
+    seconds: dict[str, list[float]] = {}
+    for _ in range(4):  # in turns; the first round warms up
+        for name, scene in scenes.items():
+            stats = render(scene, camera, spp=256, max_bounces=0, device="cuda").stats
+            seconds.setdefault(name, []).append(stats.seconds - stats.setup_seconds)
+    hits = {name: _core._gpu_hit_rates(scene, camera, "cuda") for name, scene in scenes.items()}
+
+    scene, view = scenes["objects"], _core.LiveView(scenes["objects"], max_bounces=0)
+    small = Camera(camera.lens, film=Film(24, 24, (640, 640)), position=(0, 1.5, 4), look_at=(0, 0.3, -4))
+    matrix = np.eye(4)
+    frames: list[_core.LiveFrame] = []
+    for i in range(220):
+        if i == 20:
+            frames[-1].codes.sum()
+            begin = time.perf_counter()
+        matrix[:3, 3] = 0.01 * i - 1, 0.3, -2
+        view.show(scene.moved("0", matrix))
+        frames.append(view.shoot(small, spp=20))
+        if len(frames) > 3:
+            frames.pop(0).codes.sum()
+    frames[-1].codes.sum()
+    return {
+        "giga_paths_per_second": {name: _giga(256 * 1920 * 1280 / min(times)) for name, times in seconds.items()},
+        "giga_bounces_per_second": {name: _giga(rates["cosine"]) for name, rates in hits.items()},
+        "frames_per_second": round(200 / (time.perf_counter() - begin), 1),
+    }
+
+
+GPU_BENCHMARKS = ("gpu-lens-rays", "gpu-hits", "gpu-paths", "gpu-frames", "gpu-objects")
 
 BENCHMARKS: dict[str, Callable[[int], Result]] = {
     "lens-rays": lens_rays,
@@ -288,4 +335,5 @@ BENCHMARKS: dict[str, Callable[[int], Result]] = {
     "gpu-hits": gpu_hits,
     "gpu-paths": gpu_paths,
     "gpu-frames": gpu_frames,
+    "gpu-objects": gpu_objects,
 }

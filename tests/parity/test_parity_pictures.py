@@ -53,7 +53,7 @@ def scene_with_objects() -> rc.Scene:
     scene, turn = textured_scene(), np.array([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
     for i, size in enumerate((0.3, 0.2, -0.25)):
         matrix = turn @ np.diag([size, abs(size), abs(size) * 1.5, 1])
-        matrix[:3, 3] = (i - 1, 0.3, -1 - i)
+        matrix[:3, 3] = (i - 1, 0.3 + 0.03 * i, -1 - i)  # no two planes in one
         scene = scene.with_instance(textured_scene(), matrix)
     return scene
 

@@ -146,7 +146,7 @@ def test_ctrl_c_stops_a_picture(device: str) -> None:
 
 # A kernel of another library in the same process that traps. From then on every call on that GPU fails until the
 # process ends, as where the GPU falls off its bus: both are errors that stay.
-LOSE = """
+LOSE = r"""
 import ctypes, threading, time
 driver = ctypes.CDLL("libcuda.so.1")
 
