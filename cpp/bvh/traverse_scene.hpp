@@ -3,45 +3,134 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Two levels: objects, and the triangles of each. Within an object the traversal is watertight; between two of them,
-// whose corners come from different roundings, there is no edge to be tight.
+/// Each level of the hierarchy over objects puts up to two entries here, each of an object's own one.
+using SceneTraversalStack = PendingSlots[3 * kMaxBvhDepth];
 
+/// A ray on its way through the ground, then through the objects. Nodes of all levels are entered in one place, so that
+/// lanes of a GPU's warp which are at different levels take their steps together.
+///
+/// Within an object the traversal is watertight; between two of them, whose corners come from different roundings,
+/// there is no edge to be tight.
 template <bool any>
-struct InstanceRay {
-    Vec3f origin, direction;
+class SceneTraversal : Traversal<any> {
+    using Base = Traversal<any>;
 
-    REALCAM_INLINE InstanceRay(Vec3f from, Vec3f along) : origin(from), direction(along) {}
+public:
+    REALCAM_INLINE SceneTraversal(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far)
+        : Base(origin, direction, far),
+          origin_(origin),
+          direction_(direction),
+          nodes_(bvh.ground.nodes),
+          triangles_of_mesh_(bvh.ground.triangles) {}
+
+    using Base::active;
+    using Base::hit;
+
+    REALCAM_INLINE void step(const SceneBvhView& bvh, SceneTraversalStack& stack) {
+        if (!this->triangles_) this->enter_node(nodes_, stack);
+        if (level_ == Level::objects) {
+            put_off_objects(stack);
+        } else if (this->meet_triangles(triangles_of_mesh_, NoTraversalProbe())) {
+            this->hit_.instance = instance_;
+            if (any) {
+                this->pending_.slots = this->triangles_ = 0;
+                return;
+            }
+        }
+        while (!active() && go_on(bvh, stack)) {
+        }
+    }
+
+private:
+    enum class Level { ground, objects, object };
+
+    static constexpr std::uint32_t kObjects = 0x80000000u;  ///< in `slots`: the others are a bit for each object
+
+    /// The objects that the ray meets in the last node wait until its children are through.
+    REALCAM_INLINE void put_off_objects(SceneTraversalStack& stack) {
+        if (!this->triangles_) return;
+        std::uint32_t objects = kObjects;
+        while (this->triangles_) {
+            const unsigned first = this->triangles_ & (0u - this->triangles_);
+            this->triangles_ ^= first;
+            objects |= 1u << count_bits(this->content_ & (first - 1u));
+        }
+        stack[this->waiting_++] = {this->first_triangle_, objects};
+    }
+
+    /// Where nothing is left at hand: takes up what waits. Whether there was anything.
+    REALCAM_INLINE bool go_on(const SceneBvhView& bvh, SceneTraversalStack& stack) {
+        if (level_ == Level::object && this->waiting_ == floor_) {
+            level_ = Level::objects;
+            nodes_ = bvh.nodes;
+            floor_ = 0;
+        }
+        if (this->waiting_ == floor_) {
+            if (level_ == Level::objects) return false;
+            level_ = Level::objects;  // the ground is done
+            nodes_ = bvh.nodes;
+            this->pending_ = {0, 0x0101u};
+            return true;
+        }
+        PendingSlots& next = stack[this->waiting_ - 1];
+        if (next.slots & kObjects) {
+            const unsigned first = next.slots & (0u - next.slots);
+            next.slots ^= first;
+            if (next.slots == kObjects) --this->waiting_;
+            enter_object(load_constant(bvh.instances + next.first_child + count_bits(first - 1u)));
+            return true;
+        }
+        if (level_ == Level::objects && turned_) {
+            this->turn_to(origin_, direction_);
+            turned_ = false;
+        }
+        this->pending_ = next;
+        --this->waiting_;
+        return true;
+    }
+
+    REALCAM_INLINE void enter_object(const BvhInstance& instance) {
+        level_ = Level::object;
+        instance_ = instance.index;
+        nodes_ = instance.object.nodes;
+        triangles_of_mesh_ = instance.object.triangles;
+        floor_ = this->waiting_;
+        turned_ = true;
+        this->turn_to(instance.object_from_placed.point(origin_), instance.object_from_placed.direction(direction_));
+    }
+
+    Vec3f origin_, direction_;
+    const WideNode* nodes_;  ///< of the level
+    const BvhTriangle* triangles_of_mesh_;  ///< of the ground or the object
+    std::uint32_t instance_ = kNoInstance;
+    Level level_ = Level::ground;
+    int floor_ = 0;  ///< what waits below is not the object's
+    bool turned_ = false;  ///< out of the frame of ground and objects
 };
 
-/// Whether the ray meets a triangle of the object at a parameter in [0, hit.distance). If so, `hit` says where.
 template <bool any>
-REALCAM_INLINE bool meets(const InstanceRay<any>& ray, const BvhInstance& instance, Hit& hit) {
-    const InverseAffine<float>& into = instance.object_from_placed;
-    const Hit inside =
-        traverse<any>(instance.object, into.point(ray.origin), into.direction(ray.direction), hit.distance);
-    if (inside.triangle == kNoTriangle) return false;
-    hit = inside;
-    hit.instance = instance.index;
-    return true;
+REALCAM_HD inline Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
+    SceneTraversal<any> ray(bvh, origin, direction, far);
+    SceneTraversalStack stack;
+    while (ray.active()) ray.step(bvh, stack);
+    return ray.hit(far);
 }
 
 /// As closest_hit of one hierarchy. `instanced`: whether there is anything but the ground.
 template <bool instanced>
 REALCAM_HD inline Hit closest_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
-    const Hit ground = closest_hit(bvh.ground, origin, direction, far);
-    if constexpr (instanced) {
-        const Hit object = traverse<false, InstanceRay<false>>(bvh.instances, origin, direction, ground.distance);
-        if (object.triangle != kNoTriangle) return object;
-    }
-    return ground;
+    if constexpr (instanced)
+        return traverse<false>(bvh, origin, direction, far);
+    else
+        return closest_hit(bvh.ground, origin, direction, far);
 }
 
 template <bool instanced>
 REALCAM_HD inline bool any_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
-    if (any_hit(bvh.ground, origin, direction, far)) return true;
     if constexpr (instanced)
-        return traverse<true, InstanceRay<true>>(bvh.instances, origin, direction, far).triangle != kNoTriangle;
-    return false;
+        return traverse<true>(bvh, origin, direction, far).triangle != kNoTriangle;
+    else
+        return any_hit(bvh.ground, origin, direction, far);
 }
 
 }  // namespace REALCAM_NAMESPACE

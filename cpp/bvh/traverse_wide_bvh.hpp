@@ -25,10 +25,7 @@ using TraversalStack = PendingSlots[kMaxBvhDepth];
 ///
 /// For `any`, it ends at the first triangle that is found. A ray with a number that is not finite (`far` may be
 /// infinite), or without a direction of normal floating-point size, meets nothing.
-///
-/// LeafRay is what meets() has to know of the ray for a leaf, made of its origin and of its direction times a power of
-/// two.
-template <bool any, class LeafRay = ShearedRay>
+template <bool any>
 class Traversal {
 public:
     REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far)
@@ -37,24 +34,16 @@ public:
     REALCAM_INLINE bool active() const { return ((pending_.slots & 0xffu) | triangles_) != 0; }
 
     /// One node, unless triangles of the last one are left, and up to kTrianglesPerStep triangles. The ray is active.
-    template <class Leaf, class Probe = NoTraversalProbe>
-    REALCAM_INLINE void step(const WideBvhViewOf<Leaf>& bvh, TraversalStack& stack, Probe&& probe = {}) {
+    template <class Probe = NoTraversalProbe>
+    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, Probe&& probe = {}) {
         if (!triangles_) {
             probe.node();
             enter_node(bvh.nodes, stack);
         }
-        for (int i = 0; i < kTrianglesPerStep; ++i) {
-            if (!triangles_) break;
-            probe.triangle();
-            const unsigned first = triangles_ & (0u - triangles_);
-            triangles_ ^= first;
-            const std::uint32_t number = first_triangle_ + count_bits(content_ & (first - 1u));
-            if (meets(leaf_ray_, load_constant(bvh.leaves + number), hit_) && any) {
-                pending_.slots = triangles_ = 0;
-                return;
-            }
-        }
-        if (!active() && waiting_ > 0) pending_ = stack[--waiting_];
+        if (meet_triangles(bvh.triangles, probe) && any)
+            pending_.slots = triangles_ = 0;
+        else if (!active() && waiting_ > 0)
+            pending_ = stack[--waiting_];
     }
 
     /// After the last step. No hit: kNoTriangle, and `far` as the distance.
@@ -65,7 +54,7 @@ public:
         return hit;
     }
 
-private:
+protected:
     /// Nodes with more are rare, and the other lanes would wait.
     static constexpr int kTrianglesPerStep = 2;
 
@@ -78,14 +67,44 @@ private:
     REALCAM_INLINE Traversal(Vec3f origin, Vec3f direction, float far, std::uint32_t exponent)
         : scale_(std::bit_cast<float>((254u - exponent) << 23)),
           slabs_(origin, scale_ * direction),
-          leaf_ray_(origin, scale_ * direction),
+          sheared_(origin, scale_ * direction),
           hit_{far * std::bit_cast<float>(exponent << 23), kNoTriangle, 0, 0} {
         const float sum = origin.x + origin.y + origin.z + direction.x + direction.y + direction.z;
         if (!(sum - sum == 0) || exponent == 0 || !(hit_.distance > 0)) pending_.slots = 0;
     }
 
+    /// The ray in another frame, as far as it goes by now, before its first step there. What waits keeps waiting.
+    REALCAM_INLINE void turn_to(Vec3f origin, Vec3f direction) {
+        const Hit so_far = hit_;
+        const int waiting = waiting_;
+        *this = Traversal(origin, direction, so_far.distance * scale_);
+        hit_.triangle = so_far.triangle;
+        hit_.u = so_far.u;
+        hit_.v = so_far.v;
+        hit_.instance = so_far.instance;
+        waiting_ = waiting;
+    }
+
+    /// Up to kTrianglesPerStep of the last node; for `any`, until the first hit. Whether there was one.
+    template <class Probe>
+    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, Probe&& probe) {
+        bool met = false;
+        for (int i = 0; i < kTrianglesPerStep; ++i) {
+            if (!triangles_) break;
+            probe.triangle();
+            const unsigned first = triangles_ & (0u - triangles_);
+            triangles_ ^= first;
+            const std::uint32_t number = first_triangle_ + count_bits(content_ & (first - 1u));
+            if (meets_triangle(sheared_, load_constant(triangles + number), hit_)) {
+                met = true;
+                if (any) break;
+            }
+        }
+        return met;
+    }
+
     /// Goes to the next node in order, and leaves in `pending_` and `triangles_` what the ray meets there.
-    REALCAM_INLINE void enter_node(const WideNode* nodes, TraversalStack& stack) {
+    REALCAM_INLINE void enter_node(const WideNode* nodes, PendingSlots* stack) {
         const unsigned slot = slabs_.nearest(pending_.slots & 0xffu);
         const std::uint32_t index = pending_.first_child + count_bits(pending_.slots >> 8 & (slot - 1u));
         pending_.slots ^= slot;
@@ -109,17 +128,16 @@ private:
 
     float scale_;
     SlabRay slabs_;
-    LeafRay leaf_ray_;
+    ShearedRay sheared_;
     Hit hit_;  ///< the ray's end, until there is one
     PendingSlots pending_ = {0, 0x0101u};
     std::uint32_t triangles_ = 0, content_ = 0, first_triangle_ = 0;  ///< of the last node
     int waiting_ = 0;
 };
 
-template <bool any, class LeafRay = ShearedRay, class Leaf, class Probe = NoTraversalProbe>
-REALCAM_HD inline Hit traverse(const WideBvhViewOf<Leaf>& bvh, Vec3f origin, Vec3f direction, float far,
-                               Probe&& probe = {}) {
-    Traversal<any, LeafRay> ray(origin, direction, far);
+template <bool any, class Probe = NoTraversalProbe>
+REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far, Probe&& probe = {}) {
+    Traversal<any> ray(origin, direction, far);
     TraversalStack stack;
     while (ray.active()) ray.step(bvh, stack, probe);
     return ray.hit(far);

@@ -46,7 +46,7 @@ private:
 };
 
 /// Whether the ray meets the triangle, from either side, at a parameter in [0, hit.distance). If so, `hit` says where.
-REALCAM_INLINE bool meets(const ShearedRay& ray, const BvhTriangle& triangle, Hit& hit) {
+REALCAM_INLINE bool meets_triangle(const ShearedRay& ray, const BvhTriangle& triangle, Hit& hit) {
     const Vec3f a = ray.sheared(triangle.a), b = ray.sheared(triangle.b), c = ray.sheared(triangle.c);
     const float u = difference_of_products(c.x, b.y, c.y, b.x);
     const float v = difference_of_products(a.x, c.y, a.y, c.x);

@@ -40,13 +40,11 @@ struct alignas(16) BvhTriangle {
 };
 static_assert(sizeof(BvhTriangle) == 48);
 
-/// What a traversal reads: node 0 is the root. The slots hold triangles, or in their stead other things.
-template <class Leaf>
-struct WideBvhViewOf {
+/// What a traversal reads: node 0 is the root.
+struct WideBvhView {
     const WideNode* nodes;
-    const Leaf* leaves;
+    const BvhTriangle* triangles;
 };
-using WideBvhView = WideBvhViewOf<BvhTriangle>;
 
 /// A place where an object stands, with the object's own hierarchy.
 struct alignas(16) BvhInstance {
@@ -55,10 +53,11 @@ struct alignas(16) BvhInstance {
     std::uint32_t index;  ///< in the scene's list
 };
 
-/// The ground's triangles, and the objects.
+/// The ground's triangles, and a hierarchy over objects: its slots hold these in the stead of triangles.
 struct SceneBvhView {
     WideBvhView ground;
-    WideBvhViewOf<BvhInstance> instances;
+    const WideNode* nodes;
+    const BvhInstance* instances;
 };
 
 }  // namespace REALCAM_NAMESPACE

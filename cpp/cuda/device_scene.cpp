@@ -13,6 +13,7 @@ void DeviceScene::set(const PlacedScene& scene, const SceneBvh& bvh, CudaStream&
     objects_.clear();
     for (const WideBvh& object : bvh.objects) objects_.push_back(copy_bvh(object));
     set_places(scene, bvh, stream);
+    stream.wait("copying the scene to it");
 }
 
 void DeviceScene::set_places(const PlacedScene& scene, const SceneBvh& bvh, CudaStream& stream) {
@@ -20,8 +21,8 @@ void DeviceScene::set_places(const PlacedScene& scene, const SceneBvh& bvh, Cuda
     const auto copy = [&](const auto* from, std::size_t count) { return place_arrays_.copy(from, count, stream); };
     static_cast<PlacesView&>(view_) = with_copied_arrays(scene.places(), copy);
     const std::vector<BvhInstance> leaves = bvh_instances(bvh, scene, objects_);
-    bvh_.instances = {copy(bvh.instances.nodes.data(), bvh.instances.nodes.size()), copy(leaves.data(), leaves.size())};
-    stream.wait("copying the scene to it");
+    bvh_.nodes = copy(bvh.instances.nodes.data(), bvh.instances.nodes.size());
+    bvh_.instances = copy(leaves.data(), leaves.size());
 }
 
 }  // namespace realcam

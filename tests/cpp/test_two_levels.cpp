@@ -81,7 +81,7 @@ struct OnHost {
         refit_instances(bvh, placed);
         list();
     }
-    SceneBvhView view() const { return {bvh.ground.view(), {bvh.instances.nodes.data(), leaves.data()}}; }
+    SceneBvhView view() const { return {bvh.ground.view(), bvh.instances.nodes.data(), leaves.data()}; }
 
 private:
     void list() {
