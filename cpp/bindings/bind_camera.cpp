@@ -131,11 +131,13 @@ void bind_camera(py::module_& m) {
         .def_property_readonly("model", [](const Camera& c) { return kModelNames[static_cast<int>(c.model)]; });
     m.def(
         "pupil_setup",
-        [](const LensSystem& lens, double film_radius_mm) {
+        [](const LensSystem& lens, double film_radius_mm, bool on_one_core) {
             const py::gil_scoped_release release;
-            return Pupil(lens, film_radius_mm, fast_pupil_tracer()).image_radius();
+            PupilTracer tracer = fast_pupil_tracer();
+            if (on_one_core) tracer.for_each = PupilTracer().for_each;
+            return Pupil(lens, film_radius_mm, std::move(tracer)).image_radius();
         },
-        "lens"_a, "film_radius_mm"_a,
+        "lens"_a, "film_radius_mm"_a, "on_one_core"_a = false,
         "Finds the lens's pupil for every film radius up to this one (what render does after any change of focus or "
         "stop).\n"
         "Returns the radius beyond which no light arrives, mm.");

@@ -179,7 +179,7 @@ class CameraSetup {
 public:
     /// Throws InputError. `tracer`: see Pupil. `last`: a set-up whose pupil is taken over if it is the same one:
     /// finding it is most of the work, and a camera that only moves keeps it.
-    explicit CameraSetup(const Camera& camera, PupilTracer tracer = nullptr, const CameraSetup* last = nullptr)
+    explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr)
         : camera_(camera), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
         validate(camera);
         if (last && last->has_pupil_of(camera))

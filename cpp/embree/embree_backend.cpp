@@ -158,7 +158,15 @@ std::unique_ptr<Backend> make_embree_backend() {
 
 PupilTracer fast_pupil_tracer() {
     const auto trace = kernels().trace_block;
-    return [trace](const LensView<float>& view, LensRays<float, 256>& rays) { trace(&view, &rays); };
+    return {[trace](const LensView<float>& view, PupilTracer::Rays& rays) { trace(&view, &rays); },
+            [](int count, const PupilTracer::Task& task) {
+                tbb::parallel_for(
+                    tbb::blocked_range<int>(0, count, 1),
+                    [&](const tbb::blocked_range<int>& range) {
+                        for (int i = range.begin(); i < range.end(); ++i) task(i);
+                    },
+                    tbb::simple_partitioner());
+            }};
 }
 
 }  // namespace realcam

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../math/random.hpp"
-#include "pupil_outline.hpp"
+#include "pupil_outline_search.hpp"
 #include "pupil_search.hpp"
 #include "pupil_view.hpp"
 
@@ -17,13 +17,14 @@ class Pupil {
 public:
     static constexpr int kRows = 48;
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
-    /// No search traces more, whatever the lens: 170 looks at a film radius (two tables of nodes, the edge of the
-    /// image, half-way between rows) of PupilSearch::kMostBlocks, 8 outlines of 15 blocks and 256 rounds for each row.
-    /// Lenses that can be made take a hundredth of it.
-    static constexpr int kMostBlocks = 170 * PupilSearch::kMostBlocks + kRows * (8 * 15 + 256) + 15;
+    /// No search traces more, whatever the lens: 270 looks at a film radius (two tables of nodes, both looked for ahead
+    /// too, the edge of the image, half-way between rows), outlines at both ends and seven places of each row, and 256
+    /// rounds for it. Lenses that can be made take a hundredth of it.
+    static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(2 * kRows + 1) +
+                                       OutlineSearch::most_blocks(6 * kRows) + 256 * kRows;
 
     /// `film_radius` in mm: the film point furthest from the axis. Throws InputError where it is no positive length.
-    Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = nullptr)
+    Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = {})
         : search_(lens, std::move(tracer)), image_radius_(film_radius * (1 + 1e-6)) {
         if (!(film_radius > 0) || !(film_radius <= kLongest))
             throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
@@ -45,7 +46,7 @@ public:
                 kSectors,
                 radius,
                 radius > 0 ? 1 / radius : 0.0f,
-                static_cast<float>(search_.index_squared())};
+                static_cast<float>(search_.lens().index_squared())};
     }
     double image_radius() const { return image_radius_; }
     /// Whether the table holds the pupil between its rows too. A stop of some micrometres moves by more than its own
@@ -91,7 +92,21 @@ private:
     std::vector<std::optional<PupilBox>> look_from_axis() const {
         std::vector<std::optional<PupilBox>> boxes;
         PupilTrack track;
-        for (int i = 0; i <= kRows; ++i) boxes.push_back(search_.look(radius_at(i), track));
+        bool looked_ahead = false;
+        while (static_cast<int>(boxes.size()) <= kRows) {
+            boxes.push_back(search_.look(radius_at(static_cast<double>(boxes.size())), track));
+            if (boxes.back() || looked_ahead) continue;
+            // From the first dark row on all is dark, most often. Then what a row sees depends on no row before.
+            looked_ahead = true;
+            const int next = static_cast<int>(boxes.size());
+            std::vector<std::optional<PupilBox>> ahead(static_cast<std::size_t>(kRows + 1 - next));
+            search_.lens().for_each(kRows + 1 - next, [&](int i) {
+                PupilTrack own = track;
+                ahead[static_cast<std::size_t>(i)] = search_.look(radius_at(next + i), own);
+            });
+            const auto lit = std::find_if(ahead.begin(), ahead.end(), [](const auto& box) { return box.has_value(); });
+            boxes.insert(boxes.end(), ahead.begin(), lit);
+        }
         return boxes;
     }
 
@@ -145,79 +160,40 @@ private:
                 a.half_height + f * (b.half_height - a.half_height)};
     }
 
-    /// Scans outwards along each azimuth, then halves the last and the first interval at which the light changes.
-    PupilOutline outline_at(double position) const {
-        constexpr int kSteps = 20, kHalvings = 9;
-        constexpr double kReach = 1.5;  // past the corner of the box
-        const PupilNode node = node_at(position);
-        const double radius = radius_at(position);
-        constexpr int kRays = PupilOutline::kAzimuths + 1;
-        PupilDirection spoke[kRays];
-        for (int a = 0; a < kRays; ++a) {
-            const double angle = PupilOutline::azimuth(a);
-            spoke[a] = {static_cast<double>(node.half_width) * std::cos(angle),
-                        static_cast<double>(node.half_height) * std::sin(angle)};
-        }
-        const auto direction = [&](int azimuth, double reach) {
-            return PupilDirection{static_cast<double>(node.centre) + reach * spoke[azimuth].l,
-                                  reach * spoke[azimuth].m};
-        };
-        int first[kRays], last[kRays];
-        std::fill(first, first + kRays, -1);
-        std::fill(last, last + kRays, -1);
-        search_.trace(
-            radius, kRays * kSteps, [&](int i) { return direction(i / kSteps, kReach * (i % kSteps) / kSteps); },
-            [&](int i, bool passes) {
-                if (!passes) return;
-                const int azimuth = i / kSteps, step = i % kSteps;
-                if (first[azimuth] < 0) first[azimuth] = step;
-                last[azimuth] = step;
-            });
-        double open[2][kRays], shut[2][kRays];  // [0] outer edge, [1] inner edge
-        for (int a = 0; a < kRays; ++a) {
-            open[0][a] = kReach * last[a] / kSteps;
-            shut[0][a] = kReach * (last[a] + 1) / kSteps;
-            open[1][a] = kReach * first[a] / kSteps;
-            shut[1][a] = kReach * std::max(first[a] - 1, 0) / kSteps;
-        }
-        const bool has_hole = std::any_of(first, first + kRays, [](int step) { return step > 0; });
-        for (int i = 0; i < kHalvings; ++i)
-            search_.trace(
-                radius, has_hole ? 2 * kRays : kRays,
-                [&](int k) {
-                    return direction(k % kRays, 0.5 * (open[k / kRays][k % kRays] + shut[k / kRays][k % kRays]));
-                },
-                [&](int k, bool passes) {
-                    const int edge = k / kRays, a = k % kRays;
-                    (passes ? open : shut)[edge][a] = 0.5 * (open[edge][a] + shut[edge][a]);
-                });
-        PupilOutline outline;
-        for (int a = 0; a < kRays; ++a) {
-            if (last[a] < 0) continue;
-            outline.outer[a] = shut[0][a];
-            outline.inner[a] = first[a] == 0 ? 0 : shut[1][a];
-        }
-        return outline;
+    std::vector<PupilOutline> outlines_at(const std::vector<double>& positions) const {
+        std::vector<OutlineLook> looks;
+        for (const double position : positions) looks.push_back({radius_at(position), node_at(position)});
+        return OutlineSearch::find(search_.lens(), looks);
     }
 
     /// A row holds what passes at its two ends and in between, and a share more of what changes over it. Where it
     /// changes by much, as behind the last surface that cuts the light off, more film radii are looked at.
     void find_outlines() {
-        PupilOutline near = outline_at(0);
-        for (int row = 0; row < kRows; ++row) {
-            if (ends_inside_film_ && row >= kRows - kEdgeRows) {
-                add_row(row, PupilRow(box_outline()), 1.5, 16);
-                continue;
-            }
-            std::vector<PupilOutline> looks{near, outline_at(row + 0.5), outline_at(row + 1.0)};
-            near = looks.back();
+        const int rows = ends_inside_film_ ? kRows - kEdgeRows : kRows;
+        std::vector<double> positions;
+        for (int i = 0; i <= 2 * rows; ++i) positions.push_back(0.5 * i);
+        const std::vector<PupilOutline> halves = outlines_at(positions);
+        std::vector<std::vector<PupilOutline>> looks;
+        positions.clear();
+        for (int row = 0; row < rows; ++row) {
+            looks.emplace_back(halves.begin() + 2 * row, halves.begin() + 2 * row + 3);
             const bool near_edge = ends_inside_film_ && row > kRows / 2;
-            const bool changes = near_edge || largest_spread(looks) > 0.08;
-            const int steps = changes ? 8 : 2;
-            for (int i = 1; i < steps; ++i)
-                if (2 * i != steps) looks.push_back(outline_at(row + static_cast<double>(i) / steps));
-            add_row(row, PupilRow(holding_all(looks)), changes ? 1.4 : 1.15, changes ? 24 : 1);
+            if (!near_edge && largest_spread(looks.back()) <= 0.08) continue;
+            for (const int eighth : {1, 2, 3, 5, 6, 7}) positions.push_back(row + eighth / 8.0);
         }
+        const std::vector<PupilOutline> eighths = outlines_at(positions);
+        for (std::size_t i = 0; i < eighths.size(); ++i)
+            looks[static_cast<std::size_t>(positions[i])].push_back(eighths[i]);
+        outline_.resize(kRows * kSectors);
+        search_.lens().for_each(kRows, [&](int row) {
+            if (row >= rows) {
+                add_row(row, PupilRow(box_outline()), 1.5, 16);
+                return;
+            }
+            const std::vector<PupilOutline>& seen = looks[static_cast<std::size_t>(row)];
+            const bool changes = seen.size() > 3;
+            add_row(row, PupilRow(holding_all(seen)), changes ? 1.4 : 1.15, changes ? 24 : 1);
+        });
     }
 
     /// Adds a row. Sends rays all over its surroundings first, and widens the sectors beside which some pass, until so
@@ -234,25 +210,28 @@ private:
                                            : round == 1 ? 0.0
                                                         : static_cast<double>(sample_2d(stream, 0, 1).x));
             const PupilNode node = node_at(position);
+            const double radius = radius_at(position);
             Vec2f places[kBlock];
-            for (std::uint32_t i = 0; i < kBlock; ++i) {
-                const Vec2f u = sample_2d(stream, i, 0);
+            PupilRays rays;
+            for (int i = 0; i < kBlock; ++i) {
+                const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 0);
                 places[i] = {static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * u.y};
+                rays.set(i, radius,
+                         {static_cast<double>(node.centre + node.half_width * places[i].x),
+                          static_cast<double>(node.half_height * places[i].y)});
             }
-            const auto direction = [&](int i) {
-                return PupilDirection{static_cast<double>(node.centre + node.half_width * places[i].x),
-                                      static_cast<double>(node.half_height * places[i].y)};
-            };
-            bool strayed = false;
-            search_.trace(radius_at(position), kBlock, direction, [&](int i, bool passes) {
-                held += static_cast<int>(sectors.holds(places[i]));
-                passing += static_cast<int>(passes);
-                strayed |= passes && sectors.take_in(places[i]);
-            });
+            bool passes[kBlock], strayed = false;
+            search_.lens().trace(rays, passes);
+            for (int i = 0; i < kBlock; ++i) {
+                const bool holds = sectors.holds(places[i]);
+                held += static_cast<int>(holds);
+                passing += static_cast<int>(passes[i]);
+                strayed |= passes[i] && !holds && sectors.take_in(places[i]);
+            }
             clean = strayed ? 0 : clean + 1;
         }
         if (passing < held / 4) sectors = PupilRow(box_outline());
-        outline_.insert(outline_.end(), sectors.sectors().begin(), sectors.sectors().end());
+        std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);
     }
 
     PupilSearch search_;

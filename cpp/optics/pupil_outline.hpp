@@ -1,11 +1,13 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
 
+#include "pupil_box.hpp"
 #include "pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -16,7 +18,21 @@ struct PupilOutline {
 
     double outer[kAzimuths + 1] = {}, inner[kAzimuths + 1] = {};
 
-    static double azimuth(int spoke) { return std::numbers::pi * spoke / kAzimuths; }
+    static PupilDirection direction(int spoke) { return fine_direction(spoke * kFine); }
+
+    static constexpr int kFine = 16;  ///< finer ones in each interval
+    /// Of unit length.
+    static PupilDirection fine_direction(int i) {
+        static const auto all = [] {
+            std::array<PupilDirection, kAzimuths * kFine + 1> directions;
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                const double angle = std::numbers::pi * static_cast<double>(k) / (kAzimuths * kFine);
+                directions[k] = {std::cos(angle), std::sin(angle)};
+            }
+            return directions;
+        }();
+        return all[static_cast<std::size_t>(i)];
+    }
 };
 
 /// The whole box, and a little more. At the edge of the image circle the last light comes through a crescent, thin
@@ -24,8 +40,8 @@ struct PupilOutline {
 inline PupilOutline box_outline() {
     PupilOutline outline;
     for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
-        const double angle = PupilOutline::azimuth(a);
-        outline.outer[a] = 1.3 / std::max(std::fabs(std::cos(angle)), std::fabs(std::sin(angle)));
+        const PupilDirection d = PupilOutline::direction(a);
+        outline.outer[a] = 1.3 / std::max(std::fabs(d.l), std::fabs(d.m));
     }
     return outline;
 }
@@ -72,29 +88,25 @@ public:
     /// Cuts the outline into sectors of nearly equal area.
     explicit PupilRow(const PupilOutline& outline) {
         constexpr int kAzimuths = PupilOutline::kAzimuths;
-        constexpr int kFine = 16;  // points of azimuth in each interval
-        constexpr int kPoints = kAzimuths * kFine;
-        std::vector<double> outer(kPoints + 1), inner(kPoints + 1), area(kPoints + 1, 0.0);
+        constexpr int kFine = PupilOutline::kFine, kPoints = kAzimuths * kFine;
+        double outer[kPoints + 1], inner[kPoints + 1], area[kPoints + 1];
         for (int i = 0; i <= kPoints; ++i) {
             const int a = std::min(i / kFine, kAzimuths - 1);
             const double f = static_cast<double>(i - a * kFine) / kFine;
             const double before = outline.outer[a], after = outline.outer[a + 1];
             // Where the reach jumps, the corner of a sliver lies between the two spokes, further out than either.
             const bool corner = std::fabs(after - before) > 0.2 * std::max(before, after);
-            outer[static_cast<std::size_t>(i)] =
-                corner ? 1.25 * std::max(before, after) : before + f * (after - before);
-            inner[static_cast<std::size_t>(i)] = corner
-                                                     ? std::min(outline.inner[a], outline.inner[a + 1])
-                                                     : outline.inner[a] + f * (outline.inner[a + 1] - outline.inner[a]);
+            outer[i] = corner ? 1.25 * std::max(before, after) : before + f * (after - before);
+            inner[i] = corner ? std::min(outline.inner[a], outline.inner[a + 1])
+                              : outline.inner[a] + f * (outline.inner[a + 1] - outline.inner[a]);
         }
-        for (std::size_t i = 1; i <= kPoints; ++i)
+        area[0] = 0;
+        for (int i = 1; i <= kPoints; ++i)
             area[i] = area[i - 1] + outer[i] * outer[i - 1] - inner[i] * inner[i - 1] + 1e-12;
-        std::size_t from = 0;
+        int from = 0;
         for (int s = 0; s < kSectors; ++s) {
-            std::size_t to = from + 1;
-            while (to < kPoints - static_cast<std::size_t>(kSectors - 1 - s) &&
-                   area[to] < area[kPoints] * (s + 1) / kSectors)
-                ++to;
+            int to = from + 1;
+            while (to < kPoints - (kSectors - 1 - s) && area[to] < area[kPoints] * (s + 1) / kSectors) ++to;
             if (s == kSectors - 1) to = kPoints;
             sectors_.push_back(sector_over(outer, inner, from, to));
             from = to;
@@ -128,13 +140,17 @@ private:
 
     /// Nothing for a place with m < 0, and for one that falls between two sectors by rounding.
     std::optional<std::size_t> sector_of(Vec2f place) const {
-        for (std::size_t i = 0; i < sectors_.size(); ++i) {
-            const PupilSector& s = sectors_[i];
-            const bool after = s.x * place.y - s.y * place.x >= 0;
-            const bool before = place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0;
-            if (after && before) return i;
-        }
-        return std::nullopt;
+        const auto begins_before = [place](const PupilSector& s) { return s.x * place.y - s.y * place.x >= 0; };
+        const auto ends_before = [place](const PupilSector& s) {
+            return !(place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0);
+        };
+        // Bisection without a branch: no processor could guess it.
+        static_assert((kSectors & (kSectors - 1)) == 0);
+        std::size_t at = 0;
+        for (std::size_t half = kSectors / 2; half > 0; half /= 2)
+            at += half * static_cast<std::size_t>(ends_before(sectors_[at + half - 1]));
+        if (ends_before(sectors_[at]) || !begins_before(sectors_[at])) return std::nullopt;
+        return at;
     }
     /// 1 on the sector's outer edge.
     static float reach_in(const PupilSector& s, Vec2f place) {
@@ -143,25 +159,23 @@ private:
     static bool holds(const PupilSector& s, float reach) { return reach <= 1 && reach * reach >= s.hole_squared; }
 
     /// The smallest triangle on these two azimuths whose outer edge lies outside the outline in between.
-    static PupilSector sector_over(const std::vector<double>& outer, const std::vector<double>& inner, std::size_t from,
-                                   std::size_t to) {
-        const auto angle = [&](std::size_t i) {
-            return std::numbers::pi * static_cast<double>(i) / static_cast<double>(outer.size() - 1);
-        };
-        const auto point = [&](std::size_t i) {
+    static PupilSector sector_over(const double* outer, const double* inner, int from, int to) {
+        const auto point = [&](int i) {
             // Not less: next to a point a thousand times as far out, float32 would give the triangle no area.
             const double r = std::max(outer[i], 1e-3);
-            return Point{r * std::cos(angle(i)), r * std::sin(angle(i))};
+            const PupilDirection d = PupilOutline::fine_direction(i);
+            return Point{r * d.l, r * d.m};
         };
         const Point a = point(from), b = point(to);
         const double twice_area = a.x * b.y - a.y * b.x;
         // Distance from the middle to the edge along an azimuth, by Cramer's rule.
-        const auto edge = [&](std::size_t i) {
-            return twice_area / ((b.y - a.y) * std::cos(angle(i)) - (b.x - a.x) * std::sin(angle(i)));
+        const auto edge = [&](int i) {
+            const PupilDirection d = PupilOutline::fine_direction(i);
+            return twice_area / ((b.y - a.y) * d.l - (b.x - a.x) * d.m);
         };
         double scale = 1, hole = 1;
-        for (std::size_t i = from; i <= to; ++i) scale = std::max(scale, outer[i] / edge(i));
-        for (std::size_t i = from; i <= to; ++i) hole = std::min(hole, inner[i] / (scale * edge(i)));
+        for (int i = from; i <= to; ++i) scale = std::max(scale, outer[i] / edge(i));
+        for (int i = from; i <= to; ++i) hole = std::min(hole, inner[i] / (scale * edge(i)));
         return {static_cast<float>(scale * a.x), static_cast<float>(scale * a.y),
                 static_cast<float>(scale * (b.x - a.x)), static_cast<float>(scale * (b.y - a.y)),
                 static_cast<float>(hole * hole)};

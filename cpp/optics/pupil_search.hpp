@@ -1,46 +1,27 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
-#include <functional>
 #include <limits>
-#include <numbers>
 #include <optional>
-#include <vector>
+#include <utility>
 
-#include "lens_path.hpp"
-#include "pupil_box.hpp"
+#include "pupil_lens.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-/// Traces float rays from the film of one lens; marks in `passes` those that leave the lens. The backend may bring a
-/// faster one than the build's baseline.
-using PupilTracer = std::function<void(const LensView<float>&, LensRays<float, 256>&)>;
 
 /// Finds, with real rays, where the directions lie that pass a lens from a film point on the +x axis.
 class PupilSearch {
 public:
-    static constexpr int kBlock = 256;
-    /// Of one look: two searches of six levels, 17 blocks each, and of 17 growths.
-    static constexpr int kMostBlocks = 2 * (6 * 17 + 17 * 6);
+    static constexpr int kBlock = PupilTracer::kBlock;
+    /// Of one look: two searches of six levels, 11 blocks each, of 5 more, and of 17 growths.
+    static constexpr int kMostBlocks = 2 * (6 * 11 + 5 + 17 * 6);
 
-    PupilSearch(const LensSystem& lens, PupilTracer tracer)
-        : lens_(round_iris(lens)),
-          path_(lens_, LightDirection::to_scene, lens.wavelength_nm),
-          tracer_(tracer ? std::move(tracer)
-                         : [](const LensView<float>& v, LensRays<float, kBlock>& r) { trace_lens(v, r); }) {}
+    PupilSearch(const LensSystem& lens, PupilTracer tracer) : lens_(lens, std::move(tracer)) {}
 
-    double index_squared() const { return path_.entry_index * path_.entry_index; }
-
-    /// Which of these directions, from a film point at (radius, 0), pass the lens.
-    template <class DirectionAt, class Result>
-    void trace(double radius, int count, DirectionAt&& direction_at, Result&& result) const {
-        trace(path_.view(), radius, count, direction_at,
-              [&](int i, const LensRays<float, kBlock>& rays, int lane) { result(i, rays.status[lane] == 0); });
-    }
+    const PupilLens& lens() const { return lens_; }
 
     /// The box at a film radius further out than those on the track; adds it there.
     std::optional<PupilBox> look(double radius, PupilTrack& track) const {
-        const PupilBox widest = box_of_last_surface(radius);
+        const PupilBox widest = lens_.box_of_last_surface(radius);
         std::optional<PupilBox> box;
         if (track.last) box = find_box(radius, track.search_at(radius), widest);
         if (!box) box = find_box(radius, widest, widest);
@@ -49,99 +30,80 @@ public:
     }
 
 private:
-    static constexpr int kGrid = 48;  ///< points of the search grid along l; half of them along m >= 0
+    /// Points of the search grid along l, and along m >= 0.
+    static constexpr int kColumns = 48, kRows = kColumns / 2, kPoints = kColumns * kRows;
+    static constexpr int kGridBlocks = (kPoints + kBlock - 1) / kBlock;
 
-    /// Blades are ignored here and reject rays later; the circle around their opening holds all that pass.
-    static LensSystem round_iris(LensSystem lens) {
-        const double rim = lens.stop().clear_semi_diameter;
-        if (lens.iris.blades > 0 && !lens.is_wide_open()) {
-            const Iris<double> open = open_iris(lens.iris, lens.stop_semi_diameter, rim);
-            const double h = open.apothem, q = open.curvature;
-            const double linear = (1 - q * h) * std::cos(std::numbers::pi / open.blades), constant = 2 * h - q * h * h;
-            lens.stop_semi_diameter = std::min(rim, constant / (linear + std::sqrt(linear * linear + q * constant)));
-        }
-        lens.iris.blades = 0;
-        return lens;
+    /// What passes of a grid.
+    struct Passing {
+        int count = 0;
+        PupilBox box = PupilBox::none();
+        PupilDirection highest{0, 0};  ///< the middle of the top row's passing points
+    };
+
+    static double grid_l(const PupilBox& box, int column) {
+        return box.l_min + (column + 0.5) / kColumns * (box.l_max - box.l_min);
     }
+    static double grid_m(const PupilBox& box, int row) { return (row + 0.5) / kRows * box.m_max; }
 
-    template <class DirectionAt, class Result>
-    void trace(const LensView<float>& view, double radius, int count, DirectionAt&& direction_at,
-               Result&& result) const {
-        LensRays<float, kBlock> rays;
-        for (int first = 0; first < count; first += kBlock) {
-            const int used = std::min(kBlock, count - first);
+    /// Traces a grid over a box. `trace`(rays, first point) is called for each block of them, in any order.
+    template <class Trace>
+    void trace_grid(double radius, const PupilBox& box, Trace&& trace) const {
+        double l[kColumns], m[kRows];
+        for (int i = 0; i < kColumns; ++i) l[i] = grid_l(box, i);
+        for (int i = 0; i < kRows; ++i) m[i] = grid_m(box, i);
+        lens_.for_each_block(kGridBlocks, [&](int block) {
+            PupilRays rays;
             for (int i = 0; i < kBlock; ++i) {
-                const PupilDirection d = direction_at(first + std::min(i, used - 1));
-                const double n2 = path_.entry_index * path_.entry_index - d.l * d.l - d.m * d.m;
-                rays.origin.set(i, {static_cast<float>(radius), 0, static_cast<float>(lens_.film_distance)});
-                rays.direction.set(i, {static_cast<float>(d.l), static_cast<float>(d.m),
-                                       static_cast<float>(-std::sqrt(std::max(n2, 0.0)))});
-                rays.status[i] = n2 > 0 ? 0 : static_cast<int>(RayStatus::missed);
+                const int point = std::min(block * kBlock + i, kPoints - 1);
+                rays.set(i, radius, {l[point % kColumns], m[point / kColumns]});
             }
-            tracer_(view, rays);
-            for (int i = 0; i < used; ++i) result(first + i, rays, i);
-        }
-    }
-
-    /// Box of the directions from a film point to the last surface's clear aperture.
-    PupilBox box_of_last_surface(double radius) const {
-        const Surface& last = lens_.surfaces.back();
-        PupilBox box = PupilBox::none();
-        for (int ring = 0; ring <= 8; ++ring)
-            for (int spoke = 0; spoke <= 16; ++spoke) {
-                const double r = last.clear_semi_diameter * ring / 8, angle = std::numbers::pi * spoke / 16;
-                const Vec3d d = path_.entry_index * normalized(Vec3d{r * std::cos(angle) - radius, r * std::sin(angle),
-                                                                     last.sag(r) - lens_.film_distance});
-                box = box.with({d.x, d.y});
-            }
-        return box.grown(0.02);
-    }
-
-    static PupilDirection grid_point(const PupilBox& box, int i) {
-        const double a = (i % kGrid + 0.5) / kGrid, b = (i / kGrid + 0.5) / (kGrid / 2);
-        return {box.l_min + a * (box.l_max - box.l_min), b * box.m_max};
-    }
-
-    /// Bounding box of the passing directions inside `search`; nothing where fewer than
-    /// `wanted` points of the grid pass.
-    std::optional<PupilBox> passing_box(double radius, const PupilBox& search, int wanted) const {
-        PupilBox box = PupilBox::none();
-        PupilDirection highest{0, 0};  // the middle of the top row's passing points
-        double leftmost = 0;
-        int passed = 0;
-        trace(
-            radius, kGrid * kGrid / 2, [&](int i) { return grid_point(search, i); },
-            [&](int i, bool passes) {
-                if (!passes) return;
-                const PupilDirection d = grid_point(search, i);
-                if (d.m > highest.m) leftmost = d.l;
-                highest = {0.5 * (leftmost + d.l), d.m};
-                box = box.with(d);
-                ++passed;
-            });
-        if (passed < wanted) return std::nullopt;
-        const double cell_l = (search.l_max - search.l_min) / kGrid, cell_m = search.m_max / (kGrid / 2);
-        return refined(radius, box, highest, cell_l, cell_m);
-    }
-
-    /// Moves the box's three edges out to where the light ends, which is less than a cell away from the outermost
-    /// grid point that passes. The region is symmetric in m, so it is widest along l where m is 0.
-    PupilBox refined(double radius, PupilBox box, PupilDirection highest, double cell_l, double cell_m) const {
-        constexpr int kSteps = kBlock / 3;
-        const PupilBox from = box;
-        const auto direction = [&](int i) {
-            const double step = (i % kSteps + 1.0) / kSteps;
-            switch (i / kSteps) {
-                case 0: return PupilDirection{from.l_min - step * cell_l, 0};
-                case 1: return PupilDirection{from.l_max + step * cell_l, 0};
-                default: return PupilDirection{highest.l, from.m_max + step * cell_m};
-            }
-        };
-        trace(radius, 3 * kSteps, direction, [&](int i, bool passes) {
-            if (!passes) return;
-            const PupilDirection d = direction(i);
-            box = box.with(d);
+            trace(rays, block * kBlock);
         });
+    }
+
+    Passing passing(double radius, const PupilBox& search) const {
+        bool passes[kGridBlocks * kBlock];
+        trace_grid(radius, search, [&](const PupilRays& rays, int first) { lens_.trace(rays, passes + first); });
+        Passing seen;
+        double leftmost = 0;
+        for (int row = 0; row < kRows; ++row) {
+            const bool *begin = passes + row * kColumns, *end = begin + kColumns;
+            const bool* const first = std::find(begin, end, true);
+            if (first == end) continue;
+            int last = kColumns - 1;
+            while (!begin[last]) --last;
+            seen.count += static_cast<int>(std::count(begin, end, true));
+            const PupilDirection left{grid_l(search, static_cast<int>(first - begin)), grid_m(search, row)},
+                right{grid_l(search, last), left.m};
+            seen.box = seen.box.with(left).with(right);
+            if (left.m > seen.highest.m) leftmost = left.l;
+            seen.highest = {0.5 * (leftmost + right.l), left.m};
+        }
+        return seen;
+    }
+
+    /// Bounding box of the passing directions: moves the three edges of the grid's out to where the light ends, which
+    /// is less than a cell away from the outermost point that passes. The region is symmetric in m, so it is widest
+    /// along l where m is 0.
+    PupilBox refined(double radius, const PupilBox& search, const Passing& seen) const {
+        constexpr int kSteps = kBlock / 3;
+        const double cell_l = (search.l_max - search.l_min) / kColumns, cell_m = search.m_max / kRows;
+        PupilRays from;
+        for (int i = 0; i < kBlock; ++i) {
+            const double step = (i % kSteps + 1.0) / kSteps;
+            const PupilBox& box = seen.box;
+            switch (i / kSteps) {
+                case 0: from.set(i, radius, {box.l_min - step * cell_l, 0}); break;
+                case 1: from.set(i, radius, {box.l_max + step * cell_l, 0}); break;
+                default: from.set(i, radius, {seen.highest.l, box.m_max + step * cell_m});
+            }
+        }
+        bool passes[kBlock];
+        lens_.trace(from, passes);
+        PupilBox box = seen.box;
+        for (int i = 0; i < 3 * kSteps; ++i)
+            if (passes[i]) box = box.with({from.l[i], from.m[i]});
         box.l_min -= cell_l / kSteps;
         box.l_max += cell_l / kSteps;
         box.m_max += cell_m / kSteps;
@@ -151,17 +113,19 @@ private:
     /// A small aperture falls through any grid: where too few rays pass, goes to the ray that comes nearest to the
     /// middle of the stop, in a smaller box.
     std::optional<PupilBox> find_box(double radius, PupilBox search, const PupilBox& widest) const {
-        constexpr int kLevels = 6;
+        constexpr int kLevels = 6, kEnough = 48;
         for (int level = 0; level < kLevels; ++level) {
-            if (const auto box = passing_box(radius, search, 48)) return whole(radius, *box, search, widest);
+            const Passing seen = passing(radius, search);
+            if (seen.count >= kEnough) return whole(radius, refined(radius, search, seen), search, widest);
             const auto nearest = nearest_to_stop(radius, search);
-            if (!nearest) break;
+            if (!nearest) return std::nullopt;
             const double w = search.half_width() / 6, h = search.m_max / 6;
-            const auto few = passing_box(radius, search, 1);
-            search = few ? few->grown(0.2) : PupilBox{nearest->l - w, nearest->l + w, nearest->m + h};
+            search = seen.count > 0 ? refined(radius, search, seen).grown(0.2)
+                                    : PupilBox{nearest->l - w, nearest->l + w, nearest->m + h};
         }
-        const auto few = passing_box(radius, search, 1);
-        return few ? whole(radius, *few, search, widest) : few;
+        const Passing few = passing(radius, search);
+        if (few.count == 0) return std::nullopt;
+        return whole(radius, refined(radius, search, few), search, widest);
     }
 
     /// The searched box may have held a part of the region only: follows it as far as it goes. A region that has moved
@@ -170,37 +134,38 @@ private:
         constexpr int kMostGrowths = 16;
         for (int i = 0; i < kMostGrowths && !box.lies_in(search, widest); ++i) {
             search = box.grown(1);
-            const auto more = passing_box(radius, search, 1);
-            if (!more) break;
-            box = *more;
+            const Passing more = passing(radius, search);
+            if (more.count == 0) break;
+            box = refined(radius, search, more);
         }
         return box;
     }
 
     std::optional<PupilDirection> nearest_to_stop(double radius, const PupilBox& search) const {
-        LensView<float> to_stop = path_.view();
-        std::vector<LensStep<float>> steps(to_stop.steps, to_stop.steps + to_stop.count);
-        const int stop = lens_.stop_index();
-        const auto count = lens_.surfaces.size() - static_cast<std::size_t>(stop);
-        steps[count - 1].rim_squared = std::numeric_limits<float>::max();
-        to_stop.steps = steps.data();
-        to_stop.count = static_cast<int>(count);
-        std::optional<PupilDirection> nearest;
-        float least = std::numeric_limits<float>::max();
-        trace(
-            to_stop, radius, kGrid * kGrid / 2, [&](int i) { return grid_point(search, i); },
-            [&](int i, const LensRays<float, kBlock>& rays, int lane) {
-                const float x = rays.origin.x[lane], y = rays.origin.y[lane];
-                if (rays.status[lane] != 0 || !(x * x + y * y < least)) return;
-                least = x * x + y * y;
-                nearest = grid_point(search, i);
-            });
-        return nearest;
+        struct Place {
+            float squared_distance;
+            int point;
+        };
+        constexpr Place kNone{std::numeric_limits<float>::max(), -1};
+        const auto nearer = [](Place a, Place b) { return a.squared_distance < b.squared_distance; };
+        Place nearest[kGridBlocks];
+        trace_grid(radius, search, [&](const PupilRays& from, int first) {
+            PupilTracer::Rays rays;
+            lens_.trace_to_stop(from, rays);
+            Place best = kNone;
+            for (int i = 0; i < std::min(kBlock, kPoints - first); ++i) {
+                const float x = rays.origin.x[i], y = rays.origin.y[i];
+                const Place place{x * x + y * y, first + i};
+                if (rays.status[i] == 0 && nearer(place, best)) best = place;
+            }
+            nearest[first / kBlock] = best;
+        });
+        const int point = std::min_element(nearest, nearest + kGridBlocks, nearer)->point;
+        if (point < 0) return std::nullopt;
+        return PupilDirection{grid_l(search, point % kColumns), grid_m(search, point / kColumns)};
     }
 
-    LensSystem lens_;
-    LensPath<float> path_;
-    PupilTracer tracer_;
+    PupilLens lens_;
 };
 
 }  // namespace REALCAM_NAMESPACE

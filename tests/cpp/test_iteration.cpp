@@ -224,12 +224,13 @@ TEST_CASE("the pupil search ends within its bound, whatever passes") {
     int count = 0;
     const auto look = [&](const LensSystem& lens, double film_radius, const std::function<bool(Vec3f, long)>& passes) {
         long blocks = 0;
-        const Pupil pupil(lens, film_radius, [&](const LensView<float>&, LensRays<float, 256>& rays) {
+        const PupilTracer tracer{[&](const LensView<float>&, PupilTracer::Rays& rays) {
             for (int i = 0; i < 256; ++i)
                 rays.status[i] =
                     passes(rays.direction[i], 256 * blocks + i) ? 0 : static_cast<int>(RayStatus::vignetted);
             ++blocks;
-        });
+        }};
+        const Pupil pupil(lens, film_radius, tracer);
         worst = std::max(worst, blocks);
         ++count;
         const PupilView view = pupil.view();

@@ -20,7 +20,7 @@ bool finite(Vec3f v) {
 
 PupilTracer tracer() {
     const auto trace = kernels().trace_block;
-    return [trace](const LensView<float>& view, LensRays<float, 256>& rays) { trace(&view, &rays); };
+    return {[trace](const LensView<float>& view, PupilTracer::Rays& rays) { trace(&view, &rays); }};
 }
 
 /// Lenses with a hole, with crescents at the edge of the image, with blades: their pupils are found once.
