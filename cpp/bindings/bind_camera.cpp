@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "../camera/default_film.hpp"
+#include "../camera/last_setup.hpp"
 #include "../cuda/ray_arrays.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/embree_backend.hpp"
@@ -57,10 +58,16 @@ struct CameraRaysResult {
     py::object origins_m, directions, weights, pixels;
 };
 
+/// To be called without the interpreter's lock.
+std::shared_ptr<const CameraSetup> setup_of(const Camera& camera) {
+    static LastSetup last;
+    return last.make(camera, fast_pupil_tracer());
+}
+
 CameraRaysResult rays_on_gpu(const Camera& camera, std::uint32_t spp, std::uint32_t seed, int gpu) {
     const CameraRayArrays rays = [&] {
         const py::gil_scoped_release release;
-        return generate_ray_arrays(gpu, camera, fast_pupil_tracer(), spp, seed);
+        return generate_ray_arrays(gpu, *setup_of(camera), spp, seed);
     }();
     return {py::cast(rays.origins_m), py::cast(rays.directions), py::cast(rays.weights), py::cast(rays.pixels)};
 }
@@ -75,7 +82,7 @@ CameraRaysResult rays_on_host(const Camera& camera, std::uint32_t spp, std::uint
     int* of = pixels.mutable_data();
     {
         const py::gil_scoped_release release;
-        generate_camera_rays(camera, spp, seed, origins, ways, shares);
+        generate_camera_rays(*setup_of(camera), spp, seed, origins, ways, shares);
         for (std::int64_t i = 0; i < count; ++i) of[i] = static_cast<int>(i / spp);
     }
     return {origins_m, directions, weights, pixels};

@@ -59,14 +59,13 @@ void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direc
     stream.wait("copying rays from it");
 }
 
-void generate_camera_rays_on_device(int ordinal, const Camera& camera, const PupilTracer& tracer, std::uint32_t spp,
-                                    std::uint32_t seed, float* origins, float* directions, float* weights) {
+void generate_camera_rays_on_device(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
+                                    float* origins, float* directions, float* weights) {
     const CurrentDevice current(ordinal);
     const CudaStream stream;
     DeviceArrays arrays;
-    const CameraSetup setup(camera, tracer);
     const CameraView view =
-        with_copied_arrays(setup.view(camera.pose.position_m),
+        with_copied_arrays(setup.view(setup.camera().pose.position_m),
                            [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); });
     launch_generate({view, 0, view.width * view.height, spp, seed, origins, directions, weights}, stream);
     stream.wait("generating rays");

@@ -17,7 +17,7 @@ void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direc
 
 /// The camera's own rays into arrays of the GPU's memory, as generate_camera_rays of the CPU, but for the origins: they
 /// are floats, relative to the camera's position. Returns when they are made.
-void generate_camera_rays_on_device(int ordinal, const Camera& camera, const PupilTracer& tracer, std::uint32_t spp,
-                                    std::uint32_t seed, float* origins, float* directions, float* weights);
+void generate_camera_rays_on_device(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
+                                    float* origins, float* directions, float* weights);
 
 }  // namespace realcam

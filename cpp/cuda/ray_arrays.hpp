@@ -30,7 +30,6 @@ struct CameraRayArrays {
 };
 
 /// Throws InputError and DeviceError.
-CameraRayArrays generate_ray_arrays(int ordinal, const Camera& camera, const PupilTracer& tracer, std::uint32_t spp,
-                                    std::uint32_t seed);
+CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed);
 
 }  // namespace realcam

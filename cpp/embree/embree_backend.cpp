@@ -9,6 +9,7 @@
 #include <chrono>
 #include <mutex>
 
+#include "../camera/last_setup.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/run_with_progress.hpp"
 #include "../render/seconds_since.hpp"
@@ -69,11 +70,11 @@ public:
         const auto start = std::chrono::steady_clock::now();
         validate(settings);
         validate(scene);
-        const CameraSetup setup(camera, fast_pupil_tracer());
         tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+        const auto setup = arena.execute([&] { return last_setup_.make(camera, fast_pupil_tracer()); });
         arena.execute([&] { place(scene, camera); });
         const SceneView scene_view = scene_->placed().view();
-        const CameraView camera_view = setup.view(scene_->placed().origin_m());
+        const CameraView camera_view = setup->view(scene_->placed().origin_m());
 
         ExposingFilm film(camera.film.width, camera.film.height);
         RenderStats stats;
@@ -148,6 +149,7 @@ private:
 
     RTCDevice device_;
     std::unique_ptr<EmbreeScene> scene_;
+    LastSetup last_setup_;
 };
 
 }  // namespace

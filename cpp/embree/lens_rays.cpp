@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "../camera/ray_request.hpp"
-#include "embree_backend.hpp"
 
 namespace realcam {
 namespace {
@@ -50,9 +49,9 @@ void trace_rays(const LensSystem& lens, LightDirection direction, double wavelen
     }
 }
 
-void generate_camera_rays(const Camera& camera, std::uint32_t spp, std::uint32_t seed, double* origins_m,
+void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, double* origins_m,
                           float* directions, float* weights) {
-    const CameraSetup setup(camera, fast_pupil_tracer());
+    const Camera& camera = setup.camera();
     const CameraView view = setup.view(camera.pose.position_m);
     const std::int32_t pixels = camera.film.width * camera.film.height;
     tbb::parallel_for(tbb::blocked_range<std::int32_t>(0, pixels, static_cast<std::size_t>(kChunk / spp + 1)),

@@ -19,7 +19,7 @@ void trace_rays(const LensSystem& lens, LightDirection direction, double wavelen
 
 /// The camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
 /// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of width * height * spp rays.
-void generate_camera_rays(const Camera& camera, std::uint32_t spp, std::uint32_t seed, double* origins_m,
+void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, double* origins_m,
                           float* directions, float* weights);
 
 }  // namespace realcam

@@ -41,6 +41,7 @@ HOST_ONLY = {
     "camera/camera.hpp",
     "camera/default_film.hpp",
     "camera/field_of_view.hpp",
+    "camera/last_setup.hpp",
     "error.hpp",
     "optics/best_focus.hpp",
     "optics/exposure.hpp",

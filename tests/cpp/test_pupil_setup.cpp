@@ -1,13 +1,16 @@
-// Finding the pupil, on any threads.
+// Finding the pupil: on any threads, and not again for the same lens.
 
 #include <atomic>
 #include <cstring>
+#include <memory>
 #include <thread>
 #include <vector>
 
+#include "../../cpp/camera/last_setup.hpp"
 #include "../../cpp/embree/embree_backend.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "pixel_rays.hpp"
 #include "pupil_region.hpp"
 
 namespace {
@@ -40,6 +43,14 @@ void on_five_threads(int count, const PupilTracer::Task& task) {
     for (std::thread& thread : threads) thread.join();
 }
 
+/// Counts the blocks that it traces.
+PupilTracer counting(std::atomic<int>& blocks) {
+    return {[&blocks](const LensView<float>& view, PupilTracer::Rays& rays) {
+        ++blocks;
+        trace_lens(view, rays);
+    }};
+}
+
 }  // namespace
 
 TEST_CASE("the pupil is the same bits on one thread and on many, in any order") {
@@ -60,4 +71,53 @@ TEST_CASE("the pupil is the same bits on one thread and on many, in any order") 
             CHECK(same_pupil(alone.view(), reversed.view()));
             CHECK(same_pupil(alone.view(), on_five.view()));
         }
+}
+
+TEST_CASE("a camera of the same lens and film takes over the last one's pupil, and any other finds its own") {
+    std::atomic<int> blocks{0};
+    LastSetup last;
+    Camera camera = camera_with(io::read_lens("singlet-100mm"), CameraModel::full_lens);
+    const auto first = last.make(camera, counting(blocks));
+    const int once = blocks;
+    REQUIRE(once > 100);
+
+    camera.pose.position_m = {1, 2, 3};
+    camera.iso = 400;
+    camera.film.width *= 2;
+    const auto moved = last.make(camera, counting(blocks));
+    CHECK(blocks == once);
+    CHECK(moved->camera().pose == camera.pose);
+    CHECK(moved->view({0, 0, 0}).width == camera.film.width);
+    CHECK(moved->view({0, 0, 0}).pupil.nodes == first->view({0, 0, 0}).pupil.nodes);
+
+    Camera wrong = camera;
+    wrong.iso = -1;
+    CHECK_THROWS_AS(last.make(wrong, counting(blocks)), InputError);
+    last.make(camera, counting(blocks));
+    CHECK(blocks == once);
+
+    camera.lens = stopped_down(camera.lens, 16);
+    const auto stopped = last.make(camera, counting(blocks));
+    CHECK(blocks > once);
+    CHECK(!same_pupil(stopped->view({0, 0, 0}).pupil, first->view({0, 0, 0}).pupil));
+    const int twice = blocks;
+    camera.film.width_mm *= 0.5;
+    last.make(camera, counting(blocks));
+    CHECK(blocks > twice);
+}
+
+TEST_CASE("threads that make cameras ready at once each get their own") {
+    LastSetup last;
+    const LensSystem lens = io::read_lens("singlet-100mm");
+    std::vector<std::shared_ptr<const CameraSetup>> setups(12);
+    on_five_threads(static_cast<int>(setups.size()), [&](int i) {
+        Camera camera = camera_with(i % 2 == 0 ? lens : stopped_down(lens, 16), CameraModel::full_lens);
+        camera.iso = 100 + i;
+        setups[static_cast<std::size_t>(i)] = last.make(camera, fast_pupil_tracer());
+    });
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+        CHECK(setups[i]->camera().iso == 100 + static_cast<double>(i));
+        CHECK(same_pupil(setups[i]->view({0, 0, 0}).pupil, setups[i % 2]->view({0, 0, 0}).pupil));
+    }
+    CHECK(!same_pupil(setups[0]->view({0, 0, 0}).pupil, setups[1]->view({0, 0, 0}).pupil));
 }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -159,6 +161,24 @@ def test_rays_depend_on_seed_pixel_and_sample_alone() -> None:
     np.testing.assert_array_equal(few.directions, first)
     assert (camera.generate_rays(spp=4, seed=4).directions != few.directions).any()
     np.testing.assert_array_equal(camera.generate_rays(spp=4, seed=3).directions, few.directions)
+
+
+def test_rays_of_cameras_in_turn_and_on_threads() -> None:
+    """A camera's rays are the same whichever camera was asked before, and whichever thread asks."""
+    tessar = rc.Lens.load("tessar-50mm")
+    film = rc.Film(36, 24, (6, 4))
+    cameras = [rc.Camera(lens, film=film) for lens in (tessar, tessar.stopped_down(8.0), tessar.focused(2.0))]
+    cameras += [rc.Camera(tessar, film=film, model="thin"), rc.Camera(tessar, film=rc.Film(12, 8, (6, 4)))]
+
+    def directions(camera: rc.Camera) -> np.ndarray:
+        return camera.generate_rays(spp=16, seed=3).directions
+
+    expected = [directions(camera) for camera in cameras]
+    assert all((a != b).any() for a, b in itertools.combinations(expected, 2))
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(directions, 6 * cameras))
+    for i, rays in enumerate(found):
+        np.testing.assert_array_equal(rays, expected[i % len(cameras)])
 
 
 def test_samples_cover_the_pupil_evenly() -> None:
