@@ -84,14 +84,32 @@ inline std::vector<std::pair<double, double>> passing_intervals(const AxialRays&
         shut[edges] = (i + (here ? -0.5 : 0.5)) * cell;
         ++edges;
     }
-    std::fill(open + edges, open + kEdges, 0.0);
-    std::fill(shut + edges, shut + kEdges, 0.0);
-    for (int k = 0; k < kHalvings && edges > 0; ++k) {
+    // Where edges are few, the other lanes take what the next halvings may ask for: of each edge a binary tree of
+    // middles, below each those of its two halves: of the one behind it first, which follows if it passes.
+    const int depth = edges == 1 ? 3 : edges == 2 ? 2 : 1, nodes = (1 << depth) - 1;
+    for (int k = 0; k < kHalvings && edges > 0; k += depth) {
+        struct Node {
+            double open, shut;
+            double middle() const { return 0.5 * (open + shut); }
+        } tree[kEdges] = {};
+        double heights[kEdges] = {};
+        for (int e = 0; e < edges; ++e)
+            for (int n = 0; n < nodes; ++n) {
+                const Node& above = tree[e * nodes + (n - 1) / 2];
+                Node& node = tree[e * nodes + n];
+                node = n == 0       ? Node{open[e], shut[e]}
+                       : n % 2 == 1 ? Node{above.middle(), above.shut}
+                                    : Node{above.open, above.middle()};
+                heights[e * nodes + n] = std::sqrt(node.middle());
+            }
         LensRays<double, kEdges> fine;
-        double middle[kEdges];
-        for (int e = 0; e < kEdges; ++e) middle[e] = std::sqrt(0.5 * (open[e] + shut[e]));
-        rays.trace(middle, fine);
-        for (int e = 0; e < kEdges; ++e) (fine.status[e] == 0 ? open : shut)[e] = 0.5 * (open[e] + shut[e]);
+        rays.trace(heights, fine);
+        for (int e = 0; e < edges; ++e)
+            for (int n = 0, level = 0; level < std::min(depth, kHalvings - k); ++level) {
+                const bool passes = fine.status[e * nodes + n] == 0;
+                (passes ? open : shut)[e] = tree[e * nodes + n].middle();
+                n = 2 * n + (passes ? 1 : 2);
+            }
     }
     std::vector<std::pair<double, double>> lit;
     bool inside = coarse.status[0] == 0;
