@@ -37,6 +37,8 @@ MAY_INCLUDE_TOO = {"bvh/binary_tree.cpp": {"embree/embree_api.hpp"}}
 HOST_ONLY = {
     "bvh/binary_tree.hpp",
     "bvh/build_wide_bvh.hpp",
+    "bvh/collapse.hpp",
+    "bvh/reinsertion.hpp",
     "bvh/scene_bvh.hpp",
     "camera/camera.hpp",
     "camera/default_film.hpp",
