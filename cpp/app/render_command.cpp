@@ -73,6 +73,7 @@ Image expose(Backend& backend, const Assembly& scene, RenderRequest& request) {
 void run_render(const RenderWords& words) {
     const auto start = std::chrono::steady_clock::now();
     RenderRequest request = understand(words);
+    const auto backend = make_backend(request.device);  // first, because reading a scene may take long
     const auto ground = std::make_shared<Scene>(read_scene(request));
     const Assembly scene(ground);
     set_view(request.camera, scene, request.view);
@@ -83,7 +84,6 @@ void run_render(const RenderWords& words) {
         say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
             "cd/m^2");
     }
-    const auto backend = make_backend(request.device);
     // Until here nothing is on disk, and a signal may simply end the program.
     const Interrupt interrupt;
     Image image;

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "../camera/default_film.hpp"
-#include "../devices/devices.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/free_memory.hpp"
 #include "../io/lens_file.hpp"
@@ -94,7 +93,6 @@ RenderRequest understand(const RenderWords& w) {
     request.outputs = w.outputs;
     request.scene = w.scene;
     request.device = w.device;
-    make_backend(w.device);
     request.tone = parse_tone(w.tone);
     request.scale = parse_number("--scale", w.scale);
     request.settings = {w.spp, w.seed, w.max_bounces, w.threads};

@@ -80,6 +80,19 @@ void bind_live(py::module_& m) {
             "Another scene for the frames to come. Made for every frame: of one that comes from the last by moved(),\n"
             "only the places are copied. Raises InputError.")
         .def(
+            "picture",
+            [](const PythonLiveView& live) {
+                const DevicePicture picture = [&] {
+                    const py::gil_scoped_release release;
+                    return live.view->picture();
+                }();
+                return py::make_tuple(picture.exposure, picture.depth);
+            },
+            "All that was collected up to the last frame, as two DeviceArrays of float32 on the GPU: exposure (H, W, "
+            "3)\n"
+            "in lux seconds and depth (H, W) in metres, as Image has them. Waits for the frames under way.\n"
+            "Raises InputError before the first frame.")
+        .def(
             "cancel", [](PythonLiveView& live) { live.view->cancel(); }, py::call_guard<py::gil_scoped_release>(),
             "Gives up all frames under way within some milliseconds, from any thread.");
 }

@@ -165,12 +165,17 @@ void DeviceRenderer::merge_film(const DeviceRenderer& other) {
     launch_merge(sums_.data(), others_.data(), static_cast<std::int64_t>(sums_.size()), stream_);
 }
 
+void DeviceRenderer::develop_here(int samples, double exposure_time_s, float* exposure, float* depth) {
+    bind();
+    launch_develop(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, exposure, depth,
+                   stream_);
+}
+
 void DeviceRenderer::develop(int samples, double exposure_time_s, float* exposure, float* depth) {
     bind();
     exposure_.resize(3 * sums_.size());
     depth_.resize(sums_.size());
-    launch_develop(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, exposure_.data(),
-                   depth_.data(), stream_);
+    develop_here(samples, exposure_time_s, exposure_.data(), depth_.data());
     exposure_.download(exposure, stream_);
     depth_.download(depth, stream_);
     stream_.wait("copying the picture from it");

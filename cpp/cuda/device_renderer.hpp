@@ -22,6 +22,8 @@ public:
     ~DeviceRenderer();
 
     int ordinal() const { return ordinal_; }
+    /// Makes it the calling thread's current device.
+    void bind() const;
 
     /// Copies a scene, what changes in it as objects move, or a camera. The host's copies may go afterwards.
     void set_scene(const PlacedScene& scene, const SceneBvh& bvh);
@@ -51,6 +53,9 @@ public:
     /// Adds what another GPU has collected of the same pixels.
     void merge_film(const DeviceRenderer& other);
 
+    /// Starts to develop the film as exposure and depth into memory of this GPU, 3 and 1 numbers per pixel.
+    void develop_here(int samples, double exposure_time_s, float* exposure, float* depth);
+
     /// Exposure and depth of the film's pixels after `samples` samples, into the host's memory.
     void develop(int samples, double exposure_time_s, float* exposure, float* depth);
 
@@ -58,7 +63,6 @@ public:
     RenderCounts take_counts();
 
 private:
-    void bind() const;
     /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
     void rehearse();
 

@@ -8,6 +8,7 @@
 
 #include "host_scene.hpp"
 #include "pinned_array.hpp"
+#include "share_array.hpp"
 
 namespace realcam {
 namespace {
@@ -119,10 +120,25 @@ public:
             {0, camera.film.height, static_cast<std::uint32_t>(samples_), static_cast<std::uint32_t>(settings.spp)},
             settings, stop_.data());
         samples_ = frame->samples();
+        exposure_time_s_ = camera.exposure_time_s;
         renderer_.develop_codes(samples_, camera.exposure_time_s, camera.iso, curve, frame->data());
         frame->record(renderer_.stream());
         under_way_.push_back(frame);
         return frame;
+    }
+
+    DevicePicture picture() {
+        const std::lock_guard lock(mutex_);
+        if (!setup_ || changed_) throw InputError("there is no picture yet; shoot() takes one");
+        const Film& film = setup_->camera().film;
+        const std::int64_t width = film.width, height = film.height;
+        renderer_.bind();
+        DeviceArray<float> exposure(static_cast<std::size_t>(3 * width * height)),
+            depth(static_cast<std::size_t>(width * height));
+        renderer_.develop_here(samples_, exposure_time_s_, exposure.data(), depth.data());
+        check_cuda(cudaStreamSynchronize(renderer_.stream()), "developing");
+        return {share(std::move(exposure), renderer_.ordinal(), {height, width, 3}),
+                share(std::move(depth), renderer_.ordinal(), {height, width})};
     }
 
     /// What is kept of the last picture is how its pupil was found.
@@ -168,6 +184,7 @@ private:
     std::optional<CameraSetup> setup_;  ///< of the picture that is being collected
     RenderSettings settings_;
     int samples_ = 0;
+    double exposure_time_s_ = 0;  ///< of the last frame
     bool changed_ = false;  ///< the scene, since the picture began
     std::deque<std::shared_ptr<Frame>> under_way_;
 };
@@ -184,6 +201,10 @@ std::shared_ptr<const LiveFrame> LiveView::shoot(const Camera& camera, const Ren
 
 void LiveView::show(Assembly scene) {
     work_->show(std::move(scene));
+}
+
+DevicePicture LiveView::picture() const {
+    return work_->picture();
 }
 
 void LiveView::cancel() {

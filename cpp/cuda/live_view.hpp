@@ -4,6 +4,7 @@
 
 #include "../camera/develop.hpp"
 #include "../render/backend.hpp"
+#include "shared_device_array.hpp"
 
 namespace realcam {
 
@@ -17,6 +18,11 @@ public:
     virtual bool ready() const = 0;
     /// height x width x 3, 8-bit sRGB; waits for it. Throws DeviceError, and Cancelled where the view was cancelled.
     virtual const std::uint8_t* codes() const = 0;
+};
+
+/// A picture in a GPU's memory. float32, as Image: exposure (height, width, 3) and depth (height, width).
+struct DevicePicture {
+    SharedDeviceArray exposure, depth;
 };
 
 /// A scene before a camera that changes with every frame, on one GPU. Only what changed is copied there: the camera, or
@@ -38,6 +44,10 @@ public:
     /// The scene of the frames to come. Of one that has the same objects in other places only the places are copied.
     /// Throws InputError.
     void show(Assembly scene);
+
+    /// What all frames up to the last have collected, on the GPU; waits for them. Throws InputError where there is no
+    /// picture, and DeviceError.
+    DevicePicture picture() const;
 
     /// Gives up all frames under way, within some milliseconds, from any thread. The next one begins a new picture.
     void cancel();

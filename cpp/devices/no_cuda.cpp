@@ -63,6 +63,9 @@ LiveView::~LiveView() = default;
 std::shared_ptr<const LiveFrame> LiveView::shoot(const Camera&, const RenderSettings&, ToneCurve) {
     fail();
 }
+DevicePicture LiveView::picture() const {
+    fail();
+}
 void LiveView::show(Assembly) {
     fail();
 }

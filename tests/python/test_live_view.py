@@ -61,6 +61,29 @@ def test_another_camera_begins_anew_and_another_exposure_does_not(scene: rc.Scen
 
 @needs_gpu
 @pytest.mark.gpu
+def test_the_picture_on_the_gpu_is_that_of_render(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, seed=3, max_bounces=1)
+    with pytest.raises(rc.InputError, match="no picture yet"):
+        live.picture()
+    for _ in range(2):
+        live.shoot(camera(exposure_time_s=0.25), spp=8)
+    pixels, depth = live.picture()
+    whole = rc.render(scene, camera(exposure_time_s=0.25), spp=16, seed=3, max_bounces=1, device="cuda:0")
+    assert pixels.device == "cuda:0"
+    np.testing.assert_allclose(pixels.numpy(), whole.pixels, rtol=1e-6)
+    np.testing.assert_allclose(depth.numpy(), whole.depth, rtol=1e-6)
+    torch = pytest.importorskip("torch")
+    shared = torch.from_dlpack(pixels)
+    assert shared.data_ptr() == pixels.__cuda_array_interface__["data"][0]
+    # It outlives the view, and what the view collects next does not change it.
+    before = shared.sum().item()
+    live.shoot(camera(exposure_time_s=0.25), spp=8).codes  # noqa: B018
+    del live, pixels
+    assert shared.sum().item() == before
+
+
+@needs_gpu
+@pytest.mark.gpu
 def test_an_object_moves_between_frames(scene: rc.Scene) -> None:
     ball = frame_scene(spheres=1, boxes=0)
     scene = scene.with_instance(ball, name="ball")
