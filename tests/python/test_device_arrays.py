@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 import realcam as rc
+from realcam.bench import frame_scene
 
 from .device_memory import LENS, needs_gpu, small_camera
 
@@ -171,6 +172,7 @@ def test_out_of_device_memory() -> None:
 def test_the_example_of_the_readme() -> None:
     pytest.importorskip("torch")
     (example,) = re.findall(r"```python\n([^`]*?from_dlpack[^`]*?)```", README.read_text(encoding="utf-8"))
-    names = {"rc": rc, "lens": LENS, "camera": small_camera()}
+    names = {"rc": rc, "lens": LENS, "camera": small_camera(), "scene": frame_scene(spheres=1, boxes=1)}
     exec(example, names)
     assert isinstance(names["out"], rc.TraceResult)
+    assert names["exposure"].shape == (*names["depth"].shape, 3)

@@ -154,14 +154,15 @@ def lose(ordinal):
     def call(name, *arguments):
         code = getattr(driver, name)(*arguments)
         assert code == 0, (name, code)
-    context, module, kernel = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
+    context, module, kernel, stream = (ctypes.c_void_p() for _ in range(4))
     call("cuInit", 0)
     call("cuDevicePrimaryCtxRetain", ctypes.byref(context), ordinal)
     call("cuCtxSetCurrent", context)
     text = b".version 7.0\n.target sm_75\n.address_size 64\n.visible .entry fall() { trap; }"
     call("cuModuleLoadData", ctypes.byref(module), text)
     call("cuModuleGetFunction", ctypes.byref(kernel), module, b"fall")
-    call("cuLaunchKernel", kernel, 1, 1, 1, 1, 1, 1, 0, None, None, None)
+    call("cuStreamCreate", ctypes.byref(stream), 1)  # one that waits for no other
+    call("cuLaunchKernel", kernel, 1, 1, 1, 1, 1, 1, 0, stream, None, None)
 
 wide = rc.Camera(lens, film=rc.Film(36, 24, (1200, 800)), position=(0, 1, 3), look_at=(0, 0.6, -2))
 """
