@@ -150,7 +150,8 @@ LOSE = r"""
 import ctypes, threading, time
 driver = ctypes.CDLL("libcuda.so.1")
 
-def lose(ordinal):
+def fall_of(ordinal):
+    # Loaded beforehand: loading waits for kernels that run.
     def call(name, *arguments):
         code = getattr(driver, name)(*arguments)
         assert code == 0, (name, code)
@@ -162,7 +163,10 @@ def lose(ordinal):
     call("cuModuleLoadData", ctypes.byref(module), text)
     call("cuModuleGetFunction", ctypes.byref(kernel), module, b"fall")
     call("cuStreamCreate", ctypes.byref(stream), 1)  # one that waits for no other
-    call("cuLaunchKernel", kernel, 1, 1, 1, 1, 1, 1, 0, stream, None, None)
+    def fall():
+        call("cuCtxSetCurrent", context)
+        call("cuLaunchKernel", kernel, 1, 1, 1, 1, 1, 1, 0, stream, None, None)
+    return fall
 
 wide = rc.Camera(lens, film=rc.Film(36, 24, (1200, 800)), position=(0, 1, 3), look_at=(0, 0.6, -2))
 """
@@ -175,7 +179,7 @@ def test_a_gpu_lost_in_mid_frame(device: str, tmp_path: Path) -> None:
     picture = tmp_path / "picture.exr"
     code = f"""
 rc.render(scene, wide, spp=1, device={device!r})
-threading.Timer(0.5, lose, [{device[-1]}]).start()
+threading.Timer(0.5, fall_of({device[-1]})).start()
 start = time.perf_counter()
 for i in range(2):  # it stays lost
     try:
@@ -199,8 +203,9 @@ live = rc.LiveView(scene)
 # Few pixels leave multiprocessors free for the kernel that falls; all those samples take them seconds.
 few = rc.Camera(lens, film=rc.Film(36, 24, (20, 10)), position=(0, 1, 3), look_at=(0, 0.6, -2))
 live.shoot(few, spp=1).codes
+fall = fall_of(0)
 frame = live.shoot(few, spp=1 << 23)
-lose(0)
+fall()
 for shoot in (lambda: frame.codes, lambda: live.shoot(camera, spp=1).codes, lambda: rc.LiveView(scene)):
     try:
         shoot()
