@@ -5,6 +5,10 @@
 
 namespace realcam::bindings {
 
+/// What a caller gives as an array, in C order; a copy where it is another type.
+template <class T>
+using InputArray = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
+
 /// An array of shape (n,) of f(i).
 template <class T = double, class F>
 pybind11::array_t<T> array_of(std::size_t n, F&& f) {

@@ -23,6 +23,7 @@ void bind_seidel(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_camera(py::module_& m);
 void bind_scene(py::module_& m);
+void bind_instances(py::class_<Assembly>& scene);
 void bind_render(py::module_& m);
 void bind_view(py::module_& m);
 void bind_live(py::module_& m);

@@ -4,9 +4,9 @@
 
 namespace realcam {
 
-bool HostScene::place(const Assembly& assembly, const Camera& camera) {
+void HostScene::place(const Assembly& assembly, const Camera& camera) {
     const bool moves = placed_ && lies_near(camera, placed_->origin_m()) && placed_->can_move_to(assembly);
-    if (moves && same_places(placed_->assembly(), assembly)) return false;
+    if (moves && same_places(placed_->assembly(), assembly)) return;
     std::unique_ptr<PlacedScene> placed = std::exchange(placed_, nullptr);
     if (moves) {
         placed->move(assembly);
@@ -20,7 +20,6 @@ bool HostScene::place(const Assembly& assembly, const Camera& camera) {
     for (DeviceRenderer* renderer : renderers_)
         moves ? renderer->set_places(*placed, bvh_) : renderer->set_scene(*placed, bvh_);
     placed_ = std::move(placed);
-    return true;
 }
 
 }  // namespace realcam

@@ -13,9 +13,8 @@ public:
     void add(DeviceRenderer& renderer) { renderers_.push_back(&renderer); }
 
     /// Copies what has changed: nothing, where objects stand, or everything; the latter also for a camera that is too
-    /// far from the place of the last. Returns whether anything has. Throws DeviceError; the next call begins anew
-    /// then.
-    bool place(const Assembly& assembly, const Camera& camera);
+    /// far from the place of the last. Throws DeviceError; the next call begins anew then.
+    void place(const Assembly& assembly, const Camera& camera);
 
     Vec3d origin_m() const { return placed_->origin_m(); }
 

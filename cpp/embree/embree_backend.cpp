@@ -89,12 +89,17 @@ public:
 
 private:
     void place(const Assembly& scene, const Camera& camera) {
-        if (scene_ && lies_near(camera, scene_->placed().origin_m()) && scene_->placed().can_move_to(scene)) {
-            if (!same_places(scene_->placed().assembly(), scene)) scene_->move(scene);
-            return;
+        const bool moves =
+            scene_ && lies_near(camera, scene_->placed().origin_m()) && scene_->placed().can_move_to(scene);
+        if (moves && same_places(scene_->placed().assembly(), scene)) return;
+        std::unique_ptr<EmbreeScene> last = std::exchange(scene_, nullptr);  // what fails is not kept
+        if (moves) {
+            last->move(scene);
+            scene_ = std::move(last);
+        } else {
+            last.reset();  // before the next takes as much memory
+            scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m);
         }
-        scene_.reset();
-        scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m);
     }
 
     void expose(tbb::task_arena& arena, const SceneView& scene_view, const CameraView& camera_view,

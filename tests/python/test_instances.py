@@ -185,8 +185,8 @@ def test_many_instances_share_their_triangles(device: str) -> None:
     scene, egg = GROUND, as_scene(ball())
     vertices, triangles, normals, uvs = ball()
     places = [placed(i % 20 - 10, 0.1, -(i // 20), scale=0.2) for i in range(400)]
-    for place in places:
-        scene = scene.with_instance(egg, place)
+    scene = scene.with_instance(egg, places, name="egg")
+    assert [name for name, _ in scene.instances[::399]] == ["egg 0", "egg 399"]
     one_mesh = (
         np.concatenate([vertices @ place[:3, :3].T + place[:3, 3] for place in places]),
         np.concatenate([triangles + i * len(vertices) for i in range(400)]),
@@ -220,6 +220,10 @@ def test_what_is_no_place_is_refused() -> None:
     scene = GROUND.with_instance(egg, name="egg").with_instance(egg, name="egg")
     with pytest.raises(rc.InputError, match="no instance 2; the scene has 2"):
         scene.moved(2, np.eye(4))
+    with pytest.raises(rc.InputError, match="no instance -1"):
+        scene.moved(-1, np.eye(4))
+    with pytest.raises(rc.InputError, match="single matrix"):
+        scene.moved(np.int64(1), [np.eye(4), np.eye(4)])
     with pytest.raises(rc.InputError, match='no instance "eg"'):
         scene.moved("eg", np.eye(4))
     with pytest.raises(rc.InputError, match='2 instances "egg"'):

@@ -1,0 +1,105 @@
+#include <pybind11/stl.h>
+
+#include <variant>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// Of a (4, 4) or (3, 4) matrix.
+Affine<double> affine_from(const double* m, bool has_last_row) {
+    if (has_last_row && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1))
+        throw InputError("the last row of scene_from_object must be 0, 0, 0, 1");
+    const auto column = [&](int c) { return Vec3d{m[c], m[4 + c], m[8 + c]}; };
+    return {column(0), column(1), column(2), column(3)};
+}
+
+/// Of one matrix, or of an array of them.
+std::vector<Affine<double>> places_from(const py::object& matrices) {
+    const auto m = matrices.is_none() ? InputArray<double>() : InputArray<double>::ensure(matrices);
+    if (!m) PyErr_Clear();
+    const py::ssize_t axes = m && !matrices.is_none() ? m.ndim() : 0;
+    if (axes < 2 || axes > 3 || m.shape(axes - 1) != 4 || (m.shape(axes - 2) != 3 && m.shape(axes - 2) != 4))
+        throw InputError("scene_from_object must be an array of numbers of shape (4, 4) or (3, 4), or several of them");
+    const py::ssize_t count = axes == 3 ? m.shape(0) : 1, rows = m.shape(axes - 2);
+    std::vector<Affine<double>> places;
+    for (py::ssize_t i = 0; i < count; ++i) places.push_back(affine_from(m.data() + 4 * rows * i, rows == 4));
+    return places;
+}
+
+py::array_t<double> matrix_of(const Affine<double>& map) {
+    const Vec3d columns[] = {map.x, map.y, map.z, map.origin};
+    return table_of(4, 4, [&](std::size_t row, std::size_t c) {
+        const double rows[] = {columns[c].x, columns[c].y, columns[c].z, c == 3 ? 1.0 : 0.0};
+        return rows[row];
+    });
+}
+
+Assembly with_instance(Assembly scene, const Assembly& object, const py::object& matrices, const std::string& name) {
+    if (matrices.is_none()) {
+        add(scene, object, {}, name);
+    } else {
+        const std::vector<Affine<double>> places = places_from(matrices);
+        const bool numbered = places.size() > 1 && !name.empty();
+        for (std::size_t i = 0; i < places.size(); ++i)
+            add(scene, object, places[i], numbered ? name + ' ' + std::to_string(i) : name);
+    }
+    validate(scene);
+    return scene;
+}
+
+std::size_t find_instance(const Assembly& scene, const std::variant<py::ssize_t, std::string>& which) {
+    const std::size_t count = scene.instances.size();
+    if (const auto* number = std::get_if<py::ssize_t>(&which)) {
+        if (*number >= 0 && static_cast<std::size_t>(*number) < count) return static_cast<std::size_t>(*number);
+        throw InputError("there is no instance " + std::to_string(*number) + "; the scene has " +
+                         std::to_string(count) + " (counted from 0)");
+    }
+    const std::string& name = std::get<std::string>(which);
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < count; ++i)
+        if (scene.instances[i].name == name) found.push_back(i);
+    if (found.size() == 1) return found.front();
+    throw InputError(found.empty() ? "there is no instance \"" + name + '"'
+                                   : "there are " + std::to_string(found.size()) + " instances \"" + name +
+                                         "\"; the number of one of them is wanted");
+}
+
+Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& instance, const py::object& matrix) {
+    const std::vector<Affine<double>> places = places_from(matrix);
+    if (places.size() != 1) throw InputError("one instance moves to one place; a single matrix is wanted");
+    scene.instances[find_instance(scene, instance)].scene_from_object = places.front();
+    validate(scene);
+    return scene;
+}
+
+py::tuple instances_of(const Assembly& scene) {
+    py::list list;
+    for (const Instance& i : scene.instances) list.append(py::make_tuple(i.name, matrix_of(i.scene_from_object)));
+    return py::tuple(list);
+}
+
+}  // namespace
+
+void bind_instances(py::class_<Assembly>& scene) {
+    scene
+        .def(
+            "with_instance", &with_instance, "object"_a, "scene_from_object"_a = py::none(), py::kw_only(),
+            "name"_a = "",
+            "With another scene in it as an object: its triangles and point lights, but not its suns and environment.\n"
+            "scene_from_object: matrix of shape (4, 4) or (3, 4) for columns (x, y, z, 1), metres; none: as it is.\n"
+            "(K, 4, 4) or (K, 3, 4): K of them, with names \"name 0\", \"name 1\", ... The object's triangles are\n"
+            "shared, however often it stands there. Raises InputError for a matrix that is flat.")
+        .def("moved", &moved, "instance"_a, "scene_from_object"_a,
+             "With one of the instances, by its name or number, in another place. Made for every frame: the next\n"
+             "picture takes over all that was built for the last. Raises InputError where there is none, or several.")
+        .def_property_readonly("instances", &instances_of, "For each its name and (4, 4) scene_from_object.");
+}
+
+}  // namespace realcam::bindings
