@@ -32,20 +32,27 @@ auto with_memory_for(const std::string& what, Work&& work) {
     }
 }
 
-Scene read_scene(const RenderRequest& request) {
-    Scene scene = with_memory_for("while reading " + request.scene,
-                                  [&] { return io::read_scene(request.scene, {request.scale}, image_io::read_image); });
+Assembly read_scene(const RenderRequest& request) {
+    const Assembly scene = with_memory_for("while reading " + request.scene, [&] {
+        return io::read_scene(request.scene, {request.scale}, image_io::read_image);
+    });
+    const std::vector<std::string>& warnings = scene.ground->warnings;
     constexpr std::size_t kShown = 10;
-    for (std::size_t i = 0; i < std::min(kShown, scene.warnings.size()); ++i) say("warning: " + scene.warnings[i]);
-    if (scene.warnings.size() > kShown) say("and " + std::to_string(scene.warnings.size() - kShown) + " more warnings");
+    for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) say("warning: " + warnings[i]);
+    if (warnings.size() > kShown) say("and " + std::to_string(warnings.size() - kShown) + " more warnings");
     if (request.environment_cd_m2) {
         const auto radiance = static_cast<float>(*request.environment_cd_m2);
-        scene.environment = {};
-        scene.environment.constant = {radiance, radiance, radiance};
-    } else if (!request.environment_file.empty()) {
-        scene.environment = with_memory_for("while reading " + request.environment_file,
-                                            [&] { return image_io::read_environment(request.environment_file); });
+        return with_ground(scene, [&](Scene& ground) {
+            ground.environment = {};
+            ground.environment.constant = {radiance, radiance, radiance};
+        });
     }
+    if (!request.environment_file.empty())
+        return with_memory_for("while reading " + request.environment_file, [&] {
+            return with_ground(scene, [&](Scene& ground) {
+                ground.environment = image_io::read_environment(request.environment_file);
+            });
+        });
     return scene;
 }
 
@@ -74,13 +81,12 @@ void run_render(const RenderWords& words) {
     const auto start = std::chrono::steady_clock::now();
     RenderRequest request = understand(words);
     const auto backend = make_backend(request.device);  // first, because reading a scene may take long
-    const auto ground = std::make_shared<Scene>(read_scene(request));
-    const Assembly scene(ground);
+    Assembly scene = read_scene(request);
     set_view(request.camera, scene, request.view);
     // An environment that was asked for counts even where it is dark.
     const bool chosen = request.environment_cd_m2 || !request.environment_file.empty();
     if (!scene.has_light() && !chosen) {
-        add_daylight(*ground, request.camera.pose);
+        scene = with_ground(scene, [&](Scene& ground) { add_daylight(ground, request.camera.pose); });
         say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
             "cd/m^2");
     }

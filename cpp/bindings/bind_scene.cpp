@@ -38,18 +38,15 @@ std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<
                             {pixels.data(), pixels.data() + pixels.size()}};
 }
 
-Assembly load(const py::object& path, double scale) {
-    return io::read_scene(path_from(path), {scale}, read_texture);
+Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
+    return io::read_scene(path_from(path), {scale, objects}, read_texture);
 }
 
-/// The scene with a ground that `change` has changed.
 template <class Change>
-Assembly with_ground(Assembly scene, Change&& change) {
-    Scene ground = *scene.ground;
-    change(ground);
-    io::validate(ground);
-    scene.ground = std::make_shared<const Scene>(std::move(ground));
-    return scene;
+Assembly with_valid_ground(const Assembly& scene, Change&& change) {
+    const Assembly changed = with_ground(scene, change);
+    io::validate(changed);
+    return changed;
 }
 
 Environment environment_from(const py::object& radiance) {
@@ -104,9 +101,11 @@ void bind_scene(py::module_& m) {
         "Triangles, materials and lights, and objects that stand among them, as often as one likes;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one, which shares the rest.");
     scene_class
-        .def_static("load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0,
-                    "Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file.\n"
-                    "Raises SceneFileError. What could be put up with is in warnings.")
+        .def_static(
+            "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
+            "Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names\n"
+            "of nodes that stand as instances, each with all below it, to be moved by their names.\n"
+            "Raises SceneFileError. What could be put up with is in warnings.")
         .def_static(
             "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
             "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<Material>{},
@@ -115,7 +114,8 @@ void bind_scene(py::module_& m) {
         .def(
             "with_environment",
             [](const Assembly& scene, const py::object& radiance) {
-                return with_ground(scene, [&](Scene& ground) { ground.environment = environment_from(radiance); });
+                return with_valid_ground(scene,
+                                         [&](Scene& ground) { ground.environment = environment_from(radiance); });
             },
             "radiance"_a,
             "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude "
@@ -128,7 +128,7 @@ void bind_scene(py::module_& m) {
                 const double size = length(d);
                 if (!(size > 0) || !std::isfinite(size))
                     throw InputError("the sun's direction must be a finite vector, not zero");
-                return with_ground(scene, [&](Scene& ground) {
+                return with_valid_ground(scene, [&](Scene& ground) {
                     ground.suns.push_back({static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
                 });
             },
@@ -137,7 +137,7 @@ void bind_scene(py::module_& m) {
         .def(
             "with_point_light",
             [](const Assembly& scene, const Triple& position, const Colour& intensity) {
-                return with_ground(
+                return with_valid_ground(
                     scene, [&](Scene& ground) { ground.points.push_back({vector_of(position), rgb(intensity)}); });
             },
             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
@@ -148,7 +148,7 @@ void bind_scene(py::module_& m) {
                     throw InputError("there is no material " + std::to_string(material));
                 if (pixels.ndim() != 3 || pixels.shape(2) != 4)
                     throw InputError("a texture must be an (H, W, 4) array of uint8, sRGB");
-                return with_ground(scene, [&](Scene& ground) {
+                return with_valid_ground(scene, [&](Scene& ground) {
                     ground.materials[material].diffuse_texture = static_cast<std::int32_t>(ground.textures.size());
                     ground.textures.push_back({"",
                                                static_cast<std::int32_t>(pixels.shape(1)),

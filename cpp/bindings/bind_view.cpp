@@ -53,11 +53,8 @@ void bind_view(py::module_& m) {
           "where its axis meets it. Raises InputError.");
     m.def(
         "with_daylight",
-        [](Assembly scene, const Camera& camera) {
-            Scene lit = *scene.ground;
-            add_daylight(lit, camera.pose);
-            scene.ground = std::make_shared<const Scene>(std::move(lit));
-            return scene;
+        [](const Assembly& scene, const Camera& camera) {
+            return with_ground(scene, [&](Scene& ground) { add_daylight(ground, camera.pose); });
         },
         "scene"_a, "camera"_a,
         "The scene under a sun of 80 klux from the camera's upper left and a sky of 5000 cd/m^2.");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "../error.hpp"
 
@@ -33,8 +34,8 @@ class Checker {
 public:
     Checker(const Scene& scene, const std::string& file) : scene_(scene), file_(file) {}
 
-    void check() const {
-        if (scene_.triangles.empty()) {
+    void check(bool may_be_empty) const {
+        if (scene_.triangles.empty() && !may_be_empty) {
             throw SceneFileError((file_.empty() ? "the scene" : file_ + ":") + std::string(" holds no triangles"));
         }
         check_vertices();
@@ -156,7 +157,20 @@ private:
 }  // namespace
 
 void validate(const Scene& scene, const std::string& file) {
-    Checker(scene, file).check();
+    Checker(scene, file).check(false);
+}
+
+void validate(const Assembly& scene, const std::string& file) {
+    Checker(*scene.ground, file).check(!scene.instances.empty());
+    std::set<const Scene*> objects;
+    for (const Instance& instance : scene.instances)
+        if (objects.insert(instance.object.get()).second) Checker(*instance.object, file).check(true);
+    try {
+        realcam::validate(scene);
+    } catch (const InputError& error) {
+        if (file.empty()) throw;
+        throw SceneFileError(file + ": " + error.what());
+    }
 }
 
 bool is_degenerate(const Scene& scene, const Triangle& triangle) {

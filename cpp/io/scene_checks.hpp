@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "../scene/scene.hpp"
+#include "../scene/assembly.hpp"
 
 namespace realcam::io {
 
@@ -12,6 +12,9 @@ namespace realcam::io {
 /// reflectance. Throws SceneFileError if there is no triangle or if `file`, for the message, is given, and InputError
 /// otherwise; the message names the element, counted from 0.
 void validate(const Scene& scene, const std::string& file = {});
+
+/// The same of a ground, which may hold no triangle where objects stand on it, of the objects, and of their places.
+void validate(const Assembly& scene, const std::string& file = {});
 
 /// No area to speak of: less than (1 nm)^2, or thinner than 1e-12 of its length. Its indices have to be in range.
 bool is_degenerate(const Scene& scene, const Triangle& triangle);

@@ -13,6 +13,7 @@
 #include "scene_import.hpp"
 #include "scene_lights.hpp"
 #include "scene_materials.hpp"
+#include "scene_objects.hpp"
 #include "scene_textures.hpp"
 
 namespace realcam::io {
@@ -51,29 +52,49 @@ Scene read_ply_scene(const std::string& path, double scale, const ImageReader& r
     return scene;
 }
 
-Scene read_other_scene(const std::string& path, SceneFormat format, double scale, const ImageReader& read_image) {
+Assembly read_other_scene(const std::string& path, SceneFormat format, const SceneFileOptions& options,
+                          const ImageReader& read_image) {
     const ImportedScene file(path, format);
-    Scene scene;
-    for (const std::string& complaint : file.complaints()) scene.warnings.push_back(path + ": " + complaint);
-    SceneTextures textures(scene, &file.content(), path, read_image);
-    read_materials(scene, file, textures, path);
-    read_geometry(scene, file, path, scale);
-    read_lights(scene, file, path, scale);
+    Scene ground, materials;
+    for (const std::string& complaint : file.complaints()) ground.warnings.push_back(path + ": " + complaint);
+    SceneTextures textures(materials, &file.content(), path, read_image);
+    read_materials(materials, file, textures, path);
+    ground.warnings.insert(ground.warnings.end(), materials.warnings.begin(), materials.warnings.end());
+
+    SceneObjects objects(file, path, options.scale, options.objects);
+    const aiNode& root = *file.content().mRootNode;
+    const ScenePart all{file, path, options.scale, root, file.transform(root)};
+    read_geometry(ground, all, [&](const aiNode& node, const Affine<double>& transform) {
+        const LeftOut left_out = objects.left_out(node, transform);
+        if (left_out != LeftOut::nothing) objects.add(node, transform, ground);
+        return left_out;
+    });
+    read_lights(ground, all,
+                [&](const aiNode& node, const Affine<double>& transform) { return objects.left_out(node, transform); });
+    std::vector<Instance> instances = objects.finish(materials);
+    if (instances.empty())
+        keep_all_materials(ground, std::move(materials));
+    else
+        keep_used_materials(ground, materials);
+    Assembly scene(std::move(ground));
+    scene.instances = std::move(instances);
     return scene;
 }
 
 }  // namespace
 
-Scene read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
+Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
     if (!std::isfinite(options.scale) || !(options.scale > 0)) {
         throw InputError("scale must be a positive number of metres per unit of the file, not " +
                          std::to_string(options.scale));
     }
     const std::string suffix = suffix_of(path);
     check_readable(path);
-    Scene scene = suffix == ".ply" ? read_ply_scene(path, options.scale, read_image)
-                                   : read_other_scene(path, suffix == ".obj" ? SceneFormat::obj : SceneFormat::gltf,
-                                                      options.scale, read_image);
+    if (suffix == ".ply" && !options.objects.empty())
+        throw InputError(path + ": a .ply file has no nodes that could be objects");
+    Assembly scene = suffix == ".ply" ? read_ply_scene(path, options.scale, read_image)
+                                      : read_other_scene(path, suffix == ".obj" ? SceneFormat::obj : SceneFormat::gltf,
+                                                         options, read_image);
     validate(scene, path);
     return scene;
 }

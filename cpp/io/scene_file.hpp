@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../scene/scene.hpp"
+#include "../scene/assembly.hpp"
 
 namespace realcam::io {
 
@@ -25,12 +25,14 @@ using ImageReader =
 
 struct SceneFileOptions {
     double scale = 1.0;  ///< metres per unit of the file
+    std::vector<std::string> objects = {};  ///< names of nodes that stand as objects, each with all below it
 };
 
 /// Reads a scene; the suffix picks the format. Throws SceneFileError if the file cannot be used, InputError for a
 /// scale that makes no sense. What could be put up with is in Scene::warnings.
 ///
 /// Geometry: nodes are flattened, transforms applied in double precision; mirrored ones keep outward faces outward.
+/// Named nodes become instances, and so do meshes whose copies would take a million triangles or more.
 /// Coordinates in an OBJ or in a mesh of a glTF are taken as float: put far-away objects under a translated node.
 /// Triangles without area are dropped. glTF meshes without normals are flat, as that format demands; OBJ and PLY say
 /// nothing, and get smooth normals where faces share vertices and meet at less than 45 degrees.
@@ -43,6 +45,6 @@ struct SceneFileOptions {
 /// Lights: KHR_lights_punctual, candela and lux; a spot light shines in all directions. Cameras are ignored.
 ///
 /// `scale` applies to lengths alone; light keeps its units.
-Scene read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);
+Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);
 
 }  // namespace realcam::io

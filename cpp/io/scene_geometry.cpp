@@ -18,23 +18,29 @@ Vec3d as_vec3d(const aiVector3D& v) {
 
 class Flattener {
 public:
-    Flattener(Scene& scene, const ImportedScene& file, const std::string& path, double scale)
-        : scene_(scene), file_(file), path_(path), scale_(scale) {
-        const aiScene& content = file.content();
+    Flattener(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out)
+        : scene_(scene), file_(part.file), path_(part.path), scale_(part.scale), leaves_out_(leaves_out) {
+        const aiScene& content = file_.content();
         for (unsigned m = 0; m < content.mNumMeshes; ++m) {
             any_normals_ |= content.mMeshes[m]->HasNormals();
             any_uvs_ |= content.mMeshes[m]->HasTextureCoords(uv_channel(*content.mMeshes[m]));
         }
     }
 
-    void add_node(const aiNode& node, const Affine<double>& parent) {
-        const Affine<double> transform = parent * file_.transform(node);
-        for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(node.mMeshes[i], transform);
-        for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], transform);
+    void add_node(const aiNode& node, const Affine<double>& transform) {
+        const LeftOut left_out = leaves_out_(node, transform);
+        left_out_ |= left_out != LeftOut::nothing;
+        if (left_out == LeftOut::all) return;
+        if (left_out == LeftOut::nothing)
+            for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(node.mMeshes[i], transform);
+        for (unsigned i = 0; i < node.mNumChildren; ++i) {
+            const aiNode& child = *node.mChildren[i];
+            add_node(child, transform * file_.transform(child));
+        }
     }
 
     void finish() {
-        clean_geometry(scene_, smooth_, path_);
+        if (!left_out_ || !scene_.triangles.empty()) clean_geometry(scene_, smooth_, path_);
         warn_count(scene_, path_, bad_normals_, "normals are no finite numbers; their faces are flat there");
         warn_count(scene_, path_, bad_uvs_, "texture coordinates are no finite numbers, 0 taken");
         warn_count(scene_, path_, uncovered_, "meshes have a texture and no coordinates for it");
@@ -112,6 +118,8 @@ private:
     const ImportedScene& file_;
     const std::string& path_;
     double scale_;
+    const LeavesOut& leaves_out_;
+    bool left_out_ = false;
     bool any_normals_ = false, any_uvs_ = false;
     std::vector<std::uint32_t> smooth_;
     const Json none_;
@@ -120,13 +128,10 @@ private:
 
 }  // namespace
 
-void read_geometry(Scene& scene, const ImportedScene& file, const std::string& path, double scale) {
-    Flattener flattener(scene, file, path, scale);
-    if (file.content().mRootNode) flattener.add_node(*file.content().mRootNode, Affine<double>());
+void read_geometry(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out) {
+    Flattener flattener(scene, part, leaves_out);
+    flattener.add_node(part.node, part.transform);
     flattener.finish();
-    if (scene.uvs.empty()) {
-        for (Material& material : scene.materials) material.diffuse_texture = -1;
-    }
 }
 
 }  // namespace realcam::io

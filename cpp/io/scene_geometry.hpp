@@ -1,13 +1,11 @@
 #pragma once
-#include <string>
-
 #include "../scene/scene.hpp"
-#include "scene_import.hpp"
+#include "scene_part.hpp"
 
 namespace realcam::io {
 
-/// Nodes flattened into scene.positions_m, normals, uvs and triangles, `scale` metres per unit of the file. Material
-/// numbers are those of the file. Throws SceneFileError, with `path`, if no triangle is left.
-void read_geometry(Scene& scene, const ImportedScene& file, const std::string& path, double scale);
+/// Nodes flattened into scene.positions_m, normals, uvs and triangles. Material numbers are those of the file. Throws
+/// SceneFileError where no triangle is left, unless `leaves_out` has had some.
+void read_geometry(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out);
 
 }  // namespace realcam::io

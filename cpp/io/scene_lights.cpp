@@ -30,20 +30,23 @@ void add_light(Scene& scene, const Json& light, const Affine<double>& transform,
 
 }  // namespace
 
-void read_lights(Scene& scene, const ImportedScene& file, const std::string& path, double scale) {
-    const GltfDocument* gltf = file.gltf();
+void read_lights(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out) {
+    const GltfDocument* gltf = part.file.gltf();
     if (!gltf) return;
     const Json& lights = gltf->root()["extensions"]["KHR_lights_punctual"]["lights"];
-    const auto visit = [&](const auto& self, const aiNode& node, const Affine<double>& parent) -> void {
-        const Affine<double> transform = parent * gltf->transform(node);
+    const auto visit = [&](const auto& self, const aiNode& node, const Affine<double>& transform) -> void {
+        if (leaves_out(node, transform) == LeftOut::all) return;
         const Json& number = gltf->node(node)["extensions"]["KHR_lights_punctual"]["light"];
         if (number.is_number()) {
             const std::size_t i = number.index(lights.size());
-            add_light(scene, lights[i], transform, path + ": light " + std::to_string(i), scale);
+            add_light(scene, lights[i], transform, part.path + ": light " + std::to_string(i), part.scale);
         }
-        for (unsigned i = 0; i < node.mNumChildren; ++i) self(self, *node.mChildren[i], transform);
+        for (unsigned i = 0; i < node.mNumChildren; ++i) {
+            const aiNode& child = *node.mChildren[i];
+            self(self, child, transform * gltf->transform(child));
+        }
     };
-    visit(visit, *file.content().mRootNode, Affine<double>());
+    visit(visit, part.node, part.transform);
 }
 
 }  // namespace realcam::io

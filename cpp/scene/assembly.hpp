@@ -61,24 +61,36 @@ inline std::string label(const Assembly& assembly, std::size_t instance) {
     return "instance " + std::to_string(instance) + (name.empty() ? "" : " (\"" + name + "\")");
 }
 
+/// Why an object cannot stand so; empty where it can.
+inline std::string why_no_place(const Affine<double>& map) {
+    // Far inside of what float can do, and beyond what anybody has seen.
+    constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
+    const auto within = [](double v) { return v >= kLeast && v <= kMost; };
+    const double x = length(map.x), y = length(map.y), z = length(map.z);
+    if (!within(x) || !within(y) || !within(z) || !(length(map.origin) <= kFarthest_m))
+        return "a transform must be finite and scale each axis by 1e-6 to 1e6, to within 1e12 m";
+    if (!(std::fabs(map.determinant()) > 1e-6 * x * y * z))
+        return "a transform must keep three directions; this one makes the object flat";
+    return "";
+}
+
 /// Throws InputError where there is nothing to be seen, or where an object cannot stand.
 inline void validate(const Assembly& assembly) {
     if (!assembly.ground || assembly.triangle_count() == 0)
         throw InputError("the scene is empty; at least one triangle is wanted");
     for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-        const Affine<double>& map = assembly.instances[i].scene_from_object;
-        // Far inside of what float can do, and beyond what anybody has seen.
-        constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
-        const auto within = [](double v, double least, double most) { return v >= least && v <= most; };
-        const double x = length(map.x), y = length(map.y), z = length(map.z);
-        if (!within(x, kLeast, kMost) || !within(y, kLeast, kMost) || !within(z, kLeast, kMost) ||
-            !(length(map.origin) <= kFarthest_m))
-            throw InputError(label(assembly, i) +
-                             ": a transform must be finite and scale each axis by 1e-6 to 1e6, to within 1e12 m");
-        if (!(std::fabs(map.determinant()) > 1e-6 * x * y * z))
-            throw InputError(label(assembly, i) +
-                             ": a transform must keep three directions; this one makes the object flat");
+        const std::string why = why_no_place(assembly.instances[i].scene_from_object);
+        if (!why.empty()) throw InputError(label(assembly, i) + ": " + why);
     }
+}
+
+/// With a copy of the ground that `change` has changed.
+template <class Change>
+Assembly with_ground(Assembly assembly, Change&& change) {
+    auto ground = std::make_shared<Scene>(*assembly.ground);
+    change(*ground);
+    assembly.ground = std::move(ground);
+    return assembly;
 }
 
 /// Puts an object into a scene: all that it is made of, by names that begin with `name`.

@@ -449,7 +449,7 @@ class Material:
 @final
 class Scene:
     @staticmethod
-    def load(path: _Path, *, scale: float = 1.0) -> Scene: ...
+    def load(path: _Path, *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene: ...
     @staticmethod
     def from_arrays(
         vertices_m: ArrayLike,

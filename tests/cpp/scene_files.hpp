@@ -54,9 +54,13 @@ struct Reader {
     }
 };
 
-inline Scene read(const std::string& path, double scale = 1) {
+inline Assembly read_assembly(const std::string& path, const std::vector<std::string>& objects, double scale = 1) {
     Reader reader;
-    return io::read_scene(path, {scale}, reader.function());
+    return io::read_scene(path, {scale, objects}, reader.function());
+}
+
+inline Scene read(const std::string& path, double scale = 1) {
+    return *read_assembly(path, {}, scale).ground;
 }
 
 inline std::string error_of(const std::string& path) {

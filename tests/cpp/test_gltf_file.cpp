@@ -6,42 +6,9 @@
 #include <vector>
 
 #include "../../cpp/io/scene_materials.hpp"
-#include "scene_files.hpp"
-
-namespace {
+#include "gltf_files.hpp"
 
 using namespace scene_files;
-
-// A triangle (0,0,0), (1,0,0), (0,1,0) that faces +z, with normals and texture coordinates, in a file tri.bin.
-std::string triangle_bytes(std::vector<std::uint16_t> indices = {0, 1, 2}, float x1 = 1) {
-    const float values[] = {0, 0, 0, x1, 0, 0, 0, 1, 0, /*normals*/ 0, 0, 1, 0, 0, 1, 0, 0, 1, /*uv*/ 0, 1, 1, 1, 0, 0};
-    std::string out(reinterpret_cast<const char*>(values), sizeof values);
-    out.append(reinterpret_cast<const char*>(indices.data()), 2 * indices.size());
-    return out + std::string(2, '\0');
-}
-
-std::string gltf(const std::string& nodes, const std::string& roots, const std::string& more = "",
-                 const std::string& attributes = R"(,"NORMAL":1,"TEXCOORD_0":2)", std::size_t indices = 3) {
-    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + roots + R"(}],"nodes":)" + nodes +
-           R"(,"meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0)" + attributes +
-           R"(},"indices":3,"material":0}]},
-               {"primitives":[{"attributes":{"POSITION":0)" +
-           attributes + R"(},"indices":3}]}],
-           "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
-             {"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},
-             {"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"},
-             {"bufferView":3,"componentType":5123,"count":)" +
-           std::to_string(indices) + R"(,"type":"SCALAR"}],
-           "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},
-             {"buffer":0,"byteOffset":72,"byteLength":24},
-             {"buffer":0,"byteOffset":96,"byteLength":)" +
-           std::to_string(2 * indices) + R"(}],
-           "buffers":[{"byteLength":)" +
-           std::to_string(98 + 2 * indices) + R"(,"uri":"tri.bin"}])" +
-           (has(more, "\"materials\"") ? "" : R"(,"materials":[{"name":"plain"}])") + more + "}";
-}
-
-}  // namespace
 
 TEST_CASE("glTF: transforms of nested nodes, mirrored ones stay right side out") {
     const Folder folder;
@@ -129,7 +96,7 @@ TEST_CASE("glTF: pictures as files, their transform, and the mean of a metal's m
         "textures":[{"source":0}],"images":[{"uri":"my%20t.png"}])";
     Reader reader;
     const Scene scene =
-        io::read_scene(folder.write("u.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {}, reader.function());
+        *io::read_scene(folder.write("u.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {}, reader.function()).ground;
     CHECK(reader.asked.front() == "my t.png");
     CHECK(scene.warnings.empty());
     // The file's (u, v), v downwards: (0, 1), (1, 1), (0, 0). Turned by 90 degrees, (0.5 u, 0.25 v) -> (0.25 v, -0.5
@@ -164,7 +131,7 @@ TEST_CASE("GLB: the picture inside reaches the reader as bytes, and the geometry
     const std::string glb = "glTF" + word(2) + word(28 + json.size() + bytes.size()) + word(json.size()) + "JSON" +
                             json + word(bytes.size()) + std::string("BIN\0", 4) + bytes;
     Reader reader;
-    const Scene scene = io::read_scene(folder.write("a.GLB", glb), {}, reader.function());
+    const Scene scene = *io::read_scene(folder.write("a.GLB", glb), {}, reader.function()).ground;
     CHECK(scene.triangles.size() == 1);
     CHECK(reader.asked == std::vector<std::string>{"bytes"});
     CHECK(std::string(reader.bytes.begin(), reader.bytes.end()) == picture);
