@@ -20,8 +20,12 @@ Affine<double> affine_from(const double* m, bool has_last_row) {
     return {column(0), column(1), column(2), column(3)};
 }
 
-/// Of one matrix, or of an array of them.
-std::vector<Affine<double>> places_from(const py::object& matrices) {
+struct Places {
+    std::vector<Affine<double>> list;
+    bool several;  ///< given as an array of matrices
+};
+
+Places places_from(const py::object& matrices) {
     const auto m = matrices.is_none() ? InputArray<double>() : InputArray<double>::ensure(matrices);
     if (!m) PyErr_Clear();
     const py::ssize_t axes = m && !matrices.is_none() ? m.ndim() : 0;
@@ -29,8 +33,9 @@ std::vector<Affine<double>> places_from(const py::object& matrices) {
         throw InputError("scene_from_object must be an array of numbers of shape (4, 4) or (3, 4), or several of them");
     const py::ssize_t count = axes == 3 ? m.shape(0) : 1, rows = m.shape(axes - 2);
     std::vector<Affine<double>> places;
+    if (count == 0) throw InputError("scene_from_object holds no matrix; one for each place is wanted");
     for (py::ssize_t i = 0; i < count; ++i) places.push_back(affine_from(m.data() + 4 * rows * i, rows == 4));
-    return places;
+    return {places, axes == 3};
 }
 
 py::array_t<double> matrix_of(const Affine<double>& map) {
@@ -45,10 +50,10 @@ Assembly with_instance(Assembly scene, const Assembly& object, const py::object&
     if (matrices.is_none()) {
         add(scene, object, {}, name);
     } else {
-        const std::vector<Affine<double>> places = places_from(matrices);
-        const bool numbered = places.size() > 1 && !name.empty();
-        for (std::size_t i = 0; i < places.size(); ++i)
-            add(scene, object, places[i], numbered ? name + ' ' + std::to_string(i) : name);
+        const Places places = places_from(matrices);
+        const bool numbered = places.several && !name.empty();
+        for (std::size_t i = 0; i < places.list.size(); ++i)
+            add(scene, object, places.list[i], numbered ? name + ' ' + std::to_string(i) : name);
     }
     validate(scene);
     return scene;
@@ -72,9 +77,9 @@ std::size_t find_instance(const Assembly& scene, const std::variant<py::ssize_t,
 }
 
 Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& instance, const py::object& matrix) {
-    const std::vector<Affine<double>> places = places_from(matrix);
-    if (places.size() != 1) throw InputError("one instance moves to one place; a single matrix is wanted");
-    scene.instances[find_instance(scene, instance)].scene_from_object = places.front();
+    const Places places = places_from(matrix);
+    if (places.several) throw InputError("one instance moves to one place; a single matrix is wanted");
+    move(scene, find_instance(scene, instance), places.list.front());
     validate(scene);
     return scene;
 }
@@ -95,10 +100,13 @@ void bind_instances(py::class_<Assembly>& scene) {
             "With another scene in it as an object: its triangles and point lights, but not its suns and environment.\n"
             "scene_from_object: matrix of shape (4, 4) or (3, 4) for columns (x, y, z, 1), metres; none: as it is.\n"
             "(K, 4, 4) or (K, 3, 4): K of them, with names \"name 0\", \"name 1\", ... The object's triangles are\n"
-            "shared, however often it stands there. Raises InputError for a matrix that is flat.")
-        .def("moved", &moved, "instance"_a, "scene_from_object"_a,
-             "With one of the instances, by its name or number, in another place. Made for every frame: the next\n"
-             "picture takes over all that was built for the last. Raises InputError where there is none, or several.")
+            "shared, however often it stands there; its own instances become parts, by the name \"name/part\".\n"
+            "Raises InputError for a matrix that is flat.")
+        .def(
+            "moved", &moved, "instance"_a, "scene_from_object"_a,
+            "With one of the instances, by its name or number, in another place, and with it its parts: those with\n"
+            "its name and a slash. Made for every frame: the next picture takes over all that was built for the last.\n"
+            "Raises InputError where there is no such instance, or several.")
         .def_property_readonly("instances", &instances_of, "For each its name and (4, 4) scene_from_object.");
 }
 

@@ -99,7 +99,8 @@ void bind_scene(py::module_& m) {
     py::class_<Assembly> scene_class(
         m, "Scene",
         "Triangles, materials and lights, and objects that stand among them, as often as one likes;\n"
-        "metres, right-handed, y up. A value: what changes it returns a new one, which shares the rest.");
+        "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
+        "those of the ground; objects bring their own along.");
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},

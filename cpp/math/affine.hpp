@@ -32,6 +32,10 @@ struct Affine {
     REALCAM_INLINE Vec3<T> direction(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
     REALCAM_INLINE Vec3<T> point(Vec3<T> p) const { return direction(p) + origin; }
     REALCAM_INLINE T determinant() const { return dot(x, cross(y, z)); }
+    /// Neither turns nor mirrors, and scales all directions alike.
+    REALCAM_INLINE bool is_scale_and_shift() const {
+        return x.x > 0 && x == Vec3<T>{x.x, 0, 0} && y == Vec3<T>{0, x.x, 0} && z == Vec3<T>{0, 0, x.x};
+    }
 
     /// Of a plane's normal; on the same side of the surface also where the map mirrors it. Not unit. The cofactors are
     /// the inverse transpose times the determinant, and exist where that one does not.

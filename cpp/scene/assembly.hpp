@@ -18,8 +18,8 @@ struct Instance {
     std::string name;  ///< for messages, and to find it by
 };
 
-/// A scene as a ground, and objects that stand in it, as often as one likes. A value: copies share what is large, and
-/// backends keep what they made of each shared part for as long as it is in use.
+/// A scene as a ground, and objects that stand in it, as often as one likes. A value: copies share what is large.
+/// Backends know the last one again by these pointers, and keep all that they made of it where only places differ.
 struct Assembly {
     std::shared_ptr<const Scene> ground;  ///< with the lights; may have no triangles where there are instances
     std::vector<Instance> instances;
@@ -65,11 +65,14 @@ inline std::string label(const Assembly& assembly, std::size_t instance) {
 inline std::string why_no_place(const Affine<double>& map) {
     // Far inside of what float can do, and beyond what anybody has seen.
     constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
+    constexpr double kLeastVolume =
+        1e-4;  // of what the three would span at right angles: its inverse has digits to lose
     const auto within = [](double v) { return v >= kLeast && v <= kMost; };
     const double x = length(map.x), y = length(map.y), z = length(map.z);
+    if (x == 0 || y == 0 || z == 0) return "a transform must keep three directions; this one makes the object flat";
     if (!within(x) || !within(y) || !within(z) || !(length(map.origin) <= kFarthest_m))
         return "a transform must be finite and scale each axis by 1e-6 to 1e6, to within 1e12 m";
-    if (!(std::fabs(map.determinant()) > 1e-6 * x * y * z))
+    if (!(std::fabs(map.determinant()) > kLeastVolume * x * y * z))
         return "a transform must keep three directions; this one makes the object flat";
     return "";
 }
@@ -78,6 +81,9 @@ inline std::string why_no_place(const Affine<double>& map) {
 inline void validate(const Assembly& assembly) {
     if (!assembly.ground || assembly.triangle_count() == 0)
         throw InputError("the scene is empty; at least one triangle is wanted");
+    constexpr std::size_t kMostInstances = std::size_t{1} << 28;
+    if (assembly.instances.size() > kMostInstances)
+        throw InputError("a scene holds at most " + std::to_string(kMostInstances) + " instances");
     for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
         const std::string why = why_no_place(assembly.instances[i].scene_from_object);
         if (!why.empty()) throw InputError(label(assembly, i) + ": " + why);
@@ -93,13 +99,29 @@ Assembly with_ground(Assembly assembly, Change&& change) {
     return assembly;
 }
 
-/// Puts an object into a scene: all that it is made of, by names that begin with `name`.
+/// Puts an object into a scene. What the object is itself made of has names of the form name/part.
 inline void add(Assembly& assembly, const Assembly& object, const Affine<double>& scene_from_object,
                 const std::string& name) {
+    const std::vector<Instance> parts = object.instances;  // it may be the assembly itself
     if (!object.ground->triangles.empty() || !object.ground->points.empty())
         assembly.instances.push_back({object.ground, scene_from_object, name});
-    for (const Instance& part : object.instances)
-        assembly.instances.push_back({part.object, scene_from_object * part.scene_from_object, name + '/' + part.name});
+    for (const Instance& part : parts)
+        assembly.instances.push_back({part.object, scene_from_object * part.scene_from_object,
+                                      name + (name.empty() || part.name.empty() ? "" : "/") + part.name});
+}
+
+/// Puts an instance elsewhere, and its parts along with it: those that bear its name and a slash.
+inline void move(Assembly& assembly, std::size_t instance, const Affine<double>& scene_from_object) {
+    const Instance before = assembly.instances[instance];
+    const InverseAffine<double> back = before.scene_from_object.inverse();
+    for (Instance& part : assembly.instances) {
+        if (before.name.empty() || !part.name.starts_with(before.name + '/')) continue;
+        const Affine<double>& map = part.scene_from_object;
+        const Affine<double> within = {back.direction(map.x), back.direction(map.y), back.direction(map.z),
+                                       back.point(map.origin)};
+        part.scene_from_object = scene_from_object * within;
+    }
+    assembly.instances[instance].scene_from_object = scene_from_object;
 }
 
 }  // namespace REALCAM_NAMESPACE

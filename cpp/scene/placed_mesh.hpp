@@ -9,16 +9,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A scene's triangles as kernels read them: float, relative to an origin. What is measured between corners (planes,
+/// A scene's triangles as kernels read them: float, in a frame that suits. What is measured between corners (planes,
 /// areas, edges) comes from their double positions. Owns the memory of its view; the Scene must outlive it.
 class PlacedMesh {
 public:
-    PlacedMesh(const Scene& scene, Vec3d origin_m, LargeTriangles large = LargeTriangles::cut)
-        : scene_(scene), origin_(origin_m), split_(scene, origin_m, large) {
+    /// `frame`: from that of the scene.
+    PlacedMesh(const Scene& scene, const Affine<double>& frame, LargeTriangles large = LargeTriangles::cut)
+        : scene_(scene), frame_(frame), split_(scene, frame, large) {
         positions_.reserve(split_.position_count());
         for (std::size_t i = 0; i < split_.position_count(); ++i)
             positions_.push_back(static_cast<Vec3f>(split_.position(i)));
         for (const Texture& t : scene.textures) textures_.push_back({t.rgba.data(), t.width, t.height});
+        add_normals();
         add_planes();
         for (std::uint32_t i = 0; i < triangles().size(); ++i)
             if (luminance(scene.materials[triangles()[i].material].emission) > 0) lamps_.push_back(i);
@@ -29,7 +31,8 @@ public:
         view.triangles = triangles().data();
         view.planes = planes_.data();
         view.positions = positions_.data();
-        view.normals = split_.normals().empty() ? nullptr : split_.normals().data();
+        const std::vector<Vec3f>& normals = turned_normals_.empty() ? split_.normals() : turned_normals_;
+        view.normals = normals.empty() ? nullptr : normals.data();
         view.uvs = split_.uvs().empty() ? nullptr : split_.uvs().data();
         view.materials = scene_.materials.data();
         view.textures = textures_.data();
@@ -41,7 +44,7 @@ public:
     }
 
     const Scene& scene() const { return scene_; }
-    Vec3d origin_m() const { return origin_; }
+    const Affine<double>& frame() const { return frame_; }
     const std::vector<Vec3f>& positions() const { return positions_; }
     /// The scene's, of which those that are large and near are in pieces.
     const std::vector<Triangle>& triangles() const { return split_.triangles(); }
@@ -65,15 +68,25 @@ private:
         return {a, position(t.vertices[1]) - a, position(t.vertices[2]) - a};
     }
 
+    void add_normals() {
+        if (frame_.is_scale_and_shift() || split_.normals().empty()) return;
+        // Not made unit vectors, so that what is interpolated between them is what it was.
+        const InverseAffine<double> inverse = frame_.inverse();
+        turned_normals_.reserve(split_.normals().size());
+        for (const Vec3f n : split_.normals())
+            turned_normals_.push_back(static_cast<Vec3f>(inverse.normal_of(static_cast<Vec3d>(n))));
+    }
+
     void add_planes() {
+        const double side = frame_.determinant() < 0 ? -1 : 1;  // a mirror turns corners round
         planes_.reserve(triangles().size());
         for (std::size_t i = 0; i < triangles().size(); ++i) {
             // Of the whole triangle, so that its pieces are one plane.
             const Edges whole = edges_of(scene_.triangles[split_.parent(i)],
-                                         [&](std::uint32_t v) { return scene_.positions_m[v] - origin_; });
+                                         [&](std::uint32_t v) { return frame_.point(scene_.positions_m[v]); });
             const Vec3d area = cross(whole.u, whole.v);
             const double size = length(area);
-            const Vec3d normal = size > 0 ? (1 / size) * area : Vec3d{0, 0, 1};
+            const Vec3d normal = size > 0 ? (side / size) * area : Vec3d{0, 0, 1};
             double reach = 0;
             for (const std::uint32_t v : triangles()[i].vertices) {
                 const Vec3f p = positions_[v];
@@ -86,8 +99,9 @@ private:
     }
 
     const Scene& scene_;
-    Vec3d origin_;
+    Affine<double> frame_;
     SplitTriangles split_;
+    std::vector<Vec3f> turned_normals_;
     std::vector<Vec3f> positions_;
     std::vector<TrianglePlane> planes_;
     std::vector<std::uint32_t> lamps_;

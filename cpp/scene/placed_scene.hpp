@@ -1,27 +1,43 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "bounding_box.hpp"
 #include "placed_mesh.hpp"
+#include "surface_point.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// A scene as kernels read it, relative to an origin near the camera, so that a scene far from its own origin loses
-/// nothing. Objects are placed in frames of their own, which kernels reach through the instances. Owns the memory of
-/// its view.
+/// nothing. Objects are placed in frames of their own, which kernels reach through the instances; but one that is
+/// large, and near the camera, is placed as the ground is, once for each place where it stands. Owns the memory of its
+/// view.
 class PlacedScene {
 public:
     PlacedScene(Assembly assembly, Vec3d origin_m)
-        : assembly_(std::move(assembly)), origin_(origin_m), ground_(*assembly_.ground, origin_m) {
-        for (const Instance& instance : assembly_.instances) object_of_.push_back(object_number(instance.object.get()));
-        for (const Scene* part : parts_) add_triangles(boxes_.emplace_back(), *part, {});
-        const std::vector<Frame> frames = frames_for(assembly_);
-        for (std::size_t i = 0; i < parts_.size(); ++i)
-            objects_.push_back(std::make_unique<PlacedMesh>(
-                *parts_[i], frames[i].origin_m, frames[i].large_and_near ? LargeTriangles::cut : LargeTriangles::keep));
+        : assembly_(std::move(assembly)), origin_(origin_m), ground_(*assembly_.ground, relative_to(origin_m)) {
+        std::map<const Scene*, BoundingBox> boxes;
+        std::map<const Scene*, std::uint32_t> shared;
+        for (const Instance& instance : assembly_.instances) {
+            const Scene& object = *instance.object;
+            const auto [box, is_first] = boxes.try_emplace(&object);
+            if (is_first) add_triangles(box->second, object, {});
+            boxes_.push_back(box->second);
+            const auto next = static_cast<std::uint32_t>(objects_.size());
+            if (is_large_and_near(boxes_.back(), instance.scene_from_object)) {
+                add_object(object, relative_to(origin_) * instance.scene_from_object, LargeTriangles::cut);
+                object_of_.push_back(next);
+            } else {
+                const auto [found, is_new] = shared.try_emplace(&object, next);
+                if (is_new)
+                    add_object(object, own_frame(boxes_.back(), instance.scene_from_object), LargeTriangles::keep);
+                object_of_.push_back(found->second);
+            }
+        }
         for (const auto& object : objects_) object_views_.push_back(object->view());
         const Environment& environment = assembly_.ground->environment;
         if (!environment.pixels.empty()) environment_ = environment_tables(environment);
@@ -31,13 +47,19 @@ public:
     /// Whether move can bring about an assembly: it has the same parts, and their frames are still good ones.
     bool can_move_to(const Assembly& assembly) const {
         if (!same_parts(assembly_, assembly)) return false;
-        const std::vector<Frame> frames = frames_for(assembly);
-        for (std::size_t i = 0; i < frames.size(); ++i)
-            if (frames[i].large_and_near && frames[i].origin_m != objects_[i]->origin_m()) return false;
+        for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
+            const Affine<double>&now = assembly_.instances[i].scene_from_object,
+                  &then = assembly.instances[i].scene_from_object;
+            if (now == then) continue;
+            constexpr int kMostDoublings = 10;
+            if (stands_as_ground(i) || is_large_and_near(boxes_[i], then) ||
+                std::abs(doublings(now) - doublings(then)) > kMostDoublings)
+                return false;
+        }
         return true;
     }
 
-    /// Objects to other places. Their triangles stay what they are, in their own frames.
+    /// Objects to other places, as can_move_to allows. Their triangles stay what they are, in their own frames.
     void move(const Assembly& assembly) {
         assembly_ = assembly;
         place_instances();
@@ -85,34 +107,41 @@ private:
     /// As SplitTriangles: what is nearer than this part of its size is near.
     static constexpr double kNearShare = 1.0 / 128;
 
-    /// Where an object's own positions count from.
-    struct Frame {
-        Vec3d origin_m;
-        bool large_and_near;
-    };
-
-    std::uint32_t object_number(const Scene* part) {
-        const auto number = static_cast<std::uint32_t>(std::find(parts_.begin(), parts_.end(), part) - parts_.begin());
-        if (number == parts_.size()) parts_.push_back(part);
-        return number;
+    bool is_large_and_near(const BoundingBox& box, const Affine<double>& map) const {
+        if (box.empty()) return false;
+        const double size = length(map.direction(box.high - box.low));
+        const Vec3d near = map.point(box.nearest(map.inverse().point(origin_)));
+        return size > kLarge_m && length(near - origin_) < kNearShare * size;
     }
 
-    /// Their middles; but of a large object before the camera the point that is nearest to it.
-    std::vector<Frame> frames_for(const Assembly& assembly) const {
-        std::vector<Frame> frames;
-        for (const BoundingBox& box : boxes_) frames.push_back({box.empty() ? Vec3d{0, 0, 0} : box.middle(), false});
-        std::vector<double> nearest_m(parts_.size(), BoundingBox::kNone);
-        for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-            const Affine<double>& map = assembly.instances[i].scene_from_object;
-            const BoundingBox& box = boxes_[object_of_[i]];
-            if (box.empty()) continue;
-            const Vec3d near = box.nearest(map.inverse().point(origin_));
-            const double distance = length(map.point(near) - origin_), size = length(map.direction(box.high - box.low));
-            if (!(size > kLarge_m && distance < kNearShare * size && distance < nearest_m[object_of_[i]])) continue;
-            nearest_m[object_of_[i]] = distance;
-            frames[object_of_[i]] = {near, true};
-        }
-        return frames;
+    /// Of a length by a map, as a power of two.
+    static int doublings(const Affine<double>& map) {
+        return static_cast<int>(std::lround(std::log2(std::fabs(map.determinant())) / 3));
+    }
+
+    /// About the middle, in units of about a metre as it stands there: traversal takes triangles of less than 1e-9 of
+    /// the unit for points.
+    static Affine<double> own_frame(const BoundingBox& box, const Affine<double>& map) {
+        Affine<double> frame;
+        const double scale = std::ldexp(1.0, doublings(map));
+        frame.x.x = frame.y.y = frame.z.z = scale;
+        if (!box.empty()) frame.origin = -scale * box.middle();
+        return frame;
+    }
+
+    void add_object(const Scene& object, const Affine<double>& frame, LargeTriangles large) {
+        objects_.push_back(std::make_unique<PlacedMesh>(object, frame, large));
+        as_ground_.push_back(large == LargeTriangles::cut);
+    }
+    bool stands_as_ground(std::size_t instance) const { return as_ground_[object_of_[instance]]; }
+
+    /// From the frame of an instance's object.
+    Affine<double> placed_from_object(std::size_t i) const {
+        if (stands_as_ground(i)) return {};
+        const Affine<double>& frame = objects_[object_of_[i]]->frame();
+        const Affine<double>& map = assembly_.instances[i].scene_from_object;
+        const double unit = 1 / frame.x.x;
+        return {unit * map.x, unit * map.y, unit * map.z, map.point(-unit * frame.origin) - origin_};
     }
 
     void place_instances() {
@@ -120,20 +149,28 @@ private:
         points_.clear();
         areas_.clear();
         AreaLights lights;
-        add_lights(ground_, {}, 0, lights);
+        add_lights(ground_, {}, nullptr, lights);
         for (std::size_t i = 0; i < assembly_.instances.size(); ++i) {
-            const PlacedMesh& object = *objects_[object_of_[i]];
-            Affine<double> exact = assembly_.instances[i].scene_from_object;
-            exact.origin = exact.point(object.origin_m()) - origin_;
-            const auto map = static_cast<Affine<float>>(exact);
-            const InverseAffine<double> inverse = static_cast<Affine<double>>(map).inverse();
-            const double shrinkage = std::sqrt(dot(inverse.x, inverse.x) + dot(inverse.y, inverse.y) +
-                                               dot(inverse.z, inverse.z));  // of the thinnest direction, at least
-            instances_.push_back({map, static_cast<InverseAffine<float>>(inverse),
-                                  static_cast<float>(static_cast<double>(kMarginShare) * shrinkage), object_of_[i]});
-            add_lights(object, exact, instances_.back().margin, lights);
+            const Affine<double> exact = placed_from_object(i);
+            instances_.push_back(instance_view(exact, i));
+            add_lights(*objects_[object_of_[i]], exact, &instances_.back(), lights);
         }
         area_cdf_ = area_light_cdf(areas_, lights.areas, lights.materials, lights.material_count);
+    }
+
+    InstanceView instance_view(const Affine<double>& exact, std::size_t i) const {
+        const auto map = static_cast<Affine<float>>(exact);
+        const InverseAffine<double> inverse = static_cast<Affine<double>>(map).inverse();
+        const auto sum = [](double a, double b, double c) {
+            return static_cast<float>(static_cast<double>(kMarginShare) * (std::fabs(a) + std::fabs(b) + std::fabs(c)));
+        };
+        const Vec3f margin = {sum(inverse.x.x, inverse.y.x, inverse.z.x), sum(inverse.x.y, inverse.y.y, inverse.z.y),
+                              sum(inverse.x.z, inverse.y.z, inverse.z.z)};
+        float reach = std::numeric_limits<float>::max();
+        if (!stands_as_ground(i) && !boxes_[i].empty())
+            reach = kMarginShare * static_cast<float>(length(assembly_.instances[i].scene_from_object.direction(
+                                       boxes_[i].high - boxes_[i].low)));
+        return {map, static_cast<InverseAffine<float>>(inverse), margin, reach, object_of_[i]};
     }
 
     /// What the choice among area lights has to know of each.
@@ -143,40 +180,41 @@ private:
         std::size_t material_count = 0;
     };
 
-    /// The lamps of a mesh where a map from its frame puts them. `margin`: see InstanceView.
-    void add_lights(const PlacedMesh& mesh, const Affine<double>& map, float margin, AreaLights& lights) {
+    /// The lamps of a mesh where a map from its frame puts them. `instance`: none of the ground.
+    void add_lights(const PlacedMesh& mesh, const Affine<double>& map, const InstanceView* instance,
+                    AreaLights& lights) {
         const Scene& scene = mesh.scene();
         for (const PlacedPointLight& p : scene.points)
-            points_.push_back({static_cast<Vec3f>(map.point(p.position_m - mesh.origin_m())), p.intensity});
+            points_.push_back({static_cast<Vec3f>(map.point(mesh.frame().point(p.position_m))), p.intensity});
         const InverseAffine<double> inverse = map.inverse();
         for (const std::uint32_t lamp : mesh.lamps()) {
             const Triangle& t = mesh.triangles()[lamp];
             const PlacedMesh::Edges edges = mesh.edges(t);
-            const Vec3d corner = map.point(edges.corner), u = map.direction(edges.u), v = map.direction(edges.v);
+            const Vec3d u = map.direction(edges.u), v = map.direction(edges.v);
             const double area = 0.5 * length(cross(u, v));
             if (!(area > 0)) continue;
             const TrianglePlane& plane = mesh.planes()[lamp];
             const Vec3d normal = inverse.normal_of(static_cast<Vec3d>(plane.normal));
-            const Vec3f placed = static_cast<Vec3f>(corner);
-            const float reach = largest_of(placed) + largest_of(static_cast<Vec3f>(map.origin));
-            areas_.push_back({placed, static_cast<Vec3f>(u), static_cast<Vec3f>(v),
+            const Vec3f corner = static_cast<Vec3f>(map.point(edges.corner));
+            const float margin = instance ? instance_margin(*instance, plane.margin, plane.normal,
+                                                            static_cast<float>(1 / length(normal)), corner)
+                                          : plane.margin;
+            areas_.push_back({corner, static_cast<Vec3f>(u), static_cast<Vec3f>(v),
                               static_cast<Vec3f>(normalized(normal)), scene.materials[t.material].emission, 0.0f,
-                              (plane.margin + margin * reach) / static_cast<float>(length(normal))});
+                              margin});
             lights.areas.push_back(area);
             lights.materials.push_back(static_cast<std::uint32_t>(lights.material_count) + t.material);
         }
         lights.material_count += scene.materials.size();
     }
 
-    static float largest_of(Vec3f p) { return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}); }
-
     Assembly assembly_;
     Vec3d origin_;
     PlacedMesh ground_;
-    std::vector<const Scene*> parts_;  ///< the objects, each once
-    std::vector<BoundingBox> boxes_;  ///< of each, as it is given
-    std::vector<std::uint32_t> object_of_;  ///< of each instance
+    std::vector<BoundingBox> boxes_;  ///< of each instance's object, as it is given
+    std::vector<std::uint32_t> object_of_;  ///< of each instance, in:
     std::vector<std::unique_ptr<PlacedMesh>> objects_;
+    std::vector<bool> as_ground_;  ///< of each of them: placed as the ground is, for one instance
     std::vector<MeshView> object_views_;
     std::vector<InstanceView> instances_;
     std::vector<PointLight> points_;

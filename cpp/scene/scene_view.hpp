@@ -88,7 +88,8 @@ struct MeshView {
 struct InstanceView {
     Affine<float> placed_from_object;
     InverseAffine<float> object_from_placed;
-    float margin;  ///< how far off in the object's frame a point may be for each unit of its placed coordinates
+    Vec3f margin;  ///< how far off along the object's axes a point may be for each unit of its placed coordinates
+    float reach_margin;  ///< and, in the placed scene, for what the object's own coordinates leave, at most
     std::uint32_t object;
 };
 

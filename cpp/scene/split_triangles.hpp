@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../math/affine.hpp"
 #include "scene.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -14,12 +15,19 @@ namespace REALCAM_NAMESPACE {
 
 enum class LargeTriangles { cut, keep };
 
-/// The triangles of a scene about an origin, the large ones in pieces: the first piece takes the place of the triangle,
-/// the others are appended.
+/// Into a frame that is only shifted.
+inline Affine<double> relative_to(Vec3d origin_m) {
+    Affine<double> frame;
+    frame.origin = -origin_m;
+    return frame;
+}
+
+/// The triangles of a scene in another frame, those that are large about its origin in pieces: the first piece takes
+/// the place of the triangle, the others are appended. Normals are those of the scene's own frame.
 class SplitTriangles {
 public:
-    SplitTriangles(const Scene& scene, Vec3d origin_m, LargeTriangles large = LargeTriangles::cut)
-        : scene_(scene), origin_(origin_m) {
+    SplitTriangles(const Scene& scene, const Affine<double>& frame, LargeTriangles large = LargeTriangles::cut)
+        : scene_(scene), frame_(frame) {
         if (large == LargeTriangles::keep) return;
         const auto count = static_cast<std::uint32_t>(scene.triangles.size());
         for (std::uint32_t i = 0; i < count; ++i) {
@@ -38,10 +46,10 @@ public:
     const std::vector<Vec2f>& uvs() const { return any() ? uvs_ : scene_.uvs; }
 
     std::size_t position_count() const { return scene_.positions_m.size() + added_.size(); }
-    /// Relative to the origin.
+    /// In the frame.
     Vec3d position(std::size_t vertex) const {
         const std::size_t given = scene_.positions_m.size();
-        return vertex < given ? scene_.positions_m[vertex] - origin_ : added_[vertex - given];
+        return vertex < given ? frame_.point(scene_.positions_m[vertex]) : added_[vertex - given];
     }
     /// The scene's triangle of which this one is a piece.
     std::size_t parent(std::size_t triangle) const {
@@ -163,7 +171,7 @@ private:
     }
 
     const Scene& scene_;
-    Vec3d origin_;
+    Affine<double> frame_;
     std::vector<Vec3d> added_;
     std::vector<Triangle> triangles_;
     std::vector<Vec3f> normals_;

@@ -93,6 +93,18 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     return point;
 }
 
+/// How far off a triangle of an instance lies, and what is traced to it: TrianglePlane's margin in the placed scene.
+/// `stretch`: of lengths along the unit normal, by the way there. By axes, because an object that is flat or long in
+/// its own frame is not as far off in one direction as in another.
+REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_margin, Vec3f object_normal,
+                                     float stretch, Vec3f placed) {
+    const float own = stretch * plane_margin;
+    const float off = std::fabs(object_normal.x) * instance.margin.x + std::fabs(object_normal.y) * instance.margin.y +
+                      std::fabs(object_normal.z) * instance.margin.z;
+    const float coordinates = largest_coordinate(placed) + largest_coordinate(instance.object_from_placed.origin);
+    return select(own < instance.reach_margin, own, instance.reach_margin) + stretch * off * coordinates;
+}
+
 /// Likewise of a whole scene: rays go into the object's frame, with the same distances, and what they find comes back.
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
     if (hit.instance == kNoInstance)
@@ -103,13 +115,11 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
         surface_point(scene.objects[instance.object], hit, into.point(ray_origin), into.direction(ray_direction));
     point.position = instance.placed_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
-    const float stretch = 1.0f / length(geometric);  // of lengths along the normal
+    const float stretch = 1.0f / length(geometric);
+    // The next ray is met in the object's frame again.
+    point.self_offset = instance_margin(instance, point.self_offset, point.geometric_normal, stretch, point.position);
     point.geometric_normal = stretch * geometric;
     point.normal = normalized(dot(shading, geometric) < 0 ? -shading : shading);
-    // The next ray is met in the object's frame again.
-    point.self_offset =
-        stretch *
-        (point.self_offset + instance.margin * (largest_coordinate(point.position) + largest_coordinate(into.origin)));
     return point;
 }
 

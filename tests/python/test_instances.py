@@ -172,13 +172,73 @@ def test_a_plain_as_an_object_is_as_exact_as_the_ground(device: str) -> None:
         assert np.isfinite(depth[depth.shape[0] // 2 :]).all()
 
 
+def test_a_plain_that_stands_twice_near_the_camera(device: str) -> None:
+    """No sun through a roof that shares its triangles with the floor: either is exact in its own place."""
+    plain = scene_of(quad((0, 0, 0), 1e7, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.5))
+    sun = scene_of(quad((0, 0, 1e11), 1)).with_sun((0.3, -1, 0), (8e4, 8e4, 8e4))
+    between = rc.Camera(
+        LENS, film=rc.Film(36, 24, (72, 48)), position=(0, 0.6, 1.5), look_at=(0, 0.1, 0), model="pinhole"
+    )
+    roofed = sun.with_instance(plain, [placed(1e6, 0, 0), placed(0, 0.75, 0)])
+    assert rc.render(roofed, between, spp=16, device=device, max_bounces=0).pixels.max() == 0
+
+
+@pytest.mark.parametrize("size", [1e3, 1e6])
+def test_a_floor_made_by_scale_takes_shadows(device: str, size: float) -> None:
+    def picture(half: float, scale: float) -> rc.Image:
+        floor = scene_of(quad((0, 0, 0), half, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.5))
+        panel = scene_of(quad((0, 0.2, 0), 0.2, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.2))
+        scene = panel.with_environment((300, 300, 300)).with_sun((0.3, -1, 0.1), (8e4, 8e4, 8e4))
+        place = placed(0.3, 0, 0.1, scale=scale)
+        return rc.render(scene.with_instance(floor, place), camera(), spp=32, device=device)
+
+    hold_same(picture(1.0, size), picture(size, 1.0))
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e5])
+def test_objects_in_other_units(device: str, unit: float) -> None:
+    """Smooth normals and textures need places within triangles that are as small in a file of micrometres as points."""
+    vertices, triangles, normals, uvs = ball(16)
+    small = as_scene((vertices * unit, triangles, normals, uvs))
+    options = {"spp": 16, "device": device}
+    a = rc.render(GROUND.with_instance(small, placed(0, 0.7, -1, scale=1 / unit)), camera(), **options)
+    hold_same(a, rc.render(GROUND.with_instance(as_scene(ball(16)), placed(0, 0.7, -1)), camera(), **options))
+
+
+@pytest.mark.parametrize("ratio", [30.0, 1000.0])
+def test_a_body_that_is_long_and_thin_in_its_own_frame(device: str, ratio: float) -> None:
+    vertices, triangles, normals, uvs = ball()
+    stretch = np.array([ratio, 1 / ratio, 1])
+    thin = as_scene((vertices / stretch, triangles, normals * stretch, uvs), material=LAMP)
+    options = {"spp": 32, "device": device}
+    back = placed(0.2, 0.7, -1, turn=0.5, scale=tuple(stretch))
+    plain = as_scene(ball(), placed(0.2, 0.7, -1, turn=0.5), LAMP)
+    pictures = [rc.render(scene, camera(), **options) for scene in (GROUND.with_instance(thin, back), union([plain]))]
+    hold_same(*pictures)
+
+
+def test_a_large_object_that_comes_near_is_placed_anew(device: str) -> None:
+    plain = scene_of(quad((0, 0, 0), 1e6, right=(1, 0, 0), up=(0, 0.2, -1), diffuse=0.5))
+    sky = scene_of(quad((0, 0, 1e11), 1)).with_environment(1000)
+    options = {"spp": 8, "device": device}
+    for near in (placed(0, -0.3, 0), placed(3e4, 5e3, -7e4, turn=0.1)):
+        far = sky.with_instance(plain, placed(0, -1.5e6, 0), name="plain")
+        rc.render(far, camera(), **options)
+        moved = rc.render(far.moved("plain", near), camera(), **options)
+        hold_same(moved, rc.render(sky.with_instance(plain, near), camera(), **options))
+
+
 def test_objects_of_objects(device: str) -> None:
-    pair = as_scene(ball()).with_instance(as_scene(ball()), placed(0, 0.9, 0, scale=0.5), name="hat")
+    hat = placed(0, 0.9, 0, scale=0.5)
+    pair = as_scene(ball()).with_instance(as_scene(ball()), hat, name="hat")
     scene = GROUND.with_instance(pair, PLACES[0], name="egg")
     assert [name for name, _ in scene.instances] == ["egg", "egg/hat"]
-    flat = union([as_scene(ball(), PLACES[0]), as_scene(ball(), PLACES[0] @ placed(0, 0.9, 0, scale=0.5))])
+    assert [name for name, _ in GROUND.with_instance(pair).instances] == ["", "hat"]
     options = {"spp": 16, "device": device}
-    hold_same(rc.render(scene, camera(), **options), rc.render(flat, camera(), **options))
+    # One that moves takes its parts along.
+    for whole, place in ((scene, PLACES[0]), (scene.moved("egg", PLACES[1]), PLACES[1])):
+        flat = union([as_scene(ball(), place), as_scene(ball(), place @ hat)])
+        hold_same(rc.render(whole, camera(), **options), rc.render(flat, camera(), **options))
 
 
 def test_many_instances_share_their_triangles(device: str) -> None:
@@ -224,6 +284,10 @@ def test_what_is_no_place_is_refused() -> None:
         scene.moved(-1, np.eye(4))
     with pytest.raises(rc.InputError, match="single matrix"):
         scene.moved(np.int64(1), [np.eye(4), np.eye(4)])
+    with pytest.raises(rc.InputError, match="holds no matrix"):
+        GROUND.with_instance(egg, np.zeros((0, 4, 4)))
+    with pytest.raises(rc.InputError, match="flat"):
+        GROUND.with_instance(egg, np.diag([1, 1, 0, 1]))
     with pytest.raises(rc.InputError, match='no instance "eg"'):
         scene.moved("eg", np.eye(4))
     with pytest.raises(rc.InputError, match='2 instances "egg"'):
