@@ -217,6 +217,27 @@ def test_a_body_that_is_long_and_thin_in_its_own_frame(device: str, ratio: float
     hold_same(*pictures)
 
 
+@pytest.mark.parametrize("ratio", [1.0, 50.0])
+def test_no_light_leaves_a_closed_lantern(device: str, ratio: float) -> None:
+    """Lamps that shine into a box, whose walls and margins are those of a plate and a rod in its own frame."""
+    walls = []
+    for axis in np.eye(3):
+        for n in (axis, -axis):  # outwards; right x up points in
+            right = np.roll(n, 1)
+            walls.append(quad(0.5 * n, 0.5, right=right, up=np.cross(-n, right), emission=5000))
+    stretch = np.array([ratio, 1 / ratio, 1])
+    flat = [(corners / stretch, material) for corners, material in walls]
+    floor = scene_of(quad((0, 0, 0), 30, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.5))
+    lantern = placed(0.1, 0.7, -1, turn=0.5, scale=tuple(stretch))
+    options = {"spp": 64, "device": device, "max_bounces": 1}
+    outside = rc.render(floor.with_instance(scene_of(*flat), lantern), camera(), **options)
+    # A part in 1e4 of what the same walls give when they shine outwards; rays through edges are of that order.
+    turned = [(corners[[0, 3, 2, 1]], material) for corners, material in flat]
+    shining = rc.render(floor.with_instance(scene_of(*turned), lantern), camera(), **options)
+    assert shining.pixels.mean() > 0
+    assert outside.pixels.mean() < 1e-4 * shining.pixels.mean()
+
+
 def test_a_large_object_that_comes_near_is_placed_anew(device: str) -> None:
     plain = scene_of(quad((0, 0, 0), 1e6, right=(1, 0, 0), up=(0, 0.2, -1), diffuse=0.5))
     sky = scene_of(quad((0, 0, 1e11), 1)).with_environment(1000)
