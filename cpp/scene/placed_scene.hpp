@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "bounding_box.hpp"
@@ -21,7 +22,7 @@ public:
     PlacedScene(Assembly assembly, Vec3d origin_m)
         : assembly_(std::move(assembly)), origin_(origin_m), ground_(*assembly_.ground, relative_to(origin_m)) {
         std::map<const Scene*, BoundingBox> boxes;
-        std::map<const Scene*, std::uint32_t> shared;
+        std::map<std::pair<const Scene*, int>, std::uint32_t> shared;  // by those that are scaled about alike
         for (const Instance& instance : assembly_.instances) {
             const Scene& object = *instance.object;
             const auto [box, is_first] = boxes.try_emplace(&object);
@@ -32,7 +33,8 @@ public:
                 add_object(object, relative_to(origin_) * instance.scene_from_object, LargeTriangles::cut);
                 object_of_.push_back(next);
             } else {
-                const auto [found, is_new] = shared.try_emplace(&object, next);
+                const int about = static_cast<int>(std::floor(doublings(instance.scene_from_object) / kAlike));
+                const auto [found, is_new] = shared.try_emplace({&object, about}, next);
                 if (is_new)
                     add_object(object, own_frame(boxes_.back(), instance.scene_from_object), LargeTriangles::keep);
                 object_of_.push_back(found->second);
@@ -51,9 +53,8 @@ public:
             const Affine<double>&now = assembly_.instances[i].scene_from_object,
                   &then = assembly.instances[i].scene_from_object;
             if (now == then) continue;
-            constexpr int kMostDoublings = 10;
             if (stands_as_ground(i) || is_large_and_near(boxes_[i], then) ||
-                std::abs(doublings(now) - doublings(then)) > kMostDoublings)
+                std::fabs(doublings(objects_[object_of_[i]]->frame()) - doublings(then)) > kAlike)
                 return false;
         }
         return true;
@@ -115,15 +116,17 @@ private:
     }
 
     /// Of a length by a map, as a power of two.
-    static int doublings(const Affine<double>& map) {
-        return static_cast<int>(std::lround(std::log2(std::fabs(map.determinant())) / 3));
+    static double doublings(const Affine<double>& map) {
+        return std::round(std::log2(std::fabs(map.determinant())) / 3);
     }
+    /// So many doublings make no difference to a frame.
+    static constexpr double kAlike = 10;
 
     /// About the middle, in units of about a metre as it stands there: traversal takes triangles of less than 1e-9 of
     /// the unit for points.
     static Affine<double> own_frame(const BoundingBox& box, const Affine<double>& map) {
         Affine<double> frame;
-        const double scale = std::ldexp(1.0, doublings(map));
+        const double scale = std::exp2(doublings(map));
         frame.x.x = frame.y.y = frame.z.z = scale;
         if (!box.empty()) frame.origin = -scale * box.middle();
         return frame;

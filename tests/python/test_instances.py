@@ -205,6 +205,18 @@ def test_objects_in_other_units(device: str, unit: float) -> None:
     hold_same(a, rc.render(GROUND.with_instance(as_scene(ball(16)), placed(0, 0.7, -1)), camera(), **options))
 
 
+def test_a_speck_and_a_giant_share_an_object(device: str) -> None:
+    vertices, triangles, normals, uvs = ball(16)
+    small = as_scene((vertices * 1e-6, triangles, normals, uvs))
+    options = {"spp": 16, "device": device}
+    whole = GROUND.with_instance(small, [placed(0, 0.01, -1, scale=1e2), placed(0.3, 0.7, -1, scale=5e5)], name="egg")
+    grown = whole.moved("egg 0", placed(-0.5, 0.7, -1, scale=1e6))
+    expected = GROUND.with_instance(as_scene(ball(16)), placed(0.3, 0.7, -1, scale=0.5))
+    hold_same(rc.render(whole, camera(), **options), rc.render(expected, camera(), **options))
+    expected = expected.with_instance(as_scene(ball(16)), placed(-0.5, 0.7, -1))
+    hold_same(rc.render(grown, camera(), **options), rc.render(expected, camera(), **options))
+
+
 @pytest.mark.parametrize("ratio", [30.0, 1000.0])
 def test_a_body_that_is_long_and_thin_in_its_own_frame(device: str, ratio: float) -> None:
     vertices, triangles, normals, uvs = ball()
