@@ -1,5 +1,6 @@
 #include "scene_bvh.hpp"
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -34,7 +35,32 @@ Box placed_box(const Box& box, const InstanceView& instance) {
     return {placed.lower - all_sides, placed.upper + all_sides};
 }
 
+Box instance_box(const SceneBvh& bvh, const PlacedScene& scene, std::uint32_t number) {
+    const InstanceView& instance = scene.instances()[number];
+    return placed_box(bvh.object_boxes[instance.object], instance);
+}
+
+void build_instances(SceneBvh& bvh, const PlacedScene& scene) {
+    bvh.instances =
+        build_wide_nodes(scene.instances().size(), [&](std::uint32_t i) { return instance_box(bvh, scene, i); });
+    bvh.built_cost = expected_nodes(bvh.instances.nodes);
+}
+
 }  // namespace
+
+double expected_nodes(const std::vector<WideNode>& nodes) {
+    const auto half_area_of = [](const WideNode& node) {
+        const auto extent = [](std::uint32_t step_bits) {
+            return 255 * static_cast<double>(std::bit_cast<float>(step_bits & 0xffff0000u));
+        };
+        const double x = extent(node.steps_xy), y = extent(node.steps_xy << 16), z = extent(node.step_z_reach);
+        return x * y + y * z + z * x;
+    };
+    double sum = 0;
+    for (const WideNode& node : nodes) sum += half_area_of(node);
+    const double root = half_area_of(nodes.front());
+    return root > 0 ? sum / root : static_cast<double>(nodes.size());
+}
 
 SceneBvh build_scene_bvh(const PlacedScene& scene) {
     SceneBvh bvh;
@@ -43,18 +69,14 @@ SceneBvh build_scene_bvh(const PlacedScene& scene) {
         bvh.objects.push_back(build_wide_bvh(object->positions(), object->triangles()));
         bvh.object_boxes.push_back(box_of(*object));
     }
-    const auto& instances = scene.instances();
-    bvh.instances = build_wide_nodes(instances.size(), [&](std::uint32_t i) {
-        return placed_box(bvh.object_boxes[instances[i].object], instances[i]);
-    });
+    build_instances(bvh, scene);
     return bvh;
 }
 
 void refit_instances(SceneBvh& bvh, const PlacedScene& scene) {
-    refit(bvh.instances.nodes, [&](std::uint32_t leaf) {
-        const InstanceView& instance = scene.instances()[bvh.instances.order[leaf]];
-        return placed_box(bvh.object_boxes[instance.object], instance);
-    });
+    refit(bvh.instances.nodes, [&](std::uint32_t leaf) { return instance_box(bvh, scene, bvh.instances.order[leaf]); });
+    constexpr double kMostWorse = 2;
+    if (expected_nodes(bvh.instances.nodes) > kMostWorse * bvh.built_cost) build_instances(bvh, scene);
 }
 
 std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const PlacedScene& scene,

@@ -12,12 +12,17 @@ struct SceneBvh {
     std::vector<WideBvh> objects;
     std::vector<Box> object_boxes;  ///< of each, in its own frame
     WideNodes instances;
+    double built_cost = 0;  ///< expected_nodes of the latter when it was built
 };
+
+/// How many nodes a ray through the root's box enters, by the surface area heuristic.
+double expected_nodes(const std::vector<WideNode>& nodes);
 
 /// Throws what build_wide_bvh throws.
 SceneBvh build_scene_bvh(const PlacedScene& scene);
 
-/// After PlacedScene::move: only the boxes over the objects change.
+/// After PlacedScene::move: only the boxes over the objects change; or all of the hierarchy over them, where rays would
+/// enter twice as many nodes of it as when it was built.
 void refit_instances(SceneBvh& bvh, const PlacedScene& scene);
 
 /// The leaves over the objects, whose hierarchies are to be read at the places given.

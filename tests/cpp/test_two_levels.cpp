@@ -140,9 +140,28 @@ TEST_CASE("two levels: objects that have moved are met where they are") {
     for (Instance& instance : assembly.instances) instance.scene_from_object = drawn_place(draw, 15);
     REQUIRE(moving.placed.can_move_to(assembly));
     moving.move(assembly);
+    // All of them at once: what was near each other no longer is, and no box is as large as the room for long.
+    CHECK(expected_nodes(moving.bvh.instances.nodes) <=
+          2 * expected_nodes(OnHost(assembly, {0, 0, 0}).bvh.instances.nodes));
     hold_hits(moving, Baked(assembly, {0, 0, 0}), draw);
     assembly.instances.pop_back();
     CHECK_FALSE(moving.placed.can_move_to(assembly));
+}
+
+TEST_CASE("two levels: the hierarchy over objects is built anew only where it has become twice as dear") {
+    BvhDraw draw(6);
+    Assembly assembly = drawn_assembly(draw);
+    OnHost moving(assembly, {0, 0, 0});
+    const std::vector<std::uint32_t> order = moving.bvh.instances.order;
+    assembly.instances[7].scene_from_object.origin += Vec3d{0.5, 0, 0};
+    moving.move(assembly);
+    CHECK(moving.bvh.instances.order == order);
+    const double before = expected_nodes(moving.bvh.instances.nodes);
+    for (std::size_t i = 0; i < assembly.instances.size(); ++i)
+        assembly.instances[i].scene_from_object.origin = {i % 2 ? 1000.0 : -1000.0, static_cast<double>(i), 0};
+    moving.move(assembly);
+    CHECK(moving.bvh.instances.order != order);
+    CHECK(expected_nodes(moving.bvh.instances.nodes) < 2 * before);
 }
 
 TEST_CASE("two levels: no ground, one object, no hit") {
