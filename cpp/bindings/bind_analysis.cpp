@@ -12,7 +12,7 @@ using namespace py::literals;
 namespace {
 
 using Array = py::array_t<double>;
-using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Points = InputArray<double>;
 
 // What the analyses ask of the user alike.
 

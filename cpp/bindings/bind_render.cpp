@@ -10,6 +10,7 @@
 #include "../camera/develop.hpp"
 #include "../devices/devices.hpp"
 #include "../render/backend.hpp"
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "render_turn.hpp"
 
@@ -75,8 +76,7 @@ py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std
                           copy_of(image.depth, {image.height, image.width}), image.stats);
 }
 
-py::array_t<std::uint8_t> develop(const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure,
-                                  double iso, const std::string& tone) {
+py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso, const std::string& tone) {
     const ToneCurve curve = tone_curve_from(tone);
     if (!(iso > 0) || !std::isfinite(iso)) throw InputError("the ISO number must be positive");
     py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));

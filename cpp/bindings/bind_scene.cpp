@@ -45,7 +45,7 @@ Assembly load(const py::object& path, double scale, const std::vector<std::strin
 template <class Change>
 Assembly with_valid_ground(const Assembly& scene, Change&& change) {
     const Assembly changed = with_ground(scene, change);
-    io::validate(changed);
+    io::validate(*changed.ground, {}, !changed.instances.empty());
     return changed;
 }
 

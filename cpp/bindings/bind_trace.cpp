@@ -7,6 +7,7 @@
 #include "../cuda/cuda_rays.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/lens_rays.hpp"
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "device_array.hpp"
 
@@ -16,7 +17,7 @@ using namespace py::literals;
 
 namespace {
 
-using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Array = InputArray<double>;
 
 /// Arrays of numpy, or DeviceArrays.
 struct TraceResult {

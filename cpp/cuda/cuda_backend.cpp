@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <future>
-#include <optional>
 
+#include "../camera/last_setup.hpp"
 #include "../render/run_with_progress.hpp"
 #include "../render/seconds_since.hpp"
 #include "cuda_devices.hpp"
@@ -32,10 +32,9 @@ public:
         const auto start = std::chrono::steady_clock::now();
         validate(settings);
         validate(scene);
-        CameraSetup setup(camera, tracer_, setup_ ? &*setup_ : nullptr);
-        setup_ = std::move(setup);
+        const std::shared_ptr<const CameraSetup> setup = last_setup_.make(camera, tracer_);
         scene_.place(scene, camera);
-        const CameraView view = setup_->view(scene_.origin_m());
+        const CameraView view = setup->view(scene_.origin_m());
         for (const auto& renderer : renderers_) renderer->set_camera(view);
 
         Image image;
@@ -63,7 +62,7 @@ private:
             int rows = make_room(image);
             for (int row = 0; row < image.height && !stop; row += rows) {
                 rows = std::min(rows, image.height - row);
-                expose_band(row, rows, settings, stop, done);
+                expose_band(row, rows, image.width, settings, stop, done);
                 const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width);
                 if (!stop)
                     renderers_.front()->develop(settings.spp, exposure_time_s, image.exposure.data() + 3 * first,
@@ -88,7 +87,7 @@ private:
     }
 
     /// All samples of some rows: each GPU takes a range of them. One that fails stops the others.
-    void expose_band(int first_row, int rows, const RenderSettings& settings, std::atomic<bool>& stop,
+    void expose_band(int first_row, int rows, int columns, const RenderSettings& settings, std::atomic<bool>& stop,
                      std::atomic<std::int64_t>& done) {
         const auto share = [&](std::size_t i) {
             return static_cast<std::uint32_t>(static_cast<std::uint64_t>(settings.spp) * i / renderers_.size());
@@ -97,7 +96,7 @@ private:
         const auto expose_share = [&](std::size_t i) {
             try {
                 DeviceRenderer& renderer = *renderers_[i];
-                renderer.clear_film(static_cast<std::int64_t>(rows) * setup_->camera().film.width);
+                renderer.clear_film(static_cast<std::int64_t>(rows) * columns);
                 renderer.expose({first_row, rows, share(i), share(i + 1) - share(i)}, settings, stop, done);
             } catch (...) {
                 stop = true;
@@ -134,7 +133,7 @@ private:
     PupilTracer tracer_;
     std::string name_;
     std::vector<std::unique_ptr<DeviceRenderer>> renderers_;
-    std::optional<CameraSetup> setup_;
+    LastSetup last_setup_;
     HostScene scene_;
 };
 

@@ -2,11 +2,14 @@
 
 #include <utility>
 
+#include "../render/scene_change.hpp"
+
 namespace realcam {
 
 void HostScene::place(const Assembly& assembly, const Camera& camera) {
-    const bool moves = placed_ && lies_near(camera, placed_->origin_m()) && placed_->can_move_to(assembly);
-    if (moves && same_places(placed_->assembly(), assembly)) return;
+    const SceneChange change = scene_change(placed_.get(), assembly, camera);
+    if (change == SceneChange::none) return;
+    const bool moves = change == SceneChange::places;
     std::unique_ptr<PlacedScene> placed = std::exchange(placed_, nullptr);
     if (moves) {
         placed->move(assembly);

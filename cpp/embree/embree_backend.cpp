@@ -12,6 +12,7 @@
 #include "../camera/last_setup.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/run_with_progress.hpp"
+#include "../render/scene_change.hpp"
 #include "../render/seconds_since.hpp"
 #include "embree_scene.hpp"
 #include "kernels.hpp"
@@ -89,11 +90,10 @@ public:
 
 private:
     void place(const Assembly& scene, const Camera& camera) {
-        const bool moves =
-            scene_ && lies_near(camera, scene_->placed().origin_m()) && scene_->placed().can_move_to(scene);
-        if (moves && same_places(scene_->placed().assembly(), scene)) return;
+        const SceneChange change = scene_change(scene_ ? &scene_->placed() : nullptr, scene, camera);
+        if (change == SceneChange::none) return;
         std::unique_ptr<EmbreeScene> last = std::exchange(scene_, nullptr);  // what fails is not kept
-        if (moves) {
+        if (change == SceneChange::places) {
             last->move(scene);
             scene_ = std::move(last);
         } else {

@@ -156,15 +156,15 @@ private:
 
 }  // namespace
 
-void validate(const Scene& scene, const std::string& file) {
-    Checker(scene, file).check(false);
+void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
+    Checker(scene, file).check(may_be_empty);
 }
 
 void validate(const Assembly& scene, const std::string& file) {
-    Checker(*scene.ground, file).check(!scene.instances.empty());
+    validate(*scene.ground, file, !scene.instances.empty());
     std::set<const Scene*> objects;
     for (const Instance& instance : scene.instances)
-        if (objects.insert(instance.object.get()).second) Checker(*instance.object, file).check(true);
+        if (objects.insert(instance.object.get()).second) validate(*instance.object, file, true);
     try {
         realcam::validate(scene);
     } catch (const InputError& error) {

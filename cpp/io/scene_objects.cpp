@@ -10,10 +10,6 @@
 namespace realcam::io {
 namespace {
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 bool has_meshes(const aiNode& node) {
     bool found = node.mNumMeshes > 0;
     for (unsigned i = 0; i < node.mNumChildren; ++i) found |= has_meshes(*node.mChildren[i]);
@@ -50,7 +46,7 @@ void SceneObjects::count_uses(const aiNode& node, std::map<Meshes, std::size_t>&
 }
 
 LeftOut SceneObjects::left_out(const aiNode& node, const Affine<double>& transform) const {
-    if (contains(names_, node.mName.C_Str())) return LeftOut::all;
+    if (std::find(names_.begin(), names_.end(), node.mName.C_Str()) != names_.end()) return LeftOut::all;
     // What is scaled to nothing, as animations hide nodes, has no triangles in the ground, and no place as an object.
     const bool shared = node.mNumMeshes > 0 && shared_.contains(meshes_of(node)) && why_no_place(transform).empty();
     return shared ? LeftOut::meshes : LeftOut::nothing;

@@ -6,6 +6,7 @@
 #include "light_tables.hpp"
 #include "scene.hpp"
 #include "split_triangles.hpp"
+#include "surface_point.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -87,14 +88,12 @@ private:
             const Vec3d area = cross(whole.u, whole.v);
             const double size = length(area);
             const Vec3d normal = size > 0 ? (side / size) * area : Vec3d{0, 0, 1};
-            double reach = 0;
-            for (const std::uint32_t v : triangles()[i].vertices) {
-                const Vec3f p = positions_[v];
-                reach = std::max({reach, std::fabs(static_cast<double>(p.x)), std::fabs(static_cast<double>(p.y)),
-                                  std::fabs(static_cast<double>(p.z))});
-            }
+            float reach = 0;
+            for (const std::uint32_t v : triangles()[i].vertices)
+                reach = std::max(reach, largest_coordinate(positions_[v]));
+            const double margin = static_cast<double>(kMarginShare) * static_cast<double>(reach) + 1e-12;
             planes_.push_back({static_cast<Vec3f>(normal), static_cast<float>(dot(normal, whole.corner)),
-                               static_cast<float>(static_cast<double>(kMarginShare) * reach + 1e-12)});
+                               static_cast<float>(margin)});
         }
     }
 

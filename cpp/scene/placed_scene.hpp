@@ -9,7 +9,6 @@
 
 #include "bounding_box.hpp"
 #include "placed_mesh.hpp"
-#include "surface_point.hpp"
 
 namespace REALCAM_NAMESPACE {
 

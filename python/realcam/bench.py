@@ -249,6 +249,20 @@ def gpu_paths(threads: int) -> Result:
     }
 
 
+def _frames_per_second(shoot: Callable[[int], _core.LiveFrame]) -> float:
+    """Of 200 frames, shot by their number and each read while the next three are under way; the first 20 warm up."""
+    frames: list[_core.LiveFrame] = []
+    for i in range(220):
+        if i == 20:
+            frames[-1].codes.sum()
+            begin = time.perf_counter()
+        frames.append(shoot(i))
+        if len(frames) > 3:
+            frames.pop(0).codes.sum()
+    frames[-1].codes.sum()
+    return round(200 / (time.perf_counter() - begin), 1)
+
+
 def gpu_frames(threads: int) -> Result:
     """Frames per second of a live view, 640 x 640 pixels of 20 samples, while camera, focus or stop change."""
     del threads
@@ -265,16 +279,11 @@ def gpu_frames(threads: int) -> Result:
     }
     rates = {}
     for name, camera_at in changes.items():
-        frames: list[_core.LiveFrame] = []
-        for i in range(220):
-            if i == 20:
-                frames[-1].codes.sum()
-                begin = time.perf_counter()
-            frames.append(view.shoot(camera_at(i), spp=20))
-            if len(frames) > 3:
-                frames.pop(0).codes.sum()
-        frames[-1].codes.sum()
-        rates[name] = round(200 / (time.perf_counter() - begin), 1)
+
+        def shoot(i: int, camera_at: Callable[[int], Camera] = camera_at) -> _core.LiveFrame:
+            return view.shoot(camera_at(i), spp=20)
+
+        rates[name] = _frames_per_second(shoot)
     return {"frames_per_second": rates}
 
 
@@ -307,21 +316,16 @@ def gpu_objects(threads: int) -> Result:
     scene, view = scenes["objects"], _core.LiveView(scenes["objects"], max_bounces=0)
     small = Camera(camera.lens, film=Film(24, 24, (640, 640)), position=(0, 1.5, 4), look_at=(0, 0.3, -4))
     matrix = np.eye(4)
-    frames: list[_core.LiveFrame] = []
-    for i in range(220):
-        if i == 20:
-            frames[-1].codes.sum()
-            begin = time.perf_counter()
+
+    def shoot(i: int) -> _core.LiveFrame:
         matrix[:3, 3] = 0.01 * i - 1, 0.3, -2
         view.show(scene.moved("0", matrix))
-        frames.append(view.shoot(small, spp=20))
-        if len(frames) > 3:
-            frames.pop(0).codes.sum()
-    frames[-1].codes.sum()
+        return view.shoot(small, spp=20)
+
     return {
         "giga_paths_per_second": {name: _giga(256 * 1920 * 1280 / min(times)) for name, times in seconds.items()},
         "giga_bounces_per_second": {name: _giga(rates["cosine"]) for name, rates in hits.items()},
-        "frames_per_second": round(200 / (time.perf_counter() - begin), 1),
+        "frames_per_second": _frames_per_second(shoot),
     }
 
 

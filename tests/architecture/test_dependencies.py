@@ -74,6 +74,7 @@ HOST_ONLY = {
     "render/default_view.hpp",
     "render/metering.hpp",
     "render/run_with_progress.hpp",
+    "render/scene_change.hpp",
     "scene/assembly.hpp",
     "scene/bounding_box.hpp",
     "scene/light_tables.hpp",

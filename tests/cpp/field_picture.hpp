@@ -8,6 +8,7 @@
 #include "../../cpp/embree/embree_backend.hpp"
 #include "../../cpp/embree/lens_rays.hpp"
 #include "pixel_rays.hpp"
+#include "refusal.hpp"
 
 namespace realcam::test {
 
@@ -40,16 +41,7 @@ inline FieldPicture photograph(const LensSystem& lens, double film_mm, int pixel
 
 /// What the camera says that cannot take the picture.
 inline std::string camera_error(const LensSystem& lens, CameraModel model = CameraModel::full_lens) {
-    try {
-        photograph(lens, 10, 4, 16, model);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "(no error)";
-}
-
-inline bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
+    return message_of([&] { photograph(lens, 10, 4, 16, model); });
 }
 
 }  // namespace realcam::test

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/error.hpp"
 #include "../../cpp/io/bundled_lenses.hpp"
 #include "../../cpp/io/lens_file.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "refusal.hpp"
 
 namespace {
 
@@ -23,10 +23,6 @@ std::string complaint(const std::string& name) {
         return error.what();
     }
     return "(no error)";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace

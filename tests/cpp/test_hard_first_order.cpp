@@ -8,6 +8,7 @@
 #include "hard_lens_list.hpp"
 #include "measurement.hpp"
 #include "oracle.hpp"
+#include "refusal.hpp"
 
 using namespace realcam;
 using namespace realcam::test;
@@ -78,10 +79,6 @@ std::string message_of(const LensSystem& lens, double focus, double f_number) {
         return error.what();
     }
     return "(no error)";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 }  // namespace

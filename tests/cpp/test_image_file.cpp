@@ -10,15 +10,16 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/error.hpp"
 #include "../../cpp/image_io/image_file.hpp"
 #include "doctest/doctest.h"
+#include "refusal.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace realcam;
 using namespace realcam::image_io;
+using realcam::test::contains;
 
 // The files of one test; gone with it.
 class Folder {
@@ -76,10 +77,6 @@ std::string message_of(const std::string& path) {
         return error.what();
     }
     return "written";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 void check_entries(const OIIO::ImageSpec& spec) {

@@ -11,6 +11,7 @@
 #include "../../cpp/io/bundled_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "refusal.hpp"
 #include "traced_ray.hpp"
 
 namespace {
@@ -68,10 +69,6 @@ std::string complaint_about_name(const std::string& name) {
         return error.what();
     }
     return "(no error)";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 // The message begins with its place and contains what is wrong.
