@@ -36,22 +36,21 @@ Assembly read_scene(const RenderRequest& request) {
     const Assembly scene = with_memory_for("while reading " + request.scene, [&] {
         return io::read_scene(request.scene, {request.scale}, image_io::read_image);
     });
-    const std::vector<std::string>& warnings = scene.ground->warnings;
+    const std::vector<std::string>& warnings = scene.static_geometry->warnings;
     constexpr std::size_t kShown = 10;
     for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) say("warning: " + warnings[i]);
     if (warnings.size() > kShown) say("and " + std::to_string(warnings.size() - kShown) + " more warnings");
     if (request.environment_cd_m2) {
         const auto radiance = static_cast<float>(*request.environment_cd_m2);
-        return with_ground(scene, [&](Scene& ground) {
-            ground.environment = {};
-            ground.environment.constant = {radiance, radiance, radiance};
+        return with_static_geometry(scene, [&](Scene& scene) {
+            scene.environment = {};
+            scene.environment.constant = {radiance, radiance, radiance};
         });
     }
     if (!request.environment_file.empty())
         return with_memory_for("while reading " + request.environment_file, [&] {
-            return with_ground(scene, [&](Scene& ground) {
-                ground.environment = image_io::read_environment(request.environment_file);
-            });
+            return with_static_geometry(
+                scene, [&](Scene& scene) { scene.environment = image_io::read_environment(request.environment_file); });
         });
     return scene;
 }
@@ -86,7 +85,7 @@ void run_render(const RenderWords& words) {
     // An environment that was asked for counts even where it is dark.
     const bool chosen = request.environment_cd_m2 || !request.environment_file.empty();
     if (!scene.has_light() && !chosen) {
-        scene = with_ground(scene, [&](Scene& ground) { add_daylight(ground, request.camera.pose); });
+        scene = with_static_geometry(scene, [&](Scene& scene) { add_daylight(scene, request.camera.pose); });
         say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
             "cd/m^2");
     }

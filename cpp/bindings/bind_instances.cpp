@@ -25,7 +25,7 @@ struct Places {
     bool several;  ///< given as an array of matrices
 };
 
-Places places_from(const py::object& matrices) {
+Places transforms_from(const py::object& matrices) {
     const auto m = matrices.is_none() ? InputArray<double>() : InputArray<double>::ensure(matrices);
     if (!m) PyErr_Clear();
     const py::ssize_t axes = m && !matrices.is_none() ? m.ndim() : 0;
@@ -50,7 +50,7 @@ Assembly with_instance(Assembly scene, const Assembly& object, const py::object&
     if (matrices.is_none()) {
         add(scene, object, {}, name);
     } else {
-        const Places places = places_from(matrices);
+        const Places places = transforms_from(matrices);
         const bool numbered = places.several && !name.empty();
         for (std::size_t i = 0; i < places.list.size(); ++i)
             add(scene, object, places.list[i], numbered ? name + ' ' + std::to_string(i) : name);
@@ -77,7 +77,7 @@ std::size_t find_instance(const Assembly& scene, const std::variant<py::ssize_t,
 }
 
 Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& instance, const py::object& matrix) {
-    const Places places = places_from(matrix);
+    const Places places = transforms_from(matrix);
     if (places.several) throw InputError("one instance moves to one place; a single matrix is wanted");
     move(scene, find_instance(scene, instance), places.list.front());
     validate(scene);

@@ -43,9 +43,9 @@ Assembly load(const py::object& path, double scale, const std::vector<std::strin
 }
 
 template <class Change>
-Assembly with_valid_ground(const Assembly& scene, Change&& change) {
-    const Assembly changed = with_ground(scene, change);
-    io::validate(*changed.ground, {}, !changed.instances.empty());
+Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
+    const Assembly changed = with_static_geometry(scene, change);
+    io::validate(*changed.static_geometry, {}, !changed.instances.empty());
     return changed;
 }
 
@@ -100,7 +100,7 @@ void bind_scene(py::module_& m) {
         m, "Scene",
         "Triangles, materials and lights, and objects that stand among them, as often as one likes;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
-        "those of the ground; objects bring their own along.");
+        "those of static geometry; objects bring their own along.");
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
@@ -115,8 +115,8 @@ void bind_scene(py::module_& m) {
         .def(
             "with_environment",
             [](const Assembly& scene, const py::object& radiance) {
-                return with_valid_ground(scene,
-                                         [&](Scene& ground) { ground.environment = environment_from(radiance); });
+                return with_valid_static_geometry(
+                    scene, [&](Scene& scene) { scene.environment = environment_from(radiance); });
             },
             "radiance"_a,
             "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude "
@@ -129,8 +129,8 @@ void bind_scene(py::module_& m) {
                 const double size = length(d);
                 if (!(size > 0) || !std::isfinite(size))
                     throw InputError("the sun's direction must be a finite vector, not zero");
-                return with_valid_ground(scene, [&](Scene& ground) {
-                    ground.suns.push_back({static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
+                return with_valid_static_geometry(scene, [&](Scene& scene) {
+                    scene.suns.push_back({static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
                 });
             },
             "direction"_a, "illuminance"_a,
@@ -138,33 +138,33 @@ void bind_scene(py::module_& m) {
         .def(
             "with_point_light",
             [](const Assembly& scene, const Triple& position, const Colour& intensity) {
-                return with_valid_ground(
-                    scene, [&](Scene& ground) { ground.points.push_back({vector_of(position), rgb(intensity)}); });
+                return with_valid_static_geometry(
+                    scene, [&](Scene& scene) { scene.points.push_back({vector_of(position), rgb(intensity)}); });
             },
             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
         .def(
             "with_texture",
             [](const Assembly& scene, std::size_t material, const InputArray<std::uint8_t>& pixels) {
-                if (material >= scene.ground->materials.size())
+                if (material >= scene.static_geometry->materials.size())
                     throw InputError("there is no material " + std::to_string(material));
                 if (pixels.ndim() != 3 || pixels.shape(2) != 4)
                     throw InputError("a texture must be an (H, W, 4) array of uint8, sRGB");
-                return with_valid_ground(scene, [&](Scene& ground) {
-                    ground.materials[material].diffuse_texture = static_cast<std::int32_t>(ground.textures.size());
-                    ground.textures.push_back({"",
-                                               static_cast<std::int32_t>(pixels.shape(1)),
-                                               static_cast<std::int32_t>(pixels.shape(0)),
-                                               {pixels.data(), pixels.data() + pixels.size()}});
+                return with_valid_static_geometry(scene, [&](Scene& scene) {
+                    scene.materials[material].diffuse_texture = static_cast<std::int32_t>(scene.textures.size());
+                    scene.textures.push_back({"",
+                                              static_cast<std::int32_t>(pixels.shape(1)),
+                                              static_cast<std::int32_t>(pixels.shape(0)),
+                                              {pixels.data(), pixels.data() + pixels.size()}});
                 });
             },
             "material"_a, "pixels"_a, "With a diffuse texture on a material: (H, W, 4) uint8, sRGB, row 0 at v = 1.")
         .def_property_readonly("triangle_count", &Assembly::triangle_count,
                                "Of all instances, each as often as it stands there.")
-        .def_property_readonly("material_count", [](const Assembly& s) { return s.ground->materials.size(); })
+        .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
         .def_property_readonly("has_light", &Assembly::has_light)
         .def_property_readonly("bounds_m", &bounds, "Lowest and highest corner of the bounding box.")
         .def_property_readonly(
-            "warnings", [](const Assembly& s) { return s.ground->warnings; },
+            "warnings", [](const Assembly& s) { return s.static_geometry->warnings; },
             "What the reader put up with, such as a missing texture.")
         .def("__repr__",
              [](const Assembly& s) { return "<realcam.Scene, " + std::to_string(s.triangle_count()) + " triangles>"; });

@@ -9,7 +9,7 @@
 namespace realcam {
 namespace {
 
-Box box_of(const PlacedMesh& mesh) {
+Box box_of(const RenderSpaceMesh& mesh) {
     if (mesh.triangles().empty()) return {{0, 0, 0}, {0, 0, 0}};
     const Vec3f start = mesh.positions()[mesh.triangles()[0].vertices[0]];
     Box box = {start, start};
@@ -24,23 +24,23 @@ Box placed_box(const Box& box, const InstanceView& instance) {
     constexpr float kRoundings = 0x1p-20f, kInfinity = std::numeric_limits<float>::infinity();
     Box placed = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (unsigned corner = 0; corner < 8; ++corner) {
-        const Vec3f p = instance.placed_from_object.point({corner & 1u ? box.upper.x : box.lower.x,
+        const Vec3f p = instance.render_from_object.point({corner & 1u ? box.upper.x : box.lower.x,
                                                            corner & 2u ? box.upper.y : box.lower.y,
                                                            corner & 4u ? box.upper.z : box.lower.z});
         grow(placed, {p, p});
     }
     const float margin = kRoundings * (largest_coordinate(placed.lower) + largest_coordinate(placed.upper) +
-                                       largest_coordinate(instance.placed_from_object.origin));
+                                       largest_coordinate(instance.render_from_object.origin));
     const Vec3f all_sides = {margin, margin, margin};
     return {placed.lower - all_sides, placed.upper + all_sides};
 }
 
-Box instance_box(const SceneBvh& bvh, const PlacedScene& scene, std::uint32_t number) {
+Box instance_box(const SceneBvh& bvh, const RenderSpaceScene& scene, std::uint32_t number) {
     const InstanceView& instance = scene.instances()[number];
     return placed_box(bvh.object_boxes[instance.object], instance);
 }
 
-void build_instances(SceneBvh& bvh, const PlacedScene& scene) {
+void build_instances(SceneBvh& bvh, const RenderSpaceScene& scene) {
     bvh.instances =
         build_wide_nodes(scene.instances().size(), [&](std::uint32_t i) { return instance_box(bvh, scene, i); });
     bvh.built_cost = expected_nodes(bvh.instances.nodes);
@@ -62,9 +62,9 @@ double expected_nodes(const std::vector<WideNode>& nodes) {
     return root > 0 ? sum / root : static_cast<double>(nodes.size());
 }
 
-SceneBvh build_scene_bvh(const PlacedScene& scene) {
+SceneBvh build_scene_bvh(const RenderSpaceScene& scene) {
     SceneBvh bvh;
-    bvh.ground = build_wide_bvh(scene.ground().positions(), scene.ground().triangles());
+    bvh.static_geometry = build_wide_bvh(scene.static_geometry().positions(), scene.static_geometry().triangles());
     for (const auto& object : scene.objects()) {
         bvh.objects.push_back(build_wide_bvh(object->positions(), object->triangles()));
         bvh.object_boxes.push_back(box_of(*object));
@@ -73,18 +73,18 @@ SceneBvh build_scene_bvh(const PlacedScene& scene) {
     return bvh;
 }
 
-void refit_instances(SceneBvh& bvh, const PlacedScene& scene) {
+void refit_instances(SceneBvh& bvh, const RenderSpaceScene& scene) {
     refit(bvh.instances.nodes, [&](std::uint32_t leaf) { return instance_box(bvh, scene, bvh.instances.order[leaf]); });
     constexpr double kMostWorse = 2;
     if (expected_nodes(bvh.instances.nodes) > kMostWorse * bvh.built_cost) build_instances(bvh, scene);
 }
 
-std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const PlacedScene& scene,
+std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const RenderSpaceScene& scene,
                                        const std::vector<WideBvhView>& objects) {
     std::vector<BvhInstance> leaves;
     for (const std::uint32_t index : bvh.instances.order) {
         const InstanceView& instance = scene.instances()[index];
-        leaves.push_back({instance.object_from_placed, objects[instance.object], index});
+        leaves.push_back({instance.object_from_render, objects[instance.object], index});
     }
     return leaves;
 }

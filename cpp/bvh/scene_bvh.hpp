@@ -1,14 +1,15 @@
 #pragma once
 #include <vector>
 
-#include "../scene/placed_scene.hpp"
+#include "../scene/render_space_scene.hpp"
 #include "build_wide_bvh.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// The hierarchies of a placed scene: one of the ground, one of each object, and one over the objects where they stand.
+/// The hierarchies of a placed scene: one of its static geometry, one of each object, and one over the objects where
+/// they stand.
 struct SceneBvh {
-    WideBvh ground;
+    WideBvh static_geometry;
     std::vector<WideBvh> objects;
     std::vector<Box> object_boxes;  ///< of each, in its own frame
     WideNodes instances;
@@ -19,14 +20,14 @@ struct SceneBvh {
 double expected_nodes(const std::vector<WideNode>& nodes);
 
 /// Throws what build_wide_bvh throws.
-SceneBvh build_scene_bvh(const PlacedScene& scene);
+SceneBvh build_scene_bvh(const RenderSpaceScene& scene);
 
-/// After PlacedScene::move: only the boxes over the objects change; or all of the hierarchy over them, where rays would
-/// enter twice as many nodes of it as when it was built.
-void refit_instances(SceneBvh& bvh, const PlacedScene& scene);
+/// After RenderSpaceScene::move: only the boxes over the objects change; or all of the hierarchy over them, where rays
+/// would enter twice as many nodes of it as when it was built.
+void refit_instances(SceneBvh& bvh, const RenderSpaceScene& scene);
 
 /// The leaves over the objects, whose hierarchies are to be read at the places given.
-std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const PlacedScene& scene,
+std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const RenderSpaceScene& scene,
                                        const std::vector<WideBvhView>& objects);
 
 }  // namespace REALCAM_NAMESPACE

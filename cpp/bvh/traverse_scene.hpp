@@ -6,8 +6,8 @@ namespace REALCAM_NAMESPACE {
 /// Each level of the hierarchy over objects puts up to two entries here, each of an object's own one.
 using SceneTraversalStack = PendingSlots[3 * kMaxBvhDepth];
 
-/// A ray on its way through the ground, then through the objects. Nodes of all levels are entered in one place, so that
-/// lanes of a GPU's warp which are at different levels take their steps together.
+/// A ray on its way through static geometry, then through the objects. Nodes of all levels are entered in one place, so
+/// that lanes of a GPU's warp which are at different levels take their steps together.
 ///
 /// Within an object the traversal is watertight; between two of them, whose corners come from different roundings,
 /// there is no edge to be tight.
@@ -20,8 +20,8 @@ public:
         : Base(origin, direction, far),
           origin_(origin),
           direction_(direction),
-          nodes_(bvh.ground.nodes),
-          triangles_of_mesh_(bvh.ground.triangles) {}
+          nodes_(bvh.static_geometry.nodes),
+          triangles_of_mesh_(bvh.static_geometry.triangles) {}
 
     using Base::active;
     using Base::hit;
@@ -42,7 +42,7 @@ public:
     }
 
 private:
-    enum class Level { ground, objects, object };
+    enum class Level { static_geometry, objects, object };
 
     static constexpr std::uint32_t kObjects = 0x80000000u;  ///< in `slots`: the others are a bit for each object
 
@@ -67,7 +67,7 @@ private:
         }
         if (this->waiting_ == floor_) {
             if (level_ == Level::objects) return false;
-            level_ = Level::objects;  // the ground is done
+            level_ = Level::objects;  // static geometry is done
             nodes_ = bvh.nodes;
             this->pending_ = {0, 0x0101u};
             return true;
@@ -96,16 +96,16 @@ private:
         triangles_of_mesh_ = instance.object.triangles;
         floor_ = this->waiting_;
         turned_ = true;
-        this->turn_to(instance.object_from_placed.point(origin_), instance.object_from_placed.direction(direction_));
+        this->turn_to(instance.object_from_render.point(origin_), instance.object_from_render.direction(direction_));
     }
 
     Vec3f origin_, direction_;
     const WideNode* nodes_;  ///< of the level
-    const BvhTriangle* triangles_of_mesh_;  ///< of the ground or the object
+    const BvhTriangle* triangles_of_mesh_;  ///< of static geometry or the object
     std::uint32_t instance_ = kNoInstance;
-    Level level_ = Level::ground;
+    Level level_ = Level::static_geometry;
     int floor_ = 0;  ///< what waits below is not the object's
-    bool turned_ = false;  ///< out of the frame of ground and objects
+    bool turned_ = false;  ///< out of the frame of the scene
 };
 
 template <bool any>
@@ -116,13 +116,13 @@ REALCAM_HD inline Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f dire
     return ray.hit(far);
 }
 
-/// As closest_hit of one hierarchy. `instanced`: whether there is anything but the ground.
+/// As closest_hit of one hierarchy. `instanced`: whether there is anything but static geometry.
 template <bool instanced>
 REALCAM_HD inline Hit closest_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
     if constexpr (instanced)
         return traverse<false>(bvh, origin, direction, far);
     else
-        return closest_hit(bvh.ground, origin, direction, far);
+        return closest_hit(bvh.static_geometry, origin, direction, far);
 }
 
 template <bool instanced>
@@ -130,7 +130,7 @@ REALCAM_HD inline bool any_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f dire
     if constexpr (instanced)
         return traverse<true>(bvh, origin, direction, far).triangle != kNoTriangle;
     else
-        return any_hit(bvh.ground, origin, direction, far);
+        return any_hit(bvh.static_geometry, origin, direction, far);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -48,14 +48,14 @@ struct WideBvhView {
 
 /// A place where an object stands, with the object's own hierarchy.
 struct alignas(16) BvhInstance {
-    InverseAffine<float> object_from_placed;
+    InverseAffine<float> object_from_render;
     WideBvhView object;
     std::uint32_t index;  ///< in the scene's list
 };
 
-/// The ground's triangles, and a hierarchy over objects: its slots hold these in the stead of triangles.
+/// Static geometry's triangles, and a hierarchy over objects: its slots hold these in the stead of triangles.
 struct SceneBvhView {
-    WideBvhView ground;
+    WideBvhView static_geometry;
     const WideNode* nodes;
     const BvhInstance* instances;
 };

@@ -43,7 +43,7 @@ namespace camera_detail {
 
 // Numbers beyond these are no camera's, and those of its rays would leave the range of float32.
 inline constexpr double kSmallestFilm = 1e-6, kLargestFilm = 1e9;  ///< each way, mm, as a lens: from a few atoms on
-inline constexpr double kFarthestPlace = 1e12;                     ///< each coordinate, m, as a scene's corners
+inline constexpr double kFarthestPosition = 1e12;                     ///< each coordinate, m, as a scene's corners
 inline constexpr double kNearestLook = 1e-9;                       ///< look_at from position, m
 inline constexpr double kShortestUp = 1e-100, kLongestUp = 1e100;  ///< squares of both are numbers
 /// Exposure time, s, and ISO number: they and the exposure of middle grey, 10 / ISO, are float32 with all their digits.
@@ -54,7 +54,7 @@ inline bool lies_between(double least, double value, double most) {
 }
 
 inline bool is_place(Vec3d v) {
-    const auto in_reach = [](double x) { return std::fabs(x) <= kFarthestPlace; };
+    const auto in_reach = [](double x) { return std::fabs(x) <= kFarthestPosition; };
     return in_reach(v.x) && in_reach(v.y) && in_reach(v.z);
 }
 

@@ -50,7 +50,7 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     const auto move = [&](auto*& array, int count) {
         if (array) array = copy(array, static_cast<std::size_t>(count));
     };
-    move(view.lens.steps, view.lens.count);
+    move(view.lens.surfaces, view.lens.count);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
     return view;

@@ -18,7 +18,7 @@ public:
           origin_{image_height_mm, 0, lens.film_distance},
           rim_(lens.surfaces.back().clear_semi_diameter) {
         const LensView<double> view = path_.view();
-        to_stop_.assign(view.steps, view.steps + (view.count - lens.stop_index()));
+        to_stop_.assign(view.surfaces, view.surfaces + (view.count - lens.stop_index()));
         to_stop_.back().rim_squared = std::numeric_limits<double>::max();
         to_stop_.back().has_blades = false;
     }
@@ -27,7 +27,7 @@ public:
     LensRays<double, N> trace(const double (&shares)[N], bool only_to_stop) const {
         LensView<double> view = path_.view();
         if (only_to_stop) {
-            view.steps = to_stop_.data();
+            view.surfaces = to_stop_.data();
             view.count = static_cast<int>(to_stop_.size());
         }
         LensRays<double, N> rays;
@@ -44,7 +44,7 @@ private:
     LensPath<double> path_;
     Vec3d origin_;
     double rim_;
-    std::vector<LensStep<double>> to_stop_;
+    std::vector<SurfaceView<double>> to_stop_;
 };
 
 inline double angle_of(Vec3d direction) {

@@ -170,7 +170,7 @@ HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, Pup
     check_cuda(cudaSetDevice(ordinal), "choosing it");
     CudaStream stream;
     HitRates rates{};
-    const PlacedScene placed(scene, camera.pose.position_m);
+    const RenderSpaceScene placed(scene, camera.pose.position_m);
     const auto building = std::chrono::steady_clock::now();
     const SceneBvh bvh = build_scene_bvh(placed);
     rates.build_seconds = seconds_since(building);

@@ -4,7 +4,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The SceneT of render_samples on a GPU: one ray of one thread. `instanced`: whether there is anything but the ground.
+/// The SceneT of render_samples on a GPU: one ray of one thread. `instanced`: whether there is anything but static
+/// geometry.
 template <bool instanced>
 struct BvhScene {
     const SceneBvhView& bvh;

@@ -15,7 +15,7 @@ void trace_with(int ordinal, const TracePath<T>& path, std::int64_t count, const
     const CudaStream stream;
     DeviceArrays arrays;
     TraceRequest<T> request = path.request(count, origins, directions, out);
-    request.lens.steps = arrays.copy(request.lens.steps, static_cast<std::size_t>(request.lens.count), stream);
+    request.lens.surfaces = arrays.copy(request.lens.surfaces, static_cast<std::size_t>(request.lens.count), stream);
     launch_trace(request, stream);
     stream.wait("tracing rays");
 }

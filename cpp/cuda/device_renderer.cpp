@@ -69,14 +69,14 @@ void DeviceRenderer::bind() const {
     bound(ordinal_);
 }
 
-void DeviceRenderer::set_scene(const PlacedScene& scene, const SceneBvh& bvh) {
+void DeviceRenderer::set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh) {
     bind();
     scene_.set(scene, bvh, stream_);
 }
 
-void DeviceRenderer::set_places(const PlacedScene& scene, const SceneBvh& bvh) {
+void DeviceRenderer::set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh) {
     bind();
-    scene_.set_places(scene, bvh, stream_);
+    scene_.set_instances(scene, bvh, stream_);
 }
 
 void DeviceRenderer::set_camera(const CameraView& camera) {

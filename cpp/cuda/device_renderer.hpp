@@ -26,8 +26,8 @@ public:
     void bind() const;
 
     /// Copies a scene, what changes in it as objects move, or a camera. The host's copies may go afterwards.
-    void set_scene(const PlacedScene& scene, const SceneBvh& bvh);
-    void set_places(const PlacedScene& scene, const SceneBvh& bvh);
+    void set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh);
+    void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_camera(const CameraView& camera);
 
     /// Makes room for all that exposing, merging and developing so many pixels takes. Throws OutOfDeviceMemory.

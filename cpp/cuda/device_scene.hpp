@@ -12,15 +12,15 @@ namespace realcam {
 /// DeviceError.
 class DeviceScene {
 public:
-    void set(const PlacedScene& scene, const SceneBvh& bvh, CudaStream& stream);
+    void set(const RenderSpaceScene& scene, const SceneBvh& bvh, CudaStream& stream);
     /// Only what changes as objects move.
-    void set_places(const PlacedScene& scene, const SceneBvh& bvh, CudaStream& stream);
+    void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh, CudaStream& stream);
 
     const SceneView& view() const { return view_; }
     const SceneBvhView& bvh() const { return bvh_; }
 
 private:
-    DeviceArrays arrays_, place_arrays_;
+    DeviceArrays arrays_, instance_arrays_;
     SceneView view_{};
     SceneBvhView bvh_{};
     std::vector<WideBvhView> objects_;

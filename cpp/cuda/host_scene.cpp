@@ -10,18 +10,18 @@ void HostScene::place(const Assembly& assembly, const Camera& camera) {
     const SceneChange change = scene_change(placed_.get(), assembly, camera);
     if (change == SceneChange::none) return;
     const bool moves = change == SceneChange::places;
-    std::unique_ptr<PlacedScene> placed = std::exchange(placed_, nullptr);
+    std::unique_ptr<RenderSpaceScene> placed = std::exchange(placed_, nullptr);
     if (moves) {
         placed->move(assembly);
         refit_instances(bvh_, *placed);
     } else {
         placed.reset();  // before the next takes as much memory
         bvh_ = {};
-        placed = std::make_unique<PlacedScene>(assembly, camera.pose.position_m);
+        placed = std::make_unique<RenderSpaceScene>(assembly, camera.pose.position_m);
         bvh_ = build_scene_bvh(*placed);
     }
     for (DeviceRenderer* renderer : renderers_)
-        moves ? renderer->set_places(*placed, bvh_) : renderer->set_scene(*placed, bvh_);
+        moves ? renderer->set_instances(*placed, bvh_) : renderer->set_scene(*placed, bvh_);
     placed_ = std::move(placed);
 }
 

@@ -20,7 +20,7 @@ public:
 
 private:
     std::vector<DeviceRenderer*> renderers_;
-    std::unique_ptr<PlacedScene> placed_;
+    std::unique_ptr<RenderSpaceScene> placed_;
     SceneBvh bvh_;
 };
 

@@ -21,7 +21,7 @@ EmbreeScene::OwnScene EmbreeScene::new_scene() const {
     return scene;
 }
 
-EmbreeScene::OwnScene EmbreeScene::build(const PlacedMesh& mesh) const {
+EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) const {
     OwnScene scene = new_scene();
     const auto& positions = mesh.positions();
     const auto& triangles = mesh.triangles();
@@ -47,18 +47,18 @@ EmbreeScene::OwnScene EmbreeScene::build(const PlacedMesh& mesh) const {
 
 EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m)
     : device_(device), placed_(assembly, origin_m) {
-    meshes_.push_back(build(placed_.ground()));
+    meshes_.push_back(build(placed_.static_geometry()));
     for (const auto& object : placed_.objects()) meshes_.push_back(build(*object));
     const auto& instances = placed_.instances();
     if (instances.empty()) return;
     all_ = new_scene();
     for (std::size_t i = 0; i < instances.size(); ++i)
         instances_.push_back(attach(meshes_[1 + instances[i].object], static_cast<unsigned>(i)));
-    if (!placed_.ground().triangles().empty()) {
-        const OwnGeometry ground = attach(meshes_.front(), static_cast<unsigned>(instances.size()));
-        rtcCommitGeometry(ground.get());
+    if (!placed_.static_geometry().triangles().empty()) {
+        const OwnGeometry static_geometry = attach(meshes_.front(), static_cast<unsigned>(instances.size()));
+        rtcCommitGeometry(static_geometry.get());
     }
-    stand_objects();
+    add_instances();
 }
 
 EmbreeScene::OwnGeometry EmbreeScene::attach(const OwnScene& mesh, unsigned number) const {
@@ -68,9 +68,9 @@ EmbreeScene::OwnGeometry EmbreeScene::attach(const OwnScene& mesh, unsigned numb
     return geometry;
 }
 
-void EmbreeScene::stand_objects() {
+void EmbreeScene::add_instances() {
     for (std::size_t i = 0; i < instances_.size(); ++i) {
-        const Affine<float>& map = placed_.instances()[i].placed_from_object;
+        const Affine<float>& map = placed_.instances()[i].render_from_object;
         static_assert(sizeof(map) == 12 * sizeof(float));
         rtcSetGeometryTransform(instances_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &map);
         rtcCommitGeometry(instances_[i].get());
@@ -81,7 +81,7 @@ void EmbreeScene::stand_objects() {
 
 void EmbreeScene::move(const Assembly& assembly) {
     placed_.move(assembly);
-    if (all_) stand_objects();
+    if (all_) add_instances();
 }
 
 }  // namespace realcam

@@ -31,7 +31,7 @@ struct PacketScene {
                 hits.triangle[first + k] = packet.hit.primID[k];
                 hits.u[first + k] = packet.hit.u[k];
                 hits.v[first + k] = packet.hit.v[k];
-                // The ground comes after the objects, or is alone and no instance at all.
+                // Static geometry comes after the objects, or is alone and no instance at all.
                 const std::uint32_t instance = packet.hit.instID[0][k];
                 hits.instance[first + k] = instance < instance_count ? instance : kNoInstance;
             }

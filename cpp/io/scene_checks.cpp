@@ -11,7 +11,8 @@ namespace {
 
 // Cubes of it, which traversal and planes need, are still far from the largest float.
 constexpr double farthest_m = 1e12;
-// Beyond all that shines, the sun as a point light included; what a distance or a lobe makes of it is still a float.
+// Beyond all that emits light, the sun as a point light included; what a distance or a lobe makes of it is still a
+// float.
 constexpr float brightest = 1e20f, most_intense = 1e30f;
 
 bool finite(Vec3f v) {
@@ -161,7 +162,7 @@ void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
 }
 
 void validate(const Assembly& scene, const std::string& file) {
-    validate(*scene.ground, file, !scene.instances.empty());
+    validate(*scene.static_geometry, file, !scene.instances.empty());
     std::set<const Scene*> objects;
     for (const Instance& instance : scene.instances)
         if (objects.insert(instance.object.get()).second) validate(*instance.object, file, true);

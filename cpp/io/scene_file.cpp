@@ -55,28 +55,29 @@ Scene read_ply_scene(const std::string& path, double scale, const ImageReader& r
 Assembly read_other_scene(const std::string& path, SceneFormat format, const SceneFileOptions& options,
                           const ImageReader& read_image) {
     const ImportedScene file(path, format);
-    Scene ground, materials;
-    for (const std::string& complaint : file.complaints()) ground.warnings.push_back(path + ": " + complaint);
+    Scene static_geometry, materials;
+    for (const std::string& complaint : file.complaints()) static_geometry.warnings.push_back(path + ": " + complaint);
     SceneTextures textures(materials, &file.content(), path, read_image);
     read_materials(materials, file, textures, path);
-    ground.warnings.insert(ground.warnings.end(), materials.warnings.begin(), materials.warnings.end());
+    static_geometry.warnings.insert(static_geometry.warnings.end(), materials.warnings.begin(),
+                                    materials.warnings.end());
 
     SceneObjects objects(file, path, options.scale, options.objects);
     const aiNode& root = *file.content().mRootNode;
     const ScenePart all{file, path, options.scale, root, file.transform(root)};
-    read_geometry(ground, all, [&](const aiNode& node, const Affine<double>& transform) {
+    read_geometry(static_geometry, all, [&](const aiNode& node, const Affine<double>& transform) {
         const LeftOut left_out = objects.left_out(node, transform);
-        if (left_out != LeftOut::nothing) objects.add(node, transform, ground);
+        if (left_out != LeftOut::nothing) objects.add(node, transform, static_geometry);
         return left_out;
     });
-    read_lights(ground, all,
+    read_lights(static_geometry, all,
                 [&](const aiNode& node, const Affine<double>& transform) { return objects.left_out(node, transform); });
     std::vector<Instance> instances = objects.finish(materials);
     if (instances.empty())
-        keep_all_materials(ground, std::move(materials));
+        keep_all_materials(static_geometry, std::move(materials));
     else
-        keep_used_materials(ground, materials);
-    Assembly scene(std::move(ground));
+        keep_used_materials(static_geometry, materials);
+    Assembly scene(std::move(static_geometry));
     scene.instances = std::move(instances);
     return scene;
 }

@@ -47,21 +47,22 @@ void SceneObjects::count_uses(const aiNode& node, std::map<Meshes, std::size_t>&
 
 LeftOut SceneObjects::left_out(const aiNode& node, const Affine<double>& transform) const {
     if (std::find(names_.begin(), names_.end(), node.mName.C_Str()) != names_.end()) return LeftOut::all;
-    // What is scaled to nothing, as animations hide nodes, has no triangles in the ground, and no place as an object.
-    const bool shared = node.mNumMeshes > 0 && shared_.contains(meshes_of(node)) && why_no_place(transform).empty();
+    // What is scaled to nothing, as animations hide nodes, has no triangles in static geometry, and no place as an
+    // object.
+    const bool shared = node.mNumMeshes > 0 && shared_.contains(meshes_of(node)) && transform_error(transform).empty();
     return shared ? LeftOut::meshes : LeftOut::nothing;
 }
 
-void SceneObjects::add(const aiNode& node, const Affine<double>& transform, Scene& ground) {
+void SceneObjects::add(const aiNode& node, const Affine<double>& transform, Scene& static_geometry) {
     std::shared_ptr<Scene> scene;
     if (left_out(node, transform) == LeftOut::all) {
-        scene = read_object(node, transform, ground);
+        scene = read_object(node, transform, static_geometry);
     } else {
         std::shared_ptr<Scene>& shared = shared_scenes_[meshes_of(node)];
         if (!shared) shared = read_meshes(node);
         scene = shared;
     }
-    ground.warnings.insert(ground.warnings.end(), scene->warnings.begin(), scene->warnings.end());
+    static_geometry.warnings.insert(static_geometry.warnings.end(), scene->warnings.begin(), scene->warnings.end());
     scene->warnings.clear();
     Affine<double> place = transform;
     place.origin = scale_ * place.origin;
@@ -69,7 +70,7 @@ void SceneObjects::add(const aiNode& node, const Affine<double>& transform, Scen
 }
 
 std::shared_ptr<Scene> SceneObjects::read_object(const aiNode& node, const Affine<double>& transform,
-                                                 Scene& ground) const {
+                                                 Scene& static_geometry) const {
     const LeavesOut nothing = [](const aiNode&, const Affine<double>&) { return LeftOut::nothing; };
     auto scene = std::make_shared<Scene>();
     const ScenePart part{file_, path_, scale_, node};
@@ -77,11 +78,11 @@ std::shared_ptr<Scene> SceneObjects::read_object(const aiNode& node, const Affin
     if (has_meshes(node))
         read_geometry(*scene, part, nothing);
     else if (scene->points.empty())
-        throw SceneFileError(path_ + ": node \"" + node.mName.C_Str() + "\" holds neither triangles nor a lamp");
+        throw SceneFileError(path_ + ": node \"" + node.mName.C_Str() + "\" holds neither triangles nor an emitter");
     // A sun has no place: it shines on all, from where it does now.
     Scene in_place;
     read_lights(in_place, {file_, path_, scale_, node, transform}, nothing);
-    ground.suns.insert(ground.suns.end(), in_place.suns.begin(), in_place.suns.end());
+    static_geometry.suns.insert(static_geometry.suns.end(), in_place.suns.begin(), in_place.suns.end());
     scene->suns.clear();
     return scene;
 }

@@ -10,8 +10,8 @@
 
 namespace realcam::io {
 
-/// What of a file stands as objects instead of being a part of the ground: nodes that the caller names, with all below
-/// them, and meshes that stand in so many places that their triangles are worth sharing.
+/// What of a file stands as objects instead of being a part of static geometry: nodes that the caller names, with all
+/// below them, and meshes that stand in so many places that their triangles are worth sharing.
 class SceneObjects {
 public:
     /// All arguments have to outlive it. Throws SceneFileError for a name that no node has.
@@ -20,8 +20,9 @@ public:
 
     LeftOut left_out(const aiNode& node, const Affine<double>& transform) const;
 
-    /// Of a node that is left out. Warnings go to `ground`. Throws SceneFileError for one without triangles and lights.
-    void add(const aiNode& node, const Affine<double>& transform, Scene& ground);
+    /// Of a node that is left out. Warnings go to `static_geometry`. Throws SceneFileError for one without triangles
+    /// and lights.
+    void add(const aiNode& node, const Affine<double>& transform, Scene& static_geometry);
 
     /// With the materials and textures that they use, of those that the file has.
     std::vector<Instance> finish(const Scene& materials);
@@ -31,7 +32,8 @@ private:
     /// others.
     static constexpr std::size_t kSharedTriangles = 1 << 20;
 
-    std::shared_ptr<Scene> read_object(const aiNode& node, const Affine<double>& transform, Scene& ground) const;
+    std::shared_ptr<Scene> read_object(const aiNode& node, const Affine<double>& transform,
+                                       Scene& static_geometry) const;
     std::shared_ptr<Scene> read_meshes(const aiNode& node) const;
 
     using Meshes = std::vector<unsigned>;

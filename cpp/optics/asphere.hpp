@@ -17,27 +17,27 @@ struct Sag {
 /// Outside the search radius the sag goes on as a constant, so that a search never meets a square root of a
 /// negative number or a polynomial run wild.
 template <class T>
-REALCAM_INLINE Sag<T> asphere_sag(const LensStep<T>& step, T radius_squared) {
-    const T r2 = select(radius_squared < step.search_squared, radius_squared, step.search_squared);
-    const T root = sqrt_or_zero(T(1) - step.conic_factor * step.curvature * step.curvature * r2);
-    const T u = r2 * step.inverse_search_squared;
+REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_squared) {
+    const T r2 = select(radius_squared < surface.search_squared, radius_squared, surface.search_squared);
+    const T root = sqrt_or_zero(T(1) - surface.conic_factor * surface.curvature * surface.curvature * r2);
+    const T u = r2 * surface.inverse_search_squared;
     T polynomial = 0, slope = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative
     // Always all terms, zeros too: a constant count unrolls, and the loop over the lanes becomes vector code.
     REALCAM_UNROLL
     for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
         slope = slope * u + polynomial;
-        polynomial = polynomial * u + step.aspheric[i];
+        polynomial = polynomial * u + surface.aspheric[i];
     }
-    const T base = quotient(step.curvature * r2, T(1) + root), departure = u * u * polynomial;
+    const T base = quotient(surface.curvature * r2, T(1) + root), departure = u * u * polynomial;
     const T derivative =
-        step.curvature / (T(2) * root) + step.inverse_search_squared * u * (T(2) * polynomial + u * slope);
+        surface.curvature / (T(2) * root) + surface.inverse_search_squared * u * (T(2) * polynomial + u * slope);
     return {base + departure, std::fabs(base) + std::fabs(departure),
-            select(radius_squared <= step.search_squared, derivative, T(0))};
+            select(radius_squared <= surface.search_squared, derivative, T(0))};
 }
 
 /// Search state of N lanes: a root of f(t) = z(t) - sag(r^2(t)). `below` and `above` are ray parameters with f <= 0
 /// (the scene's side of the surface) and f >= 0 (the film's): a bracket, in whichever order the ray meets them. A
-/// crossing in the right sense lies between them. NaN: the ray does not meet the surface.
+/// crossing in the right direction lies between them. NaN: the ray does not meet the surface.
 template <class T, int N>
 struct AsphereSearch {
     alignas(kLaneAlignment<T, N>) T t[N], below[N], above[N];
@@ -62,31 +62,32 @@ inline constexpr T kSideways = std::numeric_limits<T>::max() / 4;
 /// axis (squared, less the square of the search radius) the ray meets the plane of the surface's edge: where that is
 /// positive, the only crossing in this bracket may be one with the plane outside.
 template <class T>
-REALCAM_INLINE T begin_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
-    const SurfaceHit<T> conic = intersect_conic(o, p, step.curvature, step.conic_factor, step.sense_in);
+REALCAM_INLINE T begin_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
+    const SurfaceHit<T> conic =
+        intersect_conic(o, p, surface.curvature, surface.conic_factor, surface.direction_sign_in);
     const T per_z = T(1) / select(p.z == T(0), T(1), p.z);
-    below = (step.sag_min - o.z) * per_z;
-    above = (step.sag_max - o.z) * per_z;
+    below = (surface.sag_min - o.z) * per_z;
+    above = (surface.sag_max - o.z) * per_z;
     const bool inside = (conic.parameter - below) * (above - conic.parameter) >= T(0);
     t = select(conic.met() & inside, conic.parameter, T(0.5) * (below + above));
-    const T to_edge = (step.sag_edge - o.z) * per_z;
+    const T to_edge = (surface.sag_edge - o.z) * per_z;
     const T x = o.x + to_edge * p.x, y = o.y + to_edge * p.y;
     // Less than 3 degrees from the vertex plane, or backwards: out of a fisheye's front, say.
-    const bool sideways = p.z * step.sense_in * std::fabs(p.z) < T(0.0025) * dot(p, p);
+    const bool sideways = p.z * surface.direction_sign_in * std::fabs(p.z) < T(0.0025) * dot(p, p);
     // A sum, because gcc would turn a choice into a branch.
-    return x * x + y * y - step.search_squared + select(sideways, kSideways<T>, T(0));
+    return x * x + y * y - surface.search_squared + select(sideways, kSideways<T>, T(0));
 }
 
 /// For the others: the first piece of the ray's way through the search cylinder that begins on the near side of the
 /// surface and ends on its far side. In a piece that comes nearer to the surface and turns away again, the turning
 /// point may lie on its other side. Leaves the bracket as it is where there is none.
 template <class T>
-REALCAM_HD inline bool find_bracket(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
+REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
     constexpr int kPieces = 16, kTurnSteps = std::numeric_limits<T>::digits;
     const T across = p.x * p.x + p.y * p.y;
     const T middle = -(o.x * p.x + o.y * p.y) / across;
     const T x = o.x + middle * p.x, y = o.y + middle * p.y;
-    const T room = step.search_squared - x * x - y * y;
+    const T room = surface.search_squared - x * x - y * y;
     if (!(room > T(0))) return false;
     // A little inside: at the very edge the sag's slope is already that of its continuation.
     const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * std::sqrt(room / across);
@@ -95,13 +96,13 @@ REALCAM_HD inline bool find_bracket(const LensStep<T>& step, Vec3<T> o, Vec3<T> 
     };
     const auto sample = [&](T parameter) -> Sample {
         const Vec3<T> at = o + parameter * p;
-        const Sag<T> sag = asphere_sag(step, at.x * at.x + at.y * at.y);
-        return {parameter, step.sense_in * (at.z - sag.height),
-                step.sense_in * (p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y))};
+        const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
+        return {parameter, surface.direction_sign_in * (at.z - sag.height),
+                surface.direction_sign_in * (p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y))};
     };
     const auto bracketed = [&](T near, T far) {
-        below = step.sense_in > T(0) ? near : far;
-        above = step.sense_in > T(0) ? far : near;
+        below = surface.direction_sign_in > T(0) ? near : far;
+        above = surface.direction_sign_in > T(0) ? far : near;
         t = T(0.5) * (below + above);
         return true;
     };
@@ -127,42 +128,42 @@ REALCAM_HD inline bool find_bracket(const LensStep<T>& step, Vec3<T> o, Vec3<T> 
 
 /// One safeguarded Newton step. `halve`: not Newton's step but the middle of the bracket.
 template <class T>
-REALCAM_INLINE void improve_search(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, bool halve, T& t, T& below, T& above,
-                                   T& residual, T& tolerance) {
+REALCAM_INLINE void improve_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, bool halve, T& t, T& below,
+                                   T& above, T& residual, T& tolerance) {
     constexpr T eps = std::numeric_limits<T>::epsilon();
     const Vec3<T> at = o + t * p;
-    const Sag<T> sag = asphere_sag(step, at.x * at.x + at.y * at.y);
+    const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
     const T f = at.z - sag.height;
     const T slope = p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y);
     // Rounding of z(t) and of the sag, and what rounding of x(t) and y(t) becomes where the surface is steep. A wall is
     // as steep as one likes: there the bracket has to shrink until the height fits too. And a ray that starts on the
     // vertex has no lengths at all but the surface's own.
-    const T axial = std::fabs(o.z) + std::fabs(t * p.z) + sag.size + T(0.0625) * (step.sag_max - step.sag_min);
+    const T axial = std::fabs(o.z) + std::fabs(t * p.z) + sag.size + T(0.0625) * (surface.sag_max - surface.sag_min);
     const T lateral = std::fabs(T(2) * sag.derivative) * (std::fabs(at.x) * (std::fabs(o.x) + std::fabs(t * p.x)) +
                                                           std::fabs(at.y) * (std::fabs(o.y) + std::fabs(t * p.y)));
     const T most = kSteepest<T> * axial;
     tolerance = T(4) * eps * (axial + select(lateral < most, lateral, most));
-    // A root that is crossed in the wrong sense is none.
-    const bool right_sense = slope * step.sense_in >= T(0);
-    residual = select(right_sense, std::fabs(f), std::numeric_limits<T>::max());
-    // Not both where f is 0: a root in the wrong sense would be all that is left.
+    // A root that is crossed in the wrong direction is none.
+    const bool right_direction_sign = slope * surface.direction_sign_in >= T(0);
+    residual = select(right_direction_sign, std::fabs(f), std::numeric_limits<T>::max());
+    // Not both where f is 0: a root in the wrong direction would be all that is left.
     below = select(f <= T(0), t, below);
     above = select(f > T(0), t, above);
     const T newton = t - f / slope;
     const bool inside = (newton - below) * (above - newton) > T(0);
-    const T next = select(inside & right_sense & !halve, newton, T(0.5) * (below + above));
+    const T next = select(inside & right_direction_sign & !halve, newton, T(0.5) * (below + above));
     t = select(residual <= tolerance, t, next);
 }
 
 /// `slack`: by how much the search ended within its tolerance. A hit counts where that is not negative and the ray
-/// crosses in the right sense; one number says both, because gcc does not vectorise a chain of truth values here.
+/// crosses in the right direction; one number says both, because gcc does not vectorise a chain of truth values here.
 template <class T>
-REALCAM_INLINE SurfaceHit<T> asphere_hit(const LensStep<T>& step, Vec3<T> o, Vec3<T> p, T t, T slack) {
+REALCAM_INLINE SurfaceHit<T> asphere_hit(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T t, T slack) {
     const Vec3<T> at = o + t * p;
-    const T slope = T(2) * asphere_sag(step, at.x * at.x + at.y * at.y).derivative;
+    const T slope = T(2) * asphere_sag(surface, at.x * at.x + at.y * at.y).derivative;
     const Vec3<T> normal = normalized(Vec3<T>{-slope * at.x, -slope * at.y, T(1)});
     const T along_normal = dot(p, normal);
-    const T crossing = along_normal * step.sense_in;
+    const T crossing = along_normal * surface.direction_sign_in;
     return {t, along_normal, normal, select(crossing < slack, crossing, slack)};
 }
 

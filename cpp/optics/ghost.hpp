@@ -33,19 +33,19 @@ inline GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, int fi
     ParaxialRay ray{1, 0};
     int at = 0;         // the surface that the ray meets next
     int along = 1;      // +1: in the order of the table, -1: against it
-    double sense = 1;   // of the light along z, which a mirror of the lens turns too
+    double direction_sign = 1;   // of the light along z, which a mirror of the lens turns too
     int reflections = 0;
     while (at < count) {
         const auto k = static_cast<std::size_t>(at);
         const bool ghost = (reflections == 0 && at == first) || (reflections == 1 && at == second);
-        const double before = sense * (along > 0 ? n[k] : n[k + 1]);
+        const double before = direction_sign * (along > 0 ? n[k] : n[k + 1]);
         const bool turns = ghost || surface(at).type == SurfaceType::mirror;
-        if (turns) sense = -sense;
+        if (turns) direction_sign = -direction_sign;
         if (ghost) {
             along = -along;
             ++reflections;
         }
-        const double after = sense * (turns ? std::fabs(before) : along > 0 ? n[k + 1] : n[k]);
+        const double after = direction_sign * (turns ? std::fabs(before) : along > 0 ? n[k + 1] : n[k]);
         ray = refract_paraxial(ray, surface(at).curvature, before, after);
         at += along;
         if (at < count) ray.height += (z[static_cast<std::size_t>(at)] - z[k]) * ray.slope;

@@ -17,25 +17,25 @@ public:
         const int count = static_cast<int>(lens.surfaces.size());
         const std::vector<double> n = lens.indices(wavelength_nm);
         const std::vector<double> z = lens.vertices();
-        double sense = 1;  // of light on its way to the film
+        double direction_sign = 1;  // of light on its way to the film
         for (int i = 0; i < count; ++i) {
             const Surface& surface = lens.surfaces[static_cast<std::size_t>(i)];
-            const double sense_behind = surface.type == SurfaceType::mirror ? -sense : sense;
-            LensStep<T> step = shape_of(surface);
-            step.surface_index = i;
+            const double direction_sign_behind = surface.type == SurfaceType::mirror ? -direction_sign : direction_sign;
+            SurfaceView<T> view = shape_of(surface);
+            view.surface_index = i;
             const auto k = static_cast<std::size_t>(i);
             if (direction == LightDirection::to_film) {
-                set_media(step, n[k], n[k + 1], sense, sense_behind);
-                step.shift = static_cast<T>(i == 0 ? 0.0 : z[k] - z[k - 1]);
+                set_media(view, n[k], n[k + 1], direction_sign, direction_sign_behind);
+                view.shift = static_cast<T>(i == 0 ? 0.0 : z[k] - z[k - 1]);
             } else {
-                set_media(step, n[k + 1], n[k], -sense_behind, -sense);
-                step.shift = static_cast<T>(i == count - 1 ? 0.0 : z[k] - z[k + 1]);
+                set_media(view, n[k + 1], n[k], -direction_sign_behind, -direction_sign);
+                view.shift = static_cast<T>(i == count - 1 ? 0.0 : z[k] - z[k + 1]);
             }
-            if (surface.type == SurfaceType::stop) set_stop(step, lens);
-            steps_.push_back(step);
-            sense = sense_behind;
+            if (surface.type == SurfaceType::stop) set_stop(view, lens);
+            views_.push_back(view);
+            direction_sign = direction_sign_behind;
         }
-        if (direction == LightDirection::to_scene) std::reverse(steps_.begin(), steps_.end());
+        if (direction == LightDirection::to_scene) std::reverse(views_.begin(), views_.end());
         entry_index = direction == LightDirection::to_film ? n.front() : n.back();
         // A few diameters: what a float32 of the first surface's size can square.
         entry_reach =
@@ -46,10 +46,10 @@ public:
     }
 
     LensView<T> view() const {
-        const bool plain = std::all_of(steps_.begin(), steps_.end(), [](const LensStep<T>& step) {
-            return step.kind == StepKind::sphere && step.hole_squared < T(0) && !step.has_blades;
+        const bool plain = std::all_of(views_.begin(), views_.end(), [](const SurfaceView<T>& view) {
+            return view.kind == SurfaceShape::sphere && view.hole_squared < T(0) && !view.has_blades;
         });
-        return {steps_.data(), static_cast<int>(steps_.size()), plain ? LensKind::plain : LensKind::any, iris_};
+        return {views_.data(), static_cast<int>(views_.size()), plain ? LensKind::plain : LensKind::any, iris_};
     }
 
     double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by
@@ -58,21 +58,23 @@ public:
     double exit_position = 0;  ///< the same for leaving rays
 
 private:
-    static LensStep<T> shape_of(const Surface& surface) {
-        LensStep<T> step{};
-        step.kind = surface.is_asphere() ? StepKind::asphere : surface.conic != 0 ? StepKind::conic : StepKind::sphere;
-        step.curvature = static_cast<T>(surface.curvature);
-        step.conic_factor = static_cast<T>(1 + surface.conic);
+    static SurfaceView<T> shape_of(const Surface& surface) {
+        SurfaceView<T> view{};
+        view.kind = surface.is_asphere() ? SurfaceShape::asphere
+                    : surface.conic != 0 ? SurfaceShape::conic
+                                         : SurfaceShape::sphere;
+        view.curvature = static_cast<T>(surface.curvature);
+        view.conic_factor = static_cast<T>(1 + surface.conic);
         const double rim = surface.clear_semi_diameter, hole = surface.inner_semi_diameter;
-        step.rim_squared = static_cast<T>(rim * rim);
-        step.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
-        if (step.kind == StepKind::asphere) set_search_region(step, surface);
-        return step;
+        view.rim_squared = static_cast<T>(rim * rim);
+        view.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
+        if (view.kind == SurfaceShape::asphere) set_search_region(view, surface);
+        return view;
     }
 
     /// The search goes 2% past the rim, so that a ray that just misses it is seen to miss it; the sag's bounds there
     /// are sampled, and widened by more than it can change between two samples of a surface that can be made.
-    static void set_search_region(LensStep<T>& step, const Surface& surface) {
+    static void set_search_region(SurfaceView<T>& view, const Surface& surface) {
         double reach = 1.02 * surface.clear_semi_diameter;
         if (!std::isfinite(surface.sag(reach))) reach = surface.clear_semi_diameter;
         constexpr int kSamples = 256;
@@ -83,27 +85,28 @@ private:
             high = std::max(high, sag);
         }
         const double margin = 0.02 * (high - low) + 1e-3 * reach;
-        step.sag_edge = static_cast<T>(surface.sag(reach));
-        step.search_squared = static_cast<T>(reach * reach);
-        step.inverse_search_squared = static_cast<T>(1 / (reach * reach));
+        view.sag_edge = static_cast<T>(surface.sag(reach));
+        view.search_squared = static_cast<T>(reach * reach);
+        view.inverse_search_squared = static_cast<T>(1 / (reach * reach));
         for (std::size_t i = 0; i < surface.aspheric.size(); ++i)
-            step.aspheric[i] = static_cast<T>(surface.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
-        step.sag_min = static_cast<T>(low - margin);
-        step.sag_max = static_cast<T>(high + margin);
+            view.aspheric[i] = static_cast<T>(surface.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
+        view.sag_min = static_cast<T>(low - margin);
+        view.sag_max = static_cast<T>(high + margin);
     }
 
-    static void set_media(LensStep<T>& step, double before, double after, double sense_in, double sense_out) {
-        step.index_squared = static_cast<T>(before * before);
-        step.relative_step = static_cast<T>((after - before) * (after + before) / (before * before));
-        step.sense_in = static_cast<T>(sense_in);
-        step.sense_out = static_cast<T>(sense_out);
+    static void set_media(SurfaceView<T>& view, double before, double after, double direction_sign_in,
+                          double direction_sign_out) {
+        view.index_squared = static_cast<T>(before * before);
+        view.squared_index_change = static_cast<T>((after - before) * (after + before) / (before * before));
+        view.direction_sign_in = static_cast<T>(direction_sign_in);
+        view.direction_sign_out = static_cast<T>(direction_sign_out);
     }
 
-    static void set_stop(LensStep<T>& step, const LensSystem& lens) {
-        step.has_blades = lens.iris.blades > 0 && !lens.is_wide_open();
-        if (!step.has_blades) {
+    static void set_stop(SurfaceView<T>& view, const LensSystem& lens) {
+        view.has_blades = lens.iris.blades > 0 && !lens.is_wide_open();
+        if (!view.has_blades) {
             const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
-            step.rim_squared = static_cast<T>(radius * radius);
+            view.rim_squared = static_cast<T>(radius * radius);
         }
     }
 
@@ -119,7 +122,7 @@ private:
         return iris;
     }
 
-    std::vector<LensStep<T>> steps_;
+    std::vector<SurfaceView<T>> views_;
     Iris<T> iris_;
 };
 

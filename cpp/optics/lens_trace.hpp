@@ -39,15 +39,16 @@ inline constexpr T kFarthest = T(1e18);
 
 /// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
 template <LensKind lens_kind, class T, int N, class Record>
-REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays, Record& record, int lane, Vec3<T> o,
-                                  Vec3<T> p, SurfaceHit<T> hit, int failure) {
+REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record, int lane,
+                                  Vec3<T> o, Vec3<T> p, SurfaceHit<T> hit, int failure) {
     const Vec3<T> at = o + hit.parameter * p;
     const T r2 = at.x * at.x + at.y * at.y;
-    const Refraction<T> refracted = refract(p, hit.normal, hit.along_normal, step.relative_step, step.sense_out);
+    const Refraction<T> refracted =
+        refract(p, hit.normal, hit.along_normal, surface.squared_index_change, surface.direction_sign_out);
 
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
-    const bool clear = (r2 <= step.rim_squared) & ((lens_kind == LensKind::plain) | (r2 >= step.hole_squared));
+    const bool clear = (r2 <= surface.rim_squared) & ((lens_kind == LensKind::plain) | (r2 >= surface.hole_squared));
     // A ray along a plane meets it at infinity. Of plain lenses the rim and the near cap already say no to that.
     constexpr bool always_near = lens_kind == LensKind::plain && !Record::enabled;
     const bool met = alive & hit.met() & (always_near | (std::fabs(hit.parameter) <= kFarthest<T>));
@@ -60,8 +61,8 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
         rays.origin.set(lane, select(met, at, o));
         rays.direction.set(lane, select(passes, refracted.direction, p));
         rays.status[lane] = select(alive & !passes, cause, before);
-        record.optical_path[lane] += select(met, step.index_squared * hit.parameter, T(0));
-        record.surface_index[lane] = select(alive, step.surface_index, record.surface_index[lane]);
+        record.optical_path[lane] += select(met, surface.index_squared * hit.parameter, T(0));
+        record.surface_index[lane] = select(alive, surface.surface_index, record.surface_index[lane]);
     } else {
         rays.origin.set(lane, at);
         rays.direction.set(lane, refracted.direction);
@@ -70,52 +71,53 @@ REALCAM_INLINE void cross_surface(const LensStep<T>& step, LensRays<T, N>& rays,
 }
 
 template <LensKind lens_kind, class T, int N, class Record>
-REALCAM_HD inline void cross_sphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
+REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
-        o.z -= step.shift;
-        const SurfaceHit<T> hit = intersect_sphere(o, p, step.curvature, step.sense_in);
-        cross_surface<lens_kind>(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
+        o.z -= surface.shift;
+        const SurfaceHit<T> hit = intersect_sphere(o, p, surface.curvature, surface.direction_sign_in);
+        cross_surface<lens_kind>(surface, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
 template <class T, int N, class Record>
-REALCAM_HD inline void cross_conic(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
+REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
-        o.z -= step.shift;
+        o.z -= surface.shift;
         const T approach = to_vertex_plane(o, p);
-        SurfaceHit<T> hit = intersect_conic(o + approach * p, p, step.curvature, step.conic_factor, step.sense_in);
+        SurfaceHit<T> hit =
+            intersect_conic(o + approach * p, p, surface.curvature, surface.conic_factor, surface.direction_sign_in);
         hit.parameter += approach;
-        cross_surface<LensKind::any>(step, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
+        cross_surface<LensKind::any>(surface, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
 template <class T, int N, class Record>
-REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& rays, Record& record) {
+REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record) {
     AsphereSearch<T, N> search;
     alignas(kLaneAlignment<T, N>) T outside[N];
     int ended = 0, uncertain = 0;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        rays.origin.z[i] -= step.shift;
+        rays.origin.z[i] -= surface.shift;
         ended += static_cast<int>(rays.status[i] != 0);
     }
     if (ended == N) return;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         outside[i] =
-            begin_search(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
+            begin_search(surface, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
         uncertain |= static_cast<int>(rays.status[i] == 0) & static_cast<int>(outside[i] > T(0));
     }
     for (int i = 0; uncertain && i < N; ++i) {
         if (rays.status[i] != 0 || !(outside[i] > T(0))) continue;
         const bool found =
-            find_bracket(step, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
+            find_bracket(surface, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
         // One that goes through, though not inside: it meets the plane outside, and is vignetted there.
         const bool through = outside[i] < kSideways<T> / 2;
         if (!found && !through) search.t[i] = search.below[i] = search.above[i] = std::numeric_limits<T>::quiet_NaN();
@@ -125,7 +127,7 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
         int searching = 0;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            improve_search(step, rays.origin[i], rays.direction[i], halve, search.t[i], search.below[i],
+            improve_search(surface, rays.origin[i], rays.direction[i], halve, search.t[i], search.below[i],
                            search.above[i], search.residual[i], search.tolerance[i]);
             searching |=
                 static_cast<int>(rays.status[i] == 0) & static_cast<int>(search.residual[i] > search.tolerance[i]);
@@ -137,11 +139,11 @@ REALCAM_HD inline void cross_asphere(const LensStep<T>& step, LensRays<T, N>& ra
         const Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
         const T slack = search.tolerance[i] - search.residual[i];
-        const SurfaceHit<T> hit = asphere_hit(step, o, p, search.t[i], slack);
+        const SurfaceHit<T> hit = asphere_hit(surface, o, p, search.t[i], slack);
         // Without a bracket both are NaN.
         const int failure =
             select(slack < T(0), static_cast<int>(RayStatus::no_convergence), static_cast<int>(RayStatus::missed));
-        cross_surface<LensKind::any>(step, rays, record, i, o, p, hit, failure);
+        cross_surface<LensKind::any>(surface, rays, record, i, o, p, hit, failure);
     }
 }
 
@@ -179,16 +181,16 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
 template <LensKind lens_kind = LensKind::any, class T, int N, class Record = NoRecord>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {}) {
     for (int k = 0; k < lens.count; ++k) {
-        const LensStep<T> step = lens.steps[k];  // a copy: lane stores cannot alias it
+        const SurfaceView<T> surface = lens.surfaces[k];  // a copy: lane stores cannot alias it
         if (lens_kind == LensKind::plain) {
-            cross_sphere<lens_kind>(step, rays, record);
+            cross_sphere<lens_kind>(surface, rays, record);
         } else {
-            switch (step.kind) {
-                case StepKind::sphere: cross_sphere<lens_kind>(step, rays, record); break;
-                case StepKind::conic: cross_conic(step, rays, record); break;
-                case StepKind::asphere: cross_asphere(step, rays, record); break;
+            switch (surface.kind) {
+                case SurfaceShape::sphere: cross_sphere<lens_kind>(surface, rays, record); break;
+                case SurfaceShape::conic: cross_conic(surface, rays, record); break;
+                case SurfaceShape::asphere: cross_asphere(surface, rays, record); break;
             }
-            if (step.has_blades) cross_iris(lens.iris, rays);
+            if (surface.has_blades) cross_iris(lens.iris, rays);
         }
         // With a record, a ray that has ended still has to come to the last vertex.
         if constexpr (N == 1 && !std::remove_reference_t<Record>::enabled)

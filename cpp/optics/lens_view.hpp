@@ -8,27 +8,27 @@ namespace REALCAM_NAMESPACE {
 inline constexpr int kMaxAsphericTerms = 8;
 inline constexpr int kMaxIrisBlades = 24;
 
-enum class StepKind : int { sphere, conic, asphere };
+enum class SurfaceShape : int { sphere, conic, asphere };
 
 /// One surface in the order in which the light meets it. Lengths in mm. What every ray needs comes first, in pieces
 /// that a GPU loads at once.
 template <class T>
-struct alignas(16) LensStep {
+struct alignas(16) SurfaceView {
     T shift;               ///< axial distance from the vertex before this one
     T curvature;           ///< 0: plane
-    T sense_in;            ///< +1 where the ray crosses towards the film, -1 towards the scene (a mirror turns it)
-    T sense_out;
-    T relative_step;       ///< n'^2 / n^2 - 1
-    T rim_squared;         ///< squared clear semi-diameter
-    T hole_squared;        ///< squared radius inside which light is blocked; negative: none
-    T index_squared;       ///< n^2 of the medium before the surface
-    StepKind kind;
-    std::int32_t has_blades;     ///< 1: the stop of a lens that has an iris
+    T direction_sign_in;  ///< +1 where the ray crosses towards the film, -1 towards the scene (a mirror turns it)
+    T direction_sign_out;
+    T squared_index_change;  ///< n'^2 / n^2 - 1
+    T rim_squared;  ///< squared clear semi-diameter
+    T hole_squared;  ///< squared radius inside which light is blocked; negative: none
+    T index_squared;  ///< n^2 of the medium before the surface
+    SurfaceShape kind;
+    std::int32_t has_blades;  ///< 1: the stop of a lens that has an iris
     std::int32_t surface_index;  ///< in the lens system, 0 at the front
-    T conic_factor;        ///< 1 + k
-    T sag_min, sag_max;    ///< aspheres: bounds of the sag inside the search radius
-    T sag_edge;            ///< aspheres: the sag at the search radius
-    T search_squared;      ///< aspheres: the sag is continued as constant outside this squared radius
+    T conic_factor;  ///< 1 + k
+    T sag_min, sag_max;  ///< aspheres: bounds of the sag inside the search radius
+    T sag_edge;  ///< aspheres: the sag at the search radius
+    T search_squared;  ///< aspheres: the sag is continued as constant outside this squared radius
     T inverse_search_squared;
     /// Of u^2, u^3, ..., u = r^2 / search_squared, mm; zeros after the last. The polynomial's own coefficients leave
     /// the range of float32 where surfaces are large or small.
@@ -51,10 +51,10 @@ enum class LensKind : int {
 };
 
 /// A lens in one state of focus and stop, at one wavelength and in one direction of the light.
-/// Trivially copyable; the steps belong to a LensPath.
+/// Trivially copyable; the surfaces belong to a LensPath.
 template <class T>
 struct LensView {
-    const LensStep<T>* steps;
+    const SurfaceView<T>* surfaces;
     int count;
     LensKind kind;
     Iris<T> iris;

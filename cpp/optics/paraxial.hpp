@@ -20,8 +20,8 @@ inline double sum_or_zero(double a, double b) {
     return std::fabs(sum) <= kRounding * std::fabs(a) ? 0.0 : sum;
 }
 
-/// Across a surface: n' u' = n u - y c (n' - n). Indices have the sign of the light's sense along z, so that a mirror
-/// is n' = -n.
+/// Across a surface: n' u' = n u - y c (n' - n). Indices have the sign of the light's direction along z, so that a
+/// mirror is n' = -n.
 inline ParaxialRay refract_paraxial(ParaxialRay ray, double curvature, double before, double after) {
     return {ray.height, sum_or_zero(before * ray.slope, -ray.height * curvature * (after - before)) / after};
 }

@@ -39,8 +39,8 @@ public:
           has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
                                     [](const Surface& surface) { return surface.is_asphere(); })) {
         const LensView<float> all = path_.view();
-        steps_to_stop_.assign(all.steps, all.steps + all.count - lens_.stop_index());
-        steps_to_stop_.back().rim_squared = std::numeric_limits<float>::max();
+        surfaces_to_stop_.assign(all.surfaces, all.surfaces + all.count - lens_.stop_index());
+        surfaces_to_stop_.back().rim_squared = std::numeric_limits<float>::max();
     }
 
     double index_squared() const { return path_.entry_index * path_.entry_index; }
@@ -56,8 +56,8 @@ public:
     /// To the plane of the stop, whose rim stops none.
     void trace_to_stop(const PupilRays& from, PupilTracer::Rays& rays) const {
         LensView<float> view = path_.view();
-        view.steps = steps_to_stop_.data();
-        view.count = static_cast<int>(steps_to_stop_.size());
+        view.surfaces = surfaces_to_stop_.data();
+        view.count = static_cast<int>(surfaces_to_stop_.size());
         trace(view, from, rays);
     }
 
@@ -121,7 +121,7 @@ private:
     LensSystem lens_;
     LensPath<float> path_;
     PupilTracer tracer_;
-    std::vector<LensStep<float>> steps_to_stop_;
+    std::vector<SurfaceView<float>> surfaces_to_stop_;
     bool has_aspheres_;
 };
 

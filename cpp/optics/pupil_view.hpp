@@ -38,14 +38,14 @@ struct PupilView {
 };
 
 /// The box of a film point's region, and the row of sectors that fills it.
-struct PupilPlace {
+struct PupilRowPosition {
     float cos, sin;  ///< of the film point's azimuth, by which the region is turned
     float centre, half_width, half_height;
     int row;
     float lit;  ///< 1 inside the image circle, else 0
 };
 
-REALCAM_INLINE PupilPlace pupil_place(const PupilView& pupil, float film_x, float film_y) {
+REALCAM_INLINE PupilRowPosition pupil_row_position(const PupilView& pupil, float film_x, float film_y) {
     const float squared = film_x * film_x + film_y * film_y;
     const bool off_axis = squared > 0.0f;
     const float radius = sqrt_or_zero(squared);
@@ -68,7 +68,7 @@ REALCAM_INLINE PupilPlace pupil_place(const PupilView& pupil, float film_x, floa
 
 /// One over the density in a sector, steradians of projected solid angle: sectors are chosen evenly, so that it is
 /// their number times the area of this one. 0 outside the image circle.
-REALCAM_INLINE float pupil_weight(const PupilView& pupil, const PupilPlace& place, const PupilSector& sector) {
+REALCAM_INLINE float pupil_weight(const PupilView& pupil, const PupilRowPosition& place, const PupilSector& sector) {
     const float area = static_cast<float>(pupil.sectors) * (sector.x * sector.dy - sector.y * sector.dx) *
                        (1.0f - sector.hole_squared);
     return area * place.half_width * place.half_height * place.lit;
@@ -82,7 +82,7 @@ struct PupilSample {
 
 /// Chooses a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the row.
 REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, float film_y, float u, float v) {
-    const PupilPlace place = pupil_place(pupil, film_x, film_y);
+    const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
     const float scaled = u * static_cast<float>(2 * pupil.sectors);
     int index = static_cast<int>(scaled);
     index = select(index < 2 * pupil.sectors, index, 2 * pupil.sectors - 1);
@@ -105,7 +105,7 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
 
 /// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 where it never goes.
 REALCAM_INLINE float pupil_pdf(const PupilView& pupil, float film_x, float film_y, float l, float m) {
-    const PupilPlace place = pupil_place(pupil, film_x, film_y);
+    const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
     const float x = (l * place.cos + m * place.sin - place.centre) / place.half_width;
     const float y = std::fabs(m * place.cos - l * place.sin) / place.half_height;
     // The sector by azimuth, from 0 to pi.

@@ -13,7 +13,7 @@ public:
     /// is asked afterwards. Aspheres stay searched for within their rim.
     static AimingPath open(const LensPath<double>& path) {
         AimingPath result(path);
-        for (LensStep<double>& step : result.steps_) {
+        for (SurfaceView<double>& step : result.steps_) {
             step.rim_squared = std::numeric_limits<double>::max();
             step.hole_squared = -1;
             step.has_blades = false;
@@ -31,10 +31,10 @@ public:
 private:
     explicit AimingPath(const LensPath<double>& path) {
         const LensView<double> view = path.view();
-        steps_.assign(view.steps, view.steps + view.count);
+        steps_.assign(view.surfaces, view.surfaces + view.count);
         iris_ = view.iris;
     }
-    std::vector<LensStep<double>> steps_;
+    std::vector<SurfaceView<double>> steps_;
     Iris<double> iris_;
 };
 

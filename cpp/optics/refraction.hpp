@@ -32,21 +32,20 @@ struct SurfaceHit {
 ///
 /// Curvature form: F = c (o.o + k oz^2) - 2 oz, G = pz - c (o.p + k oz pz), A = c (p.p + k pz^2), and the roots of
 /// A t^2 - 2 G t + F = 0. At a root the gradient of the surface is (-cx, -cy, 1 - c(1+k)z), and its product with p is
-/// G - A t = +-sqrt(G^2 - A F). So the sense in which the ray must cross the surface picks the root; this holds for
-/// planes, past 90 degrees, and for light that goes back.
-/// The two forms of the root, F / (G + s) and (G - s) / A, are chosen such that nothing cancels. And p . normal is G -
-/// A t of the t that was found: the discriminant's own root is off by the square root of a rounding near a tangent, and
-/// would not fit the point and its normal.
+/// G - A t = +-sqrt(G^2 - A F). So the direction sign with which the ray must cross the surface picks the root; this
+/// holds for planes, past 90 degrees, and for light that goes back. The two forms of the root, F / (G + s) and (G - s)
+/// / A, are chosen such that nothing cancels. And p . normal is G - A t of the t that was found: the discriminant's own
+/// root is off by the square root of a rounding near a tangent, and would not fit the point and its normal.
 template <class T>
-REALCAM_INLINE SurfaceHit<T> intersect_conic(Vec3<T> o, Vec3<T> p, T curvature, T conic_factor, T sense) {
+REALCAM_INLINE SurfaceHit<T> intersect_conic(Vec3<T> o, Vec3<T> p, T curvature, T conic_factor, T direction_sign) {
     const T k = conic_factor - T(1);
     const T c = curvature;
     const T F = c * (dot(o, o) + k * o.z * o.z) - T(2) * o.z;
     const T G = p.z - c * (dot(o, p) + k * o.z * p.z);
     const T A = c * (dot(p, p) + k * p.z * p.z);
     const T discriminant = G * G - A * F;
-    const T s = sense * sqrt_or_zero(discriminant);
-    const bool same_sign = G * sense >= T(0);
+    const T s = direction_sign * sqrt_or_zero(discriminant);
+    const bool same_sign = G * direction_sign >= T(0);
     const T t = quotient(select(same_sign, F, G - s), select(same_sign, G + s, A));
     const Vec3<T> at = o + t * p;
     const Vec3<T> gradient = {-c * at.x, -c * at.y, T(1) - c * conic_factor * at.z};
@@ -65,14 +64,14 @@ REALCAM_INLINE T to_vertex_plane(Vec3<T> o, Vec3<T> p) {
 
 /// Intersection with a sphere, whose gradient is the unit normal: one square root and one division.
 template <class T>
-REALCAM_INLINE SurfaceHit<T> intersect_sphere(Vec3<T> o, Vec3<T> p, T curvature, T sense) {
+REALCAM_INLINE SurfaceHit<T> intersect_sphere(Vec3<T> o, Vec3<T> p, T curvature, T direction_sign) {
     const T c = curvature;
     const T F = c * dot(o, o) - T(2) * o.z;
     const T G = p.z - c * dot(o, p);
     const T A = c * dot(p, p);
     const T discriminant = G * G - A * F;
-    const T s = sense * sqrt_or_zero(discriminant);
-    const bool same_sign = G * sense >= T(0);
+    const T s = direction_sign * sqrt_or_zero(discriminant);
+    const bool same_sign = G * direction_sign >= T(0);
     const T t = quotient(select(same_sign, F, G - s), select(same_sign, G + s, A));
     const Vec3<T> at = o + t * p;
     return {t, G - A * t, {-c * at.x, -c * at.y, T(1) - c * at.z}, discriminant};
@@ -85,14 +84,15 @@ struct Refraction {
 };
 
 /// Snell's law, p' = p + (s' - s) N with s = p.N and s'^2 = n'^2 - n^2 + s^2: the tangential part of n d stays.
-/// A mirror is n' = n with the sense of the outgoing ray turned.
+/// A mirror is n' = n with the direction sign of the outgoing ray turned.
 /// (The source paper's equation 3, for unit vectors, prints mu where mu^2 is needed.)
 ///
-/// n'^2 - n^2 comes as relative_step = n'^2 / n^2 - 1, times p.p.
+/// n'^2 - n^2 comes as squared_index_change = n'^2 / n^2 - 1, times p.p.
 template <class T>
-REALCAM_INLINE Refraction<T> refract(Vec3<T> p, Vec3<T> normal, T along_normal, T relative_step, T sense_out) {
-    const T radicand = along_normal * along_normal + relative_step * dot(p, p);
-    const T change = sense_out * sqrt_or_zero(radicand) - along_normal;
+REALCAM_INLINE Refraction<T> refract(Vec3<T> p, Vec3<T> normal, T along_normal, T squared_index_change,
+                                     T direction_sign_out) {
+    const T radicand = along_normal * along_normal + squared_index_change * dot(p, p);
+    const T change = direction_sign_out * sqrt_or_zero(radicand) - along_normal;
     return {p + change * normal, radicand};
 }
 

@@ -37,7 +37,7 @@ inline double distance_on_axis(const Assembly& assembly, const Pose& pose, doubl
             if (distance > nearest_m && distance < found) found = distance;
         }
     };
-    look_at(*assembly.ground, Affine<double>().inverse());
+    look_at(*assembly.static_geometry, Affine<double>().inverse());
     for (const Instance& instance : assembly.instances) look_at(*instance.object, instance.scene_from_object.inverse());
     return found;
 }

@@ -8,8 +8,8 @@
 namespace REALCAM_NAMESPACE {
 
 /// Mean luminance exposure of a picture, lux seconds. Pixels without any light (black background) do not count, and
-/// none counts for more than eight times the mean (three stops): a lamp or the sun's mirror image is left to burn out,
-/// as on a sensor. 0 where nothing has light.
+/// none counts for more than eight times the mean (three stops): an emitter or the sun's mirror image is left to burn
+/// out, as on a sensor. 0 where nothing has light.
 inline double metered_exposure(const Image& image) {
     const auto mean_up_to = [&](double limit) {
         double sum = 0, count = 0;

@@ -1,20 +1,20 @@
 #pragma once
 #include "../camera/camera.hpp"
-#include "../scene/placed_scene.hpp"
+#include "../scene/render_space_scene.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// What a backend has to do for the next picture.
 enum class SceneChange {
     none,
-    places,  ///< PlacedScene::move serves
+    places,  ///< RenderSpaceScene::move serves
     all,     ///< another scene, or a camera too far from the place of the last
 };
 
 /// `last`: null where there was none.
-inline SceneChange scene_change(const PlacedScene* last, const Assembly& scene, const Camera& camera) {
+inline SceneChange scene_change(const RenderSpaceScene* last, const Assembly& scene, const Camera& camera) {
     if (!last || !lies_near(camera, last->origin_m()) || !last->can_move_to(scene)) return SceneChange::all;
-    return same_places(last->assembly(), scene) ? SceneChange::none : SceneChange::places;
+    return same_transforms(last->assembly(), scene) ? SceneChange::none : SceneChange::places;
 }
 
 }  // namespace REALCAM_NAMESPACE

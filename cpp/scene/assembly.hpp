@@ -18,24 +18,25 @@ struct Instance {
     std::string name;  ///< for messages, and to find it by
 };
 
-/// A scene as a ground, and objects that stand in it, as often as one likes. A value: copies share what is large.
-/// Backends know the last one again by these pointers, and keep all that they made of it where only places differ.
+/// A scene as static geometry, and objects that stand in it, as often as one likes. A value: copies share what is
+/// large. Backends know the last one again by these pointers, and keep all that they made of it where only places
+/// differ.
 struct Assembly {
-    std::shared_ptr<const Scene> ground;  ///< with the lights; may have no triangles where there are instances
+    std::shared_ptr<const Scene> static_geometry;  ///< with the lights; may have no triangles where there are instances
     std::vector<Instance> instances;
 
     Assembly() = default;
-    Assembly(std::shared_ptr<const Scene> scene) : ground(std::move(scene)) {}
-    Assembly(Scene scene) : ground(std::make_shared<const Scene>(std::move(scene))) {}
+    Assembly(std::shared_ptr<const Scene> scene) : static_geometry(std::move(scene)) {}
+    Assembly(Scene scene) : static_geometry(std::make_shared<const Scene>(std::move(scene))) {}
 
     bool has_light() const {
-        if (ground->has_light()) return true;
+        if (static_geometry->has_light()) return true;
         for (const Instance& instance : instances)
-            if (instance.object->has_lamp()) return true;
+            if (instance.object->has_local_light()) return true;
         return false;
     }
     std::size_t triangle_count() const {
-        std::size_t count = ground->triangles.size();
+        std::size_t count = static_geometry->triangles.size();
         for (const Instance& instance : instances) count += instance.object->triangles.size();
         return count;
     }
@@ -43,13 +44,13 @@ struct Assembly {
 
 /// Whether two assemblies are made of the same parts, of which some may stand elsewhere.
 inline bool same_parts(const Assembly& a, const Assembly& b) {
-    if (a.ground != b.ground || a.instances.size() != b.instances.size()) return false;
+    if (a.static_geometry != b.static_geometry || a.instances.size() != b.instances.size()) return false;
     for (std::size_t i = 0; i < a.instances.size(); ++i)
         if (a.instances[i].object != b.instances[i].object) return false;
     return true;
 }
 
-inline bool same_places(const Assembly& a, const Assembly& b) {
+inline bool same_transforms(const Assembly& a, const Assembly& b) {
     for (std::size_t i = 0; i < a.instances.size(); ++i)
         if (a.instances[i].scene_from_object != b.instances[i].scene_from_object) return false;
     return true;
@@ -62,7 +63,7 @@ inline std::string label(const Assembly& assembly, std::size_t instance) {
 }
 
 /// Why an object cannot stand so; empty where it can.
-inline std::string why_no_place(const Affine<double>& map) {
+inline std::string transform_error(const Affine<double>& map) {
     // Far inside of what float can do, and beyond what anybody has seen.
     constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
     constexpr double kLeastVolume =
@@ -79,23 +80,23 @@ inline std::string why_no_place(const Affine<double>& map) {
 
 /// Throws InputError where there is nothing to be seen, or where an object cannot stand.
 inline void validate(const Assembly& assembly) {
-    if (!assembly.ground || assembly.triangle_count() == 0)
+    if (!assembly.static_geometry || assembly.triangle_count() == 0)
         throw InputError("the scene is empty; at least one triangle is wanted");
     constexpr std::size_t kMostInstances = std::size_t{1} << 28;
     if (assembly.instances.size() > kMostInstances)
         throw InputError("a scene holds at most " + std::to_string(kMostInstances) + " instances");
     for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-        const std::string why = why_no_place(assembly.instances[i].scene_from_object);
+        const std::string why = transform_error(assembly.instances[i].scene_from_object);
         if (!why.empty()) throw InputError(label(assembly, i) + ": " + why);
     }
 }
 
-/// With a copy of the ground that `change` has changed.
+/// With a copy of static geometry that `change` has changed.
 template <class Change>
-Assembly with_ground(Assembly assembly, Change&& change) {
-    auto ground = std::make_shared<Scene>(*assembly.ground);
-    change(*ground);
-    assembly.ground = std::move(ground);
+Assembly with_static_geometry(Assembly assembly, Change&& change) {
+    auto static_geometry = std::make_shared<Scene>(*assembly.static_geometry);
+    change(*static_geometry);
+    assembly.static_geometry = std::move(static_geometry);
     return assembly;
 }
 
@@ -103,8 +104,8 @@ Assembly with_ground(Assembly assembly, Change&& change) {
 inline void add(Assembly& assembly, const Assembly& object, const Affine<double>& scene_from_object,
                 const std::string& name) {
     const std::vector<Instance> parts = object.instances;  // it may be the assembly itself
-    if (!object.ground->triangles.empty() || !object.ground->points.empty())
-        assembly.instances.push_back({object.ground, scene_from_object, name});
+    if (!object.static_geometry->triangles.empty() || !object.static_geometry->points.empty())
+        assembly.instances.push_back({object.static_geometry, scene_from_object, name});
     for (const Instance& part : parts)
         assembly.instances.push_back({part.object, scene_from_object * part.scene_from_object,
                                       name + (name.empty() || part.name.empty() ? "" : "/") + part.name});

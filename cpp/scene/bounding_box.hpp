@@ -30,7 +30,7 @@ inline void add_triangles(BoundingBox& box, const Scene& scene, const Affine<dou
 
 inline BoundingBox bounding_box(const Assembly& assembly) {
     BoundingBox box;
-    add_triangles(box, *assembly.ground, {});
+    add_triangles(box, *assembly.static_geometry, {});
     for (const Instance& instance : assembly.instances)
         add_triangles(box, *instance.object, instance.scene_from_object);
     return box;

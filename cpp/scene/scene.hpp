@@ -14,7 +14,7 @@ struct Texture {
 };
 
 /// A point light in scene coordinates, metres.
-struct PlacedPointLight {
+struct ScenePointLight {
     Vec3d position_m;
     Vec3f intensity;  ///< cd
 };
@@ -24,11 +24,11 @@ struct Environment {
     std::int32_t width = 0, height = 0;
     std::vector<Vec3f> pixels;  ///< empty: constant
 
-    bool shines() const { return !pixels.empty() || constant.x > 0 || constant.y > 0 || constant.z > 0; }
+    bool emits() const { return !pixels.empty() || constant.x > 0 || constant.y > 0 || constant.z > 0; }
 };
 
 /// A scene as the user gave it: one list of triangles in metres, double precision, right-handed, y up.
-/// Read by Embree and CUDA backends through PlacedScene.
+/// Read by Embree and CUDA backends through RenderSpaceScene.
 struct Scene {
     std::vector<Vec3d> positions_m;
     std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): flat
@@ -36,15 +36,15 @@ struct Scene {
     std::vector<Triangle> triangles;
     std::vector<Material> materials;
     std::vector<Texture> textures;
-    std::vector<PlacedPointLight> points;
+    std::vector<ScenePointLight> points;
     std::vector<SunLight> suns;
     Environment environment;
     std::vector<std::string> warnings;  ///< what the reader put up with (a missing texture), for the caller to show
 
-    bool has_light() const { return has_lamp() || !suns.empty() || environment.shines(); }
+    bool has_light() const { return has_local_light() || !suns.empty() || environment.emits(); }
 
     /// A light that has a place.
-    bool has_lamp() const {
+    bool has_local_light() const {
         if (!points.empty()) return true;
         for (const Triangle& t : triangles) {
             const Vec3f e = materials[t.material].emission;

@@ -33,7 +33,7 @@ MeshView with_copied_arrays(MeshView view, Copy&& copy) {
     return view;
 }
 
-/// All but its PlacesView.
+/// All but its InstancesView.
 template <class Copy>
 SceneView with_copied_arrays(SceneView view, Copy&& copy) {
     using scene_arrays_detail::replace;
@@ -54,7 +54,7 @@ SceneView with_copied_arrays(SceneView view, Copy&& copy) {
 }
 
 template <class Copy>
-PlacesView with_copied_arrays(PlacesView view, Copy&& copy) {
+InstancesView with_copied_arrays(InstancesView view, Copy&& copy) {
     using scene_arrays_detail::replace;
     replace(view.instances, view.instance_count, copy);
     replace(view.points, view.point_count, copy);

@@ -6,8 +6,8 @@
 namespace REALCAM_NAMESPACE {
 
 // What kernels see of a scene: plain data and pointers. Positions are float and relative to an origin near the camera
-// (PlacedScene); light is photometric and per colour channel (linear Rec. 709): radiance in cd/m^2, intensity in cd,
-// illuminance in lux.
+// (RenderSpaceScene); light is photometric and per colour channel (linear Rec. 709): radiance in cd/m^2, intensity in
+// cd, illuminance in lux.
 
 struct Material {
     Vec3f diffuse = {0.5f, 0.5f, 0.5f};   ///< reflectance; times the texture where there is one
@@ -52,7 +52,7 @@ struct SunLight {
     Vec3f illuminance;  ///< on a plane that it meets at a right angle
 };
 
-/// A triangle that shines.
+/// A triangle that emits light.
 struct AreaLight {
     Vec3f corner, edge_u, edge_v;
     Vec3f normal;  ///< unit; light leaves on this side
@@ -86,15 +86,15 @@ struct MeshView {
 
 /// One of the places where an object stands.
 struct InstanceView {
-    Affine<float> placed_from_object;
-    InverseAffine<float> object_from_placed;
+    Affine<float> render_from_object;
+    InverseAffine<float> object_from_render;
     Vec3f margin;  ///< how far off along the object's axes a point may be for each unit of its placed coordinates
     float reach_margin;  ///< and, in the placed scene, for what the object's own coordinates leave, at most
     std::uint32_t object;
 };
 
 /// What depends on where objects stand: they themselves, and the lights that may move with them.
-struct PlacesView {
+struct InstancesView {
     const InstanceView* instances;
     const PointLight* points;
     const AreaLight* areas;
@@ -102,8 +102,8 @@ struct PlacesView {
     std::int32_t instance_count, point_count, area_count;
 };
 
-/// The ground's triangles, objects in frames of their own, and lights.
-struct SceneView : MeshView, PlacesView {
+/// Static geometry's triangles, objects in frames of their own, and lights.
+struct SceneView : MeshView, InstancesView {
     const MeshView* objects;
     const SunLight* suns;
     std::int32_t object_count, sun_count;

@@ -13,7 +13,7 @@ struct Hit {
     float distance;
     std::uint32_t triangle;  ///< kNoTriangle: none
     float u, v;              ///< barycentric, of the second and third corner
-    std::uint32_t instance = kNoInstance;  ///< of which the triangle is a part; none: the ground
+    std::uint32_t instance = kNoInstance;  ///< of which the triangle is a part; none: static geometry
 };
 
 template <int N>
@@ -101,7 +101,7 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
     const float own = stretch * plane_margin;
     const float off = std::fabs(object_normal.x) * instance.margin.x + std::fabs(object_normal.y) * instance.margin.y +
                       std::fabs(object_normal.z) * instance.margin.z;
-    const float coordinates = largest_coordinate(placed) + largest_coordinate(instance.object_from_placed.origin);
+    const float coordinates = largest_coordinate(placed) + largest_coordinate(instance.object_from_render.origin);
     return select(own < instance.reach_margin, own, instance.reach_margin) + stretch * off * coordinates;
 }
 
@@ -110,10 +110,10 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
     if (hit.instance == kNoInstance)
         return surface_point(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
     const InstanceView& instance = scene.instances[hit.instance];
-    const InverseAffine<float>& into = instance.object_from_placed;
+    const InverseAffine<float>& into = instance.object_from_render;
     SurfacePoint point =
         surface_point(scene.objects[instance.object], hit, into.point(ray_origin), into.direction(ray_direction));
-    point.position = instance.placed_from_object.point(point.position);
+    point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);
     // The next ray is met in the object's frame again.

@@ -79,9 +79,9 @@ public:
         return -(c_ * (r2 + (1 + k_) * at.z * at.z) - 2 * at.z) / (2 * length(gradient));
     }
 
-    /// Ray parameters at which o + t d crosses the near cap of a conic in the given sense. `discriminant`, of the
+    /// Ray parameters at which o + t d crosses the near cap of a conic in the given direction. `discriminant`, of the
     /// quadratic with unit d: how far the ray is from being a tangent (its square root is the cosine times |gradient|).
-    std::optional<Real> crossing(const RealVector& o, const RealVector& d, int sense,
+    std::optional<Real> crossing(const RealVector& o, const RealVector& d, int direction_sign,
                                  Real* discriminant = nullptr) const {
         const Real a = c_ * (dot(d, d) + k_ * d.z * d.z);
         const Real b = c_ * (dot(o, d) + k_ * o.z * d.z) - d.z;
@@ -99,21 +99,21 @@ public:
         for (const Real& t : roots) {
             const RealVector at = o + t * d;
             if (1 - c_ * (1 + k_) * at.z <= 0) continue;  // the far cap, or the other sheet
-            if (dot(normal(at), d) * sense > 0) return t;
+            if (dot(normal(at), d) * direction_sign > 0) return t;
         }
         return {};
     }
 
-    /// All crossings of an asphere inside the rim in the right sense, in the order of the light: sign changes of z -
-    /// sag over `steps` pieces of the ray's way through the rim's cylinder, bisected in long double and polished by
+    /// All crossings of an asphere inside the rim in the right direction, in the order of the light: sign changes of z
+    /// - sag over `steps` pieces of the ray's way through the rim's cylinder, bisected in long double and polished by
     /// Newton's method to all digits.
-    std::vector<Real> crossings_inside(const RealVector& o, const RealVector& d, int sense, double rim,
+    std::vector<Real> crossings_inside(const RealVector& o, const RealVector& d, int direction_sign, double rim,
                                        int steps = 512) const {
         using Long = long double;
         const Long ox(o.x), oy(o.y), oz(o.z), dx(d.x), dy(d.y), dz(d.z);
         const auto beyond = [&](Long t) {
             const Long x = ox + t * dx, y = oy + t * dy;
-            return sense * (oz + t * dz - sag_of<Long>(std::min(x * x + y * y, static_cast<Long>(rim) * rim)));
+            return direction_sign * (oz + t * dz - sag_of<Long>(std::min(x * x + y * y, static_cast<Long>(rim) * rim)));
         };
         const Long across = dx * dx + dy * dy, middle = across > 0 ? -(ox * dx + oy * dy) / across : -oz / dz;
         const Long x = ox + middle * dx, y = oy + middle * dy;
@@ -193,12 +193,13 @@ inline OracleRay oracle_trace(const LensSystem& lens, LightDirection way, Vec3d 
     const std::vector<double> n = lens.indices(lens.wavelength_nm);
     std::vector<Real> z(1, Real(0));
     for (int i = 0; i + 1 < count; ++i) z.push_back(z.back() + lens.surfaces[static_cast<std::size_t>(i)].thickness);
-    std::vector<int> sense_before(static_cast<std::size_t>(count)), sense_behind(static_cast<std::size_t>(count));
-    int sense = 1;
+    std::vector<int> direction_sign_before(static_cast<std::size_t>(count)),
+        direction_sign_behind(static_cast<std::size_t>(count));
+    int direction_sign = 1;
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-        sense_before[i] = sense;
-        if (lens.surfaces[i].type == SurfaceType::mirror) sense = -sense;
-        sense_behind[i] = sense;
+        direction_sign_before[i] = direction_sign;
+        if (lens.surfaces[i].type == SurfaceType::mirror) direction_sign = -direction_sign;
+        direction_sign_behind[i] = direction_sign;
     }
     OracleRay ray{exact(origin), normalized(exact(direction))};
     const auto near = [&](const Real& relative) {
@@ -209,7 +210,7 @@ inline OracleRay oracle_trace(const LensSystem& lens, LightDirection way, Vec3d 
         const bool forth = way == LightDirection::to_film;
         const Surface& surface = lens.surfaces[i];
         const OracleSurface shape(surface);
-        const int in = forth ? sense_before[i] : -sense_behind[i];
+        const int in = forth ? direction_sign_before[i] : -direction_sign_behind[i];
         ray.surface_index = static_cast<int>(i);
         const RealVector o = ray.origin - RealVector{0, 0, z[i]};
         std::optional<Real> t;

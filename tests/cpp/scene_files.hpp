@@ -60,7 +60,7 @@ inline Assembly read_assembly(const std::string& path, const std::vector<std::st
 }
 
 inline Scene read(const std::string& path, double scale = 1) {
-    return *read_assembly(path, {}, scale).ground;
+    return *read_assembly(path, {}, scale).static_geometry;
 }
 
 inline std::string error_of(const std::string& path) {

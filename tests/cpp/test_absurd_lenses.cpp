@@ -28,10 +28,10 @@ LensSystem absurd_lens(Random& random, double decades) {
     const int count = 1 + static_cast<int>(12 * random());
     const int stop = static_cast<int>(count * random());
     std::vector<Surface> surfaces;
-    double sense = 1;
+    double direction_sign = 1;
     for (int i = 0; i < count; ++i) {
         if (i == stop) {
-            surfaces.push_back(stop_plane(random() < 0.2 ? 0 : sense * length(), length()));
+            surfaces.push_back(stop_plane(random() < 0.2 ? 0 : direction_sign * length(), length()));
             continue;
         }
         const double radius = (random() < 0.5 ? -1 : 1) * length();
@@ -44,8 +44,8 @@ LensSystem absurd_lens(Random& random, double decades) {
         if (random() < 0.2)
             for (int k = 0; k < kMaxAsphericTerms; ++k)
                 s.aspheric.push_back(random.between(-1, 1) * scale * std::pow(s.clear_semi_diameter, -4 - 2 * k));
-        if (random() < 0.15) s.type = SurfaceType::mirror, sense = -sense;
-        s.thickness = random() < 0.1 ? 0 : sense * length();
+        if (random() < 0.15) s.type = SurfaceType::mirror, direction_sign = -direction_sign;
+        s.thickness = random() < 0.1 ? 0 : direction_sign * length();
         surfaces.push_back(s);
     }
     LensSystem lens = lens_of(surfaces);

@@ -172,12 +172,12 @@ TEST_CASE("an absurd asphere ends rays with a status, and lets none through that
 namespace {
 
 /// Met on the way to the scene; polynomial and bounds are still to come.
-LensStep<float> asphere_in_air(float curvature) {
-    LensStep<float> step{};
-    step.kind = StepKind::asphere;
+SurfaceView<float> asphere_in_air(float curvature) {
+    SurfaceView<float> step{};
+    step.kind = SurfaceShape::asphere;
     step.curvature = curvature;
     step.conic_factor = 1;
-    step.sense_in = step.sense_out = -1;
+    step.direction_sign_in = step.direction_sign_out = -1;
     step.index_squared = 1;
     step.hole_squared = -1;
     return step;
@@ -185,9 +185,9 @@ LensStep<float> asphere_in_air(float curvature) {
 
 }  // namespace
 
-TEST_CASE("a guess that is a root to the last digit, but in the wrong sense, does not end the search") {
+TEST_CASE("a guess that is a root to the last digit, but in the wrong direction, does not end the search") {
     // Found by fuzzing: where the ray meets the base sphere, it grazes the asphere from the other side.
-    LensStep<float> step = asphere_in_air(-0.000786048942245543f);
+    SurfaceView<float> step = asphere_in_air(-0.000786048942245543f);
     step.rim_squared = 460218.562f;
     step.sag_min = -143.261475f;
     step.sag_max = 3.48744249f;
@@ -213,7 +213,7 @@ TEST_CASE("a guess that is a root to the last digit, but in the wrong sense, doe
 
 TEST_CASE("a sphere and a polynomial that nearly cancel leave roundings that the search puts up with") {
     // Found by fuzzing: heights of -57 and +59 mm, of which 1.9 remain. With fused products the search had no end.
-    LensStep<float> step = asphere_in_air(-0.008210781f);
+    SurfaceView<float> step = asphere_in_air(-0.008210781f);
     step.rim_squared = step.search_squared = 14833.0703f;
     step.inverse_search_squared = 6.74169278e-05f;
     step.sag_min = -16.6744919f;

@@ -72,7 +72,7 @@ TEST_CASE("Newton's method without a bracket takes points that are not on the su
         Surface surface = refracting(random.between(8, 50), 0, Glass::constant(1.7), 6);
         for (int i = 0; i < 8; ++i) surface.aspheric.push_back(random.between(-1, 1) * std::pow(6.0, -3 - 2 * i));
         const LensPath<float> path(lens_of({surface}), LightDirection::to_film, kLineD_nm);
-        const LensStep<float> step = path.view().steps[0];
+        const SurfaceView<float> step = path.view().surfaces[0];
         for (int i = 0; i < 20; ++i) {
             const Vec3f o = in_float32({random.between(-5, 5), random.between(-5, 5), -10});
             const Vec3f d = in_float32(normalized(Vec3d{random.between(-1, 1), random.between(-1, 1), 1}));
@@ -116,7 +116,7 @@ TEST_CASE("a refraction that takes the ray's length from the glass table blurs a
         Vec3f p = in_float32(normalized(aim - start));
         bool passes = true;
         for (int k = 0; k < path.view().count && passes; ++k) {
-            const LensStep<float>& step = path.view().steps[k];
+            const SurfaceView<float>& step = path.view().surfaces[k];
             const double before = n[static_cast<std::size_t>(step.surface_index) + 1],
                          after = n[static_cast<std::size_t>(step.surface_index)];
             o.z -= step.shift;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/scene/placed_scene.hpp"
+#include "../../cpp/scene/render_space_scene.hpp"
 #include "../../cpp/scene/shade.hpp"
 #include "chi_square.hpp"
 #include "estimator_mean.hpp"
@@ -95,7 +95,7 @@ TEST_CASE("direct light of shining triangles is the integral over them") {
         }
         REQUIRE(truth > 0);
         const Scene scene = scene_of(test.lamps);
-        const PlacedScene placed(scene, {0, 0, 0});
+        const RenderSpaceScene placed(scene, {0, 0, 0});
         const SurfacePoint point = grey_point(test.position, test.normal);
         Mean mean;
         Uniform uniform(static_cast<unsigned>(k) + 1);
@@ -140,7 +140,7 @@ TEST_CASE("direct light of an environment is the integral over its pixels") {
                                  },
                                  M_PI * row / kHeight, M_PI * (row + 1) / kHeight, 2 * M_PI * (column / 16.0 - 0.5),
                                  2 * M_PI * ((column + 1) / 16.0 - 0.5), 16);
-            const PlacedScene placed(scene, {0, 0, 0});
+            const RenderSpaceScene placed(scene, {0, 0, 0});
             const SurfacePoint point = grey_point({0, 0, 0}, n);
             Mean mean;
             Uniform uniform(seed++);

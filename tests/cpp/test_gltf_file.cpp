@@ -96,7 +96,8 @@ TEST_CASE("glTF: pictures as files, their transform, and the mean of a metal's m
         "textures":[{"source":0}],"images":[{"uri":"my%20t.png"}])";
     Reader reader;
     const Scene scene =
-        *io::read_scene(folder.write("u.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {}, reader.function()).ground;
+        *io::read_scene(folder.write("u.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), {}, reader.function())
+             .static_geometry;
     CHECK(reader.asked.front() == "my t.png");
     CHECK(scene.warnings.empty());
     // The file's (u, v), v downwards: (0, 1), (1, 1), (0, 0). Turned by 90 degrees, (0.5 u, 0.25 v) -> (0.25 v, -0.5
@@ -131,7 +132,7 @@ TEST_CASE("GLB: the picture inside reaches the reader as bytes, and the geometry
     const std::string glb = "glTF" + word(2) + word(28 + json.size() + bytes.size()) + word(json.size()) + "JSON" +
                             json + word(bytes.size()) + std::string("BIN\0", 4) + bytes;
     Reader reader;
-    const Scene scene = *io::read_scene(folder.write("a.GLB", glb), {}, reader.function()).ground;
+    const Scene scene = *io::read_scene(folder.write("a.GLB", glb), {}, reader.function()).static_geometry;
     CHECK(scene.triangles.size() == 1);
     CHECK(reader.asked == std::vector<std::string>{"bytes"});
     CHECK(std::string(reader.bytes.begin(), reader.bytes.end()) == picture);

@@ -46,7 +46,7 @@ TEST_CASE("glTF: a named node stands as an object, with all below it") {
     const Instance& table = scene.instances[0];
     CHECK(table.name == "table");
     CHECK(length(placed(table, {0, 0, 0}) - Vec3d{0, 0, -6}) < 1e-6);
-    REQUIRE(scene.ground->triangles.size() == 1);
+    REQUIRE(scene.static_geometry->triangles.size() == 1);
     REQUIRE(table.object->triangles.size() == 1);
     REQUIRE(flat.triangles.size() == 2);
     for (int i = 0; i < 3; ++i) CHECK(length(placed(table, corner(*table.object, 0, i)) - corner(flat, 1, i)) < 1e-6);
@@ -55,9 +55,9 @@ TEST_CASE("glTF: a named node stands as an object, with all below it") {
     CHECK(length(placed(table, table.object->points[0].position_m) - flat.points[0].position_m) < 1e-6);
     CHECK(table.object->points[0].intensity == flat.points[0].intensity);
     CHECK(table.object->suns.empty());
-    CHECK(scene.ground->points.empty());
-    REQUIRE(scene.ground->suns.size() == 1);
-    CHECK(length(static_cast<Vec3d>(scene.ground->suns[0].direction - flat.suns[0].direction)) < 1e-6);
+    CHECK(scene.static_geometry->points.empty());
+    REQUIRE(scene.static_geometry->suns.size() == 1);
+    CHECK(length(static_cast<Vec3d>(scene.static_geometry->suns[0].direction - flat.suns[0].direction)) < 1e-6);
     const BoundingBox whole = bounding_box(scene), expected = bounding_box(Assembly(flat));
     CHECK(length(whole.low - expected.low) + length(whole.high - expected.high) < 1e-6);
 }
@@ -67,11 +67,11 @@ TEST_CASE("glTF: nothing but objects, and one that is only a lamp") {
     folder.write("tri.bin", triangle_bytes());
     const std::string path = folder.write("room.gltf", gltf(kRoom, "[0]", kLights));
     const Assembly all = read_assembly(path, {"room"});
-    CHECK(all.ground->triangles.empty());
+    CHECK(all.static_geometry->triangles.empty());
     REQUIRE(all.instances.size() == 1);
     CHECK(all.instances[0].object->triangles.size() == 2);
     const Assembly lamp = read_assembly(path, {"lamp"});
-    CHECK(lamp.ground->triangles.size() == 2);
+    CHECK(lamp.static_geometry->triangles.size() == 2);
     REQUIRE(lamp.instances.size() == 1);
     CHECK(lamp.instances[0].object->triangles.empty());
     CHECK(lamp.instances[0].object->points.size() == 1);
@@ -84,7 +84,7 @@ TEST_CASE("glTF: objects keep the materials and pictures that they use") {
     const std::string more = R"(,"materials":[{"name":"papered","pbrMetallicRoughness":{"metallicFactor":0,
         "baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[{"uri":"a.png"}])";
     const Assembly scene = read_assembly(folder.write("room.gltf", gltf(kRoom, "[0]", more + kLights)), {"table"});
-    const Scene &ground = *scene.ground, &table = *scene.instances[0].object;
+    const Scene &ground = *scene.static_geometry, &table = *scene.instances[0].object;
     REQUIRE(ground.materials.size() == 1);
     CHECK(ground.textures.size() == 1);
     CHECK(ground.materials[0].diffuse_texture == 0);
@@ -107,7 +107,8 @@ TEST_CASE("glTF: a mesh that stands in very many places is shared") {
         folder.write("many.gltf", gltf(nodes + "]", roots + "]", "", R"(,"NORMAL":1,"TEXCOORD_0":2)", indices.size())),
         {});
     REQUIRE(scene.instances.size() == 1024);
-    CHECK(scene.ground->triangles.size() == 1024);  // of the other mesh; the node without size has no triangles
+    CHECK(scene.static_geometry->triangles.size() ==
+          1024);  // of the other mesh; the node without size has no triangles
     CHECK(scene.instances[0].object == scene.instances[1023].object);
     CHECK(scene.instances[0].object->triangles.size() == 1024);
     CHECK(placed(scene.instances[1000], {0, 0, 0}).x == 1000);

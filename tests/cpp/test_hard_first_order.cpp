@@ -27,7 +27,7 @@ struct RealMatrix {
 RealMatrix matrix_of(const LensSystem& lens, int first, int last) {
     const std::vector<double> n = lens.indices(lens.wavelength_nm);
     RealMatrix m;
-    int sense = 1;
+    int direction_sign = 1;
     for (int i = 0; i < last; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const Surface& s = lens.surfaces[k];

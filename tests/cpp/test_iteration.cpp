@@ -25,7 +25,7 @@ struct SearchEnd {
 
 /// The search of cross_asphere for one ray, step by step. The ray is relative to the surface's vertex.
 template <class T>
-SearchEnd search_asphere(const LensStep<T>& step, Vec3<T> o, Vec3<T> p) {
+SearchEnd search_asphere(const SurfaceView<T>& step, Vec3<T> o, Vec3<T> p) {
     T t, below, above, residual = 0, tolerance = 0;
     const T outside = begin_search(step, o, p, t, below, above);
     if (outside > T(0) && !find_bracket(step, o, p, t, below, above) && outside > kSideways<T> / 2) return {};
@@ -45,13 +45,13 @@ struct Steps {
     long rays = 0;
 
     template <class T>
-    void take(const LensStep<T>& step, Vec3<T> o, Vec3<T> p) {
+    void take(const SurfaceView<T>& step, Vec3<T> o, Vec3<T> p) {
         const SearchEnd end = search_asphere(step, o, p);
         LensRays<T, 1> ray;
         ray.origin.set(0, o);
         ray.direction.set(0, p);
         ray.status[0] = 0;
-        LensStep<T> alone = step;
+        SurfaceView<T> alone = step;
         alone.shift = 0;
         trace_lens(LensView<T>{&alone, 1, LensKind::any, {}}, ray, PathRecord<T, 1>{});
         worst = std::max(worst, end.steps);
@@ -75,10 +75,10 @@ Steps steps_in_lens(const LensSystem& lens) {
         ray.direction.set(0, static_cast<Vec3<T>>(normalized(target - film)));
         ray.status[0] = 0;
         for (int k = 0; k < view.count && ray.status[0] == 0; ++k) {
-            const LensStep<T>& step = view.steps[k];
+            const SurfaceView<T>& step = view.surfaces[k];
             Vec3<T> o = ray.origin[0];
             o.z -= step.shift;
-            if (step.kind == StepKind::asphere) steps.take(step, o, ray.direction[0]);
+            if (step.kind == SurfaceShape::asphere) steps.take(step, o, ray.direction[0]);
             trace_lens(LensView<T>{&step, 1, LensKind::any, {}}, ray, PathRecord<T, 1>{});
         }
     }
@@ -100,7 +100,7 @@ Steps steps_in_absurdities() {
         for (int i = 0; i < kMaxAsphericTerms; ++i)
             surface.aspheric.push_back(random.between(-lift, lift) * std::pow(rim, -3 - 2 * i));
         const LensPath<T> path(lens_of({surface}), LightDirection::to_film, kLineD_nm);
-        const LensStep<T> step = path.view().steps[0];
+        const SurfaceView<T> step = path.view().surfaces[0];
         for (int i = 0; i < 100; ++i) {
             const double scale = rim * std::pow(10.0, random.between(-3, 3));
             const auto any = [&] { return static_cast<T>(scale * random.between(-1, 1)); };

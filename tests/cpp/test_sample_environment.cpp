@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../../cpp/scene/light.hpp"
-#include "../../cpp/scene/placed_scene.hpp"
+#include "../../cpp/scene/render_space_scene.hpp"
 #include "bare_scene.hpp"
 #include "chi_square.hpp"
 
@@ -123,14 +123,14 @@ TEST_CASE("sample_environment_image follows environment_pdf") {
         under_image(64, 2, uneven(128, 4))};
     unsigned seed = 1;
     for (const Scene& scene : scenes) {
-        const PlacedScene placed(scene, {0, 0, 0});
+        const RenderSpaceScene placed(scene, {0, 0, 0});
         const EnvironmentView e = placed.view().environment;
         tests.add(over_image(e, [&](Vec2f u) { return sample_environment_image(e, u); }, seed++));
     }
     tests.hold();
 
     ChiSquareTests broken("sample_environment_image with rows mistaken for equal heights");
-    const PlacedScene placed(scenes[0], {0, 0, 0});
+    const RenderSpaceScene placed(scenes[0], {0, 0, 0});
     const EnvironmentView e = placed.view().environment;
     broken.add(over_image(
         e,
@@ -145,7 +145,7 @@ TEST_CASE("sample_environment_image follows environment_pdf") {
     broken.breaks();
 
     for (const Scene& scene : scenes) {
-        const PlacedScene all(scene, {0, 0, 0});
+        const RenderSpaceScene all(scene, {0, 0, 0});
         for (const Vec2f u : extreme_inputs()) {
             const LightSample sample = sample_environment_image(all.view().environment, u);
             CHECK(std::fabs(length(sample.direction) - 1) < 1e-6f);

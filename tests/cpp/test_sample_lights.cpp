@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../../cpp/scene/light.hpp"
-#include "../../cpp/scene/placed_scene.hpp"
+#include "../../cpp/scene/render_space_scene.hpp"
 #include "bare_scene.hpp"
 #include "chi_square.hpp"
 
@@ -87,7 +87,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
     unsigned seed = 1;
     for (const std::vector<Lamp>& group : groups) {
         const Scene scene = with_lamps(group);
-        const PlacedScene placed(scene, {0, 0, 0});
+        const RenderSpaceScene placed(scene, {0, 0, 0});
         const SceneView view = placed.view();
         REQUIRE(view.area_count == static_cast<int>(group.size()));
         OnLights bins(view);
@@ -107,7 +107,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
     tests.hold();
 
     const Scene scene = with_lamps({kLamps[0]});
-    const PlacedScene placed(scene, {0, 0, 0});
+    const RenderSpaceScene placed(scene, {0, 0, 0});
     OnLights bins(placed.view());
     Uniform uniform(1);
     for (int i = 0; i < kSamples; ++i) {
@@ -119,7 +119,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
     broken.breaks();
 
     const Scene all = with_lamps(kLamps);
-    const PlacedScene lamps(all, {0, 0, 0});
+    const RenderSpaceScene lamps(all, {0, 0, 0});
     for (const Vec2f u : extreme_inputs())
         for (const Vec3f from : {Vec3f{0.2f, 0.2f, 1}, Vec3f{0, 0, 1e-6f}, Vec3f{0, 0, 0}, Vec3f{0.2f, 0.2f, -1}}) {
             const LightSample sample = sample_area_light(lamps.view(), from, u);
@@ -155,7 +155,7 @@ TEST_CASE("kinds of light are chosen alike, and what is left of the number is fr
     scene.points = {{{0, 1, 0}, {1, 0, 0}}, {{0, 3, 0}, {0, 1, 0}}};
     scene.suns = {{{0, -1, 0}, {1, 1, 0}}};
     scene.environment.constant = {1, 0, 1};
-    const PlacedScene placed(scene, {0, 0, 0});
+    const RenderSpaceScene placed(scene, {0, 0, 0});
     REQUIRE(light_kinds(placed.view()) == 5);
     SurfacePoint point{};
     point.normal = point.geometric_normal = {0, 1, 0};
@@ -170,6 +170,6 @@ TEST_CASE("kinds of light are chosen alike, and what is left of the number is fr
     tests.hold();
 
     const Scene dark = bare_scene();
-    const PlacedScene nothing(dark, {0, 0, 0});
+    const RenderSpaceScene nothing(dark, {0, 0, 0});
     CHECK(sample_light(nothing.view(), point, {0.5f, 0.5f}).irradiance.x == 0);
 }

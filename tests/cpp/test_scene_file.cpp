@@ -30,7 +30,7 @@ TEST_CASE("OBJ: materials of the MTL as they are written, and the texture beside
     const std::string path = folder.write(
         "a.obj", "mtllib a.mtl\nusemtl wood\nv 1 2 3\nv 2 2 3\nv 1 4 3\nvt 0 0.25\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
     Reader reader;
-    const Scene scene = *io::read_scene(path, {0.5}, reader.function()).ground;
+    const Scene scene = *io::read_scene(path, {0.5}, reader.function()).static_geometry;
 
     REQUIRE(scene.triangles.size() == 1);
     CHECK(corner(scene, 0, 0).z == 1.5);
@@ -126,7 +126,7 @@ TEST_CASE("PLY: normals, texture coordinates, a texture's name, doubles, big-end
         *io::read_scene(folder.write("a.ply", header + "1000000.123 0 0 0 0 2 0.5 0.25\r\n1000001.123 0 0 0 0 1 1 0\r\n"
                                                        "1000000.123 1 0 0 0 1 0 1\r\n3 0 1 2 2 7 7 255\r\n"),
                         {}, reader.function())
-             .ground;
+             .static_geometry;
     CHECK(corner(scene, 0, 0).x == 1000000.123);
     check_vec(scene.normals[0], 0, 0, 1);
     CHECK(scene.uvs[scene.triangles[0].vertices[0]].y == 0.25f);
@@ -164,7 +164,7 @@ TEST_CASE("what can be put up with is a warning") {
     const io::ImageReader reads_nothing = [](const std::string&, std::span<const std::uint8_t>) {
         return std::optional<DecodedImage>();
     };
-    const Scene other = *io::read_scene(folder.path("a.obj"), {}, reads_nothing).ground;
+    const Scene other = *io::read_scene(folder.path("a.obj"), {}, reads_nothing).static_geometry;
     CHECK(warns(other, "texture gone.png: cannot be read as a picture"));
     CHECK(warns(read(folder.write("b.obj", "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), "none.mtl"));
 }

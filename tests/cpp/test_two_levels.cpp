@@ -48,7 +48,7 @@ struct Baked {
     std::vector<std::uint32_t> first;
 
     Baked(const Assembly& assembly, Vec3d origin) {
-        add(*assembly.ground, {}, origin);
+        add(*assembly.static_geometry, {}, origin);
         for (const Instance& instance : assembly.instances) {
             first.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
             add(*instance.object, instance.scene_from_object, origin);
@@ -71,7 +71,7 @@ private:
 };
 
 struct OnHost {
-    PlacedScene placed;
+    RenderSpaceScene placed;
     SceneBvh bvh;
     std::vector<BvhInstance> leaves;
 
@@ -81,7 +81,7 @@ struct OnHost {
         refit_instances(bvh, placed);
         list();
     }
-    SceneBvhView view() const { return {bvh.ground.view(), bvh.instances.nodes.data(), leaves.data()}; }
+    SceneBvhView view() const { return {bvh.static_geometry.view(), bvh.instances.nodes.data(), leaves.data()}; }
 
 private:
     void list() {
@@ -175,7 +175,7 @@ TEST_CASE("two levels: no ground, one object, no hit") {
 
 TEST_CASE("assembly: what cannot stand is refused") {
     Assembly assembly(scene_of(soup(2, 1, 1, 2)));
-    assembly.instances.push_back({assembly.ground, {}, "chair"});
+    assembly.instances.push_back({assembly.static_geometry, {}, "chair"});
     validate(assembly);
     Affine<double>& map = assembly.instances[0].scene_from_object;
     const auto refused = [&] { return message_of([&] { validate(assembly); }); };

@@ -15,7 +15,7 @@ class RayDrawer {
 public:
     RayDrawer(Bytes& in, const LensSystem& lens, const LensPath<double>& path)
         : in_(in),
-          step_(path.view().steps[0]),
+          step_(path.view().surfaces[0]),
           surface_(lens.surfaces[static_cast<std::size_t>(step_.surface_index)]),
           entry_position_(path.entry_position) {}
 
@@ -63,12 +63,12 @@ private:
         const Vec3d to = point(std::sqrt(in_.unit()));
         const double away = in_.decades(-1, 1.5) * size, aside = away * in_.decades(-3, 0);
         const Vec3d from{to.x + in_.between(-1, 1) * aside, to.y + in_.between(-1, 1) * aside,
-                         to.z - step_.sense_in * away};
+                         to.z - step_.direction_sign_in * away};
         return {from, to - from};
     }
     DrawnRay through(Vec3d at, Vec3d direction) {
         const double away = in_.chance(32) ? 0 : in_.decades(-2, 2) * surface_.clear_semi_diameter;
-        return {at - (direction.z * step_.sense_in < 0 ? -away : away) * direction, direction};
+        return {at - (direction.z * step_.direction_sign_in < 0 ? -away : away) * direction, direction};
     }
     /// Meets the surface under this angle of incidence, in the sense in which light crosses it.
     DrawnRay inclined(double angle_deg) {
@@ -77,19 +77,19 @@ private:
         const Vec3d u = normalized(cross(n, helper)), v = cross(n, u);
         const double turn = in_.chance(64) ? 0 : in_.between(0, 2 * M_PI), angle = angle_deg * (M_PI / 180);
         const Vec3d d = (std::sin(angle) * std::cos(turn)) * u + (std::sin(angle) * std::sin(turn)) * v +
-                        (step_.sense_in * std::cos(angle)) * n;
+                        (step_.direction_sign_in * std::cos(angle)) * n;
         const double away = in_.decades(-3, 2) * surface_.clear_semi_diameter;
         return {at - away * d, d};
     }
     double critical_angle() {
-        const double squared = 1 + step_.relative_step;  // n'^2 / n^2
+        const double squared = 1 + step_.squared_index_change;  // n'^2 / n^2
         const double sine = squared < 1 ? std::sqrt(squared) * (1 + in_.sign() * in_.decades(-17, -3)) : in_.unit();
         return std::asin(std::min(sine, 1.0)) * (180 / M_PI);
     }
     DrawnRay from_far(int decades) {
         const Vec3d to = point(in_.unit());
         Vec3d d = normalized(any_direction());
-        if (d.z * step_.sense_in < 0) d = -d;
+        if (d.z * step_.direction_sign_in < 0) d = -d;
         return {to - (std::pow(10.0, decades) * in_.between(0.1, 1)) * d, d};
     }
     DrawnRay sideways() {
@@ -117,7 +117,7 @@ private:
     }
     Vec3d normal(Vec3d at) const {
         const double r2 = at.x * at.x + at.y * at.y;
-        if (step_.kind == StepKind::asphere) {
+        if (step_.kind == SurfaceShape::asphere) {
             const double slope = 2 * asphere_sag(step_, r2).derivative;
             return std::isfinite(slope) ? normalized(Vec3d{-slope * at.x, -slope * at.y, 1}) : Vec3d{0, 0, 1};
         }
@@ -126,7 +126,7 @@ private:
     }
 
     Bytes& in_;
-    const LensStep<double> step_;
+    const SurfaceView<double> step_;
     const Surface& surface_;
     double entry_position_;
 };

@@ -93,7 +93,7 @@ void check_no_record(const Case& test, const LensPath<T>& path, const BlockResul
             const double moved = length(o - out.origin[i]), turned = length(d - out.direction[i]);
             // Fused products are fused as the compiler sees fit.
             const double same = test.kernels.instruction_set == std::string("x86-64-v2") ? 0 : 1e-4;
-            if (!(moved <= same * (length(o) + std::sqrt(static_cast<double>(path.view().steps[0].rim_squared)))))
+            if (!(moved <= same * (length(o) + std::sqrt(static_cast<double>(path.view().surfaces[0].rim_squared)))))
                 say<T>("a record moves a ray", test, out, i, moved);
             if (!(turned <= same)) say<T>("a record turns a ray", test, out, i, turned);
         }

@@ -26,7 +26,7 @@ struct Crossing {
 template <class T>
 class SurfaceLaws {
 public:
-    SurfaceLaws(const LensStep<T>& step, const Iris<T>& iris)
+    SurfaceLaws(const SurfaceView<T>& step, const Iris<T>& iris)
         : step_(step),
           iris_(iris),
           c_(step.curvature),
@@ -40,7 +40,7 @@ public:
         if (!on_surface) {
             if (!same(ray.at, ray.before)) broken("a ray that ended has moved", ray, 0, 0);
             if (!same(ray.after, ray.along)) broken("a ray that ended has turned", ray, 0, 0);
-            if (step_.kind == StepKind::asphere) {
+            if (step_.kind == SurfaceShape::asphere) {
                 check_search(ray);
             } else {
                 check_miss(ray);
@@ -49,10 +49,10 @@ public:
         }
         // Past the region of the search the surface is another, which nothing passes.
         const double r2 = ray.at.x * ray.at.x + ray.at.y * ray.at.y;
-        if (step_.kind == StepKind::asphere && r2 > static_cast<double>(step_.search_squared))
+        if (step_.kind == SurfaceShape::asphere && r2 > static_cast<double>(step_.search_squared))
             return check_aperture(ray);
         if (r2 > 1e4 * static_cast<double>(step_.rim_squared)) return check_aperture(ray);  // lost, however far
-        const Near near = step_.kind == StepKind::asphere ? asphere_at(ray) : conic_at(ray);
+        const Near near = step_.kind == SurfaceShape::asphere ? asphere_at(ray) : conic_at(ray);
         if (!(near.distance <= near.distance_bound))
             broken("a hit is not on the surface", ray, near.distance, near.distance_bound);
         check_path(ray);
@@ -79,7 +79,7 @@ private:
     Near conic_at(const Crossing& ray) const {
         const Vec3d o = ray.before, at = ray.at;
         // A conic is met from the vertex plane, where a ray that runs along it may come by far out.
-        const double detour = step_.kind == StepKind::conic ? 10 * std::fabs(o.z) : 0;
+        const double detour = step_.kind == SurfaceShape::conic ? 10 * std::fabs(o.z) : 0;
         const double way = length(at - o) + 2 * detour, from = length(o) + detour;
         const Vec3d gradient{-c_ * at.x, -c_ * at.y, 1 - c_ * q_ * at.z};
         const double g = length(gradient);
@@ -150,11 +150,11 @@ private:
 
     void check_refraction(const Crossing& ray, const Near& near) const {
         const double p = length(ray.along), out = length(ray.after),
-                     n = std::sqrt(1 + static_cast<double>(step_.relative_step));
+                     n = std::sqrt(1 + static_cast<double>(step_.squared_index_change));
         const Vec3d change = ray.after - ray.along;
         const double turned = length(cross(change, near.normal));
         // A sphere's normal is (-cx, -cy, 1 - cz) as it is, longer or shorter where the hit is not on the sphere.
-        const double stretch = step_.kind == StepKind::sphere ? 2 * bend_ * near.distance_bound : 0;
+        const double stretch = step_.kind == SurfaceShape::sphere ? 2 * bend_ * near.distance_bound : 0;
         const double length_bound = kRoundings * eps * (p + n * p) +
                                     length(change) * (p * near.incidence_bound + length(change) * stretch) / out;
         // A length that was made right again turns the part along the surface.
@@ -163,15 +163,16 @@ private:
         const double length_error = std::fabs(out - n * p);
         if (!(length_error <= length_bound))
             broken("Snell's law: the length is not the index", ray, length_error, length_bound);
-        const double in_sense = dot(ray.along, near.normal) * static_cast<double>(step_.sense_in);
-        const double out_sense = dot(ray.after, near.normal) * static_cast<double>(step_.sense_out);
+        const double direction_sign_in = dot(ray.along, near.normal) * static_cast<double>(step_.direction_sign_in);
+        const double direction_sign_out = dot(ray.after, near.normal) * static_cast<double>(step_.direction_sign_out);
         const double bound = p * near.incidence_bound + turn_bound;
-        if (!(in_sense >= -bound)) broken("the surface is crossed in the wrong sense", ray, in_sense, bound);
-        if (!(out_sense >= -bound)) broken("light leaves on the wrong side", ray, out_sense, bound);
+        if (!(direction_sign_in >= -bound))
+            broken("the surface is crossed in the wrong direction", ray, direction_sign_in, bound);
+        if (!(direction_sign_out >= -bound)) broken("light leaves on the wrong side", ray, direction_sign_out, bound);
     }
 
     void check_reflection(const Crossing& ray, const Near& near) const {
-        const double p2 = dot(ray.along, ray.along), step = static_cast<double>(step_.relative_step);
+        const double p2 = dot(ray.along, ray.along), step = static_cast<double>(step_.squared_index_change);
         const double along = dot(ray.along, near.normal), radicand = along * along + step * p2;
         const double bound = kRoundings * eps * (along * along + std::fabs(step) * p2) + 4 * p2 * near.incidence_bound;
         if (!(radicand <= bound)) broken("total reflection below the critical angle", ray, radicand, bound);
@@ -229,7 +230,7 @@ private:
         const double slope = 1 + bend_ * length(od), p2 = dot(pd, pd);
         const double squares = p2 * (slope * slope + bend_ * (bend_ * dot(od, od) + 2 * std::fabs(od.z)));
         if (!(discriminant > std::max(0.01, 1e3 * eps) * squares)) return;
-        const Long s = static_cast<Long>(step_.sense_in) * std::sqrt(discriminant);
+        const Long s = static_cast<Long>(step_.direction_sign_in) * std::sqrt(discriminant);
         const bool same_sign = G * s >= 0;
         if (!same_sign && !(std::fabs(A) > 1e-3L * bend_ * p2)) return;  // the root that is far away
         const Long t = same_sign ? F / (G + s) : (G - s) / A;
@@ -248,7 +249,7 @@ private:
         const double middle = -(o.x * p.x + o.y * p.y) / across, x = o.x + middle * p.x, y = o.y + middle * p.y;
         const double room = 0.99 * rim * rim - x * x - y * y;
         if (!(across > 1e-12 * dot(p, p)) || !(room > 0.01 * rim * rim) || !(length(o) < 100 * rim)) return;
-        const double half = std::sqrt(room / across), sense = static_cast<double>(step_.sense_in);
+        const double half = std::sqrt(room / across), sense = static_cast<double>(step_.direction_sign_in);
         const auto beyond = [&](double t) {
             const Vec3d at = o + t * p;
             const auto r2 = static_cast<T>(at.x * at.x + at.y * at.y);
@@ -281,13 +282,13 @@ private:
             "(%.17g %.17g %.17g), at (%.17g %.17g %.17g), p' (%.17g %.17g %.17g), path %.17g, status %d: %.6g, bound "
             "%.6g",
             eps < 1e-10 ? "float64" : "float32", static_cast<int>(step_.kind), c_, q_,
-            static_cast<double>(step_.sense_in), static_cast<double>(step_.sense_out),
-            static_cast<double>(step_.relative_step), static_cast<double>(step_.rim_squared), ray.before.x,
+            static_cast<double>(step_.direction_sign_in), static_cast<double>(step_.direction_sign_out),
+            static_cast<double>(step_.squared_index_change), static_cast<double>(step_.rim_squared), ray.before.x,
             ray.before.y, ray.before.z, ray.along.x, ray.along.y, ray.along.z, ray.at.x, ray.at.y, ray.at.z,
             ray.after.x, ray.after.y, ray.after.z, ray.path, static_cast<int>(ray.status), error, bound);
     }
 
-    const LensStep<T>& step_;
+    const SurfaceView<T>& step_;
     const Iris<T>& iris_;
     double c_, q_, bend_;
 };

@@ -76,7 +76,7 @@ void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
     LensRays<T, kRays> before;
     PathRecord<T, kRays> record;
     for (int k = 0; k < lens.count; ++k) {
-        const SurfaceLaws<T> laws(lens.steps[k], lens.iris);
+        const SurfaceLaws<T> laws(lens.surfaces[k], lens.iris);
         before = rays;
         int alive = 0;
         for (int i = 0; i < kRays; ++i) {
@@ -84,11 +84,11 @@ void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
             alive += rays.status[i] == 0;
         }
         if (alive == 0) return;
-        trace_lens(LensView<T>{lens.steps + k, 1, LensKind::any, lens.iris}, rays, record);
+        trace_lens(LensView<T>{lens.surfaces + k, 1, LensKind::any, lens.iris}, rays, record);
         for (int i = 0; i < kRays; ++i) {
             if (before.status[i] != 0) continue;
             Vec3<T> o = before.origin[i];
-            o.z -= lens.steps[k].shift;
+            o.z -= lens.surfaces[k].shift;
             laws.check({static_cast<Vec3d>(o), static_cast<Vec3d>(before.direction[i]),
                         static_cast<Vec3d>(rays.origin[i]), static_cast<Vec3d>(rays.direction[i]),
                         static_cast<double>(record.optical_path[i]), static_cast<RayStatus>(rays.status[i])});
@@ -111,7 +111,7 @@ void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, con
     }
     double index = path.entry_index;
     for (int k = 0; k < lens.count; ++k) {
-        const LensStep<T>& step = lens.steps[k];
+        const SurfaceView<T>& step = lens.surfaces[k];
         const SurfaceLaws<T> laws(step, lens.iris);
         const KernelTrace trace{0, 0, index, std::numeric_limits<double>::infinity()};
         enter(rays, trace, before);
@@ -124,7 +124,8 @@ void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, con
             o.z -= step.shift;
             const Vec3d along = static_cast<Vec3d>(before.direction[i]);
             const bool passed = out.status[i] == 0;
-            const double size = length(along) * (passed ? std::sqrt(1 + static_cast<double>(step.relative_step)) : 1);
+            const double size =
+                length(along) * (passed ? std::sqrt(1 + static_cast<double>(step.squared_index_change)) : 1);
             laws.check({static_cast<Vec3d>(o), along, out.origin[i], size * out.direction[i], out.path[i],
                         static_cast<RayStatus>(out.status[i])});
             ended[i] = !passed;
@@ -133,7 +134,7 @@ void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, con
             rays.direction[i] = out.direction[i];
         }
         if (alive == 0) return;
-        index *= std::sqrt(1 + static_cast<double>(step.relative_step));
+        index *= std::sqrt(1 + static_cast<double>(step.squared_index_change));
     }
 }
 

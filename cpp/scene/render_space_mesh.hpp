@@ -12,10 +12,10 @@ namespace REALCAM_NAMESPACE {
 
 /// A scene's triangles as kernels read them: float, in a frame that suits. What is measured between corners (planes,
 /// areas, edges) comes from their double positions. Owns the memory of its view; the Scene must outlive it.
-class PlacedMesh {
+class RenderSpaceMesh {
 public:
     /// `frame`: from that of the scene.
-    PlacedMesh(const Scene& scene, const Affine<double>& frame, LargeTriangles large = LargeTriangles::cut)
+    RenderSpaceMesh(const Scene& scene, const Affine<double>& frame, LargeTriangles large = LargeTriangles::cut)
         : scene_(scene), frame_(frame), split_(scene, frame, large) {
         positions_.reserve(split_.position_count());
         for (std::size_t i = 0; i < split_.position_count(); ++i)
@@ -24,7 +24,7 @@ public:
         add_normals();
         add_planes();
         for (std::uint32_t i = 0; i < triangles().size(); ++i)
-            if (luminance(scene.materials[triangles()[i].material].emission) > 0) lamps_.push_back(i);
+            if (luminance(scene.materials[triangles()[i].material].emission) > 0) emitters_.push_back(i);
     }
 
     MeshView view() const {
@@ -52,7 +52,7 @@ public:
 
     const std::vector<TrianglePlane>& planes() const { return planes_; }
     /// Those of the triangles that give light.
-    const std::vector<std::uint32_t>& lamps() const { return lamps_; }
+    const std::vector<std::uint32_t>& emitters() const { return emitters_; }
 
     /// Corner and edges of a triangle, as exact as the scene gives them.
     struct Edges {
@@ -103,7 +103,7 @@ private:
     std::vector<Vec3f> turned_normals_;
     std::vector<Vec3f> positions_;
     std::vector<TrianglePlane> planes_;
-    std::vector<std::uint32_t> lamps_;
+    std::vector<std::uint32_t> emitters_;
     std::vector<TextureView> textures_;
 };
 

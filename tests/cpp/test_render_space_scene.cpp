@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/scene/placed_scene.hpp"
+#include "../../cpp/scene/render_space_scene.hpp"
 #include "../../cpp/scene/surface_point.hpp"
 #include "measurement.hpp"
 #include "traced_ray.hpp"
@@ -103,10 +103,10 @@ TEST_CASE("large triangles come in pieces that fit together and cover the same")
                 }
             }
             CHECK(std::fabs(area / (4 * half * half) - 1) < 1e-9);
-            const PlacedScene placed(scene, {0, 0, 0});
+            const RenderSpaceScene placed(scene, {0, 0, 0});
             const double height = dot(middle, kNormal);
-            worst = std::max(worst,
-                             displacement(placed.ground().triangles(), placed.ground().positions(), kNormal, height));
+            worst = std::max(worst, displacement(placed.static_geometry().triangles(),
+                                                 placed.static_geometry().positions(), kNormal, height));
             std::vector<Vec3f> corners;
             for (const Vec3d& p : scene.positions_m) corners.push_back(static_cast<Vec3f>(p));
             uncut = std::max(uncut, displacement(scene.triangles, corners, kNormal, height));
@@ -135,7 +135,7 @@ TEST_CASE("what is not large for its distance stays as it is") {
 TEST_CASE("normals and texture coordinates of a piece are those of the whole") {
     const Vec3d middle = middles(1e5)[0];
     const Scene scene = ground(middle, 1e5, kRight, kUp);
-    const PlacedScene placed(scene, {0, 0, 0});
+    const RenderSpaceScene placed(scene, {0, 0, 0});
     const SceneView view = placed.view();
     const SplitTriangles split(scene, relative_to({0, 0, 0}));
     for (std::size_t i = 0; i < split.triangles().size(); ++i)
@@ -166,7 +166,7 @@ TEST_CASE("slivers have the normal of their double corners, and points on them l
         const Vec3d n = normalized(cross(u, any())), side = cross(n, u);
         // The third corner lies beside the long edge.
         const Scene scene = scene_of({a, a + u, a + random.between(0.2, 0.8) * u + thin * side}, {{{0, 1, 2}, 0}});
-        const PlacedScene placed(scene, {0, 0, 0});
+        const RenderSpaceScene placed(scene, {0, 0, 0});
         const SceneView view = placed.view();
         normal_error = std::max(normal_error, length(static_cast<Vec3d>(view.planes[0].normal) - n));
         const Vec3d p = a + 0.5 * u + 0.3 * thin * side, to = normalized(p);
@@ -193,7 +193,7 @@ TEST_CASE("slivers have the normal of their double corners, and points on them l
 TEST_CASE("a ray from afar meets a small triangle where its corners say") {
     const Vec3d a{0.3, -0.2, -1}, b{1.1, 0.1, -1.2}, c{0.2, 0.9, -0.9};
     const Scene scene = scene_of({a, b, c}, {{{0, 1, 2}, 0}});
-    const PlacedScene placed(scene, {0, 0, 0});
+    const RenderSpaceScene placed(scene, {0, 0, 0});
     const Vec3d expected = 0.5 * a + 0.3 * b + 0.2 * c, from = expected + 1e7 * normalized(Vec3d{0.3, 0.4, 1});
     const Hit hit{1e7f, 0, 0.3f, 0.2f};
     const Vec3f way = static_cast<Vec3f>(normalized(expected - from));
@@ -205,7 +205,7 @@ TEST_CASE("a ray from afar meets a small triangle where its corners say") {
 TEST_CASE("triangles without area and corners in one place give finite planes") {
     const Scene scene =
         scene_of({{0, 0, -1}, {1, 0, -1}, {2, 0, -1}}, {{{0, 0, 0}, 0}, {{0, 1, 2}, 0}, {{0, 1, 1}, 0}});
-    const PlacedScene placed(scene, {0, 0, 0});
+    const RenderSpaceScene placed(scene, {0, 0, 0});
     for (int i = 0; i < 3; ++i) {
         const SurfacePoint point =
             surface_point(placed.view(), {1, static_cast<std::uint32_t>(i), 0.2f, 0.2f}, {0, 0, 0}, {0, 0, -1});

@@ -8,18 +8,20 @@
 #include <vector>
 
 #include "bounding_box.hpp"
-#include "placed_mesh.hpp"
+#include "render_space_mesh.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// A scene as kernels read it, relative to an origin near the camera, so that a scene far from its own origin loses
 /// nothing. Objects are placed in frames of their own, which kernels reach through the instances; but one that is
-/// large, and near the camera, is placed as the ground is, once for each place where it stands. Owns the memory of its
-/// view.
-class PlacedScene {
+/// large, and near the camera, is placed as static geometry is, once for each place where it stands. Owns the memory of
+/// its view.
+class RenderSpaceScene {
 public:
-    PlacedScene(Assembly assembly, Vec3d origin_m)
-        : assembly_(std::move(assembly)), origin_(origin_m), ground_(*assembly_.ground, relative_to(origin_m)) {
+    RenderSpaceScene(Assembly assembly, Vec3d origin_m)
+        : assembly_(std::move(assembly)),
+          origin_(origin_m),
+          static_geometry_(*assembly_.static_geometry, relative_to(origin_m)) {
         std::map<const Scene*, BoundingBox> boxes;
         std::map<std::pair<const Scene*, int>, std::uint32_t> shared;  // by those that are scaled about alike
         for (const Instance& instance : assembly_.instances) {
@@ -40,9 +42,9 @@ public:
             }
         }
         for (const auto& object : objects_) object_views_.push_back(object->view());
-        const Environment& environment = assembly_.ground->environment;
+        const Environment& environment = assembly_.static_geometry->environment;
         if (!environment.pixels.empty()) environment_ = environment_tables(environment);
-        place_instances();
+        update_instances();
     }
 
     /// Whether move can bring about an assembly: it has the same parts, and their frames are still good ones.
@@ -52,7 +54,7 @@ public:
             const Affine<double>&now = assembly_.instances[i].scene_from_object,
                   &then = assembly.instances[i].scene_from_object;
             if (now == then) continue;
-            if (stands_as_ground(i) || is_large_and_near(boxes_[i], then) ||
+            if (is_static(i) || is_large_and_near(boxes_[i], then) ||
                 std::fabs(doublings(objects_[object_of_[i]]->frame()) - doublings(then)) > kAlike)
                 return false;
         }
@@ -62,18 +64,18 @@ public:
     /// Objects to other places, as can_move_to allows. Their triangles stay what they are, in their own frames.
     void move(const Assembly& assembly) {
         assembly_ = assembly;
-        place_instances();
+        update_instances();
     }
 
     SceneView view() const {
-        SceneView view{ground_.view(), places(), nullptr, nullptr, 0, 0, false, {}};
-        const Scene& scene = *assembly_.ground;
+        SceneView view{static_geometry_.view(), places(), nullptr, nullptr, 0, 0, false, {}};
+        const Scene& scene = *assembly_.static_geometry;
         const Environment& environment = scene.environment;
         view.objects = object_views_.data();
         view.object_count = static_cast<std::int32_t>(object_views_.size());
         view.suns = scene.suns.data();
         view.sun_count = static_cast<std::int32_t>(scene.suns.size());
-        view.has_environment = environment.shines();
+        view.has_environment = environment.emits();
         view.environment = {environment.constant,
                             environment.pixels.empty() ? nullptr : environment.pixels.data(),
                             environment_.marginal_cdf.data(),
@@ -83,8 +85,8 @@ public:
         return view;
     }
 
-    PlacesView places() const {
-        PlacesView view{};
+    InstancesView places() const {
+        InstancesView view{};
         view.instances = instances_.data();
         view.points = points_.data();
         view.areas = areas_.data();
@@ -97,8 +99,8 @@ public:
 
     const Assembly& assembly() const { return assembly_; }
     Vec3d origin_m() const { return origin_; }
-    const PlacedMesh& ground() const { return ground_; }
-    const std::vector<std::unique_ptr<PlacedMesh>>& objects() const { return objects_; }
+    const RenderSpaceMesh& static_geometry() const { return static_geometry_; }
+    const std::vector<std::unique_ptr<RenderSpaceMesh>>& objects() const { return objects_; }
     const std::vector<InstanceView>& instances() const { return instances_; }
 
 private:
@@ -132,28 +134,28 @@ private:
     }
 
     void add_object(const Scene& object, const Affine<double>& frame, LargeTriangles large) {
-        objects_.push_back(std::make_unique<PlacedMesh>(object, frame, large));
-        as_ground_.push_back(large == LargeTriangles::cut);
+        objects_.push_back(std::make_unique<RenderSpaceMesh>(object, frame, large));
+        static_objects_.push_back(large == LargeTriangles::cut);
     }
-    bool stands_as_ground(std::size_t instance) const { return as_ground_[object_of_[instance]]; }
+    bool is_static(std::size_t instance) const { return static_objects_[object_of_[instance]]; }
 
     /// From the frame of an instance's object.
-    Affine<double> placed_from_object(std::size_t i) const {
-        if (stands_as_ground(i)) return {};
+    Affine<double> render_from_object(std::size_t i) const {
+        if (is_static(i)) return {};
         const Affine<double>& frame = objects_[object_of_[i]]->frame();
         const Affine<double>& map = assembly_.instances[i].scene_from_object;
         const double unit = 1 / frame.x.x;
         return {unit * map.x, unit * map.y, unit * map.z, map.point(-unit * frame.origin) - origin_};
     }
 
-    void place_instances() {
+    void update_instances() {
         instances_.clear();
         points_.clear();
         areas_.clear();
         AreaLights lights;
-        add_lights(ground_, {}, nullptr, lights);
+        add_lights(static_geometry_, {}, nullptr, lights);
         for (std::size_t i = 0; i < assembly_.instances.size(); ++i) {
-            const Affine<double> exact = placed_from_object(i);
+            const Affine<double> exact = render_from_object(i);
             instances_.push_back(instance_view(exact, i));
             add_lights(*objects_[object_of_[i]], exact, &instances_.back(), lights);
         }
@@ -169,7 +171,7 @@ private:
         const Vec3f margin = {sum(inverse.x.x, inverse.y.x, inverse.z.x), sum(inverse.x.y, inverse.y.y, inverse.z.y),
                               sum(inverse.x.z, inverse.y.z, inverse.z.z)};
         float reach = std::numeric_limits<float>::max();
-        if (!stands_as_ground(i) && !boxes_[i].empty())
+        if (!is_static(i) && !boxes_[i].empty())
             reach = kMarginShare * static_cast<float>(length(assembly_.instances[i].scene_from_object.direction(
                                        boxes_[i].high - boxes_[i].low)));
         return {map, static_cast<InverseAffine<float>>(inverse), margin, reach, object_of_[i]};
@@ -182,20 +184,20 @@ private:
         std::size_t material_count = 0;
     };
 
-    /// The lamps of a mesh where a map from its frame puts them. `instance`: none of the ground.
-    void add_lights(const PlacedMesh& mesh, const Affine<double>& map, const InstanceView* instance,
+    /// The emitters of a mesh where a map from its frame puts them. `instance`: none of static geometry.
+    void add_lights(const RenderSpaceMesh& mesh, const Affine<double>& map, const InstanceView* instance,
                     AreaLights& lights) {
         const Scene& scene = mesh.scene();
-        for (const PlacedPointLight& p : scene.points)
+        for (const ScenePointLight& p : scene.points)
             points_.push_back({static_cast<Vec3f>(map.point(mesh.frame().point(p.position_m))), p.intensity});
         const InverseAffine<double> inverse = map.inverse();
-        for (const std::uint32_t lamp : mesh.lamps()) {
-            const Triangle& t = mesh.triangles()[lamp];
-            const PlacedMesh::Edges edges = mesh.edges(t);
+        for (const std::uint32_t emitter : mesh.emitters()) {
+            const Triangle& t = mesh.triangles()[emitter];
+            const RenderSpaceMesh::Edges edges = mesh.edges(t);
             const Vec3d u = map.direction(edges.u), v = map.direction(edges.v);
             const double area = 0.5 * length(cross(u, v));
             if (!(area > 0)) continue;
-            const TrianglePlane& plane = mesh.planes()[lamp];
+            const TrianglePlane& plane = mesh.planes()[emitter];
             const Vec3d normal = inverse.normal_of(static_cast<Vec3d>(plane.normal));
             const Vec3f corner = static_cast<Vec3f>(map.point(edges.corner));
             const float margin = instance ? instance_margin(*instance, plane.margin, plane.normal,
@@ -212,11 +214,11 @@ private:
 
     Assembly assembly_;
     Vec3d origin_;
-    PlacedMesh ground_;
+    RenderSpaceMesh static_geometry_;
     std::vector<BoundingBox> boxes_;  ///< of each instance's object, as it is given
     std::vector<std::uint32_t> object_of_;  ///< of each instance, in:
-    std::vector<std::unique_ptr<PlacedMesh>> objects_;
-    std::vector<bool> as_ground_;  ///< of each of them: placed as the ground is, for one instance
+    std::vector<std::unique_ptr<RenderSpaceMesh>> objects_;
+    std::vector<bool> static_objects_;  ///< of each of them: placed as static geometry is, for one instance
     std::vector<MeshView> object_views_;
     std::vector<InstanceView> instances_;
     std::vector<PointLight> points_;
