@@ -42,15 +42,16 @@ Assembly read_scene(const RenderRequest& request) {
     if (warnings.size() > kShown) say("and " + std::to_string(warnings.size() - kShown) + " more warnings");
     if (request.environment_cd_m2) {
         const auto radiance = static_cast<float>(*request.environment_cd_m2);
-        return with_static_geometry(scene, [&](Scene& scene) {
-            scene.environment = {};
-            scene.environment.constant = {radiance, radiance, radiance};
+        return with_static_geometry(scene, [&](Scene& changed) {
+            changed.environment = {};
+            changed.environment.constant = {radiance, radiance, radiance};
         });
     }
     if (!request.environment_file.empty())
         return with_memory_for("while reading " + request.environment_file, [&] {
-            return with_static_geometry(
-                scene, [&](Scene& scene) { scene.environment = image_io::read_environment(request.environment_file); });
+            return with_static_geometry(scene, [&](Scene& changed) {
+                changed.environment = image_io::read_environment(request.environment_file);
+            });
         });
     return scene;
 }
@@ -85,7 +86,7 @@ void run_render(const RenderWords& words) {
     // An environment that was asked for counts even where it is dark.
     const bool chosen = request.environment_cd_m2 || !request.environment_file.empty();
     if (!scene.has_light() && !chosen) {
-        scene = with_static_geometry(scene, [&](Scene& scene) { add_daylight(scene, request.camera.pose); });
+        scene = with_static_geometry(scene, [&](Scene& changed) { add_daylight(changed, request.camera.pose); });
         say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
             "cd/m^2");
     }

@@ -116,7 +116,7 @@ void bind_scene(py::module_& m) {
             "with_environment",
             [](const Assembly& scene, const py::object& radiance) {
                 return with_valid_static_geometry(
-                    scene, [&](Scene& scene) { scene.environment = environment_from(radiance); });
+                    scene, [&](Scene& changed) { changed.environment = environment_from(radiance); });
             },
             "radiance"_a,
             "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude "
@@ -129,8 +129,8 @@ void bind_scene(py::module_& m) {
                 const double size = length(d);
                 if (!(size > 0) || !std::isfinite(size))
                     throw InputError("the sun's direction must be a finite vector, not zero");
-                return with_valid_static_geometry(scene, [&](Scene& scene) {
-                    scene.suns.push_back({static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
+                return with_valid_static_geometry(scene, [&](Scene& changed) {
+                    changed.suns.push_back({static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
                 });
             },
             "direction"_a, "illuminance"_a,
@@ -139,7 +139,7 @@ void bind_scene(py::module_& m) {
             "with_point_light",
             [](const Assembly& scene, const Triple& position, const Colour& intensity) {
                 return with_valid_static_geometry(
-                    scene, [&](Scene& scene) { scene.points.push_back({vector_of(position), rgb(intensity)}); });
+                    scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
             },
             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
         .def(
@@ -149,12 +149,12 @@ void bind_scene(py::module_& m) {
                     throw InputError("there is no material " + std::to_string(material));
                 if (pixels.ndim() != 3 || pixels.shape(2) != 4)
                     throw InputError("a texture must be an (H, W, 4) array of uint8, sRGB");
-                return with_valid_static_geometry(scene, [&](Scene& scene) {
-                    scene.materials[material].diffuse_texture = static_cast<std::int32_t>(scene.textures.size());
-                    scene.textures.push_back({"",
-                                              static_cast<std::int32_t>(pixels.shape(1)),
-                                              static_cast<std::int32_t>(pixels.shape(0)),
-                                              {pixels.data(), pixels.data() + pixels.size()}});
+                return with_valid_static_geometry(scene, [&](Scene& changed) {
+                    changed.materials[material].diffuse_texture = static_cast<std::int32_t>(changed.textures.size());
+                    changed.textures.push_back({"",
+                                                static_cast<std::int32_t>(pixels.shape(1)),
+                                                static_cast<std::int32_t>(pixels.shape(0)),
+                                                {pixels.data(), pixels.data() + pixels.size()}});
                 });
             },
             "material"_a, "pixels"_a, "With a diffuse texture on a material: (H, W, 4) uint8, sRGB, row 0 at v = 1.")

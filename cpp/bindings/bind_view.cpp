@@ -54,7 +54,7 @@ void bind_view(py::module_& m) {
     m.def(
         "with_daylight",
         [](const Assembly& scene, const Camera& camera) {
-            return with_static_geometry(scene, [&](Scene& scene) { add_daylight(scene, camera.pose); });
+            return with_static_geometry(scene, [&](Scene& changed) { add_daylight(changed, camera.pose); });
         },
         "scene"_a, "camera"_a,
         "The scene under a sun of 80 klux from the camera's upper left and a sky of 5000 cd/m^2.");
