@@ -31,9 +31,9 @@ RealMatrix matrix_of(const LensSystem& lens, int first, int last) {
     for (int i = 0; i < last; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const Surface& s = lens.surfaces[k];
-        const Real before = sense * Real(n[k]);
-        if (s.type == SurfaceType::mirror) sense = -sense;
-        const Real behind = sense * Real(n[k + 1]);
+        const Real before = direction_sign * Real(n[k]);
+        if (s.type == SurfaceType::mirror) direction_sign = -direction_sign;
+        const Real behind = direction_sign * Real(n[k + 1]);
         if (i < first) continue;
         m.refract((behind - before) * s.curvature);
         if (i + 1 < last) m.transfer(s.thickness / behind);
