@@ -47,12 +47,6 @@ if(REALCAM_TESTS)
   realcam_need(Boost_FOUND "Boost (headers), many-digit numbers and statistics of the C++ tests" libboost-dev)
 endif()
 
-if(missing)
-  list(JOIN missing " " missing)
-  message(FATAL_ERROR "realcam needs libraries that are not on this system (with their Debian and Ubuntu packages):"
-    "${missing_text}\nOn Debian 12 or later and Ubuntu 24.04 or later:\n  apt-get install ${missing}\n")
-endif()
-
 # OpenImageIO's own CMake package asks for command-line tools and codecs that nothing here uses, and stops the
 # configuration where they are absent; the header and the library are enough.
 if(REALCAM_IMAGE_IO_SOURCES)
@@ -60,6 +54,7 @@ if(REALCAM_IMAGE_IO_SOURCES)
   find_library(OPENIMAGEIO_LIBRARY OpenImageIO)
   find_library(OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util)
   if(OPENIMAGEIO_INCLUDE_DIR AND OPENIMAGEIO_LIBRARY)
+    set(OPENIMAGEIO_FOUND TRUE)
     add_library(realcam_openimageio_library INTERFACE)
     add_library(realcam::openimageio ALIAS realcam_openimageio_library)
     target_include_directories(realcam_openimageio_library SYSTEM INTERFACE ${OPENIMAGEIO_INCLUDE_DIR})
@@ -67,9 +62,15 @@ if(REALCAM_IMAGE_IO_SOURCES)
     if(OPENIMAGEIO_UTIL_LIBRARY)
       target_link_libraries(realcam_openimageio_library INTERFACE ${OPENIMAGEIO_UTIL_LIBRARY})
     endif()
-  else()
-    message(STATUS "The realcam executable is left out: OpenImageIO is absent (apt-get install libopenimageio-dev)")
-    set(REALCAM_IMAGE_IO_SOURCES "")
-    set(REALCAM_APP_SOURCES "")
   endif()
+  find_package(PNG QUIET)
+  realcam_need(PNG_FOUND "libpng, reads PNG" libpng-dev)
+  realcam_need(OPENIMAGEIO_FOUND "OpenImageIO, reads and writes pictures (-DREALCAM_OPENIMAGEIO=OFF does without)"
+    libopenimageio-dev)
+endif()
+
+if(missing)
+  list(JOIN missing " " missing)
+  message(FATAL_ERROR "realcam needs libraries that are not on this system (with their Debian and Ubuntu packages):"
+    "${missing_text}\nOn Debian 12 or later and Ubuntu 24.04 or later:\n  apt-get install ${missing}\n")
 endif()

@@ -50,6 +50,12 @@ class ImageFileError : public Error {
     using Error::Error;
 };
 
+/// The caller asked long work to stop.
+class Cancelled : public Error {
+public:
+    Cancelled() : Error("stopped") {}
+};
+
 /// A device or its library that fails.
 class DeviceError : public Error {
     using Error::Error;

@@ -19,7 +19,7 @@ struct InfoOptions {
 
 void run_info(const InfoOptions& options) {
     LensSystem lens = io::read_lens(options.lens);
-    if (!options.focus.empty()) lens = focused(lens, 1000 * parse_number("--focus", options.focus, true));
+    if (!options.focus.empty()) lens = focused(lens, 1000 * parse_distance("--focus", options.focus));
     if (!options.f_number.empty()) lens = stopped_down(lens, parse_number("--f-number", options.f_number));
     std::fputs((options.as_json ? lens_as_json(lens) : lens_as_text(lens)).c_str(), stdout);
 }

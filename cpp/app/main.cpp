@@ -1,21 +1,20 @@
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <new>
 
 #include "devices.hpp"
 #include "lens_command.hpp"
+#include "one_line.hpp"
 #include "render_command.hpp"
 
 namespace {
 
 constexpr int kFailure = 2;
 
-int fail(std::string message) {
-    // One line, whatever a library wrote.
-    std::replace(message.begin(), message.end(), '\n', ' ');
-    std::fprintf(stderr, "realcam: error: %s\n", message.c_str());
+int fail(const std::string& message) {
+    std::fprintf(stderr, "realcam: error: %s\n", realcam::app::one_line(message).c_str());
     return kFailure;
 }
 
@@ -29,6 +28,10 @@ int run(int argc, char** argv) {
     const auto as_json = std::make_shared<bool>(false);
     devices->add_flag("--json", *as_json, "Print JSON");
     devices->callback([as_json] { realcam::app::list_devices(*as_json); });
+    if (argc == 1) {
+        std::fputs(app.help().c_str(), stdout);
+        return 0;
+    }
     try {
         app.parse(argc, argv);
         return std::fflush(stdout) == 0 ? 0 : fail("the standard output cannot be written to");
@@ -42,10 +45,12 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    // A limit on file sizes is then an error of the write, which is told, and leaves nothing behind.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return run(argc, argv);
     } catch (const realcam::app::Interrupted& interrupted) {
-        std::fputs("realcam: stopped\n", stderr);
+        std::fprintf(stderr, "realcam: stopped%s\n", interrupted.remark.c_str());
         return 128 + interrupted.signal;
     } catch (const std::bad_alloc&) {
         return fail("out of memory");

@@ -7,9 +7,10 @@
 
 #include "../devices/devices.hpp"
 #include "../image_io/image_file.hpp"
-#include "../render/daylight.hpp"
-#include "../render/metering.hpp"
+#include "../io/free_memory.hpp"
+#include "../shot/shot.hpp"
 #include "interrupt.hpp"
+#include "outputs.hpp"
 #include "progress_bar.hpp"
 #include "render_options.hpp"
 #include "render_summary.hpp"
@@ -32,80 +33,98 @@ auto with_memory_for(const std::string& what, Work&& work) {
     }
 }
 
-Assembly read_scene(const RenderRequest& request) {
-    const Assembly scene = with_memory_for("while reading " + request.scene, [&] {
-        return io::read_scene(request.scene, {request.scale}, image_io::read_image);
-    });
-    const std::vector<std::string>& warnings = scene.static_geometry->warnings;
-    constexpr std::size_t kShown = 10;
-    for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) say("warning: " + warnings[i]);
-    if (warnings.size() > kShown) say("and " + std::to_string(warnings.size() - kShown) + " more warnings");
-    if (request.environment_cd_m2) {
-        const auto radiance = static_cast<float>(*request.environment_cd_m2);
-        return with_static_geometry(scene, [&](Scene& changed) {
-            changed.environment = {};
-            changed.environment.constant = {radiance, radiance, radiance};
-        });
-    }
-    if (!request.environment_file.empty())
-        return with_memory_for("while reading " + request.environment_file, [&] {
-            return with_static_geometry(scene, [&](Scene& changed) {
-                changed.environment = image_io::read_environment(request.environment_file);
-            });
-        });
-    return scene;
+void check_memory(const Film& film) {
+    /// Of the CPU backend while it turns its sums into a picture: 40 for the sums, 16 for the picture.
+    constexpr double kBytesPerPixel = 56;
+    const double wanted = kBytesPerPixel * film.width * film.height;
+    const auto free = static_cast<double>(io::free_memory());
+    if (wanted > free)
+        throw Error("out of memory: a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
+                    " pixels needs " + short_number(wanted / 1e9, 3) + " GB, and " + short_number(free / 1e9, 3) +
+                    " GB are free; a smaller --resolution is wanted");
 }
 
-/// A progress callback that draws, and stops on a signal.
-Progress drawing_on(ProgressBar& bar) {
-    return [&bar](double done) {
-        bar.show(done);
-        return Interrupt::signal() == 0;
-    };
-}
+/// One run of the command.
+class Run {
+public:
+    explicit Run(const RenderWords& words) : words_(words) {}
 
-Image expose(Backend& backend, const Assembly& scene, RenderRequest& request) {
-    Camera& camera = request.camera;
-    if (request.meters_exposure) {
-        ProgressBar bar("metering ");
-        camera.exposure_time_s = metered_exposure_time(backend, scene, camera, request.settings, drawing_on(bar));
+    void photograph() {
+        const auto start = std::chrono::steady_clock::now();
+        const shot::ShotRequest request = understand(words_);
+        check_outputs(words_.outputs);
+        check_apart(words_.outputs,
+                    {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
+        Camera camera = camera_of(request);
+        check_memory(camera.film);
+        const auto backend = make_backend(words_.device);  // first, because reading a scene may take long
+        shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
+        if (shot.has_daylight)
+            say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
+                "cd/m^2");
+        // Until here nothing is on disk, and a signal may simply end the program.
+        const Interrupt interrupt;
+        const Image image = expose(*backend, shot, request);
+        write(image, shot, request);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        std::fputs(summary(shot, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
     }
-    ProgressBar bar("rendering");
-    const Film& film = camera.film;
-    return with_memory_for(
-        "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
-        [&] { return backend.render(scene, camera, request.settings, drawing_on(bar)); });
-}
 
-void run_render(const RenderWords& words) {
-    const auto start = std::chrono::steady_clock::now();
-    RenderRequest request = understand(words);
-    const auto backend = make_backend(request.device);  // first, because reading a scene may take long
-    Assembly scene = read_scene(request);
-    set_view(request.camera, scene, request.view);
-    // An environment that was asked for counts even where it is dark.
-    const bool chosen = request.environment_cd_m2 || !request.environment_file.empty();
-    if (!scene.has_light() && !chosen) {
-        scene = with_static_geometry(scene, [&](Scene& changed) { add_daylight(changed, request.camera.pose); });
-        say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
-            "cd/m^2");
+private:
+    Assembly read_scene(const shot::ShotRequest& request) const {
+        std::vector<std::string> pictures;
+        const shot::PictureReaders readers = {[&](const std::string& path, std::span<const std::uint8_t> bytes) {
+                                                  pictures.push_back(path);
+                                                  return image_io::read_image(path, bytes);
+                                              },
+                                              [](const std::string& path) { return image_io::read_environment(path); }};
+        Assembly scene =
+            with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
+        check_apart(words_.outputs, pictures);
+        const std::vector<std::string>& warnings = scene.static_geometry->warnings;
+        constexpr std::size_t kShown = 10;
+        for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) say("warning: " + warnings[i]);
+        if (warnings.size() > kShown) say("and " + std::to_string(warnings.size() - kShown) + " more warnings");
+        return scene;
     }
-    // Until here nothing is on disk, and a signal may simply end the program.
-    const Interrupt interrupt;
-    Image image;
-    try {
-        image = expose(*backend, scene, request);
-        const auto metadata = image_io::metadata_of(request.camera, request.settings);
-        for (const std::string& path : request.outputs) {
-            if (Interrupt::signal() != 0) throw Cancelled();
-            image_io::write_image(image, path, metadata, request.tone);
+
+    static Image expose(Backend& backend, shot::Shot& shot, const shot::ShotRequest& request) {
+        // A progress callback that draws, and stops on a signal.
+        const auto drawing_on = [](ProgressBar& bar) {
+            return [&bar](double done) {
+                bar.show(done);
+                return Interrupt::signal() == 0;
+            };
+        };
+        const Film& film = shot.camera.film;
+        try {
+            ProgressBar metering("metering ");
+            meter(shot, request, backend, drawing_on(metering));
+            ProgressBar rendering("rendering");
+            return with_memory_for(
+                "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
+                [&] { return backend.render(shot.scene, shot.camera, request.settings, drawing_on(rendering)); });
+        } catch (const Cancelled&) {
+            throw Interrupted{Interrupt::signal(), ""};
         }
-    } catch (const Cancelled&) {
-        throw Interrupted{Interrupt::signal()};
     }
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::fputs(summary(request, image, seconds).c_str(), stdout);
-}
+
+    void write(const Image& image, const shot::Shot& shot, const shot::ShotRequest& request) const {
+        const auto metadata = io::metadata_of(shot.camera, request.settings);
+        std::string written;
+        for (const std::string& path : words_.outputs) {
+            try {
+                image_io::write_image(image_io::view_of(image), path, metadata, request.tone,
+                                      [] { return Interrupt::signal() == 0; });
+            } catch (const Cancelled&) {
+                throw Interrupted{Interrupt::signal(), written.empty() ? "" : "; written before: " + written};
+            }
+            written += (written.empty() ? "" : ", ") + path;
+        }
+    }
+
+    const RenderWords& words_;
+};
 
 }  // namespace
 
@@ -113,7 +132,7 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Photograph a scene through a lens");
     const auto words = std::make_shared<RenderWords>();
     add_render_options(*command, *words);
-    command->callback([words] { run_render(*words); });
+    command->callback([words] { Run{*words}.photograph(); });
 }
 
 }  // namespace realcam::app

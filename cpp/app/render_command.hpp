@@ -1,5 +1,6 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace realcam::app {
 
@@ -8,6 +9,7 @@ void add_render_command(CLI::App& app);
 
 struct Interrupted {
     int signal;
+    std::string remark;  ///< what was done before, to follow on "stopped"
 };
 
 }  // namespace realcam::app

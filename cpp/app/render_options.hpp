@@ -1,45 +1,24 @@
 #pragma once
 #include <CLI/CLI.hpp>
-#include <array>
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "../camera/camera.hpp"
-#include "../camera/develop.hpp"
-#include "../render/backend.hpp"
-#include "../render/default_view.hpp"
+#include "../shot/shot_request.hpp"
 
 namespace realcam::app {
 
 /// The words of `render` as they were typed; empty: not given.
 struct RenderWords {
-    std::string scene, lens = "double-gauss-50mm", film, resolution, position, look_at, up = "0,1,0", focus, f_number,
-                       exposure_time, iso = "100", model = "full", scale = "1", environment, tone = "film",
-                       device = "auto";
+    std::string scene, lens, film, resolution, position, look_at, up, focus, f_number, exposure_time, iso, model, scale,
+        environment, tone, spp, seed, max_bounces, threads, device = "auto";
     std::vector<std::string> outputs;
-    int spp = 64, max_bounces = 1, threads = 0;
-    std::uint32_t seed = 0;
+    bool verbose = false;
 };
 
 void add_render_options(CLI::App& command, RenderWords& words);
 
-/// What they mean, as far as it can be said before the scene is read.
-struct RenderRequest {
-    std::string scene, device, environment_file;
-    std::vector<std::string> outputs;
-    Camera camera;
-    ViewRequest view;
-    RenderSettings settings;
-    ToneCurve tone = ToneCurve::film;
-    double scale = 1;
-    std::optional<double> environment_cd_m2;
-    bool meters_exposure = false;
-};
-
-/// Reads the lens, and checks all that can be checked: nobody should wait for a picture and be told then.
-/// Throws InputError, LensFileError and ImageFileError.
-RenderRequest understand(const RenderWords& words);
+/// What they mean: those of the shot file, if `scene` is one, with what was typed in the stead of what stands there.
+/// Throws InputError that names option or file.
+shot::ShotRequest understand(const RenderWords& words);
 
 }  // namespace realcam::app

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "../image_io/image_metadata.hpp"
+#include "../io/image_metadata.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
@@ -24,8 +24,9 @@ std::string million(double count, double seconds) {
 
 }  // namespace
 
-std::string summary(const RenderRequest& request, const Image& image, double seconds) {
-    const Camera& camera = request.camera;
+std::string summary(const shot::Shot& shot, const Image& image, const std::vector<std::string>& pictures,
+                    double seconds, bool verbose) {
+    const Camera& camera = shot.camera;
     const LensSystem& lens = camera.lens;
     const Film& film = camera.film;
     const RenderStats& stats = image.stats;
@@ -35,7 +36,7 @@ std::string summary(const RenderRequest& request, const Image& image, double sec
         what.resize(12, ' ');
         text += what + value + '\n';
     };
-    const std::string model = image_io::name_of(camera.model);
+    const std::string model = io::name_of(camera.model);
     line("lens", (lens.title.empty() ? lens.name : lens.title) + (model == "full" ? "" : ", as " + model + " model"));
     line("", "focal length " + short_number(data.effective_focal_length) + " mm, f/" + short_number(data.f_number, 3) +
                  ", focus " + distance_text(lens.focus_distance / 1000));
@@ -46,19 +47,25 @@ std::string summary(const RenderRequest& request, const Image& image, double sec
                      std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels of " +
                      std::to_string(image.spp) + " samples");
     line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso) +
-                         (request.meters_exposure ? " (metered: the average lands on middle grey)" : ""));
-    const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
-    const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
-    line("lens rays", million(count(stats.sampled_rays), stats.seconds) + "/s; " +
-                          million(count(stats.sampled_rays), stats.lens_seconds) + "/s a core while in the lens, " +
-                          percent(stats.lens_seconds, busy) + " of the time; " +
-                          percent(count(stats.passed_rays), count(stats.sampled_rays)) + " of the sampled rays pass");
-    line("scene rays", million(count(stats.scene_rays), stats.seconds) + "/s; " +
-                           million(count(stats.scene_rays), stats.scene_seconds) + "/s a core while in the scene, " +
-                           percent(stats.scene_seconds, busy) + " of the time");
-    line("time", short_number(seconds, 3) + " s, of which " + short_number(stats.seconds, 3) +
-                     " s for the picture (set-up " + short_number(stats.setup_seconds, 2) + " s) on " + stats.device);
-    for (const std::string& path : request.outputs) line("picture", path);
+                         (shot.is_metered ? " (metered: the average lands on middle grey)" : ""));
+    if (verbose) {
+        const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
+        const auto count = [](std::uint64_t n) { return static_cast<double>(n); };
+        line("lens rays", million(count(stats.sampled_rays), stats.seconds) + "/s; " +
+                              million(count(stats.sampled_rays), stats.lens_seconds) + "/s a core while in the lens, " +
+                              percent(stats.lens_seconds, busy) + " of the time; " +
+                              percent(count(stats.passed_rays), count(stats.sampled_rays)) +
+                              " of the sampled rays pass");
+        line("scene rays", million(count(stats.scene_rays), stats.seconds) + "/s; " +
+                               million(count(stats.scene_rays), stats.scene_seconds) +
+                               "/s a core while in the scene, " + percent(stats.scene_seconds, busy) + " of the time");
+    }
+    line("time", short_number(seconds, 3) + " s" +
+                     (verbose ? ", of which " + short_number(stats.seconds, 3) + " s for the picture (set-up " +
+                                    short_number(stats.setup_seconds, 2) + " s)"
+                              : "") +
+                     " on " + stats.device);
+    for (const std::string& path : pictures) line("picture", path);
     return text;
 }
 

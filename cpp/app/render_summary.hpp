@@ -1,12 +1,15 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "../render/backend.hpp"
-#include "render_options.hpp"
+#include "../shot/shot.hpp"
 
 namespace realcam::app {
 
-/// What was photographed and what it cost, some lines. `seconds`: wall clock of everything.
-std::string summary(const RenderRequest& request, const Image& image, double seconds);
+/// What was photographed, and how long it took, some lines. `seconds`: wall clock of everything. `verbose`: also rays
+/// per second, and where the time went.
+std::string summary(const shot::Shot& shot, const Image& image, const std::vector<std::string>& pictures,
+                    double seconds, bool verbose);
 
 }  // namespace realcam::app

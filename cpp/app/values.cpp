@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
 
 #include "../error.hpp"
+#include "../shot/names.hpp"
 
 namespace realcam::app {
 namespace {
@@ -36,19 +38,45 @@ bool read_numbers(const std::string& text, char separator, std::size_t count, st
 
 }  // namespace
 
-double parse_number(const std::string& option, const std::string& text, bool may_be_infinite) {
+std::optional<double> number_in(const std::string& text) {
     double value = 0;
-    if (!read_number(text, value) || std::isnan(value) || (std::isinf(value) && !may_be_infinite))
-        fail(option, text, may_be_infinite ? "a number or inf" : "a number");
+    if (!read_number(text, value) || std::isnan(value)) return std::nullopt;
     return value;
 }
 
-double parse_fraction(const std::string& option, const std::string& text) {
+double parse_number(const std::string& option, const std::string& text) {
+    const auto value = number_in(text);
+    if (!value || std::isinf(*value)) fail(option, text, "a number");
+    return *value;
+}
+
+double parse_distance(const std::string& option, const std::string& text) {
+    const auto value = number_in(text);
+    if (!value) fail(option, text, "a number of metres or inf");
+    return *value;
+}
+
+std::optional<double> parse_focus(const std::string& option, const std::string& text) {
+    if (text == "auto") return std::nullopt;
+    if (!number_in(text)) fail(option, text, "a number of metres, inf or auto");
+    return parse_distance(option, text);
+}
+
+std::uint64_t parse_whole(const std::string& option, const std::string& text, std::uint64_t most) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || value > most)
+        fail(option, text, "a whole number from 0 to " + std::to_string(most));
+    return value;
+}
+
+std::optional<double> parse_exposure_time(const std::string& option, const std::string& text) {
+    if (text == "auto") return std::nullopt;
     std::vector<double> parts;
     if (read_numbers(text, '/', 1, parts)) return parts[0];
     parts.clear();
     if (!read_numbers(text, '/', 2, parts) || parts[1] == 0)
-        fail(option, text, "a number of seconds, such as 0.5 or 1/125");
+        fail(option, text, "a number of seconds, such as 0.5 or 1/125, or auto");
     return parts[0] / parts[1];
 }
 
@@ -73,17 +101,15 @@ std::array<int, 2> parse_resolution(const std::string& option, const std::string
 }
 
 CameraModel parse_model(const std::string& text) {
-    if (text == "full") return CameraModel::full_lens;
-    if (text == "thick") return CameraModel::thick_lens;
-    if (text == "thin") return CameraModel::thin_lens;
-    if (text == "pinhole") return CameraModel::pinhole;
-    fail("--model", text, "full, thick, thin or pinhole");
+    const auto model = shot::model_named(text);
+    if (!model) fail("--model", text, shot::kModelNames);
+    return *model;
 }
 
 ToneCurve parse_tone(const std::string& text) {
-    if (text == "film") return ToneCurve::film;
-    if (text == "linear") return ToneCurve::linear;
-    fail("--tone", text, "film or linear");
+    const auto tone = shot::tone_named(text);
+    if (!tone) fail("--tone", text, shot::kToneNames);
+    return *tone;
 }
 
 std::string short_number(double value, int digits) {

@@ -2,6 +2,8 @@
 // The words of the command line that are more than a number.
 
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "../camera/camera_view.hpp"
@@ -12,10 +14,18 @@ namespace realcam::app {
 
 // All throw InputError, naming the option and what it wants.
 
-/// "1.5", "inf" where infinite values make sense.
-double parse_number(const std::string& option, const std::string& text, bool may_be_infinite = false);
-/// "0.008", "1/125".
-double parse_fraction(const std::string& option, const std::string& text);
+/// The text as a number; nothing where it is none, and for NaN.
+std::optional<double> number_in(const std::string& text);
+/// "1.5".
+double parse_number(const std::string& option, const std::string& text);
+/// "2.5", "inf".
+double parse_distance(const std::string& option, const std::string& text);
+/// The same; nothing for "auto".
+std::optional<double> parse_focus(const std::string& option, const std::string& text);
+/// A whole number from 0 to `most`.
+std::uint64_t parse_whole(const std::string& option, const std::string& text, std::uint64_t most);
+/// "0.008", "1/125"; nothing for "auto".
+std::optional<double> parse_exposure_time(const std::string& option, const std::string& text);
 /// "x,y,z".
 Vec3d parse_point(const std::string& option, const std::string& text);
 /// "36x24".

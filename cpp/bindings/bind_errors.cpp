@@ -22,12 +22,12 @@ void define(py::module_& m, const char* name, const py::object& base, const char
 
 template <class E>
 void raise(const E& error) {
-    PyErr_SetString(type_of<E>().ptr(), error.what());
+    PyErr_SetObject(type_of<E>().ptr(), text_from(error.what()).ptr());
 }
 
 void raise(const LensFileError& error) {
-    py::object instance = type_of<LensFileError>()(error.what());
-    instance.attr("file") = error.file;
+    py::object instance = type_of<LensFileError>()(text_from(error.what()));
+    instance.attr("file") = text_from(error.file);
     instance.attr("line") = error.line;
     instance.attr("surface") = error.surface;
     PyErr_SetObject(type_of<LensFileError>().ptr(), instance.ptr());

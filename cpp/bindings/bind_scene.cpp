@@ -9,6 +9,7 @@
 #include "../io/scene_file.hpp"
 #include "../scene/bounding_box.hpp"
 #include "bindings.hpp"
+#include "picture_readers.hpp"
 #include "scene_from_arrays.hpp"
 
 namespace realcam::bindings {
@@ -27,19 +28,8 @@ Vec3d vector_of(const Triple& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// Textures are decoded in Python, by realcam.image_file: the extension links no image library.
-std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<const std::uint8_t> bytes) {
-    const py::bytes encoded(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const py::object result = py::module_::import("realcam.image_file").attr("read_texture")(path, encoded);
-    if (result.is_none()) return std::nullopt;
-    const auto pixels = result.cast<InputArray<std::uint8_t>>();
-    return io::DecodedImage{static_cast<int>(pixels.shape(1)),
-                            static_cast<int>(pixels.shape(0)),
-                            {pixels.data(), pixels.data() + pixels.size()}};
-}
-
 Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
-    return io::read_scene(path_from(path), {scale, objects}, read_texture);
+    return io::read_scene(path_from(path), {scale, objects}, picture_readers().texture);
 }
 
 template <class Change>
@@ -50,6 +40,8 @@ Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
 }
 
 Environment environment_from(const py::object& radiance) {
+    if (py::isinstance<py::str>(radiance) || py::hasattr(radiance, "__fspath__"))
+        return picture_readers().environment(path_from(radiance));
     Environment environment;
     if (py::isinstance<py::array>(radiance) && radiance.cast<py::array>().ndim() == 3) {
         const auto pixels = radiance.cast<InputArray<float>>();
@@ -66,7 +58,7 @@ Environment environment_from(const py::object& radiance) {
             const float value = several ? 0.0f : radiance.cast<float>();
             environment.constant = several ? rgb(radiance.cast<Colour>()) : Vec3f{value, value, value};
         } catch (const py::cast_error&) {
-            throw InputError("an environment must be a number, (r, g, b), or an image of shape (H, W, 3)");
+            throw InputError("an environment must be a number, (r, g, b), an image of shape (H, W, 3), or the path of one");
         }
     }
     return environment;
@@ -121,7 +113,7 @@ void bind_scene(py::module_& m) {
             "radiance"_a,
             "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude "
             "image\n"
-            "(row 0 up, its middle column towards -z).")
+            "(row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment).")
         .def(
             "with_sun",
             [](const Assembly& scene, const Triple& direction, const Colour& illuminance) {

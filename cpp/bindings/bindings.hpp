@@ -26,6 +26,7 @@ void bind_scene(py::module_& m);
 void bind_instances(py::class_<Assembly>& scene);
 void bind_render(py::module_& m);
 void bind_view(py::module_& m);
+void bind_shot(py::module_& m);
 void bind_live(py::module_& m);
 void bind_bench(py::module_& m);
 
@@ -39,9 +40,15 @@ ToneCurve tone_curve_from(const std::string& name);
 /// the interpreter's lock. The callback must outlive the result.
 Progress progress_of(const py::object& callback);
 
-/// A path as users give it: a text, or anything with __fspath__.
+/// A path as users give it, a text or anything with __fspath__, in the bytes that the system knows it by.
 inline std::string path_from(const py::object& path) {
-    return py::module_::import("os").attr("fspath")(path).cast<std::string>();
+    return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+}
+
+/// A text of the core, in which names of files may be no UTF-8, as Python has such names (os.fsdecode).
+inline py::str text_from(const std::string& text) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size())));
 }
 
 /// A medium as users write it: an index, (n_d, V_d), the name of a glass of the catalogue, a Glass; None is air.

@@ -14,6 +14,7 @@ PYBIND11_MODULE(_core, m) {
     bind_scene(m);
     bind_render(m);
     bind_view(m);
+    bind_shot(m);
     bind_live(m);
     bind_bench(m);
 }

@@ -7,23 +7,37 @@
 #include <string>
 
 #include "../camera/develop.hpp"
+#include "../io/image_metadata.hpp"
 #include "../io/scene_file.hpp"
+#include "../keep_going.hpp"
 #include "../render/backend.hpp"
-#include "image_metadata.hpp"
 
 namespace realcam::image_io {
 
-/// An io::ImageReader: the file `path`, or, where `path` is empty, the bytes of a PNG or JPEG. Alpha is not multiplied
-/// in. Pictures of floating-point numbers are taken as linear, and clipped at 1. Nothing where it cannot be decoded.
-std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes);
+/// An io::ImageReader: the file `path`, or, where `path` is empty, the bytes of one. Alpha is not multiplied in, and
+/// where the file has it multiplied in it is taken out. Pictures of floating-point numbers are taken as linear, and
+/// clipped at 1. Nothing where it cannot be decoded. Throws Cancelled.
+std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
+                                           const KeepGoing& keep_going = {});
 
 /// A latitude-longitude picture (row 0 up, the middle column towards -z) as light from infinity. Floating-point values
 /// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Negative values and NaN become 0, infinite
-/// ones the largest that a half float holds. Throws ImageFileError.
-Environment read_environment(const std::string& path);
+/// ones the largest that a half float holds. Throws ImageFileError and Cancelled.
+Environment read_environment(const std::string& path, const KeepGoing& keep_going = {});
 
-/// Writes a picture; the suffix picks the format. Throws ImageFileError, and then leaves nothing behind: the file
-/// appears under its name only when it is whole.
+/// An exposed picture in somebody else's memory.
+struct PictureView {
+    int width = 0, height = 0;
+    const float* exposure = nullptr;  ///< height * width * 3, lux seconds
+    const float* depth = nullptr;     ///< height * width, metres
+};
+
+inline PictureView view_of(const Image& image) {
+    return {image.width, image.height, image.exposure.data(), image.depth.data()};
+}
+
+/// Writes a picture; the suffix picks the format. Throws ImageFileError and Cancelled, and then leaves nothing behind:
+/// the file appears under its name only when it is whole.
 ///
 /// - .png: 8-bit sRGB, developed at metadata.iso by the tone curve, with text for every entry of the metadata.
 /// - .exr: float R, G, B, the exposure of the film in lux seconds, and Z, the depth in metres (infinite where nothing
@@ -31,8 +45,8 @@ Environment read_environment(const std::string& path);
 ///   Z is a channel beside the colours, under the name that OpenEXR reserves for depth: compositing programs show it as
 ///   a layer of its own, and readers that know nothing of it leave it out. Many of those would not open a file with a
 ///   second part.
-void write_image(const Image& image, const std::string& path, const ImageMetadata& metadata,
-                 ToneCurve tone = ToneCurve::film);
+void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
+                 ToneCurve tone = ToneCurve::film, const KeepGoing& keep_going = {});
 
 /// Throws ImageFileError where write_image could not write this path: to be told before rendering, not after.
 void check_image_path(const std::string& path);

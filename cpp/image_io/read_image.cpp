@@ -1,126 +1,107 @@
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <vector>
 
 #include "../error.hpp"
+#include "../io/free_memory.hpp"
 #include "../scene/texture.hpp"
 #include "image_file.hpp"
+#include "open_picture.hpp"
 
 namespace realcam::image_io {
 namespace {
 
-using OIIO::ImageInput;
-using OIIO::ImageSpec;
+/// 16384 x 16384: what a texture of a GPU has at most. A file of a megabyte can claim 40000 x 40000.
+constexpr std::size_t kMostTexturePixels = std::size_t{1} << 28;
+/// 16384 x 8192, the largest environments that are sold.
+constexpr std::size_t kMostEnvironmentPixels = std::size_t{1} << 27;
 
-/// One picture, opened. OpenImageIO keeps what went wrong and prints it when the program ends, unless it is asked.
-struct OpenPicture {
-    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;  // outlives the input
-    std::unique_ptr<ImageInput> input;
-    std::string error;
-
-    OpenPicture(const std::string& path, std::span<const std::uint8_t> bytes) {
-        ImageSpec wishes;
-        wishes.attribute("oiio:UnassociatedAlpha", 1);
-        std::string name = path;
-        if (path.empty()) {
-            memory = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
-            name = !bytes.empty() && bytes[0] == 0xff ? "memory.jpg" : "memory.png";
-            // As an argument of open() it is forgotten where there are wishes too (OpenImageIO 2.4).
-            OIIO::Filesystem::IOProxy* proxy = memory.get();
-            wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        }
-        input = ImageInput::open(name, &wishes);
-        error = OIIO::geterror();
-    }
-
-    /// All pixels, with their first channels.
-    template <class Value>
-    bool read(int channels, std::vector<Value>& pixels) {
-        const ImageSpec& spec = input->spec();
-        pixels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
-                      static_cast<std::size_t>(channels));
-        const bool good = input->read_image(0, 0, 0, channels, OIIO::BaseTypeFromC<Value>::value, pixels.data());
-        error = input->geterror();
-        return good;
-    }
-};
-
-bool is_plain(const ImageSpec& spec) {
-    return spec.width > 0 && spec.height > 0 && spec.depth <= 1 && spec.nchannels > 0 && !spec.deep;
+/// Throws Error where the pixels are more than anybody needs, or than there is memory for.
+void check_size(const OpenPicture& picture, std::size_t most_pixels, std::size_t bytes_per_pixel) {
+    const std::string size =
+        "has " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels";
+    if (picture.pixel_count() > most_pixels)
+        throw Error(size + "; at most " + std::to_string(most_pixels >> 20) + " million are read");
+    if (picture.pixel_count() * bytes_per_pixel > io::free_memory())
+        throw Error(size + ", more than the free memory holds");
 }
 
-/// Red, green, blue (grey: the same three) and alpha of a pixel of 1 to 4 channels.
+/// Grey and grey with alpha, as they were decoded to the beginning of a pixel, as red, green, blue (and alpha).
 template <class Value>
-void spread(const Value* from, int channels, Value opaque, Value* rgba) {
-    const bool grey = channels < 3;
-    for (int c = 0; c < 3; ++c) rgba[c] = from[grey ? 0 : c];
-    rgba[3] = channels == 2 ? from[1] : channels == 4 ? from[3] : opaque;
+void spread_grey(int channels, Value opaque, Value* rgba) {
+    const Value alpha = channels == 2 ? rgba[1] : channels == 4 ? rgba[3] : opaque;
+    if (channels < 3) rgba[1] = rgba[2] = rgba[0];
+    rgba[3] = alpha;
 }
 
 float usable_light(float v) {
     return v > 0 ? std::min(v, 65504.0f) : 0.0f;
 }
 
-}  // namespace
+double unit(float v) {
+    return v > 0 ? std::min(static_cast<double>(v), 1.0) : 0.0;
+}
 
-std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes) {
-    OpenPicture picture(path, encoded_bytes);
-    if (!picture.input || !is_plain(picture.input->spec())) return std::nullopt;
-    const ImageSpec& spec = picture.input->spec();
-    const int channels = std::min(spec.nchannels, 4);
-    const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-    io::DecodedImage image{spec.width, spec.height, {}};
-    image.rgba.resize(4 * count);
-    if (spec.format.is_floating_point()) {
-        std::vector<float> pixels;
-        if (!picture.read(channels, pixels)) return std::nullopt;
-        for (std::size_t i = 0; i < count; ++i) {
-            float rgba[4];
-            spread(&pixels[i * static_cast<std::size_t>(channels)], channels, 1.0f, rgba);
-            const auto unit = [](float v) { return v > 0 ? std::min(static_cast<double>(v), 1.0) : 0.0; };
-            for (std::size_t c = 0; c < 3; ++c) image.rgba[4 * i + c] = srgb_code(unit(rgba[c]));
-            image.rgba[4 * i + 3] = static_cast<std::uint8_t>(std::lround(255 * unit(rgba[3])));
-        }
-    } else {
-        std::vector<std::uint8_t> pixels;
-        if (!picture.read(channels, pixels)) return std::nullopt;
-        for (std::size_t i = 0; i < count; ++i)
-            spread<std::uint8_t>(&pixels[i * static_cast<std::size_t>(channels)], channels, 255, &image.rgba[4 * i]);
+io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
+    const int channels = picture.channels;
+    check_size(picture, kMostTexturePixels, picture.is_linear ? 20 : 4);
+    io::DecodedImage image{picture.width, picture.height, {}};
+    image.rgba.resize(4 * picture.pixel_count());
+    if (!picture.is_linear) {
+        picture.read(channels, 4, image.rgba.data(), keep_going);
+        for (std::size_t i = 0; i < image.rgba.size(); i += 4) spread_grey<std::uint8_t>(channels, 255, &image.rgba[i]);
+        return image;
+    }
+    std::vector<float> pixels(image.rgba.size());
+    picture.read(channels, 4, pixels.data(), keep_going);
+    for (std::size_t i = 0; i < pixels.size(); i += 4) {
+        float* rgba = &pixels[i];
+        spread_grey(channels, 1.0f, rgba);
+        const float scale = picture.has_associated_alpha && rgba[3] > 0 ? 1 / rgba[3] : 1.0f;
+        for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] = srgb_code(unit(scale * rgba[c]));
+        image.rgba[i + 3] = static_cast<std::uint8_t>(std::lround(255 * unit(rgba[3])));
     }
     return image;
 }
 
-Environment read_environment(const std::string& path) {
-    OpenPicture picture(path, {});
-    const auto fail = [&](const std::string& why) {
-        const std::string reason = why.substr(0, why.find('\n'));
-        throw ImageFileError(path + ": cannot be read as an environment" + (reason.empty() ? "" : ": " + reason));
-    };
-    if (!picture.input) fail(picture.error);
-    if (!is_plain(picture.input->spec())) fail("a flat picture with colours is wanted");
-    const ImageSpec& spec = picture.input->spec();
-    const int channels = std::min(spec.nchannels, 4);
-    const bool linear = spec.format.is_floating_point();
-    std::vector<float> values;
-    if (!picture.read(channels, values)) fail(picture.error);
+Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going) {
+    const bool linear = picture.is_linear, grey = picture.channels < 3;
+    check_size(picture, kMostEnvironmentPixels, sizeof(Vec3f));
     Environment environment;
-    environment.width = spec.width;
-    environment.height = spec.height;
-    environment.pixels.resize(values.size() / static_cast<std::size_t>(channels));
+    environment.width = picture.width;
+    environment.height = picture.height;
+    environment.pixels.resize(picture.pixel_count());
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+    picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->x, keep_going);
     const auto light = [&](float v) {
         // 16 bits keep more than srgb_to_linear's 8-bit codes.
         return linear ? usable_light(v) : v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
     };
-    for (std::size_t i = 0; i < environment.pixels.size(); ++i) {
-        float rgba[4];
-        spread(&values[i * static_cast<std::size_t>(channels)], channels, 1.0f, rgba);
-        environment.pixels[i] = {light(rgba[0]), light(rgba[1]), light(rgba[2])};
-    }
+    for (Vec3f& p : environment.pixels) p = {light(p.x), light(grey ? p.x : p.y), light(grey ? p.x : p.z)};
     return environment;
+}
+
+}  // namespace
+
+std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
+                                           const KeepGoing& keep_going) {
+    try {
+        return decode(*open_picture(path, encoded_bytes), keep_going);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error&) {
+        return std::nullopt;  // the caller names the picture, and puts another in its stead
+    }
+}
+
+Environment read_environment(const std::string& path, const KeepGoing& keep_going) {
+    try {
+        return decode_environment(*open_picture(path, {}), keep_going);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        throw ImageFileError(path + ": " + error.what() + "; a latitude-longitude picture was wanted");
+    }
 }
 
 }  // namespace realcam::image_io

@@ -1,5 +1,7 @@
 #include "unfinished_file.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -12,10 +14,35 @@
 namespace realcam::image_io {
 namespace {
 
+namespace fs = std::filesystem;
+
+std::string folder_of(const std::string& path) {
+    const std::string folder = fs::path(path).parent_path().string();
+    return folder.empty() ? "." : folder;
+}
+
 std::string temporary_name(const std::string& path) {
     static std::atomic<int> counter{0};
     const std::string name = ".realcam-" + std::to_string(getpid()) + '-' + std::to_string(counter++) + ".part";
-    return (std::filesystem::path(path).parent_path() / name).string();
+    return (fs::path(folder_of(path)) / name).string();
+}
+
+/// The file that a path leads to through symbolic links, which need not exist.
+std::string followed(std::string path) {
+    constexpr int kMostLinks = 40;  // as the kernel
+    for (int i = 0; i < kMostLinks; ++i) {
+        std::error_code error;
+        const fs::path link = fs::read_symlink(path, error);
+        if (error) break;
+        path = (link.is_absolute() ? link : fs::path(folder_of(path)) / link).string();
+    }
+    return path;
+}
+
+/// Gives a file without a name one. False, with errno, where it exists or the system cannot.
+bool link_to(std::FILE* file, const std::string& name) {
+    const std::string open_file = "/proc/self/fd/" + std::to_string(fileno(file));
+    return linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
 }
 
 }  // namespace
@@ -35,9 +62,19 @@ public:
     int error = 0;
 };
 
-UnfinishedFile::UnfinishedFile(const std::string& path)
-    : path_(path), temporary_(temporary_name(path)), file_(std::fopen(temporary_.c_str(), "wbx")) {
-    if (!file_) fail(errno);
+UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(followed(path)) {
+    check_target();
+    constexpr mode_t kMode = 0666;
+    int descriptor = -1;
+#ifdef O_TMPFILE
+    descriptor = open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kMode);
+#endif
+    if (descriptor < 0) {
+        temporary_ = temporary_name(target_);
+        descriptor = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode);
+        if (descriptor < 0) fail(errno);
+    }
+    file_ = fdopen(descriptor, "wb");
     // A buffer could be emptied, in vain, by whoever closes the picture, and the error be lost.
     std::setvbuf(file_, nullptr, _IONBF, 0);
     proxy_ = std::make_unique<Proxy>(file_);
@@ -47,11 +84,22 @@ UnfinishedFile::~UnfinishedFile() {
     proxy_.reset();
     if (!file_) return;
     std::fclose(file_);
-    std::remove(temporary_.c_str());
+    if (!temporary_.empty()) std::remove(temporary_.c_str());
 }
 
 OIIO::Filesystem::IOProxy& UnfinishedFile::proxy() {
     return *proxy_;
+}
+
+void UnfinishedFile::check_target() const {
+    struct stat status{};
+    if (stat(target_.c_str(), &status) != 0) {
+        if (errno != ENOENT) fail(errno);
+        return;
+    }
+    if (S_ISDIR(status.st_mode)) throw ImageFileError(path_ + ": is a folder; the name of a file is wanted");
+    if (!S_ISREG(status.st_mode)) throw ImageFileError(path_ + ": is a pipe or a device; the name of a file is wanted");
+    if (access(target_.c_str(), W_OK) != 0) fail(errno);
 }
 
 void UnfinishedFile::fail(int error) const {
@@ -65,14 +113,17 @@ void UnfinishedFile::finish() {
     if (proxy_->error != 0) fail(proxy_->error);
     // Some file systems find out only now that they are full.
     if (fsync(fileno(file_)) != 0) fail(errno);
+    // A name that is taken cannot be linked to, but be replaced.
+    if (temporary_.empty() && !link_to(file_, target_)) {
+        const std::string name = temporary_name(target_);
+        if (!link_to(file_, name)) fail(errno);
+        temporary_ = name;
+    }
+    if (!temporary_.empty() && std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
+    temporary_.clear();
     proxy_.reset();
-    const bool closed = std::fclose(file_) == 0;
-    const int close_error = errno;
+    std::fclose(file_);
     file_ = nullptr;
-    if (closed && std::rename(temporary_.c_str(), path_.c_str()) == 0) return;
-    const int error = closed ? errno : close_error;
-    std::remove(temporary_.c_str());
-    fail(error);
 }
 
 }  // namespace realcam::image_io

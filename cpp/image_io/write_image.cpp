@@ -1,11 +1,8 @@
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <filesystem>
-#include <system_error>
 #include <vector>
 
 #include "../error.hpp"
@@ -34,20 +31,33 @@ std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-std::size_t pixel_count(const Image& image) {
-    return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+/// What an UnfinishedFile could only name as the system does.
+void check_name(const std::string& path) {
+    namespace fs = std::filesystem;
+    format_of(path);
+    const fs::path folder = fs::path(path).parent_path();
+    std::error_code ignored;
+    if (folder.empty() || fs::is_directory(folder, ignored)) return;
+    throw ImageFileError(path + (fs::exists(folder, ignored)
+                                     ? ": \"" + folder.string() + "\" is not a folder"
+                                     : ": the folder \"" + folder.string() + "\" does not exist"));
 }
 
-ImageSpec specification(const Image& image, int channels, TypeDesc type, const ImageMetadata& metadata) {
-    ImageSpec spec(image.width, image.height, channels, type);
+std::size_t row_values(const PictureView& picture, std::size_t channels) {
+    return channels * static_cast<std::size_t>(picture.width);
+}
+
+ImageSpec specification(const PictureView& picture, int channels, TypeDesc type, const io::ImageMetadata& metadata) {
+    ImageSpec spec(picture.width, picture.height, channels, type);
     spec.attribute("Software", "realcam " REALCAM_VERSION);
     for (const auto& [name, value] : metadata.entries()) spec.attribute(name, value);
     return spec;
 }
 
-/// Writes through `fill(first_row, rows, buffer)`, some rows at a time.
+/// Writes through `fill(first_row, end_row, buffer)`, some rows at a time.
 template <class Value, class Fill>
-void write_rows(const std::string& path, const std::string& format, const ImageSpec& spec, Fill&& fill) {
+void write_rows(const std::string& path, const std::string& format, const ImageSpec& spec, const KeepGoing& keep_going,
+                Fill&& fill) {
     UnfinishedFile file(path);
     const auto check = [&](bool good, const ImageOutput& output) {
         const std::string why = output.geterror();
@@ -62,8 +72,9 @@ void write_rows(const std::string& path, const std::string& format, const ImageS
         std::vector<Value> rows(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels) *
                                 kRows);
         for (int y = 0; y < spec.height; y += kRows) {
+            if (keep_going && !keep_going()) throw Cancelled();
             const int end = std::min(y + kRows, spec.height);
-            fill(y, end, rows.data());
+            fill(static_cast<std::size_t>(y), static_cast<std::size_t>(end), rows.data());
             check(output->write_scanlines(y, end, 0, OIIO::BaseTypeFromC<Value>::value, rows.data()), *output);
         }
         check(output->close(), *output);
@@ -71,21 +82,23 @@ void write_rows(const std::string& path, const std::string& format, const ImageS
     file.finish();
 }
 
-void write_png(const Image& image, const std::string& path, const ImageMetadata& metadata, ToneCurve tone) {
-    ImageSpec spec = specification(image, 3, TypeDesc::UINT8, metadata);
+void write_png(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata, ToneCurve tone,
+               const KeepGoing& keep_going) {
+    ImageSpec spec = specification(picture, 3, TypeDesc::UINT8, metadata);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("realcam:tone", tone == ToneCurve::film ? "film" : "linear");
-    write_rows<std::uint8_t>(path, "png", spec, [&](int first, int end, std::uint8_t* out) {
-        const std::size_t row = 3 * static_cast<std::size_t>(image.width);
-        for (std::size_t i = static_cast<std::size_t>(first) * row; i < static_cast<std::size_t>(end) * row; ++i) {
-            const double value = sensor_value(static_cast<double>(image.exposure[i]), metadata.iso);
+    const std::size_t row = row_values(picture, 3);
+    write_rows<std::uint8_t>(path, "png", spec, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
+        for (std::size_t i = first * row; i < end * row; ++i) {
+            const double value = sensor_value(static_cast<double>(picture.exposure[i]), metadata.iso);
             *out++ = srgb_code(apply_tone_curve(tone, value));
         }
     });
 }
 
-void write_exr(const Image& image, const std::string& path, const ImageMetadata& metadata) {
-    ImageSpec spec = specification(image, 4, TypeDesc::FLOAT, metadata);
+void write_exr(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
+               const KeepGoing& keep_going) {
+    ImageSpec spec = specification(picture, 4, TypeDesc::FLOAT, metadata);
     spec.channelnames = {"R", "G", "B", "Z"};
     spec.z_channel = 3;
     spec.attribute("compression", "zip");
@@ -93,51 +106,39 @@ void write_exr(const Image& image, const std::string& path, const ImageMetadata&
                    "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis");
     // The standard attributes of OpenEXR, in its units.
     const auto set = [&](const char* name, double value) { spec.attribute(name, static_cast<float>(value)); };
-    set("expTime", metadata.exposure_time_s);
-    set("aperture", metadata.f_number);
+    set("ExposureTime", metadata.exposure_time_s);  // expTime
+    set("FNumber", metadata.f_number);              // aperture
     set("isoSpeed", metadata.iso);
     set("focus", metadata.focus_distance_m);
     set("effectiveFocalLength", metadata.focal_length_mm);
     spec.attribute("lensModel", metadata.lens);
     const float film[2] = {static_cast<float>(metadata.film_width_mm), static_cast<float>(metadata.film_height_mm)};
     spec.attribute("sensorOverallDimensions", TypeDesc(TypeDesc::FLOAT, TypeDesc::VEC2), film);
-    write_rows<float>(path, "exr", spec, [&](int first, int end, float* out) {
-        const auto width = static_cast<std::size_t>(image.width);
-        for (std::size_t i = static_cast<std::size_t>(first) * width; i < static_cast<std::size_t>(end) * width; ++i) {
-            for (std::size_t c = 0; c < 3; ++c) *out++ = image.exposure[3 * i + c];
-            *out++ = image.depth[i];
+    const std::size_t row = row_values(picture, 1);
+    write_rows<float>(path, "exr", spec, keep_going, [&](std::size_t first, std::size_t end, float* out) {
+        for (std::size_t i = first * row; i < end * row; ++i) {
+            for (std::size_t c = 0; c < 3; ++c) *out++ = picture.exposure[3 * i + c];
+            *out++ = picture.depth[i];
         }
     });
 }
 
 }  // namespace
 
-void write_image(const Image& image, const std::string& path, const ImageMetadata& metadata, ToneCurve tone) {
-    check_image_path(path);
-    if (image.width < 1 || image.height < 1 || image.exposure.size() != 3 * pixel_count(image) ||
-        image.depth.size() != pixel_count(image))
-        throw ImageFileError(path + ": the picture is empty, or its arrays do not have its size");
+void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata, ToneCurve tone,
+                 const KeepGoing& keep_going) {
+    check_name(path);
+    if (picture.width < 1 || picture.height < 1) throw ImageFileError(path + ": the picture is empty");
     if (format_of(path) == "png") {
-        write_png(image, path, metadata, tone);
+        write_png(picture, path, metadata, tone, keep_going);
     } else {
-        write_exr(image, path, metadata);
+        write_exr(picture, path, metadata, keep_going);
     }
 }
 
 void check_image_path(const std::string& path) {
-    namespace fs = std::filesystem;
-    format_of(path);
-    fs::path folder = fs::path(path).parent_path();
-    if (folder.empty()) folder = ".";
-    std::error_code ignored;
-    if (!fs::exists(folder, ignored))
-        throw ImageFileError(path + ": the folder \"" + folder.string() + "\" does not exist");
-    if (!fs::is_directory(folder, ignored))
-        throw ImageFileError(path + ": \"" + folder.string() + "\" is not a folder");
-    if (fs::is_directory(path, ignored)) throw ImageFileError(path + ": is a folder; the name of a file is wanted");
-    if (access(folder.c_str(), W_OK | X_OK) != 0)
-        throw ImageFileError(path + ": the folder \"" + folder.string() +
-                             "\" cannot be written to: " + std::generic_category().message(errno));
+    check_name(path);
+    const UnfinishedFile attempt(path);
 }
 
 }  // namespace realcam::image_io

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-namespace realcam::image_io {
+namespace realcam::io {
 namespace {
 
 std::string number(double value) {
@@ -54,4 +54,4 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
             {"realcam:spp", std::to_string(spp)}};
 }
 
-}  // namespace realcam::image_io
+}  // namespace realcam::io

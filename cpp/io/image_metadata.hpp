@@ -7,7 +7,7 @@
 #include "../camera/camera.hpp"
 #include "../render/backend.hpp"
 
-namespace realcam::image_io {
+namespace realcam::io {
 
 /// What a picture was taken with, as its file tells it.
 struct ImageMetadata {
@@ -31,4 +31,4 @@ std::string name_of(CameraModel model);
 
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings);
 
-}  // namespace realcam::image_io
+}  // namespace realcam::io

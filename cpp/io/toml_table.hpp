@@ -2,6 +2,7 @@
 #include <toml++/toml.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -12,15 +13,25 @@
 
 namespace realcam::io {
 
-/// A table of a lens file that knows where it stands, so that every complaint names file, line and surface.
+/// Throws the error of a kind of file. `line` and `surface` are 1-based; 0 where they do not apply.
+using RaiseFileError = void (*)(const std::string& message, const std::string& file, int line, int surface);
+
+[[noreturn]] inline void raise_lens_file_error(const std::string& message, const std::string& file, int line,
+                                               int surface) {
+    throw LensFileError(message, file, line, surface);
+}
+
+/// A table of a TOML file that knows where it stands, so that every complaint names file, line and, in a lens file,
+/// surface.
 class TomlTable {
 public:
-    TomlTable(const toml::table& table, std::string file, int surface = 0)
-        : table_(table), file_(std::move(file)), surface_(surface) {}
+    TomlTable(const toml::table& table, std::string file, int surface = 0, RaiseFileError raise = raise_lens_file_error)
+        : table_(table), file_(std::move(file)), surface_(surface), raise_(raise) {}
 
     [[noreturn]] void fail(const std::string& message, const toml::node* node = nullptr) const {
         const toml::node& place = node ? *node : table_;
-        throw LensFileError(message, file_, static_cast<int>(place.source().begin.line), surface_);
+        raise_(message, file_, static_cast<int>(place.source().begin.line), surface_);
+        std::abort();  // raise_ has thrown
     }
 
     /// Refuses keys that the format does not know: a misspelt one must not be ignored in silence.
@@ -73,7 +84,7 @@ public:
         const toml::node* node = find(key);
         if (!node) return std::nullopt;
         if (!node->is_table()) fail('"' + std::string(key) + "\" must be a table", node);
-        return TomlTable(*node->as_table(), file_, surface_);
+        return TomlTable(*node->as_table(), file_, surface_, raise_);
     }
 
     const toml::table& raw() const { return table_; }
@@ -83,6 +94,7 @@ private:
     const toml::table& table_;
     std::string file_;
     int surface_;
+    RaiseFileError raise_;
 };
 
 }  // namespace realcam::io

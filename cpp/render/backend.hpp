@@ -40,12 +40,6 @@ struct Image {
 /// Called about 20 times a second on the thread that called render. `done` goes from 0 to 1; returns false to stop.
 using Progress = std::function<bool(double done)>;
 
-/// Thrown by render where Progress asked to stop.
-class Cancelled : public Error {
-public:
-    Cancelled() : Error("stopped") {}
-};
-
 /// A device that takes pictures.
 class Backend {
 public:

@@ -41,8 +41,10 @@ from ._core import (
     lens_names,
 )
 from .image import Image
+from .image_file import read_environment
 from .lens import Mirror, Stop
 from .render import render
+from .shot import Shot
 
 __all__ = [
     "AimedRays",
@@ -70,6 +72,7 @@ __all__ = [
     "Scene",
     "SceneFileError",
     "Seidel",
+    "Shot",
     "Spot",
     "Stop",
     "Surface",
@@ -78,5 +81,6 @@ __all__ = [
     "__version__",
     "devices",
     "lens_names",
+    "read_environment",
     "render",
 ]

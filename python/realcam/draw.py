@@ -10,7 +10,7 @@ import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
 
-from . import image_file
+from . import files
 from ._core import ImageFileError, InputError, Lens, RayStatus, Surface
 
 GLASS = "#cfe3f2"
@@ -26,14 +26,14 @@ def save_cross_section(lens: Lens, path: str | os.PathLike[str], rays: int = 7) 
     target = Path(path)
     if target.suffix.lower() not in (".svg", ".png"):
         raise ImageFileError(f"{target}: unknown suffix; .svg or .png is wanted")
-    image_file.check_folder(target)
+    files.check_folder(target)
     figure = matplotlib.figure.Figure(figsize=(10, 6), layout="constrained")
     draw_cross_section(lens, figure.add_subplot(), rays)
     handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".", suffix=target.suffix)
     os.close(handle)
     try:
         figure.savefig(temporary, dpi=160)
-        image_file.publish(temporary, target)
+        files.publish(temporary, target)
     finally:
         Path(temporary).unlink(missing_ok=True)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -40,37 +39,9 @@ class Image:
         Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises ImageFileError;
         no half-written file is left.
         """
-        image_file.check_writable(path)
-        if Path(path).suffix.lower() == ".png":
-            attributes = {**self.metadata(), "oiio:ColorSpace": "sRGB", "realcam:tone": tone}
-            image_file.write_image(path, self.developed(tone), ("R", "G", "B"), attributes)
-        else:
-            layers = np.concatenate([self.pixels, self.depth[..., None]], axis=2)
-            image_file.write_image(path, layers, ("R", "G", "B", "Z"), self.metadata())
+        image_file.write_image(self, path, tone)
 
-    def metadata(self) -> dict[str, str | int | float]:
-        """Name and value of what is written into picture files.
-
-        Values of realcam's own entries are texts, as the executable writes them: PNG keeps no other kind.
-        """
-        lens, film = self.camera.lens, self.camera.film
-        first_order = lens.first_order()
-        return {
-            "Software": f"realcam {_core.__version__}",
-            "ExposureTime": float(self.camera.exposure_time_s),
-            "FNumber": float(first_order.f_number),
-            "Exif:PhotographicSensitivity": min(round(self.camera.iso), 65535),
-            "Exif:FocalLength": float(first_order.effective_focal_length_mm),
-            "Exif:LensModel": lens.name,
-            "realcam:lens": lens.name,
-            "realcam:model": self.camera.model,
-            "realcam:focal_length_mm": f"{first_order.effective_focal_length_mm:.9g}",
-            "realcam:f_number": f"{first_order.f_number:.9g}",
-            "realcam:focus_distance_m": f"{lens.focus_distance_m:.9g}",
-            "realcam:film_mm": f"{film.width_mm:.9g}x{film.height_mm:.9g}",
-            "realcam:exposure_time_s": f"{self.camera.exposure_time_s:.9g}",
-            "realcam:iso": f"{self.camera.iso:.9g}",
-            "realcam:seed": str(self.seed),
-            "realcam:spp": str(self.spp),
-            "realcam:version": _core.__version__,
-        }
+    def metadata(self) -> dict[str, str]:
+        """Names ("realcam:...") and values of what is written into picture files."""
+        entries: dict[str, str] = _core._metadata(self.camera, self.spp, self.seed)
+        return entries

@@ -31,6 +31,9 @@ endfunction()
 
 file(WRITE ${WORK}/quad.obj "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n")
 file(WRITE ${WORK}/empty.obj "v 0 0 0\n")
+file(WRITE ${WORK}/shot.toml "format = 1\nscene = 'quad.obj'\nlens = 'tessar-50mm'\nfilm_mm = [36, 36]\nspp = 1
+resolution = [20, 20]\nfocus_m = 2\nexposure_time_s = 0.01\nposition_m = [0, 0, 5]\nenvironment_cd_m2 = 100\n")
+file(WRITE ${WORK}/wrong.toml "format = 1\nscene = 'quad.obj'\nfocus = 2\n")
 set(small --resolution 48x32 --spp 2)
 
 expect(0 "realcam [0-9]+\\.[0-9]+" --version)
@@ -47,16 +50,24 @@ if(NOT conic MATCHES "^-0\\.498" OR NOT plane STREQUAL "NULL" OR NOT focus STREQ
   message(FATAL_ERROR "lens info --json: conic ${conic}, plane ${plane}, focus ${focus}")
 endif()
 
-expect(0 "f/2\\.03.*metered.*% of the sampled rays pass.*picture +a\\.png\npicture +a\\.exr\n.*no light.*daylight"
+expect(0 "f/2\\.03.*metered.*time [^\n]* s on CPU[^\n]*\npicture +a\\.png\npicture +a\\.exr\n.*no light.*daylight"
        render quad.obj -o a.png -o a.exr ${small})
 expect(0 "f/4,.*focus 2 m.*at -1,2,3, looks at 0,0,0.*24 x 24 mm, 40 x 40 pixels of 1 samples.*1/125 s, ISO 200\n"
        render quad.obj -o b.png --resolution 40x40 --spp 1 --f-number 4 --focus 2 --position -1,2,3 --look-at 0,0,0
        --exposure-time 1/125 --iso 200 --environment 1000 --tone linear --max-bounces 0 --threads 1 --device cpu --seed 7)
-expect(0 "as thin model" render quad.obj -o c.png ${small} --model thin --environment a.exr --film 30x20)
-set(files quad.obj empty.obj a.png a.exr b.png c.png)
+expect(0 "as thin model.*% of the sampled rays pass" render quad.obj -o c.png ${small} --model thin --environment a.exr
+       --film 30x20 --verbose)
+# Values of a shot file hold where no option says otherwise.
+expect(0 "Tessar.*focus 2 m.*36 x 36 mm, 20 x 20 pixels of 1 samples.*1/100 s, ISO 50" render shot.toml -o d.png --iso 50)
+expect(0 "focus 1 m.*exposure[^\n]*metered" render shot.toml -o e.png --position 0,0,1 --look-at 0,0,0 --focus auto
+       --exposure-time auto)
+file(CREATE_LINK linked.png ${WORK}/link.png SYMBOLIC)
+expect(0 "link\\.png" render quad.obj -o link.png ${small})
+set(files quad.obj empty.obj shot.toml wrong.toml a.png a.exr b.png c.png d.png e.png link.png linked.png)
 expect_files(${files})
 
-expect(2 "subcommand is required")
+expect(0 "render.*lens.*devices")
+expect(2 "subcommand is required" lens)
 expect(2 "scene is required" render)
 expect(2 "output is required" render quad.obj)
 expect(2 "not expected: --foo" render quad.obj -o x.png --foo)
@@ -70,7 +81,7 @@ expect(2 "unknown lens .*double-gauss-50mm" lens info double-gaus-50m)
 expect(2 "unknown lens .*double-gauss-50mm" render quad.obj -o x.png --lens double-gaus-50m)
 expect(2 "f/0\\.5 is faster" render quad.obj -o x.png --f-number 0.5)
 expect(2 "cannot focus at 0\\.01 m" render quad.obj -o x.png --focus 0.01)
-expect(2 "--focus: \"near\" is not a number or inf" render quad.obj -o x.png --focus near)
+expect(2 "--focus: \"near\" is not a number of metres, inf or auto" render quad.obj -o x.png --focus near)
 expect(2 "resolution is 0 x 5" render quad.obj -o x.png --resolution 0x5)
 expect(2 "resolution is 40000 x 1" render quad.obj -o x.png --resolution 40000x1)
 expect(2 "such as 960x640" render quad.obj -o x.png --resolution large)
@@ -79,15 +90,22 @@ expect(2 "exposure time must be" render quad.obj -o x.png --exposure-time -1/8)
 expect(2 "such as 0\\.5 or 1/125" render quad.obj -o x.png --exposure-time 1/0)
 expect(2 "ISO number must be positive" render quad.obj -o x.png --iso 0)
 expect(2 "spp must lie" render quad.obj -o x.png --spp 0)
-expect(2 "max_bounces must lie" render quad.obj -o x.png --max-bounces -1)
+expect(2 "--max-bounces: \"-1\" is not a whole number" render quad.obj -o x.png --max-bounces=-1)
 expect(2 "three numbers with commas" render quad.obj -o x.png --position 1,2)
 expect(2 "look at a point other than its position" render quad.obj -o x.png --position 0,0,1 --look-at 0,0,1)
+expect(2 "wrong\\.toml:3: unknown key \"focus\".*focus_m" render wrong.toml -o x.png)
+expect(2 "gone\\.toml: no such file" render gone.toml -o x.png)
+expect(2 "between 0 and 1e20" render quad.obj -o x.png --environment 1e29)
+expect(2 "a file that the picture is made from" render quad.obj -o a.exr --environment a.exr)
+expect(2 "a file that the picture is made from" render quad.obj -o x.png -o ./a.exr --environment a.exr)
+expect(2 "given twice" render quad.obj -o link.png -o linked.png)
+expect(2 "--seed: " render quad.obj -o x.png --seed "")
 expect(2 "scale must be" render quad.obj -o x.png --scale 0)
 expect(2 "full, thick, thin or pinhole" render quad.obj -o x.png --model real)
 expect(2 "film or linear" render quad.obj -o x.png --tone flat)
 expect(2 "auto, cpu" render quad.obj -o x.png --device abacus)
-expect(2 "neither a number .* nor a file" render quad.obj -o x.png --environment gone.hdr)
-expect(2 "cannot be read as an environment" render quad.obj -o x.png --environment empty.obj)
+expect(2 "gone\\.hdr\": there is no such file" render quad.obj -o x.png --environment gone.hdr)
+expect(2 "empty\\.obj: is no picture" render quad.obj -o x.png --environment empty.obj)
 expect(2 "no exposure can be metered" render quad.obj -o x.png ${small} --position 0,0,9 --look-at 0,0,99 --environment 0)
 
 # Ctrl-C leaves nothing behind.

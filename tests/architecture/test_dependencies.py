@@ -24,9 +24,11 @@ MAY_INCLUDE = {
     "devices": {*CORE, *BACKENDS},
     "io": {*CORE},
     "image_io": {*CORE, "io"},
-    # The extension links no OpenImageIO: image_io is the executable's alone.
-    "bindings": {*CORE, *BACKENDS, "devices", "io"},
-    "app": {*CORE, *BACKENDS, "devices", "io", "image_io"},
+    "shot": {*CORE, "io"},
+    # OpenImageIO is linked by the executable and by an extension of its own, which is loaded when it is needed.
+    "bindings": {*CORE, *BACKENDS, "devices", "io", "shot"},
+    "picture_bindings": {*CORE, "io", "image_io"},
+    "app": {*CORE, *BACKENDS, "devices", "io", "shot", "image_io"},
 }
 
 # Which Embree it is stays in one place.
@@ -45,6 +47,7 @@ HOST_ONLY = {
     "camera/field_of_view.hpp",
     "camera/last_setup.hpp",
     "error.hpp",
+    "keep_going.hpp",
     "optics/best_focus.hpp",
     "optics/exposure.hpp",
     "optics/field_rays.hpp",

@@ -54,8 +54,8 @@ Image test_image() {
     return image;
 }
 
-ImageMetadata test_metadata() {
-    ImageMetadata metadata;
+io::ImageMetadata test_metadata() {
+    io::ImageMetadata metadata;
     metadata.lens = "double-gauss-50mm";
     metadata.model = "full";
     metadata.focal_length_mm = 50.5;
@@ -72,7 +72,7 @@ ImageMetadata test_metadata() {
 
 std::string message_of(const std::string& path) {
     try {
-        write_image(test_image(), path, test_metadata());
+        write_image(view_of(test_image()), path, test_metadata());
     } catch (const ImageFileError& error) {
         return error.what();
     }
@@ -128,7 +128,7 @@ TEST_CASE("EXR keeps exposure, depth and metadata") {
     const Folder folder;
     const std::string path = folder / "picture.exr";
     const Image image = test_image();
-    write_image(image, path, test_metadata());
+    write_image(view_of(image), path, test_metadata());
     CHECK(folder.file_count() == 1);
 
     const auto input = OIIO::ImageInput::open(path);
@@ -164,7 +164,7 @@ TEST_CASE("PNG is developed and says how it was taken") {
     const std::string path = folder / "picture.PNG";
     const Image image = test_image();
     for (const ToneCurve tone : {ToneCurve::film, ToneCurve::linear}) {
-        write_image(image, path, test_metadata(), tone);
+        write_image(view_of(image), path, test_metadata(), tone);
         CHECK(folder.file_count() == 1);
         const auto decoded = read_image(path, {});
         REQUIRE(decoded);
@@ -196,7 +196,7 @@ TEST_CASE("What cannot be written says why and leaves nothing") {
         fs::permissions(folder / "folder.png", fs::perms::owner_read | fs::perms::owner_exec);
         CHECK(contains(message_of(folder / "folder.png/a.png"), "cannot be written to"));
     }
-    CHECK_THROWS_AS(write_image(Image{}, folder / "a.png", test_metadata()), ImageFileError);
+    CHECK_THROWS_AS(write_image(view_of(Image{}), folder / "a.png", test_metadata()), ImageFileError);
 }
 
 TEST_CASE("A disk that fills up keeps the old picture and no half of the new one") {

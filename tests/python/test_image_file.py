@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import os
+import signal
+import struct
+import subprocess
+import sys
+import time
+import zlib
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 import realcam as rc
-from realcam import image_file
 
 from . import scenes
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -73,10 +80,13 @@ def test_metadata_can_be_read_back(image: rc.Image, tmp_path: Path, suffix: str)
     assert value("realcam:iso") == 400
     assert value("realcam:seed") == 11
     assert value("realcam:spp") == 4
-    # Where other programs look for it. Exif has rationals.
+    assert "realcam" in spec.getattribute("Software")
+    if suffix == ".png":
+        return
+    # Where other programs look for it.
     assert value("ExposureTime") == pytest.approx(1 / 60, rel=1e-4)
     assert value("FNumber") == pytest.approx(5.6, rel=1e-4)
-    assert "realcam" in spec.getattribute("Software")
+    assert value("isoSpeed") == 400
 
 
 @pytest.mark.parametrize("focus", [float("inf"), 3.0])
@@ -104,7 +114,7 @@ def test_suffix_in_capitals(image: rc.Image, tmp_path: Path) -> None:
 
 
 def test_missing_folder_and_folder_in_place_of_the_file(image: rc.Image, tmp_path: Path) -> None:
-    with pytest.raises(rc.ImageFileError, match=r"picture\.png.*nowhere does not exist"):
+    with pytest.raises(rc.ImageFileError, match=r"picture\.png.*nowhere\" does not exist"):
         image.save(tmp_path / "nowhere" / "picture.png")
     (tmp_path / "taken.png").mkdir()
     with pytest.raises(rc.ImageFileError, match="is a folder"):
@@ -112,42 +122,99 @@ def test_missing_folder_and_folder_in_place_of_the_file(image: rc.Image, tmp_pat
     assert [path.name for path in tmp_path.iterdir()] == ["taken.png"]
 
 
-def test_folder_that_is_not_writable(image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    if os.geteuid() == 0:  # root may write everywhere: ask as somebody else would be answered
-        monkeypatch.setattr(os, "access", lambda *_, **__: False)
-    else:
-        tmp_path.chmod(0o500)
-    with pytest.raises(rc.ImageFileError, match="not writable"):
-        image.save(tmp_path / "picture.png")
-    tmp_path.chmod(0o700)
+def test_folder_that_takes_no_files(image: rc.Image) -> None:
+    # Refuses everybody, root too.
+    with pytest.raises(rc.ImageFileError, match=r"^/proc/picture\.png: cannot be written"):
+        image.save("/proc/picture.png")
+
+
+def test_a_name_that_is_too_long(image: rc.Image, tmp_path: Path) -> None:
+    with pytest.raises(rc.ImageFileError, match="File name too long"):
+        image.save(tmp_path / ("x" * 252 + ".png"))
     assert list(tmp_path.iterdir()) == []
 
 
+def in_a_process(program: str, *arguments: object) -> subprocess.CompletedProcess[str]:
+    begin = "import sys, numpy as np, realcam as rc\nfrom tests.python import scenes\n"
+    return subprocess.run(
+        [sys.executable, "-c", begin + program, *map(str, arguments)], capture_output=True, text=True, cwd=ROOT
+    )
+
+
+TAKE = """
+picture = rc.render(scenes.sky(), rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, {size})), spp=1)
+"""
+
+
 @pytest.mark.parametrize("suffix", [".exr", ".png"])
-def test_a_failing_disk_leaves_the_old_file(
-    image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
-) -> None:
+def test_a_limit_on_file_sizes_leaves_the_old_file(tmp_path: Path, suffix: str) -> None:
+    """As a full disk: what was there stays, nothing else appears, and the message says why."""
     path = tmp_path / f"picture{suffix}"
     path.write_bytes(b"the old one")
-
-    def full(self: Path, target: object) -> Path:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "replace", full)
-    with pytest.raises((rc.ImageFileError, OSError)):
-        image.save(path)
+    limit = """
+import resource, signal
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+try:
+    picture.save(sys.argv[1])
+except rc.ImageFileError as error:
+    print(error)
+"""
+    run = in_a_process(TAKE.format(size=(300, 200)) + limit, path)
+    assert "picture" + suffix + ": cannot be written: the disk is full, or a limit" in run.stdout, run.stderr
     assert path.read_bytes() == b"the old one"
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
 
 
-def test_an_interrupt_leaves_nothing(image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_: object) -> np.ndarray:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(image_file.np, "ascontiguousarray", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        image.save(tmp_path / "picture.exr")
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("suffix", [".exr", ".png"])
+def test_a_signal_while_a_picture_is_written_leaves_nothing(tmp_path: Path, suffix: str, by: signal.Signals) -> None:
+    path = tmp_path / f"picture{suffix}"
+    # Noise takes seconds to compress.
+    save = """
+rng = np.random.default_rng(1)
+object.__setattr__(picture, "pixels", rng.random((6000, 9000, 3), dtype=np.float32))
+object.__setattr__(picture, "depth", rng.random((6000, 9000), dtype=np.float32))
+print("saving", flush=True)
+picture.save(sys.argv[1])
+"""
+    begin = "import sys, numpy as np, realcam as rc\nfrom tests.python import scenes\n"
+    program = begin + TAKE.format(size=(2, 2)) + save
+    with subprocess.Popen(
+        [sys.executable, "-c", program, str(path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"saving\n"
+        time.sleep(0.3)
+        process.send_signal(by)
+        process.communicate(timeout=20)
+        assert process.returncode != 0
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_symbolic_link_is_followed(image: rc.Image, tmp_path: Path) -> None:
+    (tmp_path / "pictures").mkdir()
+    target, link = tmp_path / "pictures" / "one.png", tmp_path / "link.png"
+    link.symlink_to("pictures/one.png")
+    for _ in range(2):  # it points nowhere at first
+        image.save(link)
+        assert link.is_symlink()
+        assert read(target)[1].nchannels == 3
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["link.png", "one.png", "pictures"]
+
+
+def test_a_pipe_is_no_picture(image: rc.Image, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.png")
+    with pytest.raises(rc.ImageFileError, match="is a pipe or a device"):
+        image.save(tmp_path / "pipe.png")
+
+
+def test_names_that_are_no_utf8(image: rc.Image, tmp_path: Path) -> None:
+    path = os.fsdecode(os.fsencode(tmp_path) + b"/\xff\xfe.png")
+    image.save(path)
+    assert [os.fsencode(p.name) for p in tmp_path.iterdir()] == [b"\xff\xfe.png"]
+    with pytest.raises(rc.ImageFileError, match="does not exist"):
+        image.save(os.fsdecode(os.fsencode(tmp_path) + b"/\xff/x.png"))
 
 
 def test_written_files_have_ordinary_permissions(image: rc.Image, tmp_path: Path) -> None:
@@ -165,27 +232,119 @@ def test_unknown_tone_curve(image: rc.Image, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def write(path: Path, pixels: np.ndarray, **attributes: object) -> None:
+    """By another program than ours."""
+    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], str(pixels.dtype))
+    if pixels.shape[2] == 4:
+        spec.alpha_channel = 3
+    for name, value in attributes.items():
+        spec.attribute(name, value)
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), spec), output.geterror()
+    assert output.write_image(pixels), output.geterror()
+    assert output.close()
+
+
+def srgb_to_linear(v: np.ndarray) -> np.ndarray:
+    return np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
+
+
 def test_an_environment_image_is_read_as_light(tmp_path: Path) -> None:
     light = np.array([[[0.25, 5.0, 100.0], [0, 1, 2]]], np.float32)
-    image_file.write_image(tmp_path / "sky.exr", light, ("R", "G", "B"), {})
-    np.testing.assert_array_equal(image_file.read_environment(tmp_path / "sky.exr"), light)
-    codes = np.array([[[0, 118, 255], [10, 188, 64]]], np.uint8)
-    image_file.write_image(tmp_path / "sky.png", codes, ("R", "G", "B"), {})
-    v = codes / 255
-    expected = np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
-    np.testing.assert_allclose(image_file.read_environment(tmp_path / "sky.png"), expected, rtol=1e-5)
-    with pytest.raises(rc.ImageFileError, match="nowhere"):
-        image_file.read_environment(tmp_path / "nowhere.exr")
-    (tmp_path / "broken.exr").write_bytes(b"not an image")
-    with pytest.raises(rc.ImageFileError, match="cannot be read"):
-        image_file.read_environment(tmp_path / "broken.exr")
+    write(tmp_path / "sky.exr", light)
+    np.testing.assert_array_equal(rc.read_environment(tmp_path / "sky.exr"), light)
+    # 8 bits of mantissa under the largest of the three.
+    write(tmp_path / "sky.hdr", light)
+    np.testing.assert_allclose(rc.read_environment(tmp_path / "sky.hdr"), light, atol=100 / 256)
+    for kind, most in ((np.uint8, 255), (np.uint16, 65535)):
+        codes = (np.array([[[0, 0.463, 1], [0.04, 0.737, 0.251]]]) * most).astype(kind)
+        write(tmp_path / "sky.png", codes)
+        np.testing.assert_allclose(
+            rc.read_environment(tmp_path / "sky.png"), srgb_to_linear(codes / most), rtol=1e-5, atol=1e-9
+        )
+    grey = np.array([[[0.5], [2.0]]], np.float32)
+    write(tmp_path / "grey.exr", grey)
+    np.testing.assert_array_equal(rc.read_environment(tmp_path / "grey.exr"), grey.repeat(3, axis=2))
 
 
-def test_a_picture_cut_short_by_a_full_disk_is_no_success(tmp_path: Path) -> None:
-    pixels = np.random.default_rng(1).integers(0, 255, (64, 64, 3), dtype=np.uint8)
-    target = tmp_path / "whole.png"
-    image_file.write_image(target, pixels, ("R", "G", "B"), {})
-    cut = tmp_path / "cut.png"
-    cut.write_bytes(target.read_bytes()[:4096])  # what a disk of 4 KB keeps
-    with pytest.raises(rc.ImageFileError, match="completely"):
-        image_file._check_complete(str(cut), "cut.png", pixels.shape)
+def test_a_scene_takes_an_environment_from_a_file(tmp_path: Path) -> None:
+    light = np.full((4, 8, 3), 7, np.float32)
+    write(tmp_path / "sky.exr", light)
+    camera = scenes.pinhole()
+    from_file = rc.render(scenes.sky(0.0).with_environment(tmp_path / "sky.exr"), camera, spp=1)
+    np.testing.assert_array_equal(from_file.pixels, rc.render(scenes.sky(7.0), camera, spp=1).pixels)
+
+
+def test_what_is_no_environment(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    write(tmp_path / "sky.exr", np.ones((8, 16, 3), np.float32))
+    write(tmp_path / "sky.png", np.ones((8, 16, 3), np.uint8))
+    os.mkfifo(tmp_path / "pipe.exr")
+    (tmp_path / "folder.exr").mkdir()
+    (tmp_path / "text.exr").write_bytes(b"not an image")
+    (tmp_path / "empty.hdr").write_bytes(b"")
+    for name in ("sky.exr", "sky.png"):
+        whole = (tmp_path / name).read_bytes()
+        (tmp_path / f"cut-{name}").write_bytes(whole[: len(whole) // 2])
+    for name, why in {
+        "nowhere.exr": "no such file",
+        "pipe.exr": "pipe",
+        "folder.exr": "folder",
+        "text.exr": "is no picture",
+        "empty.hdr": "is no picture",
+        "cut-sky.exr": "broken or incomplete",
+        "cut-sky.png": "broken or incomplete",
+    }.items():
+        with pytest.raises(rc.ImageFileError, match=f"{name}: .*{why}") as error:
+            rc.read_environment(tmp_path / name)
+        assert "\n" not in str(error.value)
+    captured = capfd.readouterr()
+    assert captured.out == captured.err == ""
+
+
+def textured(folder: Path, name: str) -> np.ndarray:
+    """What the texture of a scene file is, seen by a camera: the mean radiance over pi of a white light."""
+    (folder / "card.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
+    (folder / "card.obj").write_text(
+        "mtllib card.mtl\nusemtl m\nv -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
+    )
+    scene = rc.Scene.load(folder / "card.obj").with_environment(1.0)
+    assert scene.warnings == []
+    seen = rc.render(scene, scenes.pinhole(), spp=64, max_bounces=0)
+    sky = rc.render(scenes.sky(1.0), scenes.pinhole(), spp=1)
+    return (seen.pixels / sky.pixels)[6:10, 10:14].mean(axis=(0, 1))
+
+
+@pytest.mark.parametrize("kind", ["uint8 png", "uint16 png", "uint8 tif", "float32 exr", "uint8 bmp", "uint8 tga"])
+def test_alpha_is_not_multiplied_into_a_texture(tmp_path: Path, kind: str) -> None:
+    dtype, suffix = kind.split()
+    most = 65535 if dtype == "uint16" else 255
+    code = np.array([200, 100, 50, 128]) * (most // 255)
+    if dtype == "float32":
+        # OpenEXR keeps colours multiplied by alpha, and linear.
+        alpha = 128 / 255
+        pixel = np.append(srgb_to_linear(code[:3] / 255) * alpha, alpha)
+    else:
+        pixel = code
+    channels = 3 if suffix == "bmp" else 4
+    picture = np.broadcast_to(pixel.astype(dtype), (8, 8, 4))[..., :channels]
+    write(tmp_path / f"card.{suffix}", np.ascontiguousarray(picture), **{"oiio:UnassociatedAlpha": 1})
+    expected = srgb_to_linear(np.array([200, 100, 50]) / 255)
+    # The card is lit by the whole of its half of the sky: what it sends back is its reflectance, but for the noise of
+    # 1024 cosine-distributed samples of a constant, which is none, and 8-bit codes: half a code is 1.2% of the darkest.
+    np.testing.assert_allclose(textured(tmp_path, f"card.{suffix}"), expected, rtol=0.012)
+
+
+def test_a_picture_with_more_pixels_than_memory_is_refused(tmp_path: Path) -> None:
+    """A PNG of 40000 x 40000 says so in 33 bytes."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", 40000, 40000, 8, 2, 0, 0, 0)
+    bomb = (
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"\0" * 100)) + chunk(b"IEND", b"")
+    )
+    (tmp_path / "bomb.png").write_bytes(bomb)
+    with pytest.raises(rc.ImageFileError, match="40000 x 40000 pixels; at most 128 million"):
+        rc.read_environment(tmp_path / "bomb.png")

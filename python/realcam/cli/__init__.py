@@ -1,24 +1,29 @@
-"""The command line: `realcam`."""
+"""The commands that are Python; the others are those of the C++ executable (see realcam_command)."""
 
 from __future__ import annotations
 
 import sys
+from typing import Any, NoReturn
 
 import typer
 
 from .. import __version__
-from .._core import RealcamError, devices
-from . import bench, demo, lens, render
+from .._core import RealcamError
+from . import bench, demo, lens
+from .options import add_command_of_the_executable
+
+# click's, which newer versions of typer bring along under a private name.
+_UsageError: Any = typer.BadParameter.__bases__[0]
 
 app = typer.Typer(
     help="Photographs 3D scenes through real lenses.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # defaults in the help stand in [brackets]
 )
+add_command_of_the_executable(app, "render", "Photograph a scene through a lens.")
 app.add_typer(lens.app, name="lens")
-app.command("render")(render.render)
+add_command_of_the_executable(app, "devices", "List what this machine can render with.")
 app.command("demo")(demo.demo)
 app.command("bench")(bench.bench)
 
@@ -36,25 +41,23 @@ def _options(
     pass
 
 
-@app.command("devices")
-def list_devices() -> None:
-    """List what this machine can render with."""
-    for line in devices():
-        typer.echo(line)
-
-
-def main() -> None:
-    """Runs the command line; the user's mistakes end in one line on stderr and exit code 2."""
+def run() -> None:
+    """Runs the command line; the user's mistakes end in one line on stderr and exit code 2, Ctrl-C in 130."""
     try:
-        app()
+        sys.exit(app(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
+    except _UsageError as error:
+        _fail(f"{error.format_message()} (--help lists the options)")
     except RealcamError as error:
         _fail(str(error))
     except OSError as error:
         _fail(f"{error.filename or 'file'}: {error.strerror or error}")
     except MemoryError:
         _fail("out of memory; fewer pixels or a smaller scene are wanted")
+    except (KeyboardInterrupt, typer.Abort):
+        print("realcam: stopped", file=sys.stderr)
+        sys.exit(130)
 
 
-def _fail(message: str) -> None:
-    print(f"realcam: error: {message}", file=sys.stderr)
+def _fail(message: str) -> NoReturn:
+    print(f"realcam: error: {' '.join(message.split())}", file=sys.stderr)
     sys.exit(2)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from realcam_command import executable
 
-from .._core import Camera, InputError
-from ..progress import progress_bar
-from ..render import render
-from ..shot import read_shot
-from ..summary import summary
-from . import options
+from .._core import InputError, Lens
 
 
 def demo(
@@ -24,42 +23,40 @@ def demo(
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
 
-    shot = read_shot(_scenes_folder() / "demo.toml")
+    shot = _scenes_folder() / "demo.toml"
+    is_new = not output.exists()
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{output}: the folder cannot be made: {error.strerror}") from None
-    camera = shot.camera
-    with options.stoppable():
-        with progress_bar("photographing") as bar:
-            image = render(shot.scene, camera, spp=spp, progress=bar)
-        image.save(output / "demo.png")
-        image.save(output / "demo.exr")
-        with progress_bar("thin lens, for comparison") as bar:
-            ideal = render(shot.scene, _as_thin_lens(camera), spp=max(1, spp // 4), progress=bar)
-        ideal.save(output / "demo-thin-lens.png")
-        save_cross_section(camera.lens, output / "lens.png")
-    typer.echo(summary(image))
+    try:
+        _render(shot, spp, output / "demo.png", output / "demo.exr")
+        _render(shot, max(1, spp // 4), output / "demo-thin-lens.png", "--model", "thin")
+        # As the demo's camera has it: wide open and focused near.
+        save_cross_section(Lens.load("double-gauss-50mm").focused(1.05), output / "lens.png")
+    finally:
+        if is_new:
+            with suppress(OSError):
+                output.rmdir()  # where nothing was written
     for name, what in (
         ("demo.png", "the photograph"),
         ("demo.exr", "its film exposure in lux seconds, and depth"),
         ("demo-thin-lens.png", "the same through an ideal lens: no vignetting, no aberrations"),
         ("lens.png", "the lens and its rays"),
     ):
-        typer.echo(f"{'picture':<11}{output / name}: {what}")
+        typer.echo(f"{output / name}: {what}")
 
 
-def _as_thin_lens(camera: Camera) -> Camera:
-    return Camera(
-        camera.lens,
-        film=camera.film,
-        position=camera.position,
-        look_at=camera.look_at,
-        up=camera.up,
-        exposure_time_s=camera.exposure_time_s,
-        iso=camera.iso,
-        model="thin",
-    )
+def _render(shot: Path, spp: int, *rest: Path | str) -> None:
+    """`realcam render`. Whatever goes wrong it has said itself; Ctrl-C reaches it too."""
+    words = [word if isinstance(word, str) else f"--output={word}" for word in rest]
+    with subprocess.Popen([executable(), "render", shot, "--spp", str(spp), *words]) as program:
+        while True:
+            with suppress(KeyboardInterrupt):
+                code = program.wait()
+                break
+    if code != 0:
+        sys.exit(code if code > 0 else 128 - code)
 
 
 def _scenes_folder() -> Path:

@@ -3,40 +3,30 @@
 from __future__ import annotations
 
 import math
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from fractions import Fraction
 
 import typer
-from rich.console import Console
 
 from .._core import InputError, Lens
 
 
-def console() -> Console:
-    """Stdout, wide enough for the tables where it is a file or a pipe."""
-    result = Console()
-    return result if result.is_terminal else Console(width=160)
+def add_command_of_the_executable(app: typer.Typer, name: str, help: str) -> None:
+    """Lists a command in the help; realcam_command has handed it to the executable before anybody gets here."""
+
+    def command() -> None:
+        raise InputError(f'"{name}" is a command of the executable; options come after it')
+
+    app.command(name, help=help)(command)
 
 
 def number(text: str, what: str) -> float:
-    """A number, a fraction such as 1/125, or inf. Raises InputError."""
+    """A number, or inf. Raises InputError."""
     try:
-        if text.strip().lower() in ("inf", "infinity"):
-            return math.inf
-        return float(Fraction(text.strip())) if "/" in text else float(text)
-    except (ValueError, ZeroDivisionError):
-        raise InputError(f'{what} is "{text}"; a number is wanted') from None
-
-
-def numbers(text: str, separator: str, count: int, what: str) -> tuple[float, ...]:
-    """So many numbers with a separator in between. Raises InputError."""
-    parts = text.lower().split(separator)
-    if len(parts) != count:
-        wanted = separator.join("xyz"[:count] if separator == "," else ("width", "height"))
-        raise InputError(f'{what} is "{text}"; {wanted} is wanted')
-    return tuple(number(part, what) for part in parts)
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if math.isnan(value):
+        raise InputError(f'{what}: "{text}" is not a number')
+    return value
 
 
 def lens(name: str, focus: str | None, f_number: float | None) -> Lens:
@@ -47,13 +37,3 @@ def lens(name: str, focus: str | None, f_number: float | None) -> Lens:
     if f_number is not None:
         result = result.stopped_down(f_number)
     return result
-
-
-@contextmanager
-def stoppable() -> Iterator[None]:
-    """Ctrl-C ends the work with one line and exit code 130."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        print("realcam: stopped; nothing was written", file=sys.stderr)
-        raise typer.Exit(130) from None

@@ -1,0 +1,46 @@
+#include <pybind11/stl.h>
+
+#include "../io/image_metadata.hpp"
+#include "../shot/shot_file.hpp"
+#include "bindings.hpp"
+#include "picture_readers.hpp"
+#include "render_turn.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// Scene, camera and the settings for render().
+py::tuple read_shot(const py::object& path, const std::string& device, const py::object& progress) {
+    const shot::ShotRequest request = shot::read_shot_file(path_from(path));
+    Camera camera = shot::camera_of(request);
+    shot::Shot shot = shot::set_up(request, std::move(camera), shot::scene_of(request, picture_readers()));
+    if (!request.exposure_time_s) {
+        Backend& backend = backend_for(device);
+        const Progress report = progress_of(progress);
+        const py::gil_scoped_release release;
+        const RenderTurn turn;
+        meter(shot, request, backend, report);
+    }
+    const RenderSettings& settings = request.settings;
+    return py::make_tuple(shot.scene, shot.camera, settings.spp, settings.seed, settings.max_bounces,
+                          request.tone == ToneCurve::film ? "film" : "linear");
+}
+
+py::dict metadata(const Camera& camera, int spp, std::uint32_t seed) {
+    py::dict entries;
+    for (const auto& [name, value] : io::metadata_of(camera, {spp, seed, 0, 0}).entries())
+        entries[py::str(name)] = value;
+    return entries;
+}
+
+}  // namespace
+
+void bind_shot(py::module_& m) {
+    m.def("_read_shot", &read_shot, "path"_a, "device"_a, "progress"_a);
+    m.def("_metadata", &metadata, "camera"_a, "spp"_a, "seed"_a);
+}
+
+}  // namespace realcam::bindings

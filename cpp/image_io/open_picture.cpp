@@ -1,0 +1,29 @@
+#include "open_picture.hpp"
+
+#include <fstream>
+#include <vector>
+
+#include "../io/readable_file.hpp"
+#include "image_format.hpp"
+
+namespace realcam::image_io {
+
+std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<const std::uint8_t> bytes) {
+    std::vector<std::uint8_t> beginning(bytes.begin(), bytes.begin() + std::min(bytes.size(), kFormatBytes));
+    if (!path.empty()) {
+        const std::string why = io::why_unreadable(path);
+        if (!why.empty()) throw Error(why);
+        beginning.resize(kFormatBytes);
+        std::ifstream file(path, std::ios::binary);
+        file.read(reinterpret_cast<char*>(beginning.data()), kFormatBytes);
+        beginning.resize(static_cast<std::size_t>(file.gcount()));
+    }
+    const std::string format = image_format(beginning, path);
+    if (format.empty()) throw Error(std::string("is no picture; ") + kReadFormats + " is wanted");
+    auto picture = format == "png" ? open_png(path, bytes) : open_with_openimageio(format, path, bytes);
+    if (picture->width < 1 || picture->height < 1 || picture->channels < 1)
+        throw Error("is no flat picture with colours");
+    return picture;
+}
+
+}  // namespace realcam::image_io

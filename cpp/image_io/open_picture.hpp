@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "../error.hpp"
+#include "../keep_going.hpp"
+
+namespace realcam::image_io {
+
+/// A picture file, opened and not yet decoded.
+class OpenPicture {
+public:
+    virtual ~OpenPicture() = default;
+
+    int width = 0, height = 0;
+    int channels = 0;  ///< of those that are read: grey, grey and alpha, RGB, or RGB and alpha
+    bool is_linear = false;  ///< floating-point numbers, and not codes for a screen
+    bool has_associated_alpha = false;  ///< colours are multiplied by alpha
+
+    std::size_t pixel_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+
+    /// Decodes the first `count` channels of each pixel to the beginning of its `stride` values, whole codes from 0 to
+    /// 255, or numbers of which 1 is white. Throws Error, with the reason alone, and Cancelled.
+    virtual void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) = 0;
+    virtual void read(int count, int stride, float* pixels, const KeepGoing& keep_going) = 0;
+};
+
+/// Opens the file `path`, or, where it is empty, the bytes of one, which have to outlive the result. Throws Error, with
+/// the reason alone.
+std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<const std::uint8_t> bytes);
+
+/// The parts of open_picture: a PNG, and what OpenImageIO reads as `format`.
+std::unique_ptr<OpenPicture> open_png(const std::string& path, std::span<const std::uint8_t> bytes);
+std::unique_ptr<OpenPicture> open_with_openimageio(const std::string& format, const std::string& path,
+                                                   std::span<const std::uint8_t> bytes);
+
+/// What a decoder says of data that it cannot decode.
+inline constexpr const char* kBroken = "is broken or incomplete";
+
+inline void check(const KeepGoing& keep_going) {
+    if (keep_going && !keep_going()) throw Cancelled();
+}
+
+}  // namespace realcam::image_io

@@ -1,0 +1,135 @@
+// PNG through libpng itself: under OpenImageIO, libpng prints its errors and warnings on stderr.
+
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "open_picture.hpp"
+
+namespace realcam::image_io {
+namespace {
+
+class PngPicture final : public OpenPicture {
+public:
+    PngPicture(const std::string& path, std::span<const std::uint8_t> bytes) : bytes_(bytes) {
+        if (!path.empty()) file_.open(path, std::ios::binary);
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, take_error, ignore_warning);
+        info_ = png_ ? png_create_info_struct(png_) : nullptr;
+        if (!info_) throw std::bad_alloc();
+        png_set_read_fn(png_, this, read_bytes);
+        // Colour profiles, texts and times are not looked at: the pixels are taken for sRGB.
+        png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+        require(guarded([this] { read_header(); }));
+        width = static_cast<int>(png_get_image_width(png_, info_));
+        height = static_cast<int>(png_get_image_height(png_, info_));
+        channels = png_get_channels(png_, info_);
+        bytes_per_value_ = png_get_bit_depth(png_, info_) == 16 ? 2 : 1;
+    }
+    ~PngPicture() override { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+    void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {
+        read_as(count, stride, pixels, keep_going, [](int code, int most) {
+            return static_cast<std::uint8_t>(most == 255 ? code : (code * 255 + most / 2) / most);
+        });
+    }
+    void read(int count, int stride, float* pixels, const KeepGoing& keep_going) override {
+        read_as(count, stride, pixels, keep_going,
+                [](int code, int most) { return static_cast<float>(code) / static_cast<float>(most); });
+    }
+
+private:
+    static void take_error(png_structp png, png_const_charp message) {
+        auto& self = *static_cast<PngPicture*>(png_get_error_ptr(png));
+        std::strncpy(self.error_, message, sizeof self.error_ - 1);
+        std::longjmp(self.after_error_, 1);
+    }
+    static void ignore_warning(png_structp, png_const_charp) {}
+
+    static void read_bytes(png_structp png, png_bytep to, png_size_t count) {
+        auto& self = *static_cast<PngPicture*>(png_get_io_ptr(png));
+        if (self.file_.is_open()) {
+            self.file_.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(count));
+            if (static_cast<png_size_t>(self.file_.gcount()) != count) png_error(png, "it ends early");
+            return;
+        }
+        if (self.bytes_.size() < count) png_error(png, "it ends early");
+        std::memcpy(to, self.bytes_.data(), count);
+        self.bytes_ = self.bytes_.subspan(count);
+    }
+
+    /// Calls into libpng. False where it jumped out, so that `work` may own nothing.
+    template <class Work>
+    bool guarded(const Work& work) {
+        if (setjmp(after_error_) != 0) return false;
+        work();
+        return true;
+    }
+    void require(bool good) const {
+        if (!good) throw Error(std::string(kBroken) + " (" + error_ + ")");
+    }
+
+    void read_header() {
+        png_read_info(png_, info_);
+        png_set_expand(png_);  // palettes, fewer than 8 bits, and a colour that stands for transparency
+        png_set_swap(png_);    // 16 bits as this machine has them
+        passes_ = png_set_interlace_handling(png_);
+        png_read_update_info(png_, info_);
+    }
+
+    /// A chunk of rows that libpng has left off at; an interlaced picture is put together in memory first.
+    template <class Value, class Convert>
+    void read_as(int count, int stride, Value* pixels, const KeepGoing& keep_going, Convert&& convert) {
+        constexpr int kRows = 64;  // between two looks at keep_going
+        const std::size_t row_bytes = png_get_rowbytes(png_, info_);
+        const int held = passes_ > 1 ? height : std::min(kRows, height);
+        std::vector<std::uint8_t> rows(row_bytes * static_cast<std::size_t>(held));
+        for (int pass = 0; pass < passes_; ++pass)
+            for (int y = 0; y < height; y += kRows) {
+                check(keep_going);
+                const int end = std::min(y + kRows, height);
+                std::uint8_t* first = rows.data() + (passes_ > 1 ? row_bytes * static_cast<std::size_t>(y) : 0);
+                require(guarded([&] {
+                    for (int row = y; row < end; ++row)
+                        png_read_row(png_, first + row_bytes * static_cast<std::size_t>(row - y), nullptr);
+                }));
+                if (pass + 1 < passes_) continue;
+                for (int row = y; row < end; ++row)
+                    spread(first + row_bytes * static_cast<std::size_t>(row - y), count, stride,
+                           pixels + static_cast<std::size_t>(row) * static_cast<std::size_t>(width) *
+                                        static_cast<std::size_t>(stride),
+                           convert);
+            }
+    }
+
+    template <class Value, class Convert>
+    void spread(const std::uint8_t* row, int count, int stride, Value* pixels, Convert&& convert) const {
+        const int most = bytes_per_value_ == 2 ? 65535 : 255;
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < count; ++c) {
+                const int i = x * channels + c;
+                std::uint16_t wide = 0;
+                if (bytes_per_value_ == 2) std::memcpy(&wide, row + 2 * i, sizeof wide);
+                pixels[x * stride + c] = convert(bytes_per_value_ == 2 ? wide : row[i], most);
+            }
+    }
+
+    std::span<const std::uint8_t> bytes_;
+    std::ifstream file_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+    int passes_ = 1, bytes_per_value_ = 1;
+    std::jmp_buf after_error_;
+    char error_[100] = "";
+};
+
+}  // namespace
+
+std::unique_ptr<OpenPicture> open_png(const std::string& path, std::span<const std::uint8_t> bytes) {
+    return std::make_unique<PngPicture>(path, bytes);
+}
+
+}  // namespace realcam::image_io

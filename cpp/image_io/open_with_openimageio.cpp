@@ -1,0 +1,82 @@
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+
+#include "open_picture.hpp"
+
+namespace realcam::image_io {
+namespace {
+
+using OIIO::ImageInput;
+using OIIO::ImageSpec;
+
+/// The first line of what OpenImageIO says, unless its own formatting of it failed.
+std::string reason(const std::string& said) {
+    const std::string line = said.substr(0, said.find('\n'));
+    return line.empty() || line.find("fixme") != std::string::npos ? "" : " (" + line + ")";
+}
+
+class OpenImageIoPicture final : public OpenPicture {
+public:
+    OpenImageIoPicture(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes) {
+        ImageSpec wishes, spec;
+        wishes.attribute("oiio:UnassociatedAlpha", 1);
+        if (path.empty()) {
+            memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
+            OIIO::Filesystem::IOProxy* proxy = memory_.get();
+            wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+        }
+        input_ = ImageInput::create(format);
+        if (!input_) throw Error("OpenImageIO cannot read " + format + reason(OIIO::geterror()));
+        if (!input_->open(path.empty() ? "memory." + format : path, spec, wishes))
+            throw Error(kBroken + reason(input_->geterror()));
+        const ImageSpec& found = input_->spec();
+        if (found.depth > 1 || found.deep) return;  // no picture of flat pixels
+        width = found.width;
+        height = found.height;
+        channels = std::min(found.nchannels, 4);
+        is_linear = found.format.is_floating_point();
+        // OpenEXR multiplies colours by alpha, whatever a reader wishes.
+        has_associated_alpha = format == "openexr" && found.alpha_channel == 3;
+    }
+
+    void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {
+        read_as(count, stride, pixels, keep_going);
+    }
+    void read(int count, int stride, float* pixels, const KeepGoing& keep_going) override {
+        read_as(count, stride, pixels, keep_going);
+    }
+
+private:
+    template <class Value>
+    void read_as(int count, int stride, Value* pixels, const KeepGoing& keep_going) {
+        constexpr int kRows = 64;  // between two looks at keep_going
+        const auto step = static_cast<OIIO::stride_t>(static_cast<std::size_t>(stride) * sizeof(Value));
+        const auto type = OIIO::BaseTypeFromC<Value>::value;
+        const ImageSpec& s = input_->spec();
+        const auto require = [&](bool good) {
+            if (!good) throw Error(kBroken + reason(input_->geterror()));
+        };
+        if (s.tile_width > 0) return require(input_->read_image(0, 0, 0, count, type, pixels, step));
+        for (int y = 0; y < s.height; y += kRows) {
+            check(keep_going);
+            const std::size_t offset =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(s.width) * static_cast<std::size_t>(stride);
+            require(input_->read_scanlines(0, 0, s.y + y, s.y + std::min(y + kRows, s.height), s.z, 0, count, type,
+                                           pixels + offset, step));
+        }
+    }
+
+    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives the input
+    std::unique_ptr<ImageInput> input_;
+};
+
+}  // namespace
+
+std::unique_ptr<OpenPicture> open_with_openimageio(const std::string& format, const std::string& path,
+                                                   std::span<const std::uint8_t> bytes) {
+    return std::make_unique<OpenImageIoPicture>(format, path, bytes);
+}
+
+}  // namespace realcam::image_io

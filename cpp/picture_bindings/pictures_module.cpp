@@ -1,0 +1,76 @@
+// realcam._pictures: picture files for Python. Apart from _core and imported when the first picture is read or written,
+// because OpenImageIO brings some 200 libraries along.
+
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstring>
+#include <string>
+
+#include "../image_io/image_file.hpp"
+
+namespace realcam {
+namespace {
+
+namespace py = pybind11;
+using namespace py::literals;
+
+/// Hears Ctrl-C. Called without the interpreter's lock.
+bool no_signal() {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    return true;
+}
+
+py::object read_texture(const std::string& path, const py::buffer& encoded) {
+    const py::buffer_info bytes = encoded.request();
+    std::optional<io::DecodedImage> image;
+    {
+        const py::gil_scoped_release release;
+        image = image_io::read_image(
+            path, {static_cast<const std::uint8_t*>(bytes.ptr), static_cast<std::size_t>(bytes.size)}, no_signal);
+    }
+    if (!image) return py::none();
+    py::array_t<std::uint8_t> pixels({image->height, image->width, 4});
+    std::memcpy(pixels.mutable_data(), image->rgba.data(), image->rgba.size());
+    return pixels;
+}
+
+py::array_t<float> read_environment(const std::string& path) {
+    Environment environment;
+    {
+        const py::gil_scoped_release release;
+        environment = image_io::read_environment(path, no_signal);
+    }
+    py::array_t<float> pixels({environment.height, environment.width, 3});
+    std::memcpy(pixels.mutable_data(), environment.pixels.data(), environment.pixels.size() * sizeof(Vec3f));
+    return pixels;
+}
+
+using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+void write_picture(const std::string& path, const FloatArray& exposure, const FloatArray& depth, const Camera& camera,
+                   int spp, std::uint32_t seed, bool film_tone) {
+    if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
+        depth.shape(1) != exposure.shape(1))
+        throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
+    const image_io::PictureView picture{static_cast<int>(depth.shape(1)), static_cast<int>(depth.shape(0)),
+                                        exposure.data(), depth.data()};
+    const py::gil_scoped_release release;
+    image_io::write_image(picture, path, io::metadata_of(camera, {spp, seed, 0, 0}),
+                          film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
+}
+
+}  // namespace
+}  // namespace realcam
+
+PYBIND11_MODULE(_pictures, m) {
+    using namespace realcam;
+    m.doc() = "Picture files, through OpenImageIO. Paths are bytes, as os.fsencode makes them.";
+    m.def("read_texture", &read_texture, "path"_a, "encoded"_a);
+    m.def("read_environment", &read_environment, "path"_a);
+    m.def("write_picture", &write_picture, "path"_a, "exposure"_a, "depth"_a, "camera"_a, "spp"_a, "seed"_a,
+          "film_tone"_a);
+    m.def("check_image_path", &image_io::check_image_path, "path"_a);
+}

@@ -1,0 +1,29 @@
+#pragma once
+#include <optional>
+#include <string_view>
+
+#include "../camera/camera_view.hpp"
+#include "../camera/develop.hpp"
+
+namespace realcam::shot {
+
+// The words for camera models and tone curves, as command line and shot files have them.
+
+inline constexpr const char* kModelNames = "full, thick, thin or pinhole";
+inline constexpr const char* kToneNames = "film or linear";
+
+inline std::optional<CameraModel> model_named(std::string_view name) {
+    if (name == "full") return CameraModel::full_lens;
+    if (name == "thick") return CameraModel::thick_lens;
+    if (name == "thin") return CameraModel::thin_lens;
+    if (name == "pinhole") return CameraModel::pinhole;
+    return std::nullopt;
+}
+
+inline std::optional<ToneCurve> tone_named(std::string_view name) {
+    if (name == "film") return ToneCurve::film;
+    if (name == "linear") return ToneCurve::linear;
+    return std::nullopt;
+}
+
+}  // namespace realcam::shot

@@ -1,0 +1,67 @@
+#include "shot.hpp"
+
+#include <utility>
+
+#include "../camera/default_film.hpp"
+#include "../error.hpp"
+#include "../io/lens_file.hpp"
+#include "../render/daylight.hpp"
+#include "../render/metering.hpp"
+
+namespace realcam::shot {
+namespace {
+
+void add_texture(Scene& scene, const std::string& path, const PictureReaders& readers) {
+    auto image = readers.texture(path, {});
+    if (!image) throw InputError(path + ": cannot be read as a texture");
+    if (scene.uvs.empty()) throw InputError(path + ": the scene has no texture coordinates to lay a texture by");
+    const auto index = static_cast<std::int32_t>(scene.textures.size());
+    scene.textures.push_back({path, image->width, image->height, std::move(image->rgba)});
+    for (Material& material : scene.materials) material.diffuse_texture = index;
+}
+
+}  // namespace
+
+Camera camera_of(const ShotRequest& request) {
+    Camera camera;
+    camera.lens = io::read_lens(request.lens);
+    if (request.f_number) camera.lens = stopped_down(camera.lens, *request.f_number);
+    camera.film = default_film(camera.lens, request.film_mm, request.resolution);
+    camera.model = request.model;
+    camera.iso = request.iso;
+    if (request.exposure_time_s) camera.exposure_time_s = *request.exposure_time_s;
+    validate(camera);
+    if (request.view.focus_distance_m) focused(camera.lens, 1000 * *request.view.focus_distance_m);
+    return camera;
+}
+
+Assembly scene_of(const ShotRequest& request, const PictureReaders& readers) {
+    Assembly scene = io::read_scene(request.scene, {request.scale}, readers.texture);
+    if (request.texture.empty() && !request.chooses_environment()) return scene;
+    return with_static_geometry(std::move(scene), [&](Scene& changed) {
+        if (!request.texture.empty()) add_texture(changed, request.texture, readers);
+        if (!request.environment_file.empty()) changed.environment = readers.environment(request.environment_file);
+        if (request.environment_cd_m2) {
+            changed.environment = {};
+            changed.environment.constant = *request.environment_cd_m2;
+        }
+    });
+}
+
+Shot set_up(const ShotRequest& request, Camera camera, Assembly scene) {
+    Shot shot{std::move(scene), std::move(camera)};
+    set_view(shot.camera, shot.scene, request.view);
+    shot.has_daylight = !shot.scene.has_light() && !request.chooses_environment();
+    if (shot.has_daylight)
+        shot.scene = with_static_geometry(std::move(shot.scene),
+                                          [&](Scene& changed) { add_daylight(changed, shot.camera.pose); });
+    return shot;
+}
+
+void meter(Shot& shot, const ShotRequest& request, Backend& backend, const Progress& progress) {
+    if (request.exposure_time_s) return;
+    shot.camera.exposure_time_s = metered_exposure_time(backend, shot.scene, shot.camera, request.settings, progress);
+    shot.is_metered = true;
+}
+
+}  // namespace realcam::shot

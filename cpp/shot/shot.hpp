@@ -1,0 +1,41 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "../io/scene_file.hpp"
+#include "../scene/assembly.hpp"
+#include "shot_request.hpp"
+
+namespace realcam::shot {
+
+/// How pictures are read: the programs give OpenImageIO's.
+struct PictureReaders {
+    io::ImageReader texture;
+    std::function<Environment(const std::string& path)> environment;
+};
+
+/// A scene in its light, and the camera that photographs it.
+struct Shot {
+    Assembly scene;
+    Camera camera;
+    bool has_daylight = false;  ///< chosen, because the scene brings no light
+    bool is_metered = false;    ///< the exposure time was chosen
+};
+
+/// Lens, film and dials, before the camera is placed. Throws InputError and LensFileError for all that can be found
+/// wrong before the scene is read: nobody should wait for a picture and be told then.
+Camera camera_of(const ShotRequest& request);
+
+/// The scene of a request in the environment of the request. Throws InputError, SceneFileError and ImageFileError.
+Assembly scene_of(const ShotRequest& request, const PictureReaders& readers);
+
+/// Places and focuses the camera as asked for, and otherwise as set_view says; brings daylight where there is no light.
+/// An environment that was asked for counts as light even where it is dark. Throws InputError.
+Shot set_up(const ShotRequest& request, Camera camera, Assembly scene);
+
+/// Sets the exposure time, unless the request has one, from a quick picture with the settings of the request (see
+/// metered_exposure_time).
+void meter(Shot& shot, const ShotRequest& request, Backend& backend, const Progress& progress);
+
+}  // namespace realcam::shot

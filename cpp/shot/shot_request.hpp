@@ -1,0 +1,39 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+
+#include "../camera/camera.hpp"
+#include "../camera/develop.hpp"
+#include "../render/backend.hpp"
+#include "../render/default_view.hpp"
+
+namespace realcam::shot {
+
+/// What a user says of a photograph, on the command line or in a shot file. What is left out is chosen (shot.hpp).
+struct ShotRequest {
+    std::string scene;  ///< a file
+    double scale = 1;   ///< metres per unit of it
+    std::string texture;  ///< a picture for every material; empty: the scene's own
+    std::optional<Vec3f> environment_cd_m2;
+    std::string environment_file;
+
+    std::string lens = "double-gauss-50mm";  ///< a bundled one, or a file
+    std::optional<double> f_number;
+    std::optional<std::array<double, 2>> film_mm;
+    std::optional<std::array<int, 2>> resolution;
+    ViewRequest view;
+    CameraModel model = CameraModel::full_lens;
+    std::optional<double> exposure_time_s;
+    double iso = 100;
+
+    RenderSettings settings = {64, 0, 1, 0};
+    ToneCurve tone = ToneCurve::film;
+
+    bool chooses_environment() const { return environment_cd_m2 || !environment_file.empty(); }
+};
+
+/// Throws InputError unless it is a luminance that a scene can be lit with.
+void check_environment(Vec3f radiance_cd_m2);
+
+}  // namespace realcam::shot

@@ -1,0 +1,5 @@
+"""`python -m realcam`: the command."""
+
+from realcam_command import main
+
+main()

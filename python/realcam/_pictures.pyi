@@ -1,0 +1,17 @@
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import Camera
+
+def read_texture(path: bytes, encoded: bytes) -> NDArray[np.uint8] | None: ...
+def read_environment(path: bytes) -> NDArray[np.float32]: ...
+def write_picture(
+    path: bytes,
+    exposure: NDArray[np.float32],
+    depth: NDArray[np.float32],
+    camera: Camera,
+    spp: int,
+    seed: int,
+    film_tone: bool,
+) -> None: ...
+def check_image_path(path: bytes) -> None: ...
