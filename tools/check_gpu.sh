@@ -28,9 +28,10 @@ step() {  # step NAME COMMAND...: its output goes to a log, of which the end is 
 }
 
 settings=(-DREALCAM_PYTHON=ON "-DPython_EXECUTABLE=$python" -DREALCAM_WERROR=OFF)
+[[ -e /usr/include/OpenImageIO/imageio.h ]] || settings+=(-DREALCAM_OPENIMAGEIO=OFF)
 
 bench() {
-    "$python" -c 'from realcam.cli import main; main()' bench --json \
+    "$python" -m realcam bench --json \
         gpu-lens-rays gpu-hits gpu-paths gpu-frames gpu-objects >"$out/gpu.json"
 }
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
+
 import pytest
 import realcam as rc
 
@@ -16,3 +18,8 @@ def device(request: pytest.FixtureRequest) -> str:
 def backend(device: str) -> str:
     """What a measurement calls it."""
     return {"cpu": "Embree", "cuda": "CUDA"}.get(device, device)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    if item.get_closest_marker("pictures") and find_spec("realcam._pictures") is None:
+        pytest.skip("this build of realcam has no OpenImageIO")

@@ -18,6 +18,7 @@ import realcam as rc
 
 from . import scenes
 
+pytestmark = pytest.mark.pictures
 ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -88,7 +88,7 @@ NO_ENVIRONMENT = {
     "infinite": math.inf,
     "two numbers": (1, 2),
     "negative colour": (1, 2, -3),
-    "text": "bright",
+    "an object": object(),
     "flat image": np.zeros((3, 4)),
     "four channels": np.zeros((2, 4, 4)),
     "empty image": np.zeros((0, 4, 3)),

@@ -15,7 +15,7 @@ import realcam as rc
 from realcam_command import executable
 
 ROOT = Path(__file__).resolve().parents[2]
-pytestmark = pytest.mark.skipif(
+pytestmark = pytest.mark.pictures
     not executable().is_file(), reason="this build has no executable (OpenImageIO is absent)"
 )
 
