@@ -17,44 +17,10 @@ from pathlib import Path
 
 import drjit as dr
 import mitsuba as mi
-import numpy as np
-from realcam.bench import frame_scene_arrays
+from mitsuba_scene import frame_scene, sensor
+from realcam.bench import gpu_camera
 
-WIDTH, HEIGHT, SPP, ROUNDS = 1920, 1280, 256, 4
-
-
-def mesh(name: str, vertices: np.ndarray, faces: np.ndarray, radiance: float = 0.0) -> mi.Mesh:
-    properties = mi.Properties()
-    properties["mesh_bsdf"] = mi.load_dict({"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.5}})
-    if radiance:
-        properties["mesh_emitter"] = mi.load_dict({"type": "area", "radiance": {"type": "rgb", "value": radiance}})
-    result = mi.Mesh(name, len(vertices), len(faces), props=properties)
-    parameters = mi.traverse(result)
-    parameters["vertex_positions"] = vertices.astype(np.float32).ravel()
-    parameters["faces"] = faces.astype(np.uint32).ravel()
-    parameters.update()
-    return result
-
-
-def sensor(kind: str) -> dict:
-    # The double Gauss at 5 m: 51.9 mm, f/2.
-    settings = {
-        "type": kind,
-        "fov": 2 * np.degrees(np.arctan(18 / 52.5)),
-        "fov_axis": "x",
-        "to_world": mi.ScalarTransform4f().look_at(origin=[0, 1.5, 4], target=[0, 0.3, -4], up=[0, 1, 0]),
-        "film": {
-            "type": "hdrfilm",
-            "width": WIDTH,
-            "height": HEIGHT,
-            "pixel_format": "rgb",
-            "rfilter": {"type": "box"},
-        },
-        "sampler": {"type": "independent"},
-    }
-    if kind == "thinlens":
-        settings |= {"aperture_radius": 0.013, "focus_distance": 5.0}
-    return settings
+(WIDTH, HEIGHT), SPP, ROUNDS = gpu_camera().film.resolution, 256, 4
 
 
 def best_rate(count: float, work: Callable[[], object]) -> float:
@@ -69,7 +35,7 @@ def best_rate(count: float, work: Callable[[], object]) -> float:
 
 
 def paths_per_second(scene: mi.Scene, kind: str) -> float:
-    camera = mi.load_dict(sensor(kind))
+    camera = mi.load_dict(sensor(kind, gpu_camera()))
     integrator = mi.load_dict({"type": "direct", "emitter_samples": 1, "bsdf_samples": 0})
     # A wavefront holds at most 2^32 samples, and 32 to a pass are as fast as more.
     passes = SPP // 32
@@ -82,7 +48,7 @@ def paths_per_second(scene: mi.Scene, kind: str) -> float:
 
 
 def bounce_rays(scene: mi.Scene, uniform: bool) -> mi.Ray3f:
-    camera = mi.load_dict(sensor("perspective"))
+    camera = mi.load_dict(sensor("perspective", gpu_camera()))
     index = dr.arange(mi.UInt32, WIDTH * HEIGHT)
     position = mi.Point2f((index % WIDTH + 0.5) / WIDTH, (index // WIDTH + 0.5) / HEIGHT)
     rays, _ = camera.sample_ray(0.0, 0.5, position, mi.Point2f(0.5))
@@ -104,14 +70,10 @@ def hits_per_second(scene: mi.Scene, rays: mi.Ray3f) -> float:
 
 def main(output: Path) -> None:
     mi.set_variant("cuda_ad_rgb")
-    vertices, faces, materials = frame_scene_arrays(spheres=103, boxes=50)
-    lamp = materials == 1
-    scene = mi.load_dict(
-        {"type": "scene", "a": mesh("a", vertices, faces[~lamp]), "b": mesh("b", vertices, faces[lamp], 2000.0)}
-    )
+    scene = frame_scene(spheres=103, boxes=50)
     record = {
         "name": f"Mitsuba {mi.__version__} (OptiX)",
-        "triangles": len(faces),
+        "triangles": sum(shape.face_count() for shape in scene.shapes()),
         "paths": {kind: paths_per_second(scene, kind) for kind in ("perspective", "thinlens")},
         "closest_hits": {
             "cosine": hits_per_second(scene, bounce_rays(scene, uniform=False)),

@@ -25,12 +25,17 @@ foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
   endif()
 endforeach()
 
-set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/realcam)
+set(realcam_package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/realcam)
 install(TARGETS realcam_optics EXPORT realcamTargets COMPONENT optics)
-install(EXPORT realcamTargets NAMESPACE realcam:: DESTINATION ${package_folder} COMPONENT optics)
+install(EXPORT realcamTargets NAMESPACE realcam:: DESTINATION ${realcam_package_folder} COMPONENT optics)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/realcamConfig.cmake.in
-  ${PROJECT_BINARY_DIR}/realcamConfig.cmake INSTALL_DESTINATION ${package_folder})
+  ${PROJECT_BINARY_DIR}/realcamConfig.cmake INSTALL_DESTINATION ${realcam_package_folder})
+# Headers serve any processor.
+set(any_processor "")
+if(REALCAM_HEADERS_ONLY)
+  set(any_processor ARCH_INDEPENDENT)
+endif()
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/realcamConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+  COMPATIBILITY SameMinorVersion ${any_processor})
 install(FILES ${PROJECT_BINARY_DIR}/realcamConfig.cmake ${PROJECT_BINARY_DIR}/realcamConfigVersion.cmake
-  DESTINATION ${package_folder} COMPONENT optics)
+  DESTINATION ${realcam_package_folder} COMPONENT optics)

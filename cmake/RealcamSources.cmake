@@ -1,4 +1,5 @@
-# The sources of each library: one folder, one library. CONFIGURE_DEPENDS notices a file that is added or removed.
+# The sources of each library: one folder, one library, but for io. CONFIGURE_DEPENDS notices a file that is added or
+# removed.
 macro(realcam_sources variable folder)
   file(GLOB ${variable} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cpp
        ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cu)
@@ -15,9 +16,20 @@ realcam_sources(REALCAM_BVH_SOURCES bvh)
 realcam_sources(REALCAM_CUDA_SOURCES cuda)
 realcam_sources(REALCAM_DEVICES_SOURCES devices)
 
+# The readers of lens files and glasses are a library of their own, so that who uses lenses needs nothing that reads
+# scenes.
+set(REALCAM_LENS_IO_SOURCES ${REALCAM_IO_SOURCES})
+list(FILTER REALCAM_LENS_IO_SOURCES INCLUDE REGEX "/(lens_file|glass_catalogue|nearest_names)\\.cpp$")
+list(REMOVE_ITEM REALCAM_IO_SOURCES ${REALCAM_LENS_IO_SOURCES})
+
 # Built once for each instruction set, see RealcamInstructionSets.cmake.
 list(FILTER REALCAM_EMBREE_SOURCES EXCLUDE REGEX "/kernels\\.cpp$")
 
+if(REALCAM_LENSES_ONLY)
+  foreach(library IN ITEMS IO IMAGE_IO EMBREE APP BINDINGS BVH CUDA DEVICES)
+    set(REALCAM_${library}_SOURCES "")
+  endforeach()
+endif()
 if(NOT REALCAM_PYTHON)
   set(REALCAM_BINDINGS_SOURCES "")
   set(REALCAM_PICTURE_BINDINGS_SOURCES "")

@@ -8,12 +8,13 @@ macro(realcam_need found what package)
   endif()
 endmacro()
 
+# Used as headers alone; the packages of some systems ask for pkg-config as well.
+find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h)
+realcam_need(TOMLPLUSPLUS_INCLUDE_DIR "toml++, reads lens files" libtomlplusplus-dev)
+
 if(REALCAM_IO_SOURCES)
   find_package(assimp CONFIG QUIET)
   realcam_need(assimp_FOUND "assimp, reads scenes" libassimp-dev)
-  # Used as headers alone; the packages of some systems ask for pkg-config as well.
-  find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h)
-  realcam_need(TOMLPLUSPLUS_INCLUDE_DIR "toml++, reads lens files" libtomlplusplus-dev)
 endif()
 
 if(REALCAM_EMBREE_SOURCES)

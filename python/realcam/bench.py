@@ -97,6 +97,9 @@ def pass_share(threads: int) -> Result:
     return {"share": shares, "worst": min(shares.values())}
 
 
+FRAME_EMITTER_RADIANCE = 2000.0  # cd/m^2, of the area light of frame_scene_arrays
+
+
 def frame_scene_arrays(spheres: int = 50, boxes: int = 50, rows: int = 32) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Spheres and boxes on a plane under one area light: vertices (m), triangles, a material (1: light) for each."""
     random = np.random.default_rng(1)
@@ -126,9 +129,15 @@ def frame_scene(spheres: int = 50, boxes: int = 50, rows: int = 32, sky: float =
         vertices,
         triangles,
         triangle_materials=materials,
-        materials=[Material(), Material(emission=(2000, 2000, 2000))],
+        materials=[Material(), Material(emission=3 * (FRAME_EMITTER_RADIANCE,))],
     )
     return scene.with_environment(sky) if sky else scene
+
+
+def frame_camera(model: str = "full", film: Film | None = None) -> Camera:
+    """The camera of the frame benchmarks: the double Gauss, wide open, at 5 m; 640 x 640 pixels if no film is given."""
+    lens = Lens.load("double-gauss-50mm").focused(5.0)
+    return Camera(lens, film=film or Film(24, 24, (640, 640)), model=model, position=(0, 1.5, 4), look_at=(0, 0.3, -4))
 
 
 Mesh = tuple[np.ndarray, np.ndarray]
@@ -157,12 +166,7 @@ def _sphere(centre: tuple[float, float, float], radius: float, columns: int = 64
 def frame(threads: int) -> Result:
     """640 x 640 pixels of 20 samples, direct light: CPU seconds by camera model, set-up included."""
     scene = frame_scene()
-    lens = Lens.load("double-gauss-50mm").focused(5.0)
-    film = Film(24, 24, (640, 640))
-    cameras = {
-        m: Camera(lens, film=film, model=m, position=(0, 1.5, 4), look_at=(0, 0.3, -4))
-        for m in ("full", "thick", "thin", "pinhole")
-    }
+    cameras = {model: frame_camera(model) for model in ("full", "thick", "thin", "pinhole")}
     cpu: dict[str, list[float]] = {model: [] for model in cameras}
     wall: dict[str, list[float]] = {model: [] for model in cameras}
     render(scene, cameras["pinhole"], spp=1, threads=threads)  # builds the scene's BVH, which is no part of a picture
@@ -186,9 +190,9 @@ def _gpu_scene() -> Scene:
     return frame_scene(spheres=103, boxes=50, sky=0.0)
 
 
-def _gpu_camera(model: str = "full") -> Camera:
-    lens = Lens.load("double-gauss-50mm").focused(5.0)
-    return Camera(lens, film=Film(36, 24, (1920, 1280)), model=model, position=(0, 1.5, 4), look_at=(0, 0.3, -4))
+def gpu_camera(model: str = "full") -> Camera:
+    """frame_camera with the film of the GPU benchmarks."""
+    return frame_camera(model, Film(36, 24, (1920, 1280)))
 
 
 def _giga(rate: float) -> float:
@@ -216,9 +220,9 @@ def gpu_hits(threads: int) -> Result:
     """Closest hits per second of camera rays and of bounces (cosine, uniform), and the time to build hierarchies."""
     del threads
     scene = _gpu_scene()
-    rates = _core._gpu_hit_rates(scene, _gpu_camera(), "cuda")
+    rates = _core._gpu_hit_rates(scene, gpu_camera(), "cuda")
     large = frame_scene(spheres=100, boxes=0, rows=224, sky=0.0)
-    build = _core._gpu_hit_rates(large, _gpu_camera(), "cuda")
+    build = _core._gpu_hit_rates(large, gpu_camera(), "cuda")
     return {
         "triangles": scene.triangle_count,
         "giga_rays_per_second": {kind: _giga(rates[kind]) for kind in ("camera", "cosine", "uniform")},
@@ -236,11 +240,11 @@ def gpu_paths(threads: int) -> Result:
     seconds: dict[str, list[float]] = {}
     for _ in range(4):  # in turns; the first round warms up
         for model in ("pinhole", "thin", "thick", "full"):
-            stats = render(scene, _gpu_camera(model), spp=256, max_bounces=0, device="cuda").stats
+            stats = render(scene, gpu_camera(model), spp=256, max_bounces=0, device="cuda").stats
             seconds.setdefault(model, []).append(stats.seconds - stats.setup_seconds)
     paths = 256 * 1920 * 1280
     best = {model: min(times) for model, times in seconds.items()}
-    lens_alone = paths / _core._gpu_lens_ray_rates(_gpu_camera(), "cuda")["generated"]
+    lens_alone = paths / _core._gpu_lens_ray_rates(gpu_camera(), "cuda")["generated"]
     return {
         "triangles": scene.triangle_count,
         "giga_paths_per_second": {model: _giga(paths / s) for model, s in best.items()},
@@ -305,7 +309,7 @@ def gpu_objects(threads: int) -> Result:
     """The price of two levels: 103 spheres as objects against their triangles alone; and moving one of them."""
     del threads
     scenes = {"triangles": frame_scene(spheres=103, boxes=0, sky=0.0), "objects": frame_objects(103)}
-    camera = _gpu_camera("pinhole")
+    camera = gpu_camera("pinhole")
     seconds: dict[str, list[float]] = {}
     for _ in range(4):  # in turns; the first round warms up
         for name, scene in scenes.items():

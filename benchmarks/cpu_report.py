@@ -1,0 +1,109 @@
+"""What against_mitsuba_cpu.py measured, as JSON, Markdown and a plot."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+
+CAMERAS = {"pinhole": "pinhole", "thin": "thin lens", "full": "double Gauss, every surface"}
+WANTED_ERRORS = (0.03, 0.01, 0.003)
+
+
+def stem(record: dict) -> str:
+    words = re.sub(r"\((R|TM)\)", "", record["machine"]["processor"])
+    name = re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")
+    return f"{name}-{record['threads']}-threads-against-mitsuba"
+
+
+def seconds_to_error(points: list[dict], error: float) -> float | None:
+    """CPU seconds, between measured points by a power law; None beyond them."""
+    errors = [point["relative_mse"] for point in points]
+    if not min(errors) <= error <= max(errors):
+        return None
+    # Errors fall as samples grow; interp wants them to rise.
+    log_errors, log_seconds = np.log(errors)[::-1], np.log([point["cpu_seconds"] for point in points])[::-1]
+    return float(np.exp(np.interp(np.log(error), log_errors, log_seconds)))
+
+
+def same_work_table(record: dict) -> list[str]:
+    lines = ["| camera | realcam, CPU s | Mitsuba, CPU s | pictures differ by |", "|---|---|---|---|"]
+    for model, row in record["same_work"].items():
+        lines.append(
+            f"| {CAMERAS[model]} | {row['realcam_cpu_seconds']:.2f} | {row['mitsuba_cpu_seconds']:.2f} "
+            f"| {abs(row['difference_of_means']):.2%} |"
+        )
+    return lines
+
+
+def error_tables(record: dict) -> list[str]:
+    programs = record["error_over_time"]["programs"]
+    counts = [point["spp"] for point in programs["realcam"]]
+    lines = [
+        "| relative MSE (after CPU s) | " + " | ".join(f"{spp} samples" for spp in counts) + " |",
+        "|---" * (len(counts) + 1) + "|",
+    ]
+    for name, points in programs.items():
+        cells = (f"{point['relative_mse']:.2g} ({point['cpu_seconds']:.2f})" for point in points)
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    lines += ["", "| CPU s to a relative MSE of | " + " | ".join(map(str, WANTED_ERRORS)) + " |"]
+    lines.append("|---" * (len(WANTED_ERRORS) + 1) + "|")
+    for name, points in programs.items():
+        reached = (seconds_to_error(points, error) for error in WANTED_ERRORS)
+        cells = ("not measured" if seconds is None else f"{seconds:.2f}" for seconds in reached)
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def markdown(record: dict, plot: str) -> str:
+    machine, errors = record["machine"], record["error_over_time"]
+    farthest = max(
+        abs(points[-1]["relative_mse"] - points[-1]["relative_variance"]) for points in errors["programs"].values()
+    )
+    lines = [
+        f"{machine['processor']}, {record['threads']} threads; realcam {machine['commit']}, {machine['devices'][0]}; "
+        f"Mitsuba {record['mitsuba']}; {machine['date']}. Made by benchmarks/against_mitsuba_cpu.py.",
+        "",
+        f"The same work: {record['triangles']} triangles, one area light and a sky, 640 x 640 x {record['spp']} "
+        "samples of a camera ray and one shadow ray (Mitsuba: `direct`, one emitter sample, none of the BSDF; the "
+        "double Gauss as a sensor in Python). Least of 4 rounds in turns, without compilation:",
+        "",
+        *same_work_table(record),
+        "",
+        "Error over time: the same scene through the thin lens; Mitsuba with its multijitter sampler.",
+        "",
+        *error_tables(record),
+        "",
+        f"![Relative mean square error over CPU seconds]({plot})",
+        "",
+        "Squared differences are relative to the reference's square plus (1% of its mean)^2. The reference is realcam's"
+        f" picture of {errors['reference_spp']} samples. The variance of each program's pictures among themselves, "
+        f"which needs no reference, is the same as its error to {farthest:.1g} at the most samples.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def plot_errors(record: dict, path: Path) -> None:
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.4, 4), layout="constrained")
+    for name, points in record["error_over_time"]["programs"].items():
+        x, y = ([point[key] for point in points] for key in ("cpu_seconds", "relative_mse"))
+        axes.loglog(x, y, "o-" if name == "realcam" else "s--", label=name)
+    axes.set(xlabel="CPU seconds", ylabel="relative mean square error", title="Direct light through a thin lens")
+    axes.grid(True, which="both", alpha=0.3)
+    axes.legend()
+    figure.savefig(path, dpi=120)
+    plt.close(figure)
+
+
+def write_report(record: dict, folder: Path) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    base = folder / stem(record)
+    text = markdown(record, f"{base.name}.png")
+    plot_errors(record, base.with_suffix(".png"))
+    base.with_suffix(".json").write_text(json.dumps(record, indent=2) + "\n")
+    base.with_suffix(".md").write_text(text)
+    print(text)

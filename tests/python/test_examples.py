@@ -1,0 +1,60 @@
+"""The programs of examples/ run, and do what they say."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+import realcam as rc
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+
+
+@pytest.fixture
+def mitsuba_rays() -> ModuleType:
+    """examples/mitsuba_rays.py, where Mitsuba can run it."""
+    pytest.importorskip("mitsuba", reason="Mitsuba 3 comes with the bench extra")
+    drjit = pytest.importorskip("drjit")
+    if not any(map(drjit.has_backend, (drjit.JitBackend.LLVM, drjit.JitBackend.CUDA))):
+        pytest.skip("Mitsuba needs LLVM or a GPU")
+    path = EXAMPLES / "mitsuba_rays.py"
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_example_has_a_test() -> None:
+    here = Path(__file__).read_text(encoding="utf-8")
+    names = [path.stem for path in EXAMPLES.glob("*.py")]
+    assert names and all(f"def test_{name}" in here for name in names)
+
+
+def test_mitsuba_rays_writes_a_picture(mitsuba_rays: ModuleType, tmp_path: Path) -> None:
+    picture = tmp_path / "box.png"
+    command = [sys.executable, EXAMPLES / "mitsuba_rays.py", picture, "--spp", "1"]
+    subprocess.run([str(part) for part in command], check=True, capture_output=True, timeout=300)
+    values = np.array(mitsuba_rays.mi.Bitmap(str(picture)))
+    assert values.shape == (480, 480, 3)
+    # The left wall is red and the right one green, and neither is too dark or too bright to be seen.
+    left, right = values[200:300, 20:40].mean(axis=(0, 1)), values[200:300, -40:-20].mean(axis=(0, 1))
+    assert 230 > left[0] > 2 * left[1] and left[0] > 40
+    assert 230 > right[1] > 1.5 * right[0] and right[1] > 40
+
+
+def test_mitsuba_rays_exposes_the_film_as_render_does(mitsuba_rays: ModuleType) -> None:
+    """An even sky of Mitsuba's and one of realcam's, by the same rays: vignetting, exposure and the factor of pi."""
+    mi = mitsuba_rays.mi
+    camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (48, 32)), exposure_time_s=1 / 50)
+    sky = {"type": "constant", "radiance": {"type": "rgb", "value": [100.0, 200.0, 300.0]}}
+    scene = mi.load_dict({"type": "scene", "sky": sky})
+    seen = mitsuba_rays.photograph(scene, mi.load_dict({"type": "path"}), camera, spp=4)
+    speck = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]])
+    ours = rc.render(speck.with_environment((100, 200, 300)), camera, spp=4, max_bounces=0, device="cpu").pixels
+    # Four products and sums of float32 a pixel.
+    np.testing.assert_allclose(seen, ours, rtol=1e-5)
