@@ -78,7 +78,7 @@ std::shared_ptr<Scene> SceneObjects::read_object(const aiNode& node, const Affin
     if (has_meshes(node))
         read_geometry(*scene, part, nothing);
     else if (scene->points.empty())
-        throw SceneFileError(path_ + ": node \"" + node.mName.C_Str() + "\" holds neither triangles nor an emitter");
+        throw SceneFileError(path_ + ": node \"" + node.mName.C_Str() + "\" holds neither triangles nor a light");
     // A sun has no place: it shines on all, from where it does now.
     Scene in_place;
     read_lights(in_place, {file_, path_, scale_, node, transform}, nothing);

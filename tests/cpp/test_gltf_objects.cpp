@@ -120,7 +120,7 @@ TEST_CASE("glTF: what cannot be an object is said") {
     folder.write("tri.bin", triangle_bytes());
     const std::string path = folder.write("room.gltf", gltf(kRoom, "[0]", kLights));
     CHECK(has(error_of_objects(path, {"tabel"}), "has no node \"tabel\" (did you mean \"table\"?)"));
-    CHECK(has(error_of_objects(path, {"sun"}), "node \"sun\" holds neither triangles nor a lamp"));
+    CHECK(has(error_of_objects(path, {"sun"}), "node \"sun\" holds neither triangles nor a light"));
     const std::string flat = folder.write("flat.gltf", gltf(R"([{"name":"a","mesh":0,"scale":[1,0,1]}])", "[0]"));
     CHECK(has(error_of_objects(flat, {"a"}), "instance 0 (\"a\"): a transform must"));
     CHECK(has(error_of_objects(folder.write("a.ply", "ply\n"), {"a"}), "a .ply file has no nodes"));
