@@ -184,8 +184,7 @@ def error_over_time(scene: rc.Scene, peer: mi.Scene, threads: int, counts: list[
 def error_at(program: Program, spp: int, reference: np.ndarray, scale: np.ndarray) -> Result:
     """The error against the reference, and what it is without one: the variance, from pairs of pictures. They are the
     same where the reference is what the program's pictures converge to."""
-    program.take(spp, 0)  # compiles
-    rounds = [program.timed(spp, seed) for seed in range(1, ERROR_ROUNDS + 1)]
+    rounds = [program.timed(spp, seed) for seed in range(1, ERROR_ROUNDS + 1)]  # the first may compile
     pictures = [picture for picture, _, _ in rounds]
     return {
         "spp": spp,

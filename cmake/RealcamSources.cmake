@@ -3,7 +3,10 @@
 macro(realcam_sources variable folder)
   file(GLOB ${variable} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cpp
        ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cu)
+  list(APPEND all_sources ${variable})
 endmacro()
+
+set(all_sources "")
 
 realcam_sources(REALCAM_IO_SOURCES io)
 realcam_sources(REALCAM_IMAGE_IO_SOURCES image_io)
@@ -26,8 +29,8 @@ list(REMOVE_ITEM REALCAM_IO_SOURCES ${REALCAM_LENS_IO_SOURCES})
 list(FILTER REALCAM_EMBREE_SOURCES EXCLUDE REGEX "/kernels\\.cpp$")
 
 if(REALCAM_LENSES_ONLY)
-  foreach(library IN ITEMS IO IMAGE_IO EMBREE APP BINDINGS BVH CUDA DEVICES)
-    set(REALCAM_${library}_SOURCES "")
+  foreach(sources IN LISTS all_sources)
+    set(${sources} "")
   endforeach()
 endif()
 if(NOT REALCAM_PYTHON)
