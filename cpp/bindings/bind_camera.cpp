@@ -12,6 +12,8 @@
 #include "../embree/embree_backend.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -96,27 +98,61 @@ CameraRaysResult rays_of(const Camera& camera, int spp, std::int64_t seed, const
                : rays_on_host(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed));
 }
 
-}  // namespace
+std::string text_of(const Film& film) {
+    return "<realcam.Film " + digits(film.width_mm) + " x " + digits(film.height_mm) + " mm, " +
+           std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels>";
+}
 
-void bind_camera(py::module_& m) {
-    py::class_<Film>(m, "Film", "The light-sensitive rectangle and its pixels.")
-        .def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
+std::string text_of(const Camera& camera) {
+    const std::string name = camera.lens.name.empty() ? "a lens" : shortened(camera.lens.name);
+    const std::string model =
+        camera.model == CameraModel::full_lens ? "" : std::string(", ") + kModelNames[static_cast<int>(camera.model)];
+    return "<realcam.Camera with " + name + " f/" +
+           digits(first_order(camera.lens, camera.lens.wavelength_nm).f_number) + model + " at " +
+           point_text(camera.pose.position_m) + ", looks at " + point_text(camera.pose.look_at_m) + ", " +
+           time_text(camera.exposure_time_s) + ", ISO " + digits(camera.iso) + '>';
+}
+
+std::string text_of(const CameraRaysResult& rays) {
+    return "<realcam.CameraRays " + counted(py::len(rays.weights), "ray") + '>';
+}
+
+void bind_film(py::module_& m) {
+    py::class_<Film> film(m, "Film", "The light-sensitive rectangle and its pixels.");
+    def_hashable_value(film);
+    film.def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
              "resolution: (columns, rows).")
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
-        .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); });
-    py::class_<CameraRaysResult>(
+        .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
+        .def("__repr__", [](const Film& f) { return text_of(f); });
+}
+
+void bind_camera_rays(py::module_& m) {
+    py::class_<CameraRaysResult> rays(
         m, "CameraRays",
         "The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or\n"
-        "DeviceArrays.")
-        .def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
+        "DeviceArrays.");
+    def_result(rays);
+    rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
         .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
         .def_readonly(
             "weights", &CameraRaysResult::weights,
             "(N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
             "radiance is its irradiance. 0: the lens blocks the ray.")
-        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.");
-    py::class_<Camera>(m, "Camera", "Lens, film, place and exposure. The camera's position is the middle of its film.")
+        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
+        .def("__repr__", [](const CameraRaysResult& r) { return text_of(r); });
+}
+
+}  // namespace
+
+void bind_camera(py::module_& m) {
+    bind_film(m);
+    bind_camera_rays(m);
+    py::class_<Camera> camera_class(m, "Camera",
+                                    "Lens, film, place and exposure. The camera's position is the middle of its film.");
+    def_hashable_value(camera_class, [](const Camera& camera) { validate(camera); });
+    camera_class
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
              "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
              "model"_a = "full",
@@ -135,7 +171,8 @@ void bind_camera(py::module_& m) {
         .def_property_readonly("up", [](const Camera& c) { return triple_of(c.pose.up); })
         .def_readonly("exposure_time_s", &Camera::exposure_time_s)
         .def_readonly("iso", &Camera::iso)
-        .def_property_readonly("model", [](const Camera& c) { return kModelNames[static_cast<int>(c.model)]; });
+        .def_property_readonly("model", [](const Camera& c) { return kModelNames[static_cast<int>(c.model)]; })
+        .def("__repr__", [](const Camera& c) { return text_of(c); });
     m.def(
         "pupil_setup",
         [](const LensSystem& lens, double film_radius_mm, bool on_one_core) {

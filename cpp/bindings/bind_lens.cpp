@@ -4,6 +4,8 @@
 
 #include "../optics/focus.hpp"
 #include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -114,8 +116,36 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     return lens;
 }
 
+std::string text_of(const Glass& glass) {
+    return glass.label.empty() ? glass.is_air() ? "air" : "index " + digits(glass.index(kLineD_nm))
+                               : shortened(glass.label);
+}
+
+std::string text_of(const Surface& s) {
+    std::string text = std::string("<realcam.Surface ") + kTypeNames[static_cast<int>(s.type)];
+    if (s.curvature != 0) text += ", radius " + digits(1 / s.curvature) + " mm";
+    text += ", semi-diameter " + digits(s.clear_semi_diameter) + " mm";
+    if (s.is_asphere() || s.conic != 0) text += ", aspheric";
+    return text + ", then " + digits(s.thickness) + " mm of " + text_of(s.material) + '>';
+}
+
+std::string text_of(const LensSystem& lens) {
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const std::string name = lens.name.empty() ? "" : ' ' + shortened(lens.name) + ',';
+    const std::string focus = std::isinf(lens.focus_distance) ? "infinity" : digits(lens.focus_distance / 1000) + " m";
+    return "<realcam.Lens" + name + ' ' + counted(lens.surfaces.size(), "surface") + ", " +
+           digits(data.effective_focal_length) + " mm f/" + digits(data.f_number) + ", focused at " + focus + '>';
+}
+
+std::string text_of(const FirstOrder& data) {
+    return "<realcam.FirstOrder focal length " + digits(data.effective_focal_length) + " mm, f/" +
+           digits(data.f_number) + ", back focal distance " + digits(data.back_focal_distance) + " mm>";
+}
+
 void bind_glass(py::module_& m) {
-    py::class_<Glass>(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.")
+    py::class_<Glass> glass(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.");
+    def_hashable_value(glass);
+    glass
         .def_static(
             "constant",
             [](double index) {
@@ -150,14 +180,15 @@ void bind_glass(py::module_& m) {
                     "A glass of the catalogue, \"N-BK7\" or \"schott:F4\". Raises InputError with the nearest names.")
         .def("index", &Glass::index, "wavelength_nm"_a, "Refractive index.")
         .def_readonly("label", &Glass::label, "As it was written: a name, a number, a pair; empty for air.")
-        .def("__repr__",
-             [](const Glass& g) { return "Glass(" + (g.label.empty() ? std::string("air") : g.label) + ")"; });
+        .def("__repr__", [](const Glass& g) { return "<realcam.Glass " + text_of(g) + '>'; });
 }
 
 void bind_surface(py::module_& m) {
-    py::class_<Surface>(
+    py::class_<Surface> surface(
         m, "Surface",
-        "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).")
+        "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).");
+    def_hashable_value(surface);
+    surface
         .def(py::init(&make_surface), py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
              "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
              "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
@@ -179,22 +210,25 @@ void bind_surface(py::module_& m) {
         .def_property_readonly("aspheric_coefficients", &aspheric_map)
         .def_property_readonly("type", [](const Surface& s) { return kTypeNames[static_cast<int>(s.type)]; })
         .def("sag_mm", &Surface::sag, "radius_mm"_a,
-             "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.");
+             "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.")
+        .def("__repr__", [](const Surface& s) { return text_of(s); });
 }
 
 void bind_first_order(py::module_& m) {
-    py::class_<FirstOrder>(
+    py::class_<FirstOrder> data(
         m, "FirstOrder",
         "First-order data at one wavelength. mm; positions from the front vertex. Of an afocal lens the focal length,\n"
-        "the focal distances and the f-number are infinite.")
-        .def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
+        "the focal distances and the f-number are infinite.");
+    def_hashable_value(data);
+    data.def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
         .def_readonly("back_focal_distance_mm", &FirstOrder::back_focal_distance)
         .def_readonly("front_focal_distance_mm", &FirstOrder::front_focal_distance)
         .def_readonly("f_number", &FirstOrder::f_number)
         .def_readonly("entrance_pupil_position_mm", &FirstOrder::entrance_pupil_position)
         .def_readonly("entrance_pupil_diameter_mm", &FirstOrder::entrance_pupil_diameter)
         .def_readonly("exit_pupil_position_mm", &FirstOrder::exit_pupil_position)
-        .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter);
+        .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter)
+        .def("__repr__", [](const FirstOrder& d) { return text_of(d); });
 }
 
 }  // namespace
@@ -204,7 +238,10 @@ void bind_lens(py::module_& m) {
     bind_surface(m);
     bind_first_order(m);
     m.def("lens_names", &io::lens_names, "Names of the bundled lenses.");
-    py::class_<LensSystem>(m, "Lens", "A lens in one state of its rings. A value: every change returns a new Lens.")
+    py::class_<LensSystem> lens_class(m, "Lens",
+                                      "A lens in one state of its rings. A value: every change returns a new Lens.");
+    def_hashable_value(lens_class, [](const LensSystem& lens) { validate(lens); });
+    lens_class
         .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
              "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(),
@@ -262,9 +299,7 @@ void bind_lens(py::module_& m) {
         .def_property_readonly("stop_index", &LensSystem::stop_index)
         .def_readonly("stop_semi_diameter_mm", &LensSystem::stop_semi_diameter)
         .def_property_readonly("iris_blades", [](const LensSystem& l) { return l.iris.blades; })
-        .def("__repr__", [](const LensSystem& l) {
-            return "<realcam.Lens " + l.name + ", " + std::to_string(l.surfaces.size()) + " surfaces>";
-        });
+        .def("__repr__", [](const LensSystem& l) { return text_of(l); });
 }
 
 }  // namespace realcam::bindings

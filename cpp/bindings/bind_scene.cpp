@@ -10,6 +10,8 @@
 #include "../scene/bounding_box.hpp"
 #include "bindings.hpp"
 #include "scene_from_arrays.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -88,19 +90,40 @@ Material make_material(const Colour& diffuse, const Colour& specular, float shin
     return material;
 }
 
+std::string text_of(const Material& m) {
+    const Vec3f black = {0, 0, 0};
+    std::string text = "<realcam.Material diffuse " + point_text(m.diffuse);
+    if (m.specular != black)
+        text += ", specular " + point_text(m.specular) + ", shininess " + digits(static_cast<double>(m.shininess));
+    if (m.emission != black) text += ", emission " + point_text(m.emission) + " cd/m^2";
+    return text + '>';
+}
+
+std::string text_of(const Assembly& scene) {
+    std::string text = "<realcam.Scene " + counted(scene.triangle_count(), "triangle") + ", " +
+                       counted(scene.static_geometry->materials.size(), "material");
+    if (!scene.instances.empty()) text += ", " + counted(scene.instances.size(), "instance");
+    return text + (scene.has_light() ? ">" : ", no light>");
+}
+
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::class_<Material>(m, "Material", "How a surface reflects and shines. Colours are linear Rec. 709.")
+    py::class_<Material> material_class(m, "Material",
+                                        "How a surface reflects and shines. Colours are linear Rec. 709.");
+    def_hashable_value(material_class);
+    material_class
         .def(py::init(&make_material), py::kw_only(), "diffuse"_a = Colour{0.5f, 0.5f, 0.5f},
              "specular"_a = Colour{0, 0, 0}, "shininess"_a = 0.0f, "emission"_a = Colour{0, 0, 0},
              "diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess: Phong exponent;\n"
-             "emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise.");
+             "emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise.")
+        .def("__repr__", [](const Material& material) { return text_of(material); });
     py::class_<Assembly> scene_class(
         m, "Scene",
         "Triangles, materials and lights, and objects that stand among them, as often as one likes;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
         "those of static geometry; objects bring their own along.");
+    def_value(scene_class, [](const Assembly& scene) { io::validate(scene); });
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
@@ -166,8 +189,7 @@ void bind_scene(py::module_& m) {
         .def_property_readonly(
             "warnings", [](const Assembly& s) { return s.static_geometry->warnings; },
             "What the reader put up with, such as a missing texture.")
-        .def("__repr__",
-             [](const Assembly& s) { return "<realcam.Scene, " + std::to_string(s.triangle_count()) + " triangles>"; });
+        .def("__repr__", [](const Assembly& s) { return text_of(s); });
     bind_instances(scene_class);
 }
 

@@ -1,9 +1,11 @@
 #include "bindings.hpp"
+#include "value_state.hpp"
 
 PYBIND11_MODULE(_core, m) {
     using namespace realcam::bindings;
     m.doc() = "The C++ core of realcam.";
     m.attr("__version__") = REALCAM_VERSION;
+    m.attr("_STATE_FORMAT") = kStateFormat;
     bind_errors(m);
     bind_lens(m);
     bind_device_array(m);

@@ -1,13 +1,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 from os import PathLike
-from typing import Any, Generic, Literal, Protocol, TypeAlias, final, overload
+from typing import Any, ClassVar, Generic, Literal, Protocol, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
-from typing_extensions import TypeVar
+from typing_extensions import Self, TypeVar
 
 __version__: str
+_STATE_FORMAT: int
 
 _Path: TypeAlias = str | PathLike[str]
 _Triple: TypeAlias = Sequence[float] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
@@ -22,6 +23,14 @@ _Integers = TypeVar("_Integers", default=NDArray[np.int32])
 class _CudaArray(Protocol):
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]: ...
+
+# Nothing changes a value: its copies are the same object.
+class _Value:
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: Any) -> Self: ...
+
+class _LargeValue(_Value):
+    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 class RealcamError(Exception): ...
 class InputError(RealcamError, ValueError): ...
@@ -45,7 +54,7 @@ class RayStatus(IntEnum):
     BAD_INPUT = 5
 
 @final
-class Glass:
+class Glass(_Value):
     @staticmethod
     def constant(index: float) -> Glass: ...
     @staticmethod
@@ -63,7 +72,7 @@ class Glass:
     def label(self) -> str: ...
 
 @final
-class Surface:
+class Surface(_Value):
     def __init__(
         self,
         *,
@@ -97,7 +106,7 @@ class Surface:
     def sag_mm(self, radius_mm: float) -> float: ...
 
 @final
-class FirstOrder:
+class FirstOrder(_Value):
     @property
     def effective_focal_length_mm(self) -> float: ...
     @property
@@ -152,7 +161,7 @@ class TraceResult(Generic[_Doubles, _Integers]):
     def surface_index(self) -> _Integers: ...
 
 @final
-class Seidel:
+class Seidel(_LargeValue):
     @property
     def wavelength_nm(self) -> float: ...
     @property
@@ -195,7 +204,7 @@ class Seidel:
     def coefficients_waves(self) -> NDArray[np.float64]: ...
 
 @final
-class Ghost:
+class Ghost(_Value):
     @property
     def effective_focal_length_mm(self) -> float: ...
     @property
@@ -211,7 +220,7 @@ class AimedRays:
     def status(self) -> NDArray[np.int32]: ...
 
 @final
-class Wavefront:
+class Wavefront(_LargeValue):
     @property
     def opd_waves(self) -> NDArray[np.float64]: ...
     @property
@@ -239,7 +248,7 @@ class Wavefront:
     def wavelength_nm(self) -> float: ...
 
 @final
-class Spot:
+class Spot(_LargeValue):
     @property
     def points_mm(self) -> NDArray[np.float64]: ...
     @property
@@ -262,7 +271,7 @@ class Spot:
     def max_radius_about_chief_ray_mm(self) -> float: ...
 
 @final
-class Lens:
+class Lens(_Value):
     def __init__(
         self,
         *,
@@ -378,7 +387,7 @@ class Lens:
     def iris_blades(self) -> int: ...
 
 @final
-class Film:
+class Film(_Value):
     def __init__(
         self, width_mm: float = 36.0, height_mm: float = 24.0, resolution: tuple[int, int] = (960, 640)
     ) -> None: ...
@@ -401,7 +410,7 @@ class CameraRays(Generic[_Doubles, _Floats, _Integers]):
     def pixels(self) -> _Integers: ...
 
 @final
-class Camera:
+class Camera(_Value):
     def __init__(
         self,
         lens: Lens,
@@ -436,7 +445,7 @@ class Camera:
     def model(self) -> str: ...
 
 @final
-class Material:
+class Material(_Value):
     def __init__(
         self,
         *,
@@ -447,7 +456,7 @@ class Material:
     ) -> None: ...
 
 @final
-class Scene:
+class Scene(_LargeValue):
     @staticmethod
     def load(path: _Path, *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene: ...
     @staticmethod
@@ -480,7 +489,7 @@ class Scene:
     def warnings(self) -> list[str]: ...
 
 @final
-class RenderStats:
+class RenderStats(_Value):
     @property
     def seconds(self) -> float: ...
     @property
