@@ -7,6 +7,7 @@
 
 #include "../camera/default_film.hpp"
 #include "../camera/last_setup.hpp"
+#include "../camera/picture_angle.hpp"
 #include "../cuda/ray_arrays.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/embree_backend.hpp"
@@ -38,6 +39,12 @@ CameraModel model_from(const std::string& name) {
     throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, thick or full is wanted");
 }
 
+Film changed_film(const Film& film, std::optional<double> width_mm, std::optional<double> height_mm,
+                  std::optional<std::pair<int, int>> resolution) {
+    const auto [columns, rows] = resolution.value_or(std::pair(film.width, film.height));
+    return {width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm), columns, rows};
+}
+
 Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution) {
     return {width_mm, height_mm, resolution.first, resolution.second};
 }
@@ -53,6 +60,36 @@ Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Tripl
     camera.iso = iso;
     validate(camera);
     return camera;
+}
+
+Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, const std::optional<Film>& film,
+                      const std::optional<Triple>& position, const std::optional<Triple>& look_at,
+                      const std::optional<Triple>& up, std::optional<double> exposure_time_s, std::optional<double> iso,
+                      const std::optional<std::string>& model) {
+    if (lens) camera.lens = *lens;
+    if (film) camera.film = *film;
+    if (position) camera.pose.position_m = vector_of(*position);
+    if (look_at) camera.pose.look_at_m = vector_of(*look_at);
+    if (up) camera.pose.up = vector_of(*up);
+    camera.exposure_time_s = exposure_time_s.value_or(camera.exposure_time_s);
+    camera.iso = iso.value_or(camera.iso);
+    if (model) camera.model = model_from(*model);
+    validate(camera);
+    return camera;
+}
+
+/// A named tuple of Python, in degrees.
+py::object field_of_view_deg(const Camera& camera) {
+    const FieldOfView view = field_of_view(camera);
+    const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };
+    return py::module_::import("realcam._core")
+        .attr("FieldOfView")(degrees(view.horizontal), degrees(view.vertical), degrees(view.diagonal));
+}
+
+std::optional<std::tuple<double, double, double>> pupil_position(const Camera& camera) {
+    const std::optional<Vec3d> position = entrance_pupil_position_m(camera);
+    if (!position) return std::nullopt;
+    return triple_of(*position);
 }
 
 /// Arrays of numpy, or DeviceArrays.
@@ -125,6 +162,8 @@ void bind_film(py::module_& m) {
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
         .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
+        .def("replace", &changed_film, py::kw_only(), "width_mm"_a = py::none(), "height_mm"_a = py::none(),
+             "resolution"_a = py::none(), "The film with some of what Film() takes changed. None stays.")
         .def("__repr__", [](const Film& f) { return text_of(f); });
 }
 
@@ -149,8 +188,13 @@ void bind_camera_rays(py::module_& m) {
 void bind_camera(py::module_& m) {
     bind_film(m);
     bind_camera_rays(m);
-    py::class_<Camera> camera_class(m, "Camera",
-                                    "Lens, film, place and exposure. The camera's position is the middle of its film.");
+    m.attr("FieldOfView") = py::module_::import("collections")
+                                .attr("namedtuple")("FieldOfView", py::make_tuple("horizontal", "vertical", "diagonal"),
+                                                    "module"_a = "realcam");
+    py::class_<Camera> camera_class(
+        m, "Camera",
+        "Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole\n"
+        "lens stands: entrance_pupil_position_m says from where the scene is seen.");
     def_hashable_value(camera_class, [](const Camera& camera) { validate(camera); });
     camera_class
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
@@ -159,6 +203,21 @@ void bind_camera(py::module_& m) {
              "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
              "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
              "Raises InputError.")
+        .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
+             "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
+             "iso"_a = py::none(), "model"_a = py::none(),
+             "The camera with some of what Camera() takes changed. None stays; so does the film with another lens\n"
+             "(see Film.for_lens). Raises InputError.")
+        .def_property_readonly(
+            "field_of_view_deg", &field_of_view_deg,
+            "FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands\n"
+            "on opposite edges and corners of the film, by real rays at the lens's focus. Where the film is larger\n"
+            "than the lens's image, between the edges of the image. Raises InputError where the camera's model has no\n"
+            "place for its lens.")
+        .def_property_readonly("entrance_pupil_position_m", &pupil_position,
+                               "(x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera "
+                               "sees the scene; turning\n"
+                               "about it shows no parallax. None where it lies at infinity.")
         .def(
             "generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
             "The rays that render would trace, for any other renderer. Returns CameraRays.\n"

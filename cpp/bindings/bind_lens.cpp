@@ -3,6 +3,7 @@
 #include <map>
 
 #include "../optics/focus.hpp"
+#include "../optics/lens_changes.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
@@ -53,28 +54,74 @@ SurfaceType type_from(const std::string& name) {
     throw InputError("unknown surface type \"" + name + "\"; refracting, mirror, stop or aperture is wanted");
 }
 
-Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
-                     double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
-                     double inner_semi_diameter, const std::string& type) {
-    Surface surface;
-    surface.type = type_from(type);
-    if (radius_of_curvature == 0 || std::isnan(radius_of_curvature))
-        throw InputError("a radius of curvature of 0 is no surface; leave it out (or give inf) for a plane");
-    surface.curvature = 1 / radius_of_curvature;
-    surface.thickness = thickness;
-    surface.material = glass_from(material);
-    surface.clear_semi_diameter = clear_semi_diameter;
-    surface.inner_semi_diameter = inner_semi_diameter;
-    surface.conic = conic;
-    for (const auto& [power, value] : aspheric) {
+/// What a user gives of a surface; the rest stays as it is.
+struct SurfaceChanges {
+    std::optional<double> radius_of_curvature_mm, thickness_mm;
+    std::optional<Glass> material;
+    std::optional<double> clear_semi_diameter_mm, conic;
+    std::optional<std::map<int, double>> aspheric_coefficients;
+    std::optional<double> inner_semi_diameter_mm;
+    std::optional<std::string> type;
+};
+
+std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {
+    std::vector<double> list;
+    for (const auto& [power, value] : coefficients) {
         if (power < 4 || power % 2 != 0 || power > 2 * kMaxAsphericTerms + 2)
             throw InputError("aspheric coefficients have even powers from 4 to " +
                              std::to_string(2 * kMaxAsphericTerms + 2) + " as keys; one is " + std::to_string(power));
         const auto term = static_cast<std::size_t>(power / 2 - 2);
-        if (surface.aspheric.size() <= term) surface.aspheric.resize(term + 1, 0.0);
-        surface.aspheric[term] = value;
+        if (list.size() <= term) list.resize(term + 1, 0.0);
+        list[term] = value;
     }
+    return list;
+}
+
+Surface changed(Surface surface, const SurfaceChanges& to) {
+    if (to.type) surface.type = type_from(*to.type);
+    if (to.radius_of_curvature_mm) {
+        const double radius = *to.radius_of_curvature_mm;
+        if (radius == 0 || std::isnan(radius))
+            throw InputError("a radius of curvature of 0 is no surface; leave it out (or give inf) for a plane");
+        surface.curvature = 1 / radius;
+    }
+    if (to.aspheric_coefficients) surface.aspheric = aspheric_from(*to.aspheric_coefficients);
+    surface.thickness = to.thickness_mm.value_or(surface.thickness);
+    surface.material = to.material.value_or(surface.material);
+    surface.clear_semi_diameter = to.clear_semi_diameter_mm.value_or(surface.clear_semi_diameter);
+    surface.inner_semi_diameter = to.inner_semi_diameter_mm.value_or(surface.inner_semi_diameter);
+    surface.conic = to.conic.value_or(surface.conic);
     return surface;
+}
+
+Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
+                     double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
+                     double inner_semi_diameter, const std::string& type) {
+    return changed(Surface(), {radius_of_curvature, thickness, glass_from(material), clear_semi_diameter, conic,
+                               aspheric, inner_semi_diameter, type});
+}
+
+/// Defines a method whose arguments are `first`, and by their names those of Surface. What is left out stays; because
+/// None is air, a material that stays is `...`.
+template <class>
+using Index = int;
+template <class T, class Function, class... First>
+void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
+    using Number = std::optional<double>;
+    type.def(
+        name,
+        [function](const T& self, Index<First>... place, Number radius, Number thickness, const py::object& material,
+                   Number clear, Number conic, const std::optional<std::map<int, double>>& aspheric, Number inner,
+                   const std::optional<std::string>& surface_type) {
+            const bool stays = material.is(py::ellipsis());
+            const SurfaceChanges changes{
+                radius, thickness,   stays ? std::nullopt : std::optional(glass_from(material)), clear, conic, aspheric,
+                inner,  surface_type};
+            return function(self, place..., changes);
+        },
+        first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
+        "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),
+        "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(), text);
 }
 
 std::map<int, double> aspheric_map(const Surface& surface) {
@@ -140,6 +187,11 @@ std::string text_of(const LensSystem& lens) {
 std::string text_of(const FirstOrder& data) {
     return "<realcam.FirstOrder focal length " + digits(data.effective_focal_length) + " mm, f/" +
            digits(data.f_number) + ", back focal distance " + digits(data.back_focal_distance) + " mm>";
+}
+
+std::optional<std::pair<int, int>> focus_group_of(const LensSystem& lens) {
+    if (!lens.focusing.moves_group()) return std::nullopt;
+    return std::pair(lens.focusing.group_first, lens.focusing.group_last);
 }
 
 void bind_glass(py::module_& m) {
@@ -212,6 +264,8 @@ void bind_surface(py::module_& m) {
         .def("sag_mm", &Surface::sag, "radius_mm"_a,
              "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.")
         .def("__repr__", [](const Surface& s) { return text_of(s); });
+    def_surface_changes(surface, "replace", &changed,
+                        "The surface with some of what Surface() takes changed. What is not given stays.");
 }
 
 void bind_first_order(py::module_& m) {
@@ -299,7 +353,32 @@ void bind_lens(py::module_& m) {
         .def_property_readonly("stop_index", &LensSystem::stop_index)
         .def_readonly("stop_semi_diameter_mm", &LensSystem::stop_semi_diameter)
         .def_property_readonly("iris_blades", [](const LensSystem& l) { return l.iris.blades; })
+        .def(
+            "with_iris",
+            [](const LensSystem& lens, int blades, std::optional<double> rounding, std::optional<double> rotation_deg) {
+                const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+                return with_iris(lens, {blades, rounding.value_or(lens.iris.rounding),
+                                        rotation_deg ? radians(*rotation_deg) : lens.iris.rotation_rad});
+            },
+            "blades"_a, "rounding"_a = py::none(), "rotation_deg"_a = py::none(),
+            "The lens with another diaphragm: blades, rounding and rotation as Lens() takes them; None stays. The\n"
+            "f-number stays too, because it is the open area that it means. Raises LensFileError.")
+        .def_property_readonly("iris_rounding", [](const LensSystem& l) { return l.iris.rounding; })
+        .def_property_readonly("iris_rotation_deg",
+                               [](const LensSystem& l) { return l.iris.rotation_rad * 180 / std::numbers::pi; })
+        .def_property_readonly("focus_group", &focus_group_of, "(first, last) index; None: the whole lens moves.")
         .def("__repr__", [](const LensSystem& l) { return text_of(l); });
+    def_surface_changes(
+        lens_class, "with_surface",
+        [](const LensSystem& lens, int index, const SurfaceChanges& changes) {
+            const bool exists = index >= 0 && index < static_cast<int>(lens.surfaces.size());
+            return with_surface(lens, index,
+                                exists ? changed(lens.surfaces[static_cast<std::size_t>(index)], changes) : Surface());
+        },
+        "The lens with one surface changed: its index from 0, as in surfaces, and what Surface() takes. What is not\n"
+        "given stays; so do focus group, iris, film and title, and the film where it is: focused() brings the picture\n"
+        "into focus again. Raises InputError, and LensFileError where the lens cannot be built.",
+        "index"_a);
 }
 
 }  // namespace realcam::bindings

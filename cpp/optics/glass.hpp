@@ -92,7 +92,6 @@ public:
     }
 
 private:
-
     Glass(Formula formula, std::vector<double> coefficients, std::vector<TablePoint> points)
         : formula_(formula), coefficients_(std::move(coefficients)), points_(std::move(points)) {}
 

@@ -1,7 +1,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 from os import PathLike
-from typing import Any, ClassVar, Generic, Literal, Protocol, TypeAlias, final, overload
+from types import EllipsisType
+from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -104,6 +105,18 @@ class Surface(_Value):
     @property
     def type(self) -> str: ...
     def sag_mm(self, radius_mm: float) -> float: ...
+    def replace(
+        self,
+        *,
+        radius_of_curvature_mm: float | None = None,
+        thickness_mm: float | None = None,
+        material: _Material | EllipsisType = ...,
+        clear_semi_diameter_mm: float | None = None,
+        conic: float | None = None,
+        aspheric_coefficients: Mapping[int, float] | None = None,
+        inner_semi_diameter_mm: float | None = None,
+        type: str | None = None,
+    ) -> Surface: ...
 
 @final
 class FirstOrder(_Value):
@@ -385,12 +398,43 @@ class Lens(_Value):
     def stop_semi_diameter_mm(self) -> float: ...
     @property
     def iris_blades(self) -> int: ...
+    @property
+    def iris_rounding(self) -> float: ...
+    @property
+    def iris_rotation_deg(self) -> float: ...
+    @property
+    def focus_group(self) -> tuple[int, int] | None: ...
+    def with_iris(self, blades: int, rounding: float | None = None, rotation_deg: float | None = None) -> Lens: ...
+    def with_surface(
+        self,
+        index: int,
+        *,
+        radius_of_curvature_mm: float | None = None,
+        thickness_mm: float | None = None,
+        material: _Material | EllipsisType = ...,
+        clear_semi_diameter_mm: float | None = None,
+        conic: float | None = None,
+        aspheric_coefficients: Mapping[int, float] | None = None,
+        inner_semi_diameter_mm: float | None = None,
+        type: str | None = None,
+    ) -> Lens: ...
 
 @final
 class Film(_Value):
     def __init__(
         self, width_mm: float = 36.0, height_mm: float = 24.0, resolution: tuple[int, int] = (960, 640)
     ) -> None: ...
+    @staticmethod
+    def for_lens(
+        lens: Lens, size_mm: Sequence[float] | None = None, resolution: Sequence[int] | None = None
+    ) -> Film: ...
+    def replace(
+        self,
+        *,
+        width_mm: float | None = None,
+        height_mm: float | None = None,
+        resolution: tuple[int, int] | None = None,
+    ) -> Film: ...
     @property
     def width_mm(self) -> float: ...
     @property
@@ -409,6 +453,11 @@ class CameraRays(Generic[_Doubles, _Floats, _Integers]):
     @property
     def pixels(self) -> _Integers: ...
 
+class FieldOfView(NamedTuple):
+    horizontal: float
+    vertical: float
+    diagonal: float
+
 @final
 class Camera(_Value):
     def __init__(
@@ -423,6 +472,34 @@ class Camera(_Value):
         iso: float = 100.0,
         model: str = "full",
     ) -> None: ...
+    def replace(
+        self,
+        *,
+        lens: Lens | None = None,
+        film: Film | None = None,
+        position: _Triple | None = None,
+        look_at: _Triple | None = None,
+        up: _Triple | None = None,
+        exposure_time_s: float | None = None,
+        iso: float | None = None,
+        model: str | None = None,
+    ) -> Camera: ...
+    def framing(
+        self,
+        scene: Scene,
+        *,
+        position: _Triple | None = None,
+        look_at: _Triple | None = None,
+        up: _Triple = [0.0, 1.0, 0.0],
+        focus_distance_m: float | None = None,
+    ) -> Camera: ...
+    def metered(
+        self, scene: Scene, *, device: str = "auto", max_bounces: int = 1, progress: _Progress | None = None
+    ) -> Camera: ...
+    @property
+    def field_of_view_deg(self) -> FieldOfView: ...
+    @property
+    def entrance_pupil_position_m(self) -> tuple[float, float, float] | None: ...
     @overload
     def generate_rays(self, *, spp: int = 1, seed: int = 0, device: Literal["cpu"] = "cpu") -> CameraRays: ...
     @overload
@@ -472,6 +549,7 @@ class Scene(_LargeValue):
     def with_environment(self, radiance: float | _Triple) -> Scene: ...
     def with_sun(self, direction: _Triple, illuminance: _Triple) -> Scene: ...
     def with_point_light(self, position_m: _Triple, intensity: _Triple) -> Scene: ...
+    def with_daylight(self, camera: Camera) -> Scene: ...
     def with_texture(self, material: int, pixels: ArrayLike) -> Scene: ...
     def with_instance(self, object: Scene, scene_from_object: ArrayLike | None = None, *, name: str = "") -> Scene: ...
     def moved(self, instance: int | str, scene_from_object: ArrayLike) -> Scene: ...
@@ -540,21 +618,7 @@ class LiveView:
 def _gpu_hit_rates(scene: Scene, camera: Camera, device: str) -> dict[str, float]: ...
 def _gpu_lens_ray_rates(camera: Camera, device: str) -> dict[str, float]: ...
 def _lens_ray_rates(lens: Lens, seconds: float) -> dict[str, float]: ...
-def default_film(
-    lens: Lens, size_mm: Sequence[float] | None = None, resolution: Sequence[int] | None = None
-) -> Film: ...
 def develop(exposure: ArrayLike, iso: float, tone: str = "film") -> NDArray[np.uint8]: ...
 def devices() -> list[str]: ...
-def exposed(camera: Camera, scene: Scene, device: str = "auto", progress: _Progress | None = None) -> Camera: ...
-def framed(
-    camera: Camera,
-    scene: Scene,
-    *,
-    position: _Triple | None = None,
-    look_at: _Triple | None = None,
-    up: _Triple = [0.0, 1.0, 0.0],
-    focus_distance_m: float | None = None,
-) -> Camera: ...
 def lens_names() -> list[str]: ...
 def pupil_setup(lens: Lens, film_radius_mm: float, on_one_core: bool = False) -> float: ...
-def with_daylight(scene: Scene, camera: Camera) -> Scene: ...

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from . import _core, image_file
-from ._core import Camera, InputError, Lens, Scene
+from . import image_file
+from ._core import Camera, Film, InputError, Lens, Scene
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -118,13 +118,12 @@ def _shot(scene: Scene, values: Mapping[str, Any]) -> Shot:
     resolution = values.get("resolution")
     camera = Camera(
         lens,
-        film=_core.default_film(lens, values.get("film_mm"), resolution and tuple(int(v) for v in resolution)),
+        film=Film.for_lens(lens, values.get("film_mm"), resolution and tuple(int(v) for v in resolution)),
         iso=values.get("iso", 100),
         model=values.get("model", "full"),
         exposure_time_s=values.get("exposure_time_s", 1.0),
     )
-    camera = _core.framed(
-        camera,
+    camera = camera.framing(
         scene,
         position=values.get("position_m"),
         look_at=values.get("look_at_m"),
@@ -132,7 +131,7 @@ def _shot(scene: Scene, values: Mapping[str, Any]) -> Shot:
         focus_distance_m=values.get("focus_m"),
     )
     if not scene.has_light:
-        scene = _core.with_daylight(scene, camera)
+        scene = scene.with_daylight(camera)
     if "exposure_time_s" not in values:
-        camera = _core.exposed(camera, scene)
+        camera = camera.metered(scene)
     return Shot(scene, camera)

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Optional
 import typer
 
 from .. import _core, image_file
-from .._core import Camera, InputError, Scene
+from .._core import Camera, Film, InputError, Scene
 from ..progress import progress_bar
 from ..render import render as take_picture
 from ..summary import summary
@@ -111,14 +111,14 @@ def render(
     }
     loaded = _load(scene, scale, environment)
     with options.stoppable():
-        camera = _core.framed(camera, loaded, **view)
+        camera = camera.framing(loaded, **view)
         if environment is None and not loaded.has_light:
-            loaded = _core.with_daylight(loaded, camera)
+            loaded = loaded.with_daylight(camera)
             say(
                 "the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, a sky of 5000 cd/m^2"
             )
         if exposure_time is None:
-            camera = _core.exposed(camera, loaded, device)
+            camera = camera.metered(loaded, device=device, max_bounces=max_bounces)
             say("no exposure time is given; the average of the picture is brought to middle grey")
         with progress_bar("photographing") as bar:
             image = take_picture(
@@ -146,7 +146,7 @@ def _unplaced_camera(
     pixels = None if resolution is None else options.numbers(resolution, "x", 2, "--resolution")
     if pixels is not None and not all(p.is_integer() for p in pixels):
         raise InputError(f'--resolution is "{resolution}"; whole numbers of pixels are wanted')
-    chosen = _core.default_film(lens, size, None if pixels is None else tuple(int(p) for p in pixels))
+    chosen = Film.for_lens(lens, size, None if pixels is None else tuple(int(p) for p in pixels))
     return Camera(lens, film=chosen, iso=iso, model=model)
 
 
