@@ -81,24 +81,6 @@ std::pair<Corner, Corner> bounds(const Assembly& scene) {
     return {Corner{box.low.x, box.low.y, box.low.z}, Corner{box.high.x, box.high.y, box.high.z}};
 }
 
-Material make_material(const Colour& diffuse, const Colour& specular, float shininess, const Colour& emission) {
-    Material material;
-    material.diffuse = rgb(diffuse);
-    material.specular = rgb(specular);
-    material.shininess = shininess;
-    material.emission = rgb(emission);
-    return material;
-}
-
-std::string text_of(const Material& m) {
-    const Vec3f black = {0, 0, 0};
-    std::string text = "<realcam.Material diffuse " + point_text(m.diffuse);
-    if (m.specular != black)
-        text += ", specular " + point_text(m.specular) + ", shininess " + digits(static_cast<double>(m.shininess));
-    if (m.emission != black) text += ", emission " + point_text(m.emission) + " cd/m^2";
-    return text + '>';
-}
-
 std::string text_of(const Assembly& scene) {
     std::string text = "<realcam.Scene " + counted(scene.triangle_count(), "triangle") + ", " +
                        counted(scene.static_geometry->materials.size(), "material");
@@ -109,15 +91,6 @@ std::string text_of(const Assembly& scene) {
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::class_<Material> material_class(m, "Material",
-                                        "How a surface reflects and shines. Colours are linear Rec. 709.");
-    def_hashable_value(material_class);
-    material_class
-        .def(py::init(&make_material), py::kw_only(), "diffuse"_a = Colour{0.5f, 0.5f, 0.5f},
-             "specular"_a = Colour{0, 0, 0}, "shininess"_a = 0.0f, "emission"_a = Colour{0, 0, 0},
-             "diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess: Phong exponent;\n"
-             "emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise.")
-        .def("__repr__", [](const Material& material) { return text_of(material); });
     py::class_<Assembly> scene_class(
         m, "Scene",
         "Triangles, materials and lights, and objects that stand among them, as often as one likes;\n"
@@ -132,7 +105,7 @@ void bind_scene(py::module_& m) {
             "Raises SceneFileError. What could be put up with is in warnings.")
         .def_static(
             "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
-            "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<Material>{},
+            "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
             "vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);\n"
             "triangle_materials: (T,) indices into materials. Raises InputError or SceneFileError.")
         .def(
@@ -165,22 +138,6 @@ void bind_scene(py::module_& m) {
                     scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
             },
             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
-        .def(
-            "with_texture",
-            [](const Assembly& scene, std::size_t material, const InputArray<std::uint8_t>& pixels) {
-                if (material >= scene.static_geometry->materials.size())
-                    throw InputError("there is no material " + std::to_string(material));
-                if (pixels.ndim() != 3 || pixels.shape(2) != 4)
-                    throw InputError("a texture must be an (H, W, 4) array of uint8, sRGB");
-                return with_valid_static_geometry(scene, [&](Scene& changed) {
-                    changed.materials[material].diffuse_texture = static_cast<std::int32_t>(changed.textures.size());
-                    changed.textures.push_back({"",
-                                                static_cast<std::int32_t>(pixels.shape(1)),
-                                                static_cast<std::int32_t>(pixels.shape(0)),
-                                                {pixels.data(), pixels.data() + pixels.size()}});
-                });
-            },
-            "material"_a, "pixels"_a, "With a diffuse texture on a material: (H, W, 4) uint8, sRGB, row 0 at v = 1.")
         .def_property_readonly("triangle_count", &Assembly::triangle_count,
                                "Of all instances, each as often as it stands there.")
         .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
@@ -191,6 +148,7 @@ void bind_scene(py::module_& m) {
             "What the reader put up with, such as a missing texture.")
         .def("__repr__", [](const Assembly& s) { return text_of(s); });
     bind_instances(scene_class);
+    bind_scene_materials(scene_class);
 }
 
 }  // namespace realcam::bindings
