@@ -4,6 +4,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -148,17 +150,23 @@ found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
 }  // namespace
 
 void bind_analysis(py::module_& m) {
-    py::class_<AimedRays>(m, "AimedRays", "Rays of one object point, in front of the lens. Lens frame.")
+    py::class_<AimedRays> aimed_rays(m, "AimedRays", "Rays of one object point, in front of the lens. Lens frame.");
+    def_result(aimed_rays);
+    aimed_rays
         .def_readonly("origins_mm", &AimedRays::origins_mm,
                       "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light; nan "
                       "where there is no ray.")
         .def_readonly("directions", &AimedRays::directions, "(N, 3), unit.")
-        .def_readonly("status", &AimedRays::status, kStatusText);
+        .def_readonly("status", &AimedRays::status, kStatusText)
+        .def("__repr__",
+             [](const AimedRays& rays) { return "<realcam.AimedRays " + counted(py::len(rays.status), "ray") + '>'; });
     using W = const PythonWavefront&;
-    py::class_<PythonWavefront>(
+    py::class_<PythonWavefront> wavefront(
         m, "Wavefront",
         "Optical path differences of one object point over the stop, in waves: positive where "
-        "the wavefront is ahead of\nthe reference sphere. Means are over the area of the open stop.")
+        "the wavefront is ahead of\nthe reference sphere. Means are over the area of the open stop.");
+    def_value(wavefront);
+    wavefront
         .def_property_readonly(
             "opd_waves",
             [](W w) { return array_of(w.wavefront.opd.size(), [&](auto i) { return w.wavefront.opd[i]; }); },
@@ -192,9 +200,14 @@ void bind_analysis(py::module_& m) {
             "Of the reference sphere; positive where the light runs from the exit pupil to the "
             "centre, inf for a plane.")
         .def_readonly("stop_radius_mm", &PythonWavefront::stop_radius_mm, "What places in the pupil are shares of.")
-        .def_readonly("wavelength_nm", &PythonWavefront::wavelength_nm);
-    py::class_<Spot>(m, "Spot", "Where rays of one object point meet a plane behind the lens. mm from the axis.")
-        .def_property_readonly(
+        .def_readonly("wavelength_nm", &PythonWavefront::wavelength_nm)
+        .def("__repr__", [](W w) {
+            return "<realcam.Wavefront " + counted(w.wavefront.opd.size(), "ray") + ", RMS " + digits(w.wavefront.rms) +
+                   " waves, Strehl " + digits(w.wavefront.strehl) + '>';
+        });
+    py::class_<Spot> spot(m, "Spot", "Where rays of one object point meet a plane behind the lens. mm from the axis.");
+    def_value(spot);
+    spot.def_property_readonly(
             "points_mm",
             [](const Spot& s) {
                 return table_of(s.points.size(), 2,
@@ -216,7 +229,11 @@ void bind_analysis(py::module_& m) {
         .def_property_readonly(
             "max_radius_mm", [](const Spot& s) { return s.about_centroid.max_radius; }, "About the centroid.")
         .def_property_readonly("rms_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.rms_radius; })
-        .def_property_readonly("max_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.max_radius; });
+        .def_property_readonly("max_radius_about_chief_ray_mm", [](const Spot& s) { return s.about_chief.max_radius; })
+        .def("__repr__", [](const Spot& s) {
+            return "<realcam.Spot " + counted(s.points.size(), "ray") + ", RMS radius " +
+                   digits(s.about_centroid.rms_radius) + " mm>";
+        });
 
     static const std::string aim_text =
         std::string(R"(Rays of one object point that meet given places on the real stop, for Lens.trace(start="scene").

@@ -7,11 +7,14 @@
 
 #include "../camera/default_film.hpp"
 #include "../camera/last_setup.hpp"
+#include "../camera/picture_angle.hpp"
 #include "../cuda/ray_arrays.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/embree_backend.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -36,6 +39,12 @@ CameraModel model_from(const std::string& name) {
     throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, thick or full is wanted");
 }
 
+Film changed_film(const Film& film, std::optional<double> width_mm, std::optional<double> height_mm,
+                  std::optional<std::pair<int, int>> resolution) {
+    const auto [columns, rows] = resolution.value_or(std::pair(film.width, film.height));
+    return {width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm), columns, rows};
+}
+
 Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution) {
     return {width_mm, height_mm, resolution.first, resolution.second};
 }
@@ -51,6 +60,36 @@ Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Tripl
     camera.iso = iso;
     validate(camera);
     return camera;
+}
+
+Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, const std::optional<Film>& film,
+                      const std::optional<Triple>& position, const std::optional<Triple>& look_at,
+                      const std::optional<Triple>& up, std::optional<double> exposure_time_s, std::optional<double> iso,
+                      const std::optional<std::string>& model) {
+    if (lens) camera.lens = *lens;
+    if (film) camera.film = *film;
+    if (position) camera.pose.position_m = vector_of(*position);
+    if (look_at) camera.pose.look_at_m = vector_of(*look_at);
+    if (up) camera.pose.up = vector_of(*up);
+    camera.exposure_time_s = exposure_time_s.value_or(camera.exposure_time_s);
+    camera.iso = iso.value_or(camera.iso);
+    if (model) camera.model = model_from(*model);
+    validate(camera);
+    return camera;
+}
+
+/// A named tuple of Python, in degrees.
+py::object field_of_view_deg(const Camera& camera) {
+    const FieldOfView view = field_of_view(camera);
+    const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };
+    return py::module_::import("realcam._core")
+        .attr("FieldOfView")(degrees(view.horizontal), degrees(view.vertical), degrees(view.diagonal));
+}
+
+std::optional<std::tuple<double, double, double>> pupil_position(const Camera& camera) {
+    const std::optional<Vec3d> position = entrance_pupil_position_m(camera);
+    if (!position) return std::nullopt;
+    return triple_of(*position);
 }
 
 /// Arrays of numpy, or DeviceArrays.
@@ -96,33 +135,89 @@ CameraRaysResult rays_of(const Camera& camera, int spp, std::int64_t seed, const
                : rays_on_host(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed));
 }
 
-}  // namespace
+std::string text_of(const Film& film) {
+    return "<realcam.Film " + digits(film.width_mm) + " x " + digits(film.height_mm) + " mm, " +
+           std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels>";
+}
 
-void bind_camera(py::module_& m) {
-    py::class_<Film>(m, "Film", "The light-sensitive rectangle and its pixels.")
-        .def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
+std::string text_of(const Camera& camera) {
+    const std::string name = camera.lens.name.empty() ? "a lens" : shortened(camera.lens.name);
+    const std::string model =
+        camera.model == CameraModel::full_lens ? "" : std::string(", ") + kModelNames[static_cast<int>(camera.model)];
+    return "<realcam.Camera with " + name + " f/" +
+           digits(first_order(camera.lens, camera.lens.wavelength_nm).f_number) + model + " at " +
+           point_text(camera.pose.position_m) + ", looks at " + point_text(camera.pose.look_at_m) + ", " +
+           time_text(camera.exposure_time_s) + ", ISO " + digits(camera.iso) + '>';
+}
+
+std::string text_of(const CameraRaysResult& rays) {
+    return "<realcam.CameraRays " + counted(py::len(rays.weights), "ray") + '>';
+}
+
+void bind_film(py::module_& m) {
+    py::class_<Film> film(m, "Film", "The light-sensitive rectangle and its pixels.");
+    def_hashable_value(film);
+    film.def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
              "resolution: (columns, rows).")
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
-        .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); });
-    py::class_<CameraRaysResult>(
+        .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
+        .def("replace", &changed_film, py::kw_only(), "width_mm"_a = py::none(), "height_mm"_a = py::none(),
+             "resolution"_a = py::none(), "The film with some of what Film() takes changed. None stays.")
+        .def("__repr__", [](const Film& f) { return text_of(f); });
+}
+
+void bind_camera_rays(py::module_& m) {
+    py::class_<CameraRaysResult> rays(
         m, "CameraRays",
         "The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or\n"
-        "DeviceArrays.")
-        .def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
+        "DeviceArrays.");
+    def_result(rays);
+    rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
         .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
         .def_readonly(
             "weights", &CameraRaysResult::weights,
             "(N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
             "radiance is its irradiance. 0: the lens blocks the ray.")
-        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.");
-    py::class_<Camera>(m, "Camera", "Lens, film, place and exposure. The camera's position is the middle of its film.")
+        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
+        .def("__repr__", [](const CameraRaysResult& r) { return text_of(r); });
+}
+
+}  // namespace
+
+void bind_camera(py::module_& m) {
+    bind_film(m);
+    bind_camera_rays(m);
+    m.attr("FieldOfView") = py::module_::import("collections")
+                                .attr("namedtuple")("FieldOfView", py::make_tuple("horizontal", "vertical", "diagonal"),
+                                                    "module"_a = "realcam");
+    py::class_<Camera> camera_class(
+        m, "Camera",
+        "Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole\n"
+        "lens stands: entrance_pupil_position_m says from where the scene is seen.");
+    def_hashable_value(camera_class, [](const Camera& camera) { validate(camera); });
+    camera_class
         .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
              "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
              "model"_a = "full",
              "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
              "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
              "Raises InputError.")
+        .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
+             "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
+             "iso"_a = py::none(), "model"_a = py::none(),
+             "The camera with some of what Camera() takes changed. None stays; so does the film with another lens\n"
+             "(see Film.for_lens). Raises InputError.")
+        .def_property_readonly(
+            "field_of_view_deg", &field_of_view_deg,
+            "FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands\n"
+            "on opposite edges and corners of the film, by real rays at the lens's focus. Where the film is larger\n"
+            "than the lens's image, between the edges of the image. Raises InputError where the camera's model has no\n"
+            "place for its lens.")
+        .def_property_readonly("entrance_pupil_position_m", &pupil_position,
+                               "(x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera "
+                               "sees the scene; turning\n"
+                               "about it shows no parallax. None where it lies at infinity.")
         .def(
             "generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
             "The rays that render would trace, for any other renderer. Returns CameraRays.\n"
@@ -135,7 +230,8 @@ void bind_camera(py::module_& m) {
         .def_property_readonly("up", [](const Camera& c) { return triple_of(c.pose.up); })
         .def_readonly("exposure_time_s", &Camera::exposure_time_s)
         .def_readonly("iso", &Camera::iso)
-        .def_property_readonly("model", [](const Camera& c) { return kModelNames[static_cast<int>(c.model)]; });
+        .def_property_readonly("model", [](const Camera& c) { return kModelNames[static_cast<int>(c.model)]; })
+        .def("__repr__", [](const Camera& c) { return text_of(c); });
     m.def(
         "pupil_setup",
         [](const LensSystem& lens, double film_radius_mm, bool on_one_core) {

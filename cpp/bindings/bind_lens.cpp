@@ -3,7 +3,10 @@
 #include <map>
 
 #include "../optics/focus.hpp"
+#include "../optics/lens_changes.hpp"
 #include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -51,28 +54,74 @@ SurfaceType type_from(const std::string& name) {
     throw InputError("unknown surface type \"" + name + "\"; refracting, mirror, stop or aperture is wanted");
 }
 
-Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
-                     double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
-                     double inner_semi_diameter, const std::string& type) {
-    Surface surface;
-    surface.type = type_from(type);
-    if (radius_of_curvature == 0 || std::isnan(radius_of_curvature))
-        throw InputError("a radius of curvature of 0 is no surface; leave it out (or give inf) for a plane");
-    surface.curvature = 1 / radius_of_curvature;
-    surface.thickness = thickness;
-    surface.material = glass_from(material);
-    surface.clear_semi_diameter = clear_semi_diameter;
-    surface.inner_semi_diameter = inner_semi_diameter;
-    surface.conic = conic;
-    for (const auto& [power, value] : aspheric) {
+/// What a user gives of a surface; the rest stays as it is.
+struct SurfaceChanges {
+    std::optional<double> radius_of_curvature_mm, thickness_mm;
+    std::optional<Glass> material;
+    std::optional<double> clear_semi_diameter_mm, conic;
+    std::optional<std::map<int, double>> aspheric_coefficients;
+    std::optional<double> inner_semi_diameter_mm;
+    std::optional<std::string> type;
+};
+
+std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {
+    std::vector<double> list;
+    for (const auto& [power, value] : coefficients) {
         if (power < 4 || power % 2 != 0 || power > 2 * kMaxAsphericTerms + 2)
             throw InputError("aspheric coefficients have even powers from 4 to " +
                              std::to_string(2 * kMaxAsphericTerms + 2) + " as keys; one is " + std::to_string(power));
         const auto term = static_cast<std::size_t>(power / 2 - 2);
-        if (surface.aspheric.size() <= term) surface.aspheric.resize(term + 1, 0.0);
-        surface.aspheric[term] = value;
+        if (list.size() <= term) list.resize(term + 1, 0.0);
+        list[term] = value;
     }
+    return list;
+}
+
+Surface changed(Surface surface, const SurfaceChanges& to) {
+    if (to.type) surface.type = type_from(*to.type);
+    if (to.radius_of_curvature_mm) {
+        const double radius = *to.radius_of_curvature_mm;
+        if (radius == 0 || std::isnan(radius))
+            throw InputError("a radius of curvature of 0 is no surface; leave it out (or give inf) for a plane");
+        surface.curvature = 1 / radius;
+    }
+    if (to.aspheric_coefficients) surface.aspheric = aspheric_from(*to.aspheric_coefficients);
+    surface.thickness = to.thickness_mm.value_or(surface.thickness);
+    surface.material = to.material.value_or(surface.material);
+    surface.clear_semi_diameter = to.clear_semi_diameter_mm.value_or(surface.clear_semi_diameter);
+    surface.inner_semi_diameter = to.inner_semi_diameter_mm.value_or(surface.inner_semi_diameter);
+    surface.conic = to.conic.value_or(surface.conic);
     return surface;
+}
+
+Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
+                     double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
+                     double inner_semi_diameter, const std::string& type) {
+    return changed(Surface(), {radius_of_curvature, thickness, glass_from(material), clear_semi_diameter, conic,
+                               aspheric, inner_semi_diameter, type});
+}
+
+/// Defines a method whose arguments are `first`, and by their names those of Surface. What is left out stays; because
+/// None is air, a material that stays is `...`.
+template <class>
+using Index = int;
+template <class T, class Function, class... First>
+void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
+    using Number = std::optional<double>;
+    type.def(
+        name,
+        [function](const T& self, Index<First>... place, Number radius, Number thickness, const py::object& material,
+                   Number clear, Number conic, const std::optional<std::map<int, double>>& aspheric, Number inner,
+                   const std::optional<std::string>& surface_type) {
+            const bool stays = material.is(py::ellipsis());
+            const SurfaceChanges changes{
+                radius, thickness,   stays ? std::nullopt : std::optional(glass_from(material)), clear, conic, aspheric,
+                inner,  surface_type};
+            return function(self, place..., changes);
+        },
+        first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
+        "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),
+        "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(), text);
 }
 
 std::map<int, double> aspheric_map(const Surface& surface) {
@@ -114,8 +163,41 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     return lens;
 }
 
+std::string text_of(const Glass& glass) {
+    return glass.label.empty() ? glass.is_air() ? "air" : "index " + digits(glass.index(kLineD_nm))
+                               : shortened(glass.label);
+}
+
+std::string text_of(const Surface& s) {
+    std::string text = std::string("<realcam.Surface ") + kTypeNames[static_cast<int>(s.type)];
+    if (s.curvature != 0) text += ", radius " + digits(1 / s.curvature) + " mm";
+    text += ", semi-diameter " + digits(s.clear_semi_diameter) + " mm";
+    if (s.is_asphere() || s.conic != 0) text += ", aspheric";
+    return text + ", then " + digits(s.thickness) + " mm of " + text_of(s.material) + '>';
+}
+
+std::string text_of(const LensSystem& lens) {
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const std::string name = lens.name.empty() ? "" : ' ' + shortened(lens.name) + ',';
+    const std::string focus = std::isinf(lens.focus_distance) ? "infinity" : digits(lens.focus_distance / 1000) + " m";
+    return "<realcam.Lens" + name + ' ' + counted(lens.surfaces.size(), "surface") + ", " +
+           digits(data.effective_focal_length) + " mm f/" + digits(data.f_number) + ", focused at " + focus + '>';
+}
+
+std::string text_of(const FirstOrder& data) {
+    return "<realcam.FirstOrder focal length " + digits(data.effective_focal_length) + " mm, f/" +
+           digits(data.f_number) + ", back focal distance " + digits(data.back_focal_distance) + " mm>";
+}
+
+std::optional<std::pair<int, int>> focus_group_of(const LensSystem& lens) {
+    if (!lens.focusing.moves_group()) return std::nullopt;
+    return std::pair(lens.focusing.group_first, lens.focusing.group_last);
+}
+
 void bind_glass(py::module_& m) {
-    py::class_<Glass>(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.")
+    py::class_<Glass> glass(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.");
+    def_hashable_value(glass);
+    glass
         .def_static(
             "constant",
             [](double index) {
@@ -150,14 +232,15 @@ void bind_glass(py::module_& m) {
                     "A glass of the catalogue, \"N-BK7\" or \"schott:F4\". Raises InputError with the nearest names.")
         .def("index", &Glass::index, "wavelength_nm"_a, "Refractive index.")
         .def_readonly("label", &Glass::label, "As it was written: a name, a number, a pair; empty for air.")
-        .def("__repr__",
-             [](const Glass& g) { return "Glass(" + (g.label.empty() ? std::string("air") : g.label) + ")"; });
+        .def("__repr__", [](const Glass& g) { return "<realcam.Glass " + text_of(g) + '>'; });
 }
 
 void bind_surface(py::module_& m) {
-    py::class_<Surface>(
+    py::class_<Surface> surface(
         m, "Surface",
-        "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).")
+        "One row of a lens table: a surface and what lies behind it. Lengths in mm, lens frame (z to the film).");
+    def_hashable_value(surface);
+    surface
         .def(py::init(&make_surface), py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
              "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
              "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
@@ -179,22 +262,27 @@ void bind_surface(py::module_& m) {
         .def_property_readonly("aspheric_coefficients", &aspheric_map)
         .def_property_readonly("type", [](const Surface& s) { return kTypeNames[static_cast<int>(s.type)]; })
         .def("sag_mm", &Surface::sag, "radius_mm"_a,
-             "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.");
+             "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.")
+        .def("__repr__", [](const Surface& s) { return text_of(s); });
+    def_surface_changes(surface, "replace", &changed,
+                        "The surface with some of what Surface() takes changed. What is not given stays.");
 }
 
 void bind_first_order(py::module_& m) {
-    py::class_<FirstOrder>(
+    py::class_<FirstOrder> data(
         m, "FirstOrder",
         "First-order data at one wavelength. mm; positions from the front vertex. Of an afocal lens the focal length,\n"
-        "the focal distances and the f-number are infinite.")
-        .def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
+        "the focal distances and the f-number are infinite.");
+    def_hashable_value(data);
+    data.def_readonly("effective_focal_length_mm", &FirstOrder::effective_focal_length)
         .def_readonly("back_focal_distance_mm", &FirstOrder::back_focal_distance)
         .def_readonly("front_focal_distance_mm", &FirstOrder::front_focal_distance)
         .def_readonly("f_number", &FirstOrder::f_number)
         .def_readonly("entrance_pupil_position_mm", &FirstOrder::entrance_pupil_position)
         .def_readonly("entrance_pupil_diameter_mm", &FirstOrder::entrance_pupil_diameter)
         .def_readonly("exit_pupil_position_mm", &FirstOrder::exit_pupil_position)
-        .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter);
+        .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter)
+        .def("__repr__", [](const FirstOrder& d) { return text_of(d); });
 }
 
 }  // namespace
@@ -204,7 +292,10 @@ void bind_lens(py::module_& m) {
     bind_surface(m);
     bind_first_order(m);
     m.def("lens_names", &io::lens_names, "Names of the bundled lenses.");
-    py::class_<LensSystem>(m, "Lens", "A lens in one state of its rings. A value: every change returns a new Lens.")
+    py::class_<LensSystem> lens_class(m, "Lens",
+                                      "A lens in one state of its rings. A value: every change returns a new Lens.");
+    def_hashable_value(lens_class, [](const LensSystem& lens) { validate(lens); });
+    lens_class
         .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
              "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(),
@@ -262,9 +353,32 @@ void bind_lens(py::module_& m) {
         .def_property_readonly("stop_index", &LensSystem::stop_index)
         .def_readonly("stop_semi_diameter_mm", &LensSystem::stop_semi_diameter)
         .def_property_readonly("iris_blades", [](const LensSystem& l) { return l.iris.blades; })
-        .def("__repr__", [](const LensSystem& l) {
-            return "<realcam.Lens " + l.name + ", " + std::to_string(l.surfaces.size()) + " surfaces>";
-        });
+        .def(
+            "with_iris",
+            [](const LensSystem& lens, int blades, std::optional<double> rounding, std::optional<double> rotation_deg) {
+                const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+                return with_iris(lens, {blades, rounding.value_or(lens.iris.rounding),
+                                        rotation_deg ? radians(*rotation_deg) : lens.iris.rotation_rad});
+            },
+            "blades"_a, "rounding"_a = py::none(), "rotation_deg"_a = py::none(),
+            "The lens with another diaphragm: blades, rounding and rotation as Lens() takes them; None stays. The\n"
+            "f-number stays too, because it is the open area that it means. Raises LensFileError.")
+        .def_property_readonly("iris_rounding", [](const LensSystem& l) { return l.iris.rounding; })
+        .def_property_readonly("iris_rotation_deg",
+                               [](const LensSystem& l) { return l.iris.rotation_rad * 180 / std::numbers::pi; })
+        .def_property_readonly("focus_group", &focus_group_of, "(first, last) index; None: the whole lens moves.")
+        .def("__repr__", [](const LensSystem& l) { return text_of(l); });
+    def_surface_changes(
+        lens_class, "with_surface",
+        [](const LensSystem& lens, int index, const SurfaceChanges& changes) {
+            const bool exists = index >= 0 && index < static_cast<int>(lens.surfaces.size());
+            return with_surface(lens, index,
+                                exists ? changed(lens.surfaces[static_cast<std::size_t>(index)], changes) : Surface());
+        },
+        "The lens with one surface changed: its index from 0, as in surfaces, and what Surface() takes. What is not\n"
+        "given stays; so do focus group, iris, film and title, and the film where it is: focused() brings the picture\n"
+        "into focus again. Raises InputError, and LensFileError where the lens cannot be built.",
+        "index"_a);
 }
 
 }  // namespace realcam::bindings

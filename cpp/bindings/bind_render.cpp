@@ -13,6 +13,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "render_turn.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -90,8 +92,9 @@ py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso,
 }  // namespace
 
 void bind_render(py::module_& m) {
-    py::class_<RenderStats>(m, "RenderStats", "What a picture cost. Stage seconds are summed over the threads.")
-        .def_readonly("seconds", &RenderStats::seconds, "Wall clock, all of it.")
+    py::class_<RenderStats> stats(m, "RenderStats", "What a picture cost. Stage seconds are summed over the threads.");
+    def_hashable_value(stats);
+    stats.def_readonly("seconds", &RenderStats::seconds, "Wall clock, all of it.")
         .def_readonly("setup_seconds", &RenderStats::setup_seconds, "Pupil and scene; part of seconds.")
         .def_readonly("lens_seconds", &RenderStats::lens_seconds)
         .def_readonly("scene_seconds", &RenderStats::scene_seconds)
@@ -99,7 +102,10 @@ void bind_render(py::module_& m) {
         .def_readonly("sampled_rays", &RenderStats::sampled_rays, "Sent into the lens.")
         .def_readonly("passed_rays", &RenderStats::passed_rays, "That left it.")
         .def_readonly("scene_rays", &RenderStats::scene_rays, "Camera, shadow and bounce rays.")
-        .def_readonly("device", &RenderStats::device);
+        .def_readonly("device", &RenderStats::device)
+        .def("__repr__", [](const RenderStats& s) {
+            return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
+        });
     m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a,
           "progress"_a);
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",

@@ -11,6 +11,8 @@
 #include "bindings.hpp"
 #include "picture_readers.hpp"
 #include "scene_from_arrays.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -71,28 +73,22 @@ std::pair<Corner, Corner> bounds(const Assembly& scene) {
     return {Corner{box.low.x, box.low.y, box.low.z}, Corner{box.high.x, box.high.y, box.high.z}};
 }
 
-Material make_material(const Colour& diffuse, const Colour& specular, float shininess, const Colour& emission) {
-    Material material;
-    material.diffuse = rgb(diffuse);
-    material.specular = rgb(specular);
-    material.shininess = shininess;
-    material.emission = rgb(emission);
-    return material;
+std::string text_of(const Assembly& scene) {
+    std::string text = "<realcam.Scene " + counted(scene.triangle_count(), "triangle") + ", " +
+                       counted(scene.static_geometry->materials.size(), "material");
+    if (!scene.instances.empty()) text += ", " + counted(scene.instances.size(), "instance");
+    return text + (scene.has_light() ? ">" : ", no light>");
 }
 
 }  // namespace
 
 void bind_scene(py::module_& m) {
-    py::class_<Material>(m, "Material", "How a surface reflects and shines. Colours are linear Rec. 709.")
-        .def(py::init(&make_material), py::kw_only(), "diffuse"_a = Colour{0.5f, 0.5f, 0.5f},
-             "specular"_a = Colour{0, 0, 0}, "shininess"_a = 0.0f, "emission"_a = Colour{0, 0, 0},
-             "diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess: Phong exponent;\n"
-             "emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise.");
     py::class_<Assembly> scene_class(
         m, "Scene",
         "Triangles, materials and lights, and objects that stand among them, as often as one likes;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
         "those of static geometry; objects bring their own along.");
+    def_value(scene_class, [](const Assembly& scene) { io::validate(scene); });
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
@@ -101,7 +97,7 @@ void bind_scene(py::module_& m) {
             "Raises SceneFileError. What could be put up with is in warnings.")
         .def_static(
             "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
-            "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<Material>{},
+            "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
             "vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);\n"
             "triangle_materials: (T,) indices into materials. Raises InputError or SceneFileError.")
         .def(
@@ -134,22 +130,6 @@ void bind_scene(py::module_& m) {
                     scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
             },
             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
-        .def(
-            "with_texture",
-            [](const Assembly& scene, std::size_t material, const InputArray<std::uint8_t>& pixels) {
-                if (material >= scene.static_geometry->materials.size())
-                    throw InputError("there is no material " + std::to_string(material));
-                if (pixels.ndim() != 3 || pixels.shape(2) != 4)
-                    throw InputError("a texture must be an (H, W, 4) array of uint8, sRGB");
-                return with_valid_static_geometry(scene, [&](Scene& changed) {
-                    changed.materials[material].diffuse_texture = static_cast<std::int32_t>(changed.textures.size());
-                    changed.textures.push_back({"",
-                                                static_cast<std::int32_t>(pixels.shape(1)),
-                                                static_cast<std::int32_t>(pixels.shape(0)),
-                                                {pixels.data(), pixels.data() + pixels.size()}});
-                });
-            },
-            "material"_a, "pixels"_a, "With a diffuse texture on a material: (H, W, 4) uint8, sRGB, row 0 at v = 1.")
         .def_property_readonly("triangle_count", &Assembly::triangle_count,
                                "Of all instances, each as often as it stands there.")
         .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
@@ -158,9 +138,9 @@ void bind_scene(py::module_& m) {
         .def_property_readonly(
             "warnings", [](const Assembly& s) { return s.static_geometry->warnings; },
             "What the reader put up with, such as a missing texture.")
-        .def("__repr__",
-             [](const Assembly& s) { return "<realcam.Scene, " + std::to_string(s.triangle_count()) + " triangles>"; });
+        .def("__repr__", [](const Assembly& s) { return text_of(s); });
     bind_instances(scene_class);
+    bind_scene_materials(scene_class);
 }
 
 }  // namespace realcam::bindings

@@ -5,6 +5,8 @@
 #include "../optics/ghost.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -26,12 +28,13 @@ void bind_seidel_table(py::module_& m) {
     using T = TransverseAberrations;
     using Row = const SeidelRow&;
     using Table = const SeidelTable&;
-    py::class_<SeidelTable>(
+    py::class_<SeidelTable> table(
         m, "Seidel",
         "Third-order aberrations surface by surface: arrays of shape (S,), one entry for each of the "
         "lens's surfaces.\nThe sum over the surfaces is the lens's. Transverse aberrations are those "
-        "of a ray at the edge of the stop and of the field, along y; names and signs as CODE V's.")
-        .def_readonly("wavelength_nm", &SeidelTable::wavelength_nm)
+        "of a ray at the edge of the stop and of the field, along y; names and signs as CODE V's.");
+    def_value(table);
+    table.def_readonly("wavelength_nm", &SeidelTable::wavelength_nm)
         .def_readonly("lagrange_invariant_mm", &SeidelTable::lagrange_invariant)
         .def_property_readonly("marginal_height_mm", of_rows([](Row r) { return r.marginal.height; }),
                                "(S,): paraxial ray to the edge of the stop.")
@@ -80,7 +83,11 @@ void bind_seidel_table(py::module_& m) {
             "(S, 7): W040, W131, W222, W220, W311, and of colour W020, W111, in\n"
             "W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, with r and h as "
             "shares "
-            "of the\npupil's radius and of the field.");
+            "of the\npupil's radius and of the field.")
+        .def("__repr__", [](Table t) {
+            return "<realcam.Seidel " + counted(t.surfaces.size(), "surface") + " at " + digits(t.wavelength_nm) +
+                   " nm>";
+        });
 }
 
 SeidelTable make_seidel(const LensSystem& lens, double field_deg, double object_distance_m,
@@ -94,10 +101,16 @@ SeidelTable make_seidel(const LensSystem& lens, double field_deg, double object_
 
 void bind_seidel(py::module_& m) {
     bind_seidel_table(m);
-    py::class_<GhostPath>(m, "Ghost", "First-order data of light that two surfaces reflect on its way to the film.")
-        .def_readonly("effective_focal_length_mm", &GhostPath::effective_focal_length)
+    py::class_<GhostPath> ghost(m, "Ghost",
+                                "First-order data of light that two surfaces reflect on its way to the film.");
+    def_hashable_value(ghost);
+    ghost.def_readonly("effective_focal_length_mm", &GhostPath::effective_focal_length)
         .def_readonly("back_focal_distance_mm", &GhostPath::back_focal_distance,
-                      "Last vertex to where the ghost of a point at infinity is sharp; negative in front of it.");
+                      "Last vertex to where the ghost of a point at infinity is sharp; negative in front of it.")
+        .def("__repr__", [](const GhostPath& g) {
+            return "<realcam.Ghost focal length " + digits(g.effective_focal_length) + " mm, back focal distance " +
+                   digits(g.back_focal_distance) + " mm>";
+        });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("seidel", &make_seidel, "field_deg"_a, py::kw_only(), "object_distance_m"_a = kInfinity,
              "wavelength_nm"_a = py::none(), "colours_nm"_a = std::pair(kLineF_nm, kLineC_nm),

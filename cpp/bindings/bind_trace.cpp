@@ -10,6 +10,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "device_array.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
 
 namespace realcam::bindings {
 
@@ -128,15 +130,18 @@ void bind_trace(py::module_& m) {
     py::dict values;
     for (const auto& [name, status] : statuses) values[name] = static_cast<int>(status);
     m.attr("RayStatus") = py::module_::import("enum").attr("IntEnum")("RayStatus", values, "module"_a = "realcam");
-    py::class_<TraceResult>(
+    py::class_<TraceResult> result(
         m, "TraceResult",
-        "Rays after a lens, lens frame. Arrays of numpy; DeviceArrays where the rays came in a GPU's memory.")
-        .def_readonly("origins_mm", &TraceResult::origins_mm, "(N, 3): on the last surface met.")
+        "Rays after a lens, lens frame. Arrays of numpy; DeviceArrays where the rays came in a GPU's memory.");
+    def_result(result);
+    result.def_readonly("origins_mm", &TraceResult::origins_mm, "(N, 3): on the last surface met.")
         .def_readonly("directions", &TraceResult::directions, "(N, 3), unit.")
         .def_readonly("optical_path_mm", &TraceResult::optical_path_mm, "(N,): index times distance, from the origin.")
         .def_readonly("status", &TraceResult::status, "(N,): RayStatus values.")
         .def_readonly("surface_index", &TraceResult::surface_index,
-                      "(N,): surface at which the ray ended, from 0; -1: bad input.");
+                      "(N,): surface at which the ray ended, from 0; -1: bad input.")
+        .def("__repr__",
+             [](const TraceResult& r) { return "<realcam.TraceResult " + counted(py::len(r.status), "ray") + '>'; });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("trace", &trace, "origins_mm"_a, "directions"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
              "start"_a = "film", "dtype"_a = "float64", "surface_count"_a = py::none(), "device"_a = py::none(),

@@ -30,38 +30,45 @@ Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>&
     return camera;
 }
 
-Camera exposed(Camera camera, const Assembly& scene, const std::string& device, const py::object& progress) {
+Camera metered(Camera camera, const Assembly& scene, const std::string& device, int max_bounces,
+               const py::object& progress) {
     Backend& backend = backend_for(device);
     const Progress report = progress_of(progress);
     const py::gil_scoped_release release;
     const RenderTurn turn;
-    camera.exposure_time_s = metered_exposure_time(backend, scene, camera, {}, report);
+    camera.exposure_time_s = metered_exposure_time(backend, scene, camera, {.max_bounces = max_bounces}, report);
     return camera;
+}
+
+Assembly with_daylight(const Assembly& scene, const Camera& camera) {
+    return with_static_geometry(scene, [&](Scene& changed) { add_daylight(changed, camera.pose); });
 }
 
 }  // namespace
 
 // What the command line decides for a user who does not say; the C++ program decides in the same way.
 void bind_view(py::module_& m) {
-    m.def("default_film", &default_film, "lens"_a, "size_mm"_a = py::none(), "resolution"_a = py::none(),
-          "Completes (width, height) in mm and (columns, rows): the lens's film, 960 pixels along the longer side, "
-          "square pixels.");
-    m.def("framed", &framed, "camera"_a, "scene"_a, py::kw_only(), "position"_a = py::none(), "look_at"_a = py::none(),
-          "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(),
-          "The camera, placed and focused as asked for, and otherwise such that the scene fills the picture from +z, "
-          "in focus\n"
-          "where its axis meets it. Raises InputError.");
-    m.def(
-        "with_daylight",
-        [](const Assembly& scene, const Camera& camera) {
-            return with_static_geometry(scene, [&](Scene& changed) { add_daylight(changed, camera.pose); });
-        },
-        "scene"_a, "camera"_a,
-        "The scene under a sun of 80 klux from the camera's upper left and a sky of 5000 cd/m^2.");
-    m.def("exposed", &exposed, "camera"_a, "scene"_a, "device"_a = "auto", "progress"_a = py::none(),
-          "The camera with the exposure time that brings the average of its picture to middle grey. Raises InputError "
-          "where\n"
-          "no light reaches the film.");
+    py::reinterpret_borrow<py::class_<Film>>(m.attr("Film"))
+        .def_static("for_lens", &default_film, "lens"_a, "size_mm"_a = py::none(), "resolution"_a = py::none(),
+                    "A film for a lens. size_mm: (width, height); resolution: (columns, rows). None is chosen: the\n"
+                    "size that the lens was made for, 960 square pixels along the longer side; of a resolution alone\n"
+                    "the largest part of the lens's film that has its shape.");
+    py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
+        .def("framing", &framed, "scene"_a, py::kw_only(), "position"_a = py::none(), "look_at"_a = py::none(),
+             "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(),
+             "The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as\n"
+             "given, and what is None chosen. It looks at the middle of the scene, stands in front of it along +z\n"
+             "(-y where up is z) where the scene fills nine tenths of the film, and focuses on the first surface on\n"
+             "its axis. Of the camera itself lens, film, model and exposure stay. Raises InputError.")
+        .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = 1,
+             "progress"_a = py::none(),
+             "The camera with the exposure time that brings the average of its picture of the scene to middle grey at\n"
+             "its ISO, from a small picture with so many reflections (see render, as for device and progress).\n"
+             "Raises InputError where no light reaches the film; DeviceError.");
+    py::reinterpret_borrow<py::class_<Assembly>>(m.attr("Scene"))
+        .def("with_daylight", &with_daylight, "camera"_a,
+             "The scene under a sun of 80 klux, from the upper left behind the camera, and a sky of 5000 cd/m^2 in\n"
+             "place of its environment: f/16, 1/125 s and ISO 100 expose it.");
 }
 
 }  // namespace realcam::bindings

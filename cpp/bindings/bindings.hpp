@@ -22,7 +22,9 @@ void bind_trace(py::module_& m);
 void bind_seidel(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_camera(py::module_& m);
+void bind_material(py::module_& m);
 void bind_scene(py::module_& m);
+void bind_scene_materials(py::class_<Assembly>& scene);
 void bind_instances(py::class_<Assembly>& scene);
 void bind_render(py::module_& m);
 void bind_view(py::module_& m);
@@ -49,6 +51,13 @@ inline std::string path_from(const py::object& path) {
 inline py::str text_from(const std::string& text) {
     return py::reinterpret_steal<py::str>(
         PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size())));
+}
+
+/// A text of a file, which need not be UTF-8.
+inline py::str decoded(const std::string& text) {
+    PyObject* result = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace");
+    if (!result) throw py::error_already_set();
+    return py::reinterpret_steal<py::str>(result);
 }
 
 /// A medium as users write it: an index, (n_d, V_d), the name of a glass of the catalogue, a Glass; None is air.

@@ -1,9 +1,11 @@
 #include "bindings.hpp"
+#include "value_state.hpp"
 
 PYBIND11_MODULE(_core, m) {
     using namespace realcam::bindings;
     m.doc() = "The C++ core of realcam.";
     m.attr("__version__") = REALCAM_VERSION;
+    m.attr("_STATE_FORMAT") = kStateFormat;
     bind_errors(m);
     bind_lens(m);
     bind_device_array(m);
@@ -11,6 +13,7 @@ PYBIND11_MODULE(_core, m) {
     bind_seidel(m);
     bind_analysis(m);
     bind_camera(m);
+    bind_material(m);
     bind_scene(m);
     bind_render(m);
     bind_view(m);

@@ -29,7 +29,7 @@ InputArray<std::int64_t> indices_from(const py::object& sequence, const char* wh
 
 Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object& triangle_corners,
                            const std::optional<InputArray<float>>& normals, const std::optional<InputArray<float>>& uvs,
-                           const py::object& material_of_triangle, std::vector<Material> materials) {
+                           const py::object& material_of_triangle, const std::vector<PythonMaterial>& materials) {
     const InputArray<std::int64_t> triangles = indices_from(triangle_corners, "triangles");
     std::optional<InputArray<std::int64_t>> triangle_materials;
     if (!material_of_triangle.is_none()) triangle_materials = indices_from(material_of_triangle, "triangle_materials");
@@ -59,7 +59,8 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
                              ", but there are " + std::to_string(count) + " (counted from 0)");
         return static_cast<std::uint32_t>(value);
     };
-    scene.materials = materials.empty() ? std::vector<Material>(1) : std::move(materials);
+    scene.materials.resize(materials.empty() ? 1 : materials.size());
+    for (std::size_t i = 0; i < materials.size(); ++i) set_material(scene, i, materials[i]);
     for (py::ssize_t i = 0; i < corners.shape(0); ++i) {
         Triangle triangle{};
         for (int k = 0; k < 3; ++k) triangle.vertices[k] = index(corners(i, k), points.shape(0), "vertex", i);

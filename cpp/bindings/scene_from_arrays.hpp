@@ -4,12 +4,13 @@
 
 #include "../scene/assembly.hpp"
 #include "arrays.hpp"
+#include "material.hpp"
 
 namespace realcam::bindings {
 
 /// See Scene.from_arrays.
 Assembly scene_from_arrays(const InputArray<double>& vertices, const pybind11::object& triangle_corners,
                            const std::optional<InputArray<float>>& normals, const std::optional<InputArray<float>>& uvs,
-                           const pybind11::object& material_of_triangle, std::vector<Material> materials);
+                           const pybind11::object& material_of_triangle, const std::vector<PythonMaterial>& materials);
 
 }  // namespace realcam::bindings

@@ -99,6 +99,9 @@ private:
 
     void check_materials() const {
         const auto textures = static_cast<std::int64_t>(scene_.textures.size());
+        if (!scene_.material_names.empty() && scene_.material_names.size() != scene_.materials.size())
+            fail(std::to_string(scene_.material_names.size()) + " names for " +
+                 std::to_string(scene_.materials.size()) + " materials; none or one for each is wanted");
         for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
             const Material& m = scene_.materials[i];
             require(is_reflectance(m.diffuse), "material", i, "diffuse reflectance must be finite and not negative");

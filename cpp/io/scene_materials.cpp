@@ -150,11 +150,13 @@ void read_materials(Scene& scene, const ImportedScene& file, SceneTextures& text
 
     const Json no_json;
     scene.materials.assign(content.mNumMaterials, Material{});
+    scene.material_names.assign(content.mNumMaterials, {});
     for (unsigned i = 0; i < content.mNumMaterials; ++i) {
         if (!used[i]) continue;  // its textures need not exist
         const aiMaterial& from = *content.mMaterials[i];
         aiString name;
         from.Get(AI_MATKEY_NAME, name);
+        if (name != aiString(AI_DEFAULT_MATERIAL_NAME)) scene.material_names[i] = name.C_Str();
         std::string label = path + ": material " + std::to_string(i);
         if (name.length > 0) label += " \"" + std::string(name.C_Str()) + "\"";
         scene.materials[i] = MaterialReader(scene, textures, from, label)

@@ -108,6 +108,7 @@ std::vector<Instance> SceneObjects::finish(const Scene& materials) {
 
 void keep_all_materials(Scene& scene, Scene from) {
     scene.materials = std::move(from.materials);
+    scene.material_names = std::move(from.material_names);
     scene.textures = std::move(from.textures);
     if (scene.uvs.empty())
         for (Material& material : scene.materials) material.diffuse_texture = -1;
@@ -117,10 +118,14 @@ void keep_used_materials(Scene& scene, const Scene& from) {
     std::map<std::uint32_t, std::uint32_t> materials;
     std::map<std::int32_t, std::int32_t> textures;
     std::vector<Material> used;
+    scene.material_names.clear();
     for (Triangle& triangle : scene.triangles) {
         const auto [material, is_new] =
             materials.try_emplace(triangle.material, static_cast<std::uint32_t>(used.size()));
-        if (is_new) used.push_back(from.materials[triangle.material]);
+        if (is_new) {
+            used.push_back(from.materials[triangle.material]);
+            if (!from.material_names.empty()) scene.material_names.push_back(from.material_names[triangle.material]);
+        }
         triangle.material = material->second;
     }
     for (Material& material : used) {

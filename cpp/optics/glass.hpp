@@ -75,9 +75,23 @@ public:
     /// As the lens's author wrote it: a name, a number, a pair; empty for air.
     std::string label;
 
-private:
     enum class Formula { cauchy, sellmeier, table };
 
+    /// All that a glass consists of, for whoever stores it.
+    struct Parts {
+        Formula formula;
+        std::vector<double> coefficients;  ///< of Cauchy's formula; B and C by turns of Sellmeier's
+        std::vector<TablePoint> points;
+        std::string label;
+    };
+    Parts parts() const { return {formula_, coefficients_, points_, label}; }
+    static Glass from_parts(Parts parts) {
+        Glass glass{parts.formula, std::move(parts.coefficients), std::move(parts.points)};
+        glass.label = std::move(parts.label);
+        return glass;
+    }
+
+private:
     Glass(Formula formula, std::vector<double> coefficients, std::vector<TablePoint> points)
         : formula_(formula), coefficients_(std::move(coefficients)), points_(std::move(points)) {}
 

@@ -35,6 +35,7 @@ struct Scene {
     std::vector<Vec2f> uvs;      ///< empty, or one per position
     std::vector<Triangle> triangles;
     std::vector<Material> materials;
+    std::vector<std::string> material_names;  ///< as in the file; empty, or one for each material (empty: none)
     std::vector<Texture> textures;
     std::vector<ScenePointLight> points;
     std::vector<SunLight> suns;

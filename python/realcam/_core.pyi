@@ -2,13 +2,15 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 from os import PathLike
-from typing import Any, Generic, Literal, Protocol, TypeAlias, final, overload
+from types import EllipsisType
+from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
-from typing_extensions import TypeVar
+from typing_extensions import Self, TypeVar
 
 __version__: str
+_STATE_FORMAT: int
 
 _Path: TypeAlias = str | PathLike[str]
 _Triple: TypeAlias = Sequence[float] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
@@ -23,6 +25,14 @@ _Integers = TypeVar("_Integers", default=NDArray[np.int32])
 class _CudaArray(Protocol):
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]: ...
+
+# Nothing changes a value: its copies are the same object.
+class _Value:
+    def __copy__(self) -> Self: ...
+    def __deepcopy__(self, memo: Any) -> Self: ...
+
+class _LargeValue(_Value):
+    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 class RealcamError(Exception): ...
 class InputError(RealcamError, ValueError): ...
@@ -46,7 +56,7 @@ class RayStatus(IntEnum):
     BAD_INPUT = 5
 
 @final
-class Glass:
+class Glass(_Value):
     @staticmethod
     def constant(index: float) -> Glass: ...
     @staticmethod
@@ -64,7 +74,7 @@ class Glass:
     def label(self) -> str: ...
 
 @final
-class Surface:
+class Surface(_Value):
     def __init__(
         self,
         *,
@@ -96,9 +106,21 @@ class Surface:
     @property
     def type(self) -> str: ...
     def sag_mm(self, radius_mm: float) -> float: ...
+    def replace(
+        self,
+        *,
+        radius_of_curvature_mm: float | None = None,
+        thickness_mm: float | None = None,
+        material: _Material | EllipsisType = ...,
+        clear_semi_diameter_mm: float | None = None,
+        conic: float | None = None,
+        aspheric_coefficients: Mapping[int, float] | None = None,
+        inner_semi_diameter_mm: float | None = None,
+        type: str | None = None,
+    ) -> Surface: ...
 
 @final
-class FirstOrder:
+class FirstOrder(_Value):
     @property
     def effective_focal_length_mm(self) -> float: ...
     @property
@@ -153,7 +175,7 @@ class TraceResult(Generic[_Doubles, _Integers]):
     def surface_index(self) -> _Integers: ...
 
 @final
-class Seidel:
+class Seidel(_LargeValue):
     @property
     def wavelength_nm(self) -> float: ...
     @property
@@ -196,7 +218,7 @@ class Seidel:
     def coefficients_waves(self) -> NDArray[np.float64]: ...
 
 @final
-class Ghost:
+class Ghost(_Value):
     @property
     def effective_focal_length_mm(self) -> float: ...
     @property
@@ -212,7 +234,7 @@ class AimedRays:
     def status(self) -> NDArray[np.int32]: ...
 
 @final
-class Wavefront:
+class Wavefront(_LargeValue):
     @property
     def opd_waves(self) -> NDArray[np.float64]: ...
     @property
@@ -240,7 +262,7 @@ class Wavefront:
     def wavelength_nm(self) -> float: ...
 
 @final
-class Spot:
+class Spot(_LargeValue):
     @property
     def points_mm(self) -> NDArray[np.float64]: ...
     @property
@@ -263,7 +285,7 @@ class Spot:
     def max_radius_about_chief_ray_mm(self) -> float: ...
 
 @final
-class Lens:
+class Lens(_Value):
     def __init__(
         self,
         *,
@@ -377,12 +399,43 @@ class Lens:
     def stop_semi_diameter_mm(self) -> float: ...
     @property
     def iris_blades(self) -> int: ...
+    @property
+    def iris_rounding(self) -> float: ...
+    @property
+    def iris_rotation_deg(self) -> float: ...
+    @property
+    def focus_group(self) -> tuple[int, int] | None: ...
+    def with_iris(self, blades: int, rounding: float | None = None, rotation_deg: float | None = None) -> Lens: ...
+    def with_surface(
+        self,
+        index: int,
+        *,
+        radius_of_curvature_mm: float | None = None,
+        thickness_mm: float | None = None,
+        material: _Material | EllipsisType = ...,
+        clear_semi_diameter_mm: float | None = None,
+        conic: float | None = None,
+        aspheric_coefficients: Mapping[int, float] | None = None,
+        inner_semi_diameter_mm: float | None = None,
+        type: str | None = None,
+    ) -> Lens: ...
 
 @final
-class Film:
+class Film(_Value):
     def __init__(
         self, width_mm: float = 36.0, height_mm: float = 24.0, resolution: tuple[int, int] = (960, 640)
     ) -> None: ...
+    @staticmethod
+    def for_lens(
+        lens: Lens, size_mm: Sequence[float] | None = None, resolution: Sequence[int] | None = None
+    ) -> Film: ...
+    def replace(
+        self,
+        *,
+        width_mm: float | None = None,
+        height_mm: float | None = None,
+        resolution: tuple[int, int] | None = None,
+    ) -> Film: ...
     @property
     def width_mm(self) -> float: ...
     @property
@@ -401,8 +454,13 @@ class CameraRays(Generic[_Doubles, _Floats, _Integers]):
     @property
     def pixels(self) -> _Integers: ...
 
+class FieldOfView(NamedTuple):
+    horizontal: float
+    vertical: float
+    diagonal: float
+
 @final
-class Camera:
+class Camera(_Value):
     def __init__(
         self,
         lens: Lens,
@@ -415,6 +473,34 @@ class Camera:
         iso: float = 100.0,
         model: str = "full",
     ) -> None: ...
+    def replace(
+        self,
+        *,
+        lens: Lens | None = None,
+        film: Film | None = None,
+        position: _Triple | None = None,
+        look_at: _Triple | None = None,
+        up: _Triple | None = None,
+        exposure_time_s: float | None = None,
+        iso: float | None = None,
+        model: str | None = None,
+    ) -> Camera: ...
+    def framing(
+        self,
+        scene: Scene,
+        *,
+        position: _Triple | None = None,
+        look_at: _Triple | None = None,
+        up: _Triple = [0.0, 1.0, 0.0],
+        focus_distance_m: float | None = None,
+    ) -> Camera: ...
+    def metered(
+        self, scene: Scene, *, device: str = "auto", max_bounces: int = 1, progress: _Progress | None = None
+    ) -> Camera: ...
+    @property
+    def field_of_view_deg(self) -> FieldOfView: ...
+    @property
+    def entrance_pupil_position_m(self) -> tuple[float, float, float] | None: ...
     @overload
     def generate_rays(self, *, spp: int = 1, seed: int = 0, device: Literal["cpu"] = "cpu") -> CameraRays: ...
     @overload
@@ -437,7 +523,7 @@ class Camera:
     def model(self) -> str: ...
 
 @final
-class Material:
+class Material(_Value):
     def __init__(
         self,
         *,
@@ -445,10 +531,34 @@ class Material:
         specular: _Triple = [0.0, 0.0, 0.0],
         shininess: float = 0.0,
         emission: _Triple = [0.0, 0.0, 0.0],
+        texture: ArrayLike | None = None,
+        name: str = "",
     ) -> None: ...
+    def replace(
+        self,
+        *,
+        diffuse: _Triple | None = None,
+        specular: _Triple | None = None,
+        shininess: float | None = None,
+        emission: _Triple | None = None,
+        texture: ArrayLike | EllipsisType | None = ...,
+        name: str | None = None,
+    ) -> Material: ...
+    @property
+    def diffuse(self) -> tuple[float, float, float]: ...
+    @property
+    def specular(self) -> tuple[float, float, float]: ...
+    @property
+    def shininess(self) -> float: ...
+    @property
+    def emission(self) -> tuple[float, float, float]: ...
+    @property
+    def texture(self) -> NDArray[np.uint8] | None: ...
+    @property
+    def name(self) -> str: ...
 
 @final
-class Scene:
+class Scene(_LargeValue):
     @staticmethod
     def load(path: _Path, *, scale: float = 1.0, objects: Sequence[str] = []) -> Scene: ...
     @staticmethod
@@ -464,13 +574,17 @@ class Scene:
     def with_environment(self, radiance: float | _Triple | ArrayLike | str | os.PathLike[str]) -> Scene: ...
     def with_sun(self, direction: _Triple, illuminance: _Triple) -> Scene: ...
     def with_point_light(self, position_m: _Triple, intensity: _Triple) -> Scene: ...
-    def with_texture(self, material: int, pixels: ArrayLike) -> Scene: ...
+    def with_daylight(self, camera: Camera) -> Scene: ...
+    def with_material(self, which: int | str, material: Material) -> Scene: ...
+    def with_texture(self, material: int | str, pixels: ArrayLike) -> Scene: ...
     def with_instance(self, object: Scene, scene_from_object: ArrayLike | None = None, *, name: str = "") -> Scene: ...
     def moved(self, instance: int | str, scene_from_object: ArrayLike) -> Scene: ...
     @property
     def instances(self) -> tuple[tuple[str, NDArray[np.float64]], ...]: ...
     @property
     def triangle_count(self) -> int: ...
+    @property
+    def materials(self) -> dict[str, Material]: ...
     @property
     def material_count(self) -> int: ...
     @property
@@ -481,7 +595,7 @@ class Scene:
     def warnings(self) -> list[str]: ...
 
 @final
-class RenderStats:
+class RenderStats(_Value):
     @property
     def seconds(self) -> float: ...
     @property
@@ -536,21 +650,7 @@ class LiveView:
 def _gpu_hit_rates(scene: Scene, camera: Camera, device: str) -> dict[str, float]: ...
 def _gpu_lens_ray_rates(camera: Camera, device: str) -> dict[str, float]: ...
 def _lens_ray_rates(lens: Lens, seconds: float) -> dict[str, float]: ...
-def default_film(
-    lens: Lens, size_mm: Sequence[float] | None = None, resolution: Sequence[int] | None = None
-) -> Film: ...
 def develop(exposure: ArrayLike, iso: float, tone: str = "film") -> NDArray[np.uint8]: ...
 def devices() -> list[str]: ...
-def exposed(camera: Camera, scene: Scene, device: str = "auto", progress: _Progress | None = None) -> Camera: ...
-def framed(
-    camera: Camera,
-    scene: Scene,
-    *,
-    position: _Triple | None = None,
-    look_at: _Triple | None = None,
-    up: _Triple = [0.0, 1.0, 0.0],
-    focus_distance_m: float | None = None,
-) -> Camera: ...
 def lens_names() -> list[str]: ...
 def pupil_setup(lens: Lens, film_radius_mm: float, on_one_core: bool = False) -> float: ...
-def with_daylight(scene: Scene, camera: Camera) -> Scene: ...

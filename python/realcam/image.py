@@ -26,6 +26,21 @@ class Image:
     seed: int
     stats: RenderStats
 
+    def __eq__(self, other: object) -> bool:
+        """Whether pictures, cameras and settings are the same; what it cost to take them does not count."""
+        if not isinstance(other, Image):
+            return NotImplemented
+        return (self.camera, self.spp, self.seed) == (other.camera, other.spp, other.seed) and all(
+            np.array_equal(*arrays, equal_nan=True)
+            for arrays in ((self.pixels, other.pixels), (self.depth, other.depth))
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # its arrays may be written to
+
+    def __repr__(self) -> str:
+        height, width = self.depth.shape
+        return f"<realcam.Image {width} x {height} pixels of {self.spp} samples, taken with {self.camera!r:.60}>"
+
     def developed(self, tone: str = "film", iso: float | None = None) -> np.ndarray:
         """(H, W, 3) uint8 sRGB at the camera's sensitivity, or another one.
 

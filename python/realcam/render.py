@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 
 from . import _core
@@ -26,24 +27,24 @@ def render(
 
     spp: samples per pixel. max_bounces: 0 for direct light only, 1 for one reflection more, ...
     threads: 0 for all. progress: True for a bar on stderr, or a function that is called about 20 times a second
-    with the share done, 0 to 1, and stops the render where it returns False.
+    with the share done, 0 to 1, and stops the render where it returns False. Warns of a scene without light.
 
     Raises InputError, SceneFileError, DeviceError; Cancelled where progress stopped it; KeyboardInterrupt on Ctrl-C.
     """
-    if progress is True:
-        from .progress import progress_bar
+    if isinstance(scene, Scene) and not scene.has_light:
+        warnings.warn(
+            "the scene has no light, so that its picture is black; scene.with_daylight(camera), with_environment, "
+            "with_sun or with_point_light brings some",
+            stacklevel=2,
+        )
 
-        with progress_bar("photographing") as bar:
-            return render(
-                scene,
-                camera,
-                spp=spp,
-                device=device,
-                seed=seed,
-                max_bounces=max_bounces,
-                threads=threads,
-                progress=bar,
-            )
-    callback = progress or None
-    pixels, depth, stats = _core._render(scene, camera, spp, device, seed, max_bounces, threads, callback)
-    return Image(pixels=pixels, depth=depth, camera=camera, spp=spp, seed=seed, stats=stats)
+    def taken(callback: ProgressCallback | None) -> Image:
+        pixels, depth, stats = _core._render(scene, camera, spp, device, seed, max_bounces, threads, callback)
+        return Image(pixels=pixels, depth=depth, camera=camera, spp=spp, seed=seed, stats=stats)
+
+    if progress is not True:
+        return taken(progress or None)
+    from .progress import progress_bar
+
+    with progress_bar("photographing") as bar:
+        return taken(bar)

@@ -294,7 +294,7 @@ def test_many_instances_share_their_triangles(device: str) -> None:
 def test_bounds_and_focus_know_of_objects() -> None:
     scene = scene_of(quad((0, 0, -50), 1)).with_instance(scene_of(quad((0, 0, 0), 0.5)), placed(0, 0, -5, scale=4))
     np.testing.assert_allclose(scene.bounds_m, [(-2, -2, -50), (2, 2, -5)], atol=1e-12)
-    focused = rc._core.framed(rc.Camera(LENS), scene, position=(0, 0, 0), look_at=(0, 0, -1))
+    focused = rc.Camera(LENS).framing(scene, position=(0, 0, 0), look_at=(0, 0, -1))
     assert focused.lens.focus_distance_m == pytest.approx(5)
 
 

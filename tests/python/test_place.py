@@ -92,12 +92,12 @@ def test_depth_is_the_mean_over_the_samples_that_hit() -> None:
     slope = scenes.quad((0, 0, -3), 2, right=(0.8, 0, -0.6), diffuse=0.5)
     points, rays = scenes.points_on_plane(camera, 16, (0, 0, -3), np.cross((0.8, 0, -0.6), (0, 1, 0)))
     expected = (-points[:, 2]).reshape(16, 24, 16).mean(axis=2)
-    depth = rc.render(scenes.scene_of(slope), camera, spp=16).depth
+    depth = rc.render(scenes.scene_of(slope).with_environment(1), camera, spp=16).depth
     np.testing.assert_allclose(depth, expected, rtol=1e-5)
     assert len(rays.weights) == 16 * 24 * 16
     # The left half of the picture is empty, and the pixels on the edge have the depth of what is there.
     half = scenes.quad((1, 0, -3), 1, 2, diffuse=0.5)
-    depth = rc.render(scenes.scene_of(half), camera, spp=16).depth
+    depth = rc.render(scenes.scene_of(half).with_environment(1), camera, spp=16).depth
     assert np.isposinf(depth[:, :12]).all()
     np.testing.assert_allclose(depth[:, 12:], 3.0, rtol=1e-6)
 

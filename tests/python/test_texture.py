@@ -90,7 +90,7 @@ def test_between_texels_light_is_interpolated_linearly() -> None:
 def test_wrong_textures_are_errors() -> None:
     scene = rc.Scene.from_arrays(scenes.quad((0, 0, -2), 1)[0], [[0, 1, 2]], uvs=UNIT_SQUARE)
     with pytest.raises(rc.InputError, match=r"\(H, W, 4\)"):
-        scene.with_texture(0, np.zeros((4, 4, 3), np.uint8))
+        scene.with_texture(0, np.zeros((4, 4, 2), np.uint8))
     with pytest.raises(rc.InputError, match="no material 3"):
         scene.with_texture(3, np.zeros((4, 4, 4), np.uint8))
     with pytest.raises(rc.InputError, match="texture"):

@@ -1,0 +1,112 @@
+#include "material.hpp"
+
+#include <pybind11/numpy.h>
+
+#include <set>
+
+#include "arrays.hpp"
+#include "value_compare.hpp"
+
+namespace realcam::bindings {
+
+namespace {
+
+std::int32_t place_of(std::vector<Texture>& textures, const Texture& texture) {
+    for (std::size_t i = 0; i < textures.size(); ++i)
+        if (equal(textures[i], texture)) return static_cast<std::int32_t>(i);
+    textures.push_back(texture);
+    return static_cast<std::int32_t>(textures.size()) - 1;
+}
+
+void drop_unused_textures(Scene& scene) {
+    std::vector<Texture> all = std::move(scene.textures);
+    std::vector<std::int32_t> places(all.size(), -1);
+    scene.textures.clear();
+    for (Material& material : scene.materials) {
+        if (material.diffuse_texture < 0) continue;
+        const auto from = static_cast<std::size_t>(material.diffuse_texture);
+        if (places[from] < 0) {
+            places[from] = static_cast<std::int32_t>(scene.textures.size());
+            scene.textures.push_back(std::move(all[from]));
+        }
+        material.diffuse_texture = places[from];
+    }
+}
+
+/// (H, W, C), of bytes.
+InputArray<std::uint8_t> codes_from(const py::array& pixels) {
+    const char kind = pixels.dtype().kind();
+    if (kind != 'i' && kind != 'u' && kind != 'f')
+        throw InputError("a texture must hold numbers: whole ones from 0 to 255, or fractions from 0 to 1");
+    const double least = pixels.attr("min")().cast<double>(), most = pixels.attr("max")().cast<double>();
+    const double white = kind == 'f' ? 1 : 255;
+    if (!(least >= 0 && most <= white)) {
+        const auto text = [](double v) { return py::repr(py::float_(v)).cast<std::string>(); };
+        throw InputError("the texture's numbers lie between " + text(least) + " and " + text(most) +
+                         (kind == 'f' ? "; fractions from 0 (black) to 1 (white)" : "; whole numbers from 0 to 255") +
+                         " are wanted");
+    }
+    if (kind != 'f') return InputArray<std::uint8_t>(pixels);
+    const py::object scaled = pixels.attr("__mul__")(255);
+    return InputArray<std::uint8_t>(scaled.attr("round")());
+}
+
+}  // namespace
+
+std::vector<std::string> material_names(const Scene& scene) {
+    std::vector<std::string> names;
+    std::set<std::string> taken;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const bool named = i < scene.material_names.size() && !scene.material_names[i].empty();
+        const std::string wanted = named ? scene.material_names[i] : "material " + std::to_string(i);
+        std::string name = wanted;
+        for (int k = 2; !taken.insert(name).second; ++k) name = wanted + '.' + std::to_string(k);
+        names.push_back(name);
+    }
+    return names;
+}
+
+PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index) {
+    PythonMaterial material{
+        index < scene->material_names.size() ? scene->material_names[index] : "", scene->materials[index], {}};
+    if (material.values.diffuse_texture >= 0)
+        material.texture = std::shared_ptr<const Texture>(
+            scene, &scene->textures[static_cast<std::size_t>(material.values.diffuse_texture)]);
+    material.values.diffuse_texture = -1;
+    return material;
+}
+
+void set_material(Scene& scene, std::size_t index, const PythonMaterial& material) {
+    if (index >= scene.materials.size()) scene.materials.resize(index + 1);
+    scene.material_names.resize(scene.materials.size());
+    if (scene.material_names[index].empty()) scene.material_names[index] = material.name;
+    scene.materials[index] = material.values;
+    if (material.texture) scene.materials[index].diffuse_texture = place_of(scene.textures, *material.texture);
+    drop_unused_textures(scene);
+}
+
+std::shared_ptr<const Texture> texture_from(const py::object& object) {
+    constexpr const char* kShapes = "a texture must be an array of shape (H, W), (H, W, 3) or (H, W, 4)";
+    const py::array pixels = py::array::ensure(object);
+    if (!pixels) {
+        PyErr_Clear();
+        throw InputError(kShapes);
+    }
+    const py::ssize_t channels = pixels.ndim() == 3 ? pixels.shape(2) : pixels.ndim() == 2 ? 1 : 0;
+    if ((channels != 1 && channels != 3 && channels != 4) || pixels.size() == 0) throw InputError(kShapes);
+    const InputArray<std::uint8_t> codes = codes_from(pixels);
+    auto texture = std::make_shared<Texture>();
+    texture->width = static_cast<std::int32_t>(pixels.shape(1));
+    texture->height = static_cast<std::int32_t>(pixels.shape(0));
+    texture->rgba.reserve(static_cast<std::size_t>(4 * codes.size() / channels));
+    const std::uint8_t* from = codes.data();
+    for (py::ssize_t i = 0; i < codes.size(); i += channels) {
+        const std::uint8_t* p = from + i;
+        const std::uint8_t colour[4] = {p[0], p[channels < 3 ? 0 : 1], p[channels < 3 ? 0 : 2],
+                                        channels == 4 ? p[3] : std::uint8_t{255}};
+        texture->rgba.insert(texture->rgba.end(), colour, colour + 4);
+    }
+    return texture;
+}
+
+}  // namespace realcam::bindings

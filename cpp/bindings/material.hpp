@@ -1,0 +1,31 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../scene/scene.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+/// A material by itself, as Python has it: with the name that it bears in its file, and its texture.
+struct PythonMaterial {
+    std::string name;  ///< empty: none
+    Material values;   ///< without the number of a texture
+    std::shared_ptr<const Texture> texture;
+};
+
+/// Names by which the materials of a scene are found, all of them different: those of its file, "material 3" for one
+/// without a name, and "wood.2" for the second "wood".
+std::vector<std::string> material_names(const Scene& scene);
+
+PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index);
+
+/// Puts a material in place of one, or at the end. The place keeps its name, if it has one.
+void set_material(Scene& scene, std::size_t index, const PythonMaterial& material);
+
+/// Pixels as users have them: (H, W) or (H, W, 1) grey, (H, W, 3) or (H, W, 4), as codes 0 to 255 or shares 0 to 1 of
+/// them. Throws InputError for all else.
+std::shared_ptr<const Texture> texture_from(const py::object& pixels);
+
+}  // namespace realcam::bindings

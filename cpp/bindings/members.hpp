@@ -1,0 +1,88 @@
+#pragma once
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+
+#include "../optics/glass.hpp"
+#include "../scene/assembly.hpp"
+
+namespace realcam::bindings {
+
+namespace members_detail {
+
+/// Stands for a value of whatever type a member has.
+struct Anything {
+    template <class T>
+    operator T() const;
+};
+
+/// How many values the braces of an aggregate take: its members, as long as none is a C array.
+template <class T, class... Given>
+consteval std::size_t count() {
+    if constexpr (requires { T{Given{}..., Anything{}}; })
+        return count<T, Given..., Anything>();
+    else
+        return sizeof...(Given);
+}
+
+}  // namespace members_detail
+
+/// References to all members of a struct without constructors, in their order. Found by the compiler, so that a member
+/// that is added later takes part in comparisons and pickles too.
+template <class T>
+auto members(T& x) {
+    constexpr std::size_t n = members_detail::count<std::remove_const_t<T>>();
+    static_assert(std::is_aggregate_v<std::remove_const_t<T>> && n >= 1 && n <= 14, "add a line for so many members");
+    if constexpr (n == 1) {
+        auto& [a] = x;
+        return std::tie(a);
+    } else if constexpr (n == 2) {
+        auto& [a, b] = x;
+        return std::tie(a, b);
+    } else if constexpr (n == 3) {
+        auto& [a, b, c] = x;
+        return std::tie(a, b, c);
+    } else if constexpr (n == 4) {
+        auto& [a, b, c, d] = x;
+        return std::tie(a, b, c, d);
+    } else if constexpr (n == 5) {
+        auto& [a, b, c, d, e] = x;
+        return std::tie(a, b, c, d, e);
+    } else if constexpr (n == 6) {
+        auto& [a, b, c, d, e, f] = x;
+        return std::tie(a, b, c, d, e, f);
+    } else if constexpr (n == 7) {
+        auto& [a, b, c, d, e, f, g] = x;
+        return std::tie(a, b, c, d, e, f, g);
+    } else if constexpr (n == 8) {
+        auto& [a, b, c, d, e, f, g, h] = x;
+        return std::tie(a, b, c, d, e, f, g, h);
+    } else if constexpr (n == 9) {
+        auto& [a, b, c, d, e, f, g, h, i] = x;
+        return std::tie(a, b, c, d, e, f, g, h, i);
+    } else if constexpr (n == 10) {
+        auto& [a, b, c, d, e, f, g, h, i, j] = x;
+        return std::tie(a, b, c, d, e, f, g, h, i, j);
+    } else if constexpr (n == 11) {
+        auto& [a, b, c, d, e, f, g, h, i, j, k] = x;
+        return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+    } else if constexpr (n == 12) {
+        auto& [a, b, c, d, e, f, g, h, i, j, k, l] = x;
+        return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
+    } else if constexpr (n == 13) {
+        auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = x;
+        return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+    } else {
+        auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = x;
+        return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, o);
+    }
+}
+
+inline auto members(const Assembly& x) {
+    return std::tie(x.static_geometry, x.instances);
+}
+inline auto members(Assembly& x) {
+    return std::tie(x.static_geometry, x.instances);
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,44 @@
+#pragma once
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace realcam::bindings {
+
+// Words for __repr__, which fits a line.
+
+/// With four digits, as %g writes them.
+inline std::string digits(double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+/// A number, a blank and what is counted: "1 ray", "12 rays".
+inline std::string counted(std::size_t count, const std::string& what) {
+    return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
+}
+
+template <class Vec>
+std::string point_text(const Vec& v) {
+    const auto number = [](auto x) { return digits(static_cast<double>(x)); };
+    return '(' + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ')';
+}
+
+/// A name as far as it has room, on one line.
+inline std::string shortened(std::string name) {
+    constexpr std::size_t kRoom = 40;
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    if (name.size() <= kRoom) return name;
+    std::size_t end = kRoom - 3;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;  // no half character of UTF-8
+    return name.substr(0, end) + "...";
+}
+
+/// "1/125 s", "2 s".
+inline std::string time_text(double seconds) {
+    return seconds < 0.5 ? "1/" + digits(1 / seconds) + " s" : digits(seconds) + " s";
+}
+
+}  // namespace realcam::bindings

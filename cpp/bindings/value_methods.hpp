@@ -1,0 +1,62 @@
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <concepts>
+
+#include "value_state.hpp"
+
+namespace realcam::bindings {
+
+/// Gives a class ==, copy, deepcopy and pickle. `check` is called with what was unpickled, and throws where it makes no
+/// sense. Copies go the way of pickles: for results whose arrays the user may write to.
+template <class T, class... Options, class Check>
+void def_result(pybind11::class_<T, Options...>& type, Check&& check) {
+    namespace py = pybind11;
+    using namespace py::literals;
+    type.def(
+        "__eq__",
+        [](const T& self, const py::object& other) -> py::object {
+            if (!py::isinstance<T>(other)) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
+            return py::bool_(equal(self, other.cast<const T&>()));
+        },
+        "other"_a);
+    const std::string name = type.attr("__name__").template cast<std::string>();
+    type.def("__reduce__", [name](const py::object& self) {
+        const py::object state = StateWriter(self).write(self.cast<const T&>());
+        return py::make_tuple(
+            py::module_::import("realcam.pickling").attr("restored"),
+            py::make_tuple(name, kStateFormat, py::module_::import("realcam").attr("__version__"), state));
+    });
+    type.def_static(
+        "_restored",
+        [check](const py::object& state) {
+            T value = StateReader().made<T>(state);
+            check(value);
+            return value;
+        },
+        "state"_a);
+}
+
+template <class T, class... Options>
+void def_result(pybind11::class_<T, Options...>& type) {
+    def_result(type, [](const T&) {});
+}
+
+/// The same for a value, which nothing changes: its copies are the same object.
+template <class T, class... Options, class... Check>
+void def_value(pybind11::class_<T, Options...>& type, Check&&... check) {
+    def_result(type, std::forward<Check>(check)...);
+    type.def("__copy__", [](const pybind11::object& self) { return self; });
+    type.def(
+        "__deepcopy__", [](const pybind11::object& self, const pybind11::object&) { return self; },
+        pybind11::arg("memo"));
+}
+
+/// The same, and hash(): for values small enough to be keys.
+template <class T, class... Options, class... Check>
+void def_hashable_value(pybind11::class_<T, Options...>& type, Check&&... check) {
+    def_value(type, std::forward<Check>(check)...);
+    type.def("__hash__", [](const T& self) { return hash_of(self); });
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,176 @@
+#pragma once
+#include <pybind11/numpy.h>
+
+#include <map>
+
+#include "../error.hpp"
+#include "arrays.hpp"
+#include "value_compare.hpp"
+
+namespace realcam::bindings {
+
+// What is pickled of a value: numbers, bytes, tuples, and arrays of numpy for what may be large. Pickle's protocol 5
+// takes such arrays over without a copy where its user asks for that.
+
+/// Counted up whenever a value of an older version would be read wrongly.
+inline constexpr int kStateFormat = 1;
+
+/// Made as the bytes of an array; without pointers, hence.
+template <class T>
+inline constexpr bool is_flat = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
+
+/// Writes one value. What several parts share is written once.
+class StateWriter {
+public:
+    /// `owner` keeps the value alive, so that large lists need not be copied; a null object: they are copied.
+    explicit StateWriter(pybind11::object owner) : owner_(std::move(owner)) {}
+
+    template <class T>
+    pybind11::object write(const T& value) {
+        using namespace value_compare_detail;
+        if constexpr (std::is_arithmetic_v<T>)
+            return pybind11::cast(value);
+        else if constexpr (std::is_enum_v<T>)
+            return pybind11::cast(static_cast<std::int64_t>(value));
+        else if constexpr (std::same_as<T, std::string>)
+            return pybind11::bytes(value);  // a file's names need not be UTF-8
+        else if constexpr (std::derived_from<T, pybind11::object>)
+            return value;
+        else if constexpr (std::same_as<T, Glass>)
+            return StateWriter(pybind11::object()).write(value.parts());  // which nothing keeps: copied
+        else if constexpr (is_shared<T>)
+            return write_shared(value);
+        else if constexpr (is_range<T>)
+            return write_range(value);
+        else
+            return write_members(members(value));
+    }
+
+private:
+    /// One after the other: the reader meets what is shared in the same order.
+    template <class... T>
+    pybind11::object write_members(const std::tuple<T...>& all) {
+        pybind11::tuple items(sizeof...(T));
+        std::size_t i = 0;
+        std::apply([&](const auto&... member) { ((items[i++] = write(member)), ...); }, all);
+        return items;
+    }
+
+    template <class T>
+    pybind11::object write_range(const T& values) {
+        using Item = typename T::value_type;
+        if constexpr (is_flat<Item>) {
+            const auto* bytes = reinterpret_cast<const std::uint8_t*>(values.data());
+            pybind11::array_t<std::uint8_t> array({values.size(), sizeof(Item)}, bytes, owner_);
+            array.attr("flags").attr("writeable") = false;
+            return array;
+        } else {
+            pybind11::tuple items(values.size());
+            for (std::size_t i = 0; i < values.size(); ++i) items[i] = write(values[i]);
+            return items;
+        }
+    }
+
+    /// None, the value itself, or the number of one that was written before.
+    template <class T>
+    pybind11::object write_shared(const std::shared_ptr<T>& pointer) {
+        if (!pointer) return pybind11::none();
+        const auto [at, is_new] = written_.try_emplace(pointer.get(), written_.size());
+        if (!is_new) return pybind11::cast(at->second);
+        return write(*pointer);
+    }
+
+    pybind11::object owner_;
+    std::map<const void*, std::size_t> written_;
+};
+
+/// Reads what StateWriter wrote. Throws InputError for anything else.
+class StateReader {
+public:
+    template <class T>
+    void read(T& value, const pybind11::handle& state) {
+        using namespace value_compare_detail;
+        if constexpr (std::is_arithmetic_v<T>)
+            value = state.cast<T>();
+        else if constexpr (std::is_enum_v<T>)
+            value = static_cast<T>(state.cast<std::int64_t>());
+        else if constexpr (std::same_as<T, std::string>)
+            value = state.cast<pybind11::bytes>();
+        else if constexpr (std::derived_from<T, pybind11::object>)
+            value = state.cast<T>();
+        else if constexpr (std::same_as<T, Glass>)
+            value = made<Glass>(state);
+        else if constexpr (is_shared<T>)
+            read_shared(value, state);
+        else if constexpr (is_range<T>)
+            read_range(value, state);
+        else
+            read_members(value, state, std::make_index_sequence<std::tuple_size_v<decltype(members(value))>>());
+    }
+
+    template <class T>
+    T made(const pybind11::handle& state) {
+        if constexpr (std::same_as<T, Glass>) {
+            return Glass::from_parts(made<Glass::Parts>(state));
+        } else {
+            T value{};
+            read(value, state);
+            return value;
+        }
+    }
+
+private:
+    static void require(bool good) {
+        if (!good) throw InputError("what was pickled is damaged, or another version's");
+    }
+
+    template <class T, std::size_t... i>
+    void read_members(T& value, const pybind11::handle& state, std::index_sequence<i...>) {
+        const auto items = state.cast<pybind11::tuple>();
+        require(items.size() == sizeof...(i));
+        const auto to = members(value);
+        (read(std::get<i>(to), items[i]), ...);
+    }
+
+    template <class T>
+    void read_range(T& values, const pybind11::handle& state) {
+        using Item = typename T::value_type;
+        const auto resize = [&](std::size_t size) {
+            if constexpr (requires { values.resize(size); })
+                values.resize(size);
+            else
+                require(values.size() == size);
+        };
+        if constexpr (is_flat<Item>) {
+            const auto bytes = state.cast<InputArray<std::uint8_t>>();
+            require(bytes.ndim() == 2 && bytes.shape(1) == static_cast<pybind11::ssize_t>(sizeof(Item)));
+            resize(static_cast<std::size_t>(bytes.shape(0)));
+            if (bytes.size() > 0) std::memcpy(values.data(), bytes.data(), static_cast<std::size_t>(bytes.size()));
+        } else {
+            const auto items = state.cast<pybind11::tuple>();
+            resize(items.size());
+            for (std::size_t i = 0; i < items.size(); ++i) read(values[i], items[i]);
+        }
+    }
+
+    template <class T>
+    void read_shared(std::shared_ptr<T>& pointer, const pybind11::handle& state) {
+        if (state.is_none()) return pointer.reset();
+        if (pybind11::isinstance<pybind11::int_>(state)) {
+            const auto number = state.cast<std::size_t>();
+            require(number < read_.size());
+            pointer = std::static_pointer_cast<T>(read_[number]);
+            return;
+        }
+        const std::size_t number = read_.size();
+        read_.emplace_back();
+        auto value = std::make_shared<std::remove_const_t<T>>();
+        read(*value, state);
+        read_[number] = value;
+        pointer = std::move(value);
+    }
+
+    std::vector<std::shared_ptr<const void>> read_;
+};
+
+}  // namespace realcam::bindings

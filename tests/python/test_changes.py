@@ -1,0 +1,164 @@
+"""Cameras, films, lenses and surfaces that differ from another one in what is named, and in nothing else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import realcam as rc
+
+LENS = rc.Lens.load("telephoto-200mm-inner-focus").focused(3).stopped_down(8)
+FILM = rc.Film(24, 16, (60, 40))
+CAMERA = rc.Camera(
+    LENS, film=FILM, position=(1, 2, 3), look_at=(0, 0, 1), up=(0, 0.1, 1), exposure_time_s=0.5, iso=200, model="thick"
+)
+CAMERA_CHANGES: dict[str, Any] = {
+    "lens": rc.Lens.load("tessar-50mm"),
+    "film": rc.Film(36, 24, (6, 4)),
+    "position": (5.0, 6.0, 7.0),
+    "look_at": (1.0, 1.0, 1.0),
+    "up": (1.0, 0.0, 0.0),
+    "exposure_time_s": 0.25,
+    "iso": 400.0,
+    "model": "full",
+}
+
+
+def differences(one: Any, other: Any, names: list[str]) -> set[str]:
+    return {name for name in names if getattr(one, name) != getattr(other, name)}
+
+
+@pytest.mark.parametrize("name", CAMERA_CHANGES)
+def test_a_camera_changes_in_one_thing(name: str) -> None:
+    changed = CAMERA.replace(**{name: CAMERA_CHANGES[name]})
+    assert getattr(changed, name) == CAMERA_CHANGES[name]
+    assert differences(changed, CAMERA, list(CAMERA_CHANGES)) == {name}
+
+
+def test_a_camera_that_replaces_nothing_is_equal_and_all_is_another() -> None:
+    assert CAMERA.replace() == CAMERA
+    assert CAMERA.replace(**CAMERA_CHANGES) == rc.Camera(**CAMERA_CHANGES)
+
+
+def test_a_changed_camera_is_checked() -> None:
+    with pytest.raises(rc.InputError, match="ISO"):
+        CAMERA.replace(iso=-1)
+    with pytest.raises(rc.InputError, match="must look at"):
+        CAMERA.replace(look_at=CAMERA.position)
+
+
+def test_a_film_changes_in_one_thing() -> None:
+    assert FILM.replace(width_mm=30) == rc.Film(30, 16, (60, 40))
+    assert FILM.replace(height_mm=30) == rc.Film(24, 30, (60, 40))
+    assert FILM.replace(resolution=(6, 4)) == rc.Film(24, 16, (6, 4))
+    assert FILM.replace() == FILM
+
+
+SURFACE = rc.Surface(
+    radius_of_curvature_mm=50,
+    thickness_mm=3,
+    material="N-BK7",
+    clear_semi_diameter_mm=10,
+    conic=-0.5,
+    aspheric_coefficients={4: 1e-6, 8: 1e-12},
+    inner_semi_diameter_mm=1,
+)
+SURFACE_CHANGES: dict[str, Any] = {
+    "radius_of_curvature_mm": 45.0,
+    "thickness_mm": 4.0,
+    "material": rc.Glass.named("N-SF6"),
+    "clear_semi_diameter_mm": 9.0,
+    "conic": 0.0,
+    "aspheric_coefficients": {6: 1e-9},
+    "inner_semi_diameter_mm": 0.0,
+    "type": "mirror",
+}
+
+
+@pytest.mark.parametrize("name", SURFACE_CHANGES)
+def test_a_surface_changes_in_one_thing(name: str) -> None:
+    changed = SURFACE.replace(**{name: SURFACE_CHANGES[name]})
+    assert getattr(changed, name) == SURFACE_CHANGES[name]
+    assert differences(changed, SURFACE, list(SURFACE_CHANGES)) == {name}
+
+
+def test_none_as_a_material_is_air() -> None:
+    assert SURFACE.replace(material=None).material == rc.Surface(clear_semi_diameter_mm=1).material
+    assert SURFACE.replace(conic=0).material == SURFACE.material
+
+
+LENS_PARTS = [
+    "name",
+    "title",
+    "source",
+    "surfaces",
+    "wavelength_nm",
+    "film_distance_mm",
+    "film_mm",
+    "focus_distance_m",
+    "nearest_focus_m",
+    "stop_index",
+    "stop_semi_diameter_mm",
+    "focus_group",
+    "iris_blades",
+    "iris_rounding",
+    "iris_rotation_deg",
+]
+
+
+def test_one_surface_of_a_lens_changes_and_nothing_else() -> None:
+    changed = LENS.with_surface(2, radius_of_curvature_mm=-80)
+    assert differences(changed, LENS, LENS_PARTS) == {"surfaces"}
+    assert changed.surfaces[2] == LENS.surfaces[2].replace(radius_of_curvature_mm=-80)
+    assert changed.surfaces[:2] + changed.surfaces[3:] == LENS.surfaces[:2] + LENS.surfaces[3:]
+    assert changed.focus_group == LENS.focus_group is not None
+    assert changed.focused(5).focus_distance_m == 5
+
+
+def test_power_follows_the_radius_of_a_thin_lens() -> None:
+    """Lensmaker's equation: 1/f = (n - 1) (1/r1 - 1/r2), for a thickness that tends to 0."""
+    surfaces = [
+        rc.Stop(clear_semi_diameter_mm=2),
+        rc.Surface(radius_of_curvature_mm=50, thickness_mm=1e-9, material=1.5, clear_semi_diameter_mm=1e-3),
+        rc.Surface(radius_of_curvature_mm=-50, clear_semi_diameter_mm=1e-3),
+    ]
+    lens = rc.Lens(surfaces=surfaces, film_distance_mm=50)
+    for radius in (45, 60, 100):
+        focal_length = lens.with_surface(1, radius_of_curvature_mm=radius).first_order().effective_focal_length_mm
+        assert focal_length == pytest.approx(1 / (0.5 * (1 / radius + 1 / 50)), rel=1e-8)  # thickness / f is 2e-11
+
+
+def test_a_wide_open_stop_follows_its_rim_and_a_closed_one_stays() -> None:
+    stop, rim = LENS.stop_index, LENS.surfaces[LENS.stop_index].clear_semi_diameter_mm
+    assert open_lens().with_surface(stop, clear_semi_diameter_mm=0.5 * rim).stop_semi_diameter_mm == 0.5 * rim
+    assert (
+        LENS.with_surface(stop, clear_semi_diameter_mm=0.99 * rim).stop_semi_diameter_mm == LENS.stop_semi_diameter_mm
+    )
+    narrow = 0.5 * LENS.stop_semi_diameter_mm
+    assert LENS.with_surface(stop, clear_semi_diameter_mm=narrow).stop_semi_diameter_mm == narrow
+
+
+def open_lens() -> rc.Lens:
+    return rc.Lens.load("telephoto-200mm-inner-focus").focused(3)
+
+
+def test_a_lens_that_cannot_be_built_is_refused() -> None:
+    with pytest.raises(rc.InputError, match="there is no surface 99; the lens has"):
+        LENS.with_surface(99, conic=1)
+    with pytest.raises(rc.InputError, match="there is no surface -1"):
+        LENS.with_surface(-1, conic=1)
+    with pytest.raises(rc.LensFileError, match="surface 3: the clear semi-diameter"):
+        LENS.with_surface(2, clear_semi_diameter_mm=-1)
+    with pytest.raises(rc.LensFileError, match="exactly one"):
+        LENS.with_surface(2, type="stop")
+
+
+def test_an_iris_changes_and_the_light_stays() -> None:
+    changed = LENS.with_iris(5, rounding=0.25, rotation_deg=10)
+    assert differences(changed, LENS, LENS_PARTS) == {"iris_blades", "iris_rounding", "iris_rotation_deg"}
+    assert (changed.iris_blades, changed.iris_rounding) == (5, 0.25)
+    assert changed.iris_rotation_deg == pytest.approx(10, rel=1e-15)
+    assert changed.first_order().f_number == LENS.first_order().f_number
+    assert changed.with_iris(7).with_iris(5) == changed
+    with pytest.raises(rc.LensFileError, match="blades"):
+        LENS.with_iris(2)
