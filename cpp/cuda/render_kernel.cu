@@ -2,6 +2,7 @@
 
 #include "bvh_scene.hpp"
 #include "cuda_error.hpp"
+#include "lanes_per_pixel.hpp"
 #include "launch_grid.hpp"
 
 namespace realcam {
@@ -139,15 +140,6 @@ auto kernel_for(bool instanced, bool timed) {
     return timed ? render<lens_kind, false, StageClock> : render<lens_kind, false, NoClock>;
 }
 
-/// As many threads for a pixel as fill the largest GPU several times over, but none without a sample.
-int lanes_for(const RenderJob& job) {
-    constexpr std::int64_t kWanted = 1 << 22;
-    const std::int64_t pixels = static_cast<std::int64_t>(job.camera.width) * job.row_count;
-    int lanes = 1;
-    while (lanes < kWarpSize && pixels * lanes < kWanted && 2 * lanes <= static_cast<int>(job.sample_count)) lanes *= 2;
-    return lanes;
-}
-
 }  // namespace
 
 void check_render_code() {
@@ -156,7 +148,7 @@ void check_render_code() {
 }
 
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
-    const int lanes = lanes_for(job);
+    const int lanes = lanes_per_pixel(static_cast<std::int64_t>(job.camera.width) * job.row_count, job.sample_count);
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const bool instanced = job.scene.instance_count > 0;
