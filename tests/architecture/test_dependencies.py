@@ -182,6 +182,13 @@ def test_device_code_neither_allocates_nor_throws(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_one_file_changes_the_current_gpu(path: Path) -> None:
+    # It also brings back the one that was; others would leave the caller's thread with another GPU than it had.
+    if name_of(path) != "cuda/current_device.hpp":
+        assert "cudaSetDevice" not in code_of(path)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
 def test_only_platform_asks_for_the_compiler(path: Path) -> None:
     if name_of(path) != "platform.hpp":
         assert "__CUDACC__" not in code_of(path)
