@@ -94,7 +94,8 @@ void bind_live(py::module_& m) {
             "Raises InputError before the first frame, and Cancelled where another thread stops them meanwhile.")
         .def(
             "cancel", [](PythonLiveView& live) { live.view->cancel(); }, py::call_guard<py::gil_scoped_release>(),
-            "Gives up all frames under way within some milliseconds, from any thread: their codes raise Cancelled, and\n"
+            "Gives up all frames under way within some milliseconds, from any thread: their codes raise Cancelled, "
+            "and\n"
             "the next frame begins a new picture.");
 }
 

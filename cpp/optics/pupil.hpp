@@ -7,7 +7,7 @@
 
 #include "../math/random.hpp"
 #include "pupil_outline_search.hpp"
-#include "pupil_search.hpp"
+#include "pupil_row_search.hpp"
 #include "pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -15,7 +15,7 @@ namespace REALCAM_NAMESPACE {
 /// The directions that pass a lens, for every film radius. Found with real rays; owns the memory of its view.
 class Pupil {
 public:
-    static constexpr int kRows = 48;
+    static constexpr int kRows = PupilRowSearch::kRows;
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
     /// No search traces more, whatever the lens: 270 looks at a film radius (two tables of nodes, both looked for ahead
     /// too, the edge of the image, half-way between rows), outlines at both ends and seven places of each row, and 256
@@ -59,7 +59,7 @@ private:
 
     /// Finds how far out there is light, and the region's box at each node from the axis to there.
     void find_nodes() {
-        std::vector<std::optional<PupilBox>> boxes = look_from_axis();
+        PupilRowBoxes boxes = rows().look_from_axis();
         const auto lit = [](const std::optional<PupilBox>& box) { return box.has_value(); };
         const auto last = std::find_if(boxes.rbegin(), boxes.rend(), lit);
         if (last == boxes.rend()) {
@@ -68,10 +68,10 @@ private:
             return;
         }
         if (last != boxes.rbegin()) {
-            const Edge edge = edge_of_image(static_cast<int>(boxes.rend() - last - 1), boxes);
+            const PupilRowSearch::Edge edge = rows().edge_of_image(static_cast<int>(boxes.rend() - last - 1), boxes);
             image_radius_ = edge.radius;
             ends_inside_film_ = true;
-            boxes = look_from_axis();
+            boxes = rows().look_from_axis();
             boxes.back() = edge.last_box;
         }
         std::optional<PupilBox> box = *std::find_if(boxes.begin(), boxes.end(), lit);
@@ -89,69 +89,8 @@ private:
         }
     }
 
-    /// Far apart first: what lies between rows with light is looked for at once, and then what lies beyond them.
-    std::vector<std::optional<PupilBox>> look_from_axis() const {
-        constexpr int kStride = 8;
-        static_assert(kRows % kStride == 0);
-        std::vector<std::optional<PupilBox>> boxes;
-        PupilTrack track;
-        int dark = kRows + 1;
-        for (int row = 0; row <= kRows; row += kStride) {
-            const std::optional<PupilBox> box = search_.look(radius_at(row), track);
-            if (!box) {
-                dark = row;
-                break;
-            }
-            boxes.resize(static_cast<std::size_t>(row) + 1);
-            boxes.back() = box;
-        }
-        search_.lens().for_each(static_cast<int>(boxes.size()) / kStride, [&](int stretch) {
-            const int first = stretch * kStride;
-            PupilTrack own = track_to(boxes, first, kStride);
-            for (int row = first + 1; row < first + kStride; ++row)
-                boxes[static_cast<std::size_t>(row)] = search_.look(radius_at(row), own);
-        });
-        look_outwards(boxes, dark);
-        return boxes;
-    }
-
-    /// What was seen at a row and at one further in.
-    PupilTrack track_to(const std::vector<std::optional<PupilBox>>& boxes, int row, int step) const {
-        PupilTrack track;
-        for (const int at : {row - step, row})
-            if (at >= 0)
-                if (const auto& box = boxes[static_cast<std::size_t>(at)]) track.add(radius_at(at), *box);
-        return track;
-    }
-
-    /// Row after row, from those that are there to the last. One is known to be dark.
-    void look_outwards(std::vector<std::optional<PupilBox>>& boxes, int dark) const {
-        const auto look = [&](int row, PupilTrack& track) {
-            return row == dark ? std::nullopt : search_.look(radius_at(row), track);
-        };
-        PupilTrack track = track_to(boxes, static_cast<int>(boxes.size()) - 1, 1);
-        bool looked_ahead = false;
-        while (static_cast<int>(boxes.size()) <= kRows) {
-            boxes.push_back(look(static_cast<int>(boxes.size()), track));
-            if (boxes.back() || looked_ahead) continue;
-            // From the first dark row on all is dark, most often. Then what a row sees depends on no row before.
-            looked_ahead = true;
-            const int next = static_cast<int>(boxes.size());
-            std::vector<std::optional<PupilBox>> ahead(static_cast<std::size_t>(kRows + 1 - next));
-            search_.lens().for_each(kRows + 1 - next, [&](int i) {
-                PupilTrack own = track;
-                ahead[static_cast<std::size_t>(i)] = look(next + i, own);
-            });
-            const auto lit = std::find_if(ahead.begin(), ahead.end(), [](const auto& box) { return box.has_value(); });
-            boxes.insert(boxes.end(), ahead.begin(), lit);
-        }
-    }
-
-    /// Film radius at which a row, or a place inside one, lies.
-    double radius_at(double position) const {
-        const double inward = 1 - position / kRows;
-        return image_radius_ * (1 - inward * inward);
-    }
+    PupilRowSearch rows() const { return {search_, image_radius_}; }
+    double radius_at(double position) const { return rows().radius_at(position); }
 
     /// Whether a small pupil lies half-way between rows where its neighbours say. Of large ones the outlines see it;
     /// and slivers at the edge of the image are small without a small stop.
@@ -170,21 +109,6 @@ private:
                 return false;
         }
         return true;
-    }
-
-    struct Edge {
-        double radius;  ///< the first without light
-        PupilBox last_box;  ///< just inside
-    };
-
-    Edge edge_of_image(int last_lit_row, const std::vector<std::optional<PupilBox>>& boxes) const {
-        PupilTrack track = track_to(boxes, last_lit_row, 1);
-        double dark = radius_at(last_lit_row + 1);
-        for (int i = 0; i < 24; ++i) {
-            const double middle = 0.5 * (track.last->radius + dark);
-            if (!search_.look(middle, track)) dark = middle;
-        }
-        return {dark, track.last->box};
     }
 
     PupilNode node_at(double position) const {

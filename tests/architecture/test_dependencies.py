@@ -66,6 +66,7 @@ HOST_ONLY = {
     "optics/pupil_outline.hpp",
     "optics/pupil_outline_search.hpp",
     "optics/pupil_pattern.hpp",
+    "optics/pupil_row_search.hpp",
     "optics/pupil_search.hpp",
     "optics/pupil_tracer.hpp",
     "optics/ray_aiming.hpp",

@@ -1,5 +1,5 @@
-// How a launch on a GPU shares out the samples of a pixel. The threads of a warp run in step: one that has a sample less
-// than its neighbour waits.
+// How a launch on a GPU shares out the samples of a pixel. The threads of a warp run in step: one that has a sample
+// less than its neighbour waits.
 
 #include <algorithm>
 #include <cstdint>
@@ -26,7 +26,8 @@ TEST_CASE("a live frame of 640 x 640 pixels leaves no thread idle for long, what
         // less of the GPU empty at the end.
         CHECK(share_used(samples, lanes_per_pixel(640 * 640, samples)) >= 0.875);
     }
-    CHECK(lanes_per_pixel(640 * 640, 20) == 4);  // 5 rounds of 4; 16 threads would take two rounds, the second one for 4
+    CHECK(lanes_per_pixel(640 * 640, 20) ==
+          4);  // 5 rounds of 4; 16 threads would take two rounds, the second one for 4
 }
 
 TEST_CASE("few pixels are shared by as many threads as have samples, up to a warp") {
