@@ -139,8 +139,8 @@ def test_cancel_takes_milliseconds(scene: rc.Scene) -> None:
         time.sleep(0.1)
         start = time.perf_counter()
         live.cancel()
-        # Each thread ends the sample that it has begun. The rest is for calls, for blocks that only look at the flag, and
-        # for a host that has other things to do.
+        # Each thread ends the sample that it has begun. The rest is for calls, for blocks that only look at the flag,
+        # and for a host that has other things to do.
         assert time.perf_counter() - start < 0.03 + 2 * one_sample
         with pytest.raises(rc.Cancelled):
             frame.codes  # noqa: B018
