@@ -36,6 +36,7 @@ def rows(results: dict, peer: dict) -> list[tuple[str, str, str]]:
     add("lens rays alone over the whole, time", paths["lens_share"], "")
     for change, rate in results["gpu-frames"]["frames_per_second"].items():
         add(f"live view, 640 x 640 x 20, {change} changes", rate, "frames/s")
+    add("live view, a frame of minutes stopped", results["gpu-frames"]["milliseconds_to_stop"], "ms")
     objects = results["gpu-objects"]
     for kind, rate in objects["giga_paths_per_second"].items():
         add(f"103 spheres as {kind}, pinhole, camera and shadow ray", rate, "G paths/s")

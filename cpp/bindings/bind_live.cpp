@@ -91,10 +91,12 @@ void bind_live(py::module_& m) {
             "All that was collected up to the last frame, as two DeviceArrays of float32 on the GPU: exposure (H, W, "
             "3)\n"
             "in lux seconds and depth (H, W) in metres, as Image has them. Waits for the frames under way.\n"
-            "Raises InputError before the first frame.")
+            "Raises InputError before the first frame, and Cancelled where another thread stops them meanwhile.")
         .def(
             "cancel", [](PythonLiveView& live) { live.view->cancel(); }, py::call_guard<py::gil_scoped_release>(),
-            "Gives up all frames under way within some milliseconds, from any thread.");
+            "Gives up all frames under way within some milliseconds, from any thread: their codes raise Cancelled, "
+            "and\n"
+            "the next frame begins a new picture.");
 }
 
 }  // namespace realcam::bindings

@@ -6,6 +6,7 @@
 #include "../render/seconds_since.hpp"
 #include "../scene/shade.hpp"
 #include "bench_kernels.hpp"
+#include "current_device.hpp"
 #include "device_scene.hpp"
 #include "launch_grid.hpp"
 
@@ -133,7 +134,7 @@ double rate_of(cudaStream_t stream, double count, Launch&& launch) {
 }  // namespace
 
 LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer tracer) {
-    check_cuda(cudaSetDevice(ordinal), "choosing it");
+    const CurrentDevice current(ordinal);
     CudaStream stream;
     DeviceArrays arrays;
     const CameraSetup setup(camera, std::move(tracer));
@@ -167,7 +168,7 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
 }
 
 HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer) {
-    check_cuda(cudaSetDevice(ordinal), "choosing it");
+    const CurrentDevice current(ordinal);
     CudaStream stream;
     HitRates rates{};
     const RenderSpaceScene placed(scene, camera.pose.position_m);

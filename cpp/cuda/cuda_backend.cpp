@@ -1,6 +1,7 @@
 #include "cuda_backend.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <future>
 
@@ -10,9 +11,40 @@
 #include "cuda_devices.hpp"
 #include "device_renderer.hpp"
 #include "host_scene.hpp"
+#include "on_device.hpp"
 
 namespace realcam {
 namespace {
+
+using Renderers = std::vector<OnDevice<DeviceRenderer>>;
+
+/// Whether a picture is to end early; told to all GPUs that take it.
+class PictureStop {
+public:
+    explicit PictureStop(const Renderers& renderers) : renderers_(renderers) {}
+    ~PictureStop() {
+        if (!stopped_) return;
+        for (const auto& renderer : renderers_) {
+            try {
+                renderer->stop_flag().lower();
+            } catch (const DeviceError&) {
+                // A GPU that is lost says so to whoever uses it next.
+            }
+        }
+    }
+    PictureStop(const PictureStop&) = delete;
+    PictureStop& operator=(const PictureStop&) = delete;
+
+    void operator=(bool) {
+        if (stopped_.exchange(true)) return;
+        for (const auto& renderer : renderers_) renderer->stop_flag().raise();
+    }
+    operator bool() const { return stopped_; }
+
+private:
+    const Renderers& renderers_;
+    std::atomic<bool> stopped_{false};
+};
 
 class CudaBackend final : public Backend {
 public:
@@ -20,7 +52,7 @@ public:
         if (cuda_devices().empty()) throw DeviceError(why_no_cuda_device());
         for (const int ordinal : ordinals) {
             name_ += (name_.empty() ? "" : " + ") + cuda_device(ordinal).name;
-            renderers_.push_back(std::make_unique<DeviceRenderer>(ordinal));
+            renderers_.push_back(make_on_device<DeviceRenderer>(ordinal, ordinal));
             scene_.add(*renderers_.back());
         }
     }
@@ -55,7 +87,7 @@ public:
 
 private:
     void expose(const RenderSettings& settings, double exposure_time_s, const Progress& progress, Image& image) {
-        std::atomic<bool> stop{false};
+        PictureStop stop(renderers_);
         std::atomic<std::int64_t> done{0};
         const double total = static_cast<double>(settings.spp) * image.width * image.height;
         const auto work = [&] {
@@ -87,7 +119,7 @@ private:
     }
 
     /// All samples of some rows: each GPU takes a range of them. One that fails stops the others.
-    void expose_band(int first_row, int rows, int columns, const RenderSettings& settings, std::atomic<bool>& stop,
+    void expose_band(int first_row, int rows, int columns, const RenderSettings& settings, PictureStop& stop,
                      std::atomic<std::int64_t>& done) {
         const auto share = [&](std::size_t i) {
             return static_cast<std::uint32_t>(static_cast<std::uint64_t>(settings.spp) * i / renderers_.size());
@@ -97,7 +129,7 @@ private:
             try {
                 DeviceRenderer& renderer = *renderers_[i];
                 renderer.clear_film(static_cast<std::int64_t>(rows) * columns);
-                renderer.expose({first_row, rows, share(i), share(i + 1) - share(i)}, settings, stop, done);
+                renderer.expose({first_row, rows, share(i), share(i + 1) - share(i)}, settings, done);
             } catch (...) {
                 stop = true;
                 throw;
@@ -132,7 +164,7 @@ private:
 
     PupilTracer tracer_;
     std::string name_;
-    std::vector<std::unique_ptr<DeviceRenderer>> renderers_;
+    Renderers renderers_;
     LastSetup last_setup_;
     HostScene scene_;
 };

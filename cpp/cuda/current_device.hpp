@@ -1,6 +1,9 @@
 #pragma once
 #include <cuda_runtime.h>
 
+#include <new>
+#include <string>
+
 #include "cuda_error.hpp"
 
 namespace realcam {
@@ -8,9 +11,13 @@ namespace realcam {
 /// Makes a GPU the thread's current one, and afterwards the one that was: other libraries of the process go by it.
 class CurrentDevice {
 public:
-    explicit CurrentDevice(int ordinal) : ordinal_(ordinal), before_(ordinal) {
+    explicit CurrentDevice(int ordinal) : CurrentDevice(ordinal, std::nothrow) {
+        check_cuda(code_, "choosing GPU " + std::to_string(ordinal));
+    }
+    /// For what is destroyed, perhaps after the GPU is lost or while the process ends, when no call succeeds any more.
+    CurrentDevice(int ordinal, std::nothrow_t) noexcept : ordinal_(ordinal), before_(ordinal) {
         cudaGetDevice(&before_);
-        check_cuda(cudaSetDevice(ordinal), "choosing GPU " + std::to_string(ordinal));
+        code_ = cudaSetDevice(ordinal_);
     }
     ~CurrentDevice() {
         if (before_ != ordinal_) cudaSetDevice(before_);
@@ -20,6 +27,7 @@ public:
 
 private:
     int ordinal_, before_;
+    cudaError_t code_;
 };
 
 }  // namespace realcam

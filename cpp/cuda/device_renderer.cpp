@@ -6,10 +6,9 @@
 namespace realcam {
 namespace {
 
-/// How long a launch may take: short enough that a stop is obeyed within 50 ms with two of them under way, long enough
-/// that starting it costs nothing.
+/// How long a launch may take: short enough that progress is told often, long enough that starting it costs nothing.
 constexpr double kLaunch_ms = 10;
-/// The first launch, of a GPU whose speed is not known yet.
+/// The first launches of a picture. How fast the GPU was with another scene, lens or number of bounces tells nothing.
 constexpr double kFirstSamples = 1 << 20;
 
 /// Launch after launch of one part: all samples of some rows, or a few samples of all.
@@ -49,45 +48,32 @@ private:
     std::uint32_t sample_;
 };
 
-int bound(int ordinal) {
-    check_cuda(cudaSetDevice(ordinal), "choosing GPU " + std::to_string(ordinal));
-    return ordinal;
-}
-
 }  // namespace
 
-DeviceRenderer::DeviceRenderer(int ordinal) : ordinal_(bound(ordinal)), counts_(1) {
+DeviceRenderer::DeviceRenderer(int ordinal) : ordinal_(ordinal), stop_(ordinal), counts_(1) {
     check_render_code();
     counts_.clear(stream_);
 }
 
-DeviceRenderer::~DeviceRenderer() {
-    cudaSetDevice(ordinal_);
-}
-
-void DeviceRenderer::bind() const {
-    bound(ordinal_);
-}
-
 void DeviceRenderer::set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh) {
-    bind();
+    const CurrentDevice current(ordinal_);
     scene_.set(scene, bvh, stream_);
 }
 
 void DeviceRenderer::set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh) {
-    bind();
+    const CurrentDevice current(ordinal_);
     scene_.set_instances(scene, bvh, stream_);
 }
 
 void DeviceRenderer::set_camera(const CameraView& camera) {
-    bind();
+    const CurrentDevice current(ordinal_);
     camera_arrays_.restart();
     camera_ = with_copied_arrays(
         camera, [&](const auto* from, std::size_t count) { return camera_arrays_.copy(from, count, stream_); });
 }
 
 void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
-    bind();
+    const CurrentDevice current(ordinal_);
     const auto count = static_cast<std::size_t>(pixels);
     sums_.resize(count);
     exposure_.resize(3 * count);
@@ -97,42 +83,46 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
 }
 
 void DeviceRenderer::rehearse() {
-    for (const bool timed : {false, true})
-        launch_render({scene_.view(), scene_.bvh(), camera_, sums_.data(), counts_.data(), nullptr, 0, 0, 0, 0, 0, 0},
-                      timed, stream_);
+    for (const bool timed : {false, true}) launch({0, 0, 0, 0}, {}, sums_.data(), timed);
     launch_develop(sums_.data(), 0, 1, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
+void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, bool timed) {
+    launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.max_bounces,
+                   settings.seed, part.first_sample, part.sample_count, part.first_row, part.row_count},
+                  timed, stream_);
+}
+
 void DeviceRenderer::clear_film(std::int64_t pixels) {
-    bind();
+    const CurrentDevice current(ordinal_);
     sums_.resize(static_cast<std::size_t>(pixels));
     sums_.clear(stream_);
 }
 
-void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings, const std::atomic<bool>& stop,
-                            std::atomic<std::int64_t>& done) {
-    bind();
-    // Two launches are under way at any time, so that the GPU never waits for the host.
+void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings, std::atomic<std::int64_t>& done) {
+    const CurrentDevice current(ordinal_);
+    // Two launches are under way at any time, so that the GPU never waits for the host. Clocks are counted in the
+    // first, which may be the only one, and in the third, which is the first of full length.
     std::array<CudaEvent, 3> ends;
     std::array<std::int64_t, 3> sizes{};
     LaunchPlan plan(part, camera_.width);
     ends[2].record(stream_);
     std::size_t started = 0, finished = 0;
+    double launch_samples = kFirstSamples;
     const auto finish_one = [&] {
         const std::size_t i = finished++ % 3;
         ends[i].wait();
         done += sizes[i];
         const double ms = ends[i].ms_since(ends[(i + 2) % 3]);
-        if (ms > 0) samples_per_ms_ = static_cast<double>(sizes[i]) / ms;
+        if (ms > 0) launch_samples = kLaunch_ms / ms * static_cast<double>(sizes[i]);
     };
-    while (!plan.over() && !stop) {
+    while (!plan.over() && !stop_.is_raised()) {
         if (started - finished == 2) finish_one();
-        const FilmPart piece = plan.next(samples_per_ms_ > 0 ? kLaunch_ms * samples_per_ms_ : kFirstSamples);
-        PixelSum* sums = sums_.data() + static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
-        launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), nullptr, settings.max_bounces,
-                       settings.seed, piece.first_sample, piece.sample_count, piece.first_row, piece.row_count},
-                      started == 0, stream_);
+        const FilmPart piece = plan.next(launch_samples);
+        launch(piece, settings,
+               sums_.data() + static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width,
+               started == 0 || started == 2);
         const std::size_t i = started++ % 3;
         ends[i].record(stream_);
         sizes[i] = static_cast<std::int64_t>(piece.sample_count) * piece.row_count * camera_.width;
@@ -140,16 +130,14 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
     while (finished < started) finish_one();
 }
 
-void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings, const volatile int* stop) {
-    bind();
-    launch_render({scene_.view(), scene_.bvh(), camera_, sums_.data(), counts_.data(), stop, settings.max_bounces,
-                   settings.seed, part.first_sample, part.sample_count, part.first_row, part.row_count},
-                  false, stream_);
+void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
+    const CurrentDevice current(ordinal_);
+    launch(part, settings, sums_.data(), false);
 }
 
-void DeviceRenderer::develop_codes(int samples, double exposure_time_s, double iso, ToneCurve curve,
+void DeviceRenderer::develop_codes(std::int64_t samples, double exposure_time_s, double iso, ToneCurve curve,
                                    std::uint8_t* codes) {
-    bind();
+    const CurrentDevice current(ordinal_);
     codes_.resize(3 * sums_.size());
     launch_develop_codes(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, iso, curve,
                          codes_.data(), stream_);
@@ -157,7 +145,9 @@ void DeviceRenderer::develop_codes(int samples, double exposure_time_s, double i
 }
 
 void DeviceRenderer::merge_film(const DeviceRenderer& other) {
-    bind();
+    const CurrentDevice current(ordinal_);
+    // What clears and fills it runs in a stream of that GPU, which this one knows nothing of.
+    other.stream_.wait("rendering");
     others_.resize(other.sums_.size());
     check_cuda(cudaMemcpyPeerAsync(others_.data(), ordinal_, other.sums_.data(), other.ordinal_,
                                    other.sums_.size() * sizeof(PixelSum), stream_),
@@ -165,14 +155,14 @@ void DeviceRenderer::merge_film(const DeviceRenderer& other) {
     launch_merge(sums_.data(), others_.data(), static_cast<std::int64_t>(sums_.size()), stream_);
 }
 
-void DeviceRenderer::develop_here(int samples, double exposure_time_s, float* exposure, float* depth) {
-    bind();
+void DeviceRenderer::develop_here(std::int64_t samples, double exposure_time_s, float* exposure, float* depth) {
+    const CurrentDevice current(ordinal_);
     launch_develop(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, exposure, depth,
                    stream_);
 }
 
-void DeviceRenderer::develop(int samples, double exposure_time_s, float* exposure, float* depth) {
-    bind();
+void DeviceRenderer::develop(std::int64_t samples, double exposure_time_s, float* exposure, float* depth) {
+    const CurrentDevice current(ordinal_);
     exposure_.resize(3 * sums_.size());
     depth_.resize(sums_.size());
     develop_here(samples, exposure_time_s, exposure_.data(), depth_.data());
@@ -182,7 +172,7 @@ void DeviceRenderer::develop(int samples, double exposure_time_s, float* exposur
 }
 
 RenderCounts DeviceRenderer::take_counts() {
-    bind();
+    const CurrentDevice current(ordinal_);
     RenderCounts counts{};
     counts_.download(&counts, stream_);
     stream_.wait("rendering");

@@ -5,6 +5,7 @@
 #include "../render/backend.hpp"
 #include "device_scene.hpp"
 #include "render_kernel.hpp"
+#include "stop_flag.hpp"
 
 namespace realcam {
 
@@ -14,16 +15,16 @@ struct FilmPart {
     std::uint32_t first_sample, sample_count;
 };
 
-/// One GPU with its copy of scene, camera and film. Used by one thread at a time, which every member function binds to
-/// the device; all of them throw DeviceError.
+/// One GPU with its copy of scene, camera and film. Made by make_on_device; used by one thread at a time, on which
+/// every member function works with that GPU current; all of them throw DeviceError.
 class DeviceRenderer {
 public:
     explicit DeviceRenderer(int ordinal);
-    ~DeviceRenderer();
 
     int ordinal() const { return ordinal_; }
-    /// Makes it the calling thread's current device.
-    void bind() const;
+    /// Which any thread may raise: what exposes ends within the time of a sample, and what is on the film is then worth
+    /// nothing.
+    StopFlag& stop_flag() { return stop_; }
 
     /// Copies a scene, what changes in it as objects move, or a camera. The host's copies may go afterwards.
     void set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh);
@@ -36,16 +37,15 @@ public:
     /// Makes room for the sums of so many pixels, and sets them to 0.
     void clear_film(std::int64_t pixels);
 
-    /// Adds samples to the film, which holds the part's rows. Returns when they are done, or within two launches of a
-    /// few milliseconds after `stop` was set. `done` counts samples.
-    void expose(const FilmPart& part, const RenderSettings& settings, const std::atomic<bool>& stop,
-                std::atomic<std::int64_t>& done);
+    /// Adds samples to the film, which holds the part's rows. Returns when they are done or it was stopped. `done`
+    /// counts samples.
+    void expose(const FilmPart& part, const RenderSettings& settings, std::atomic<std::int64_t>& done);
 
-    /// Starts to add samples, and returns at once. `stop`: see RenderJob.
-    void add(const FilmPart& part, const RenderSettings& settings, const volatile int* stop);
+    /// Starts to add samples, and returns at once.
+    void add(const FilmPart& part, const RenderSettings& settings);
 
     /// Starts to develop the film as 8-bit sRGB, 3 per pixel, into memory of the host that it can write to.
-    void develop_codes(int samples, double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
+    void develop_codes(std::int64_t samples, double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
 
     /// In which all of this runs.
     cudaStream_t stream() const { return stream_; }
@@ -54,10 +54,10 @@ public:
     void merge_film(const DeviceRenderer& other);
 
     /// Starts to develop the film as exposure and depth into memory of this GPU, 3 and 1 numbers per pixel.
-    void develop_here(int samples, double exposure_time_s, float* exposure, float* depth);
+    void develop_here(std::int64_t samples, double exposure_time_s, float* exposure, float* depth);
 
     /// Exposure and depth of the film's pixels after `samples` samples, into the host's memory.
-    void develop(int samples, double exposure_time_s, float* exposure, float* depth);
+    void develop(std::int64_t samples, double exposure_time_s, float* exposure, float* depth);
 
     /// Since the last call.
     RenderCounts take_counts();
@@ -65,8 +65,11 @@ public:
 private:
     /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
     void rehearse();
+    /// Starts to add samples to `sums`, those of the part's first row.
+    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, bool timed);
 
     int ordinal_;
+    StopFlag stop_;
     CudaStream stream_;
     DeviceScene scene_;
     DeviceArrays camera_arrays_;
@@ -75,7 +78,6 @@ private:
     DeviceArray<float> exposure_, depth_;
     DeviceArray<std::uint8_t> codes_;
     DeviceArray<RenderCounts> counts_;
-    double samples_per_ms_ = 0;  ///< 0: not known yet
 };
 
 }  // namespace realcam

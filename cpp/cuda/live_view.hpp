@@ -14,9 +14,10 @@ public:
     virtual ~LiveFrame() = default;
     virtual int width() const = 0;
     virtual int height() const = 0;
-    virtual int samples() const = 0;  ///< per pixel, collected up to this frame
+    virtual std::int64_t samples() const = 0;  ///< per pixel, collected up to this frame
     virtual bool ready() const = 0;
-    /// height x width x 3, 8-bit sRGB; waits for it. Throws DeviceError, and Cancelled where the view was cancelled.
+    /// height x width x 3, 8-bit sRGB; waits for it. Throws DeviceError, and Cancelled where it was stopped before its
+    /// end.
     virtual const std::uint8_t* codes() const = 0;
 };
 
@@ -46,10 +47,11 @@ public:
     void show(Assembly scene);
 
     /// What all frames up to the last have collected, on the GPU; waits for them. Throws InputError where there is no
-    /// picture, and DeviceError.
+    /// picture, Cancelled where another thread stops it meanwhile, and DeviceError.
     DevicePicture picture() const;
 
-    /// Gives up all frames under way, within some milliseconds, from any thread. The next one begins a new picture.
+    /// Gives up all frames under way, from any thread: no sample is begun any more, so that it takes the time of one,
+    /// some milliseconds. The next frame begins a new picture.
     void cancel();
 
     static constexpr int kFramesInFlight = 3;

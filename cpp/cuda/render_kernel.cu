@@ -2,6 +2,7 @@
 
 #include "bvh_scene.hpp"
 #include "cuda_error.hpp"
+#include "lanes_per_pixel.hpp"
 #include "launch_grid.hpp"
 
 namespace realcam {
@@ -64,7 +65,6 @@ __device__ T sum_of_neighbours(T value, int lanes) {
 template <LensKind lens_kind, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
-    if (job.stop && *job.stop) return;
     const WarpTiles tiles(lanes_per_pixel);
     const std::int64_t warp = thread_index() / kWarpSize;
     const int lane = threadIdx.x % kWarpSize, place = lane / tiles.lanes;
@@ -86,6 +86,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         block.stream[0] = pixel_stream(block.row[0] * job.camera.width + column, job.seed);
         for (std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes); s < job.sample_count;
              s += static_cast<std::uint32_t>(tiles.lanes)) {
+            if (*job.stop) break;
             block.sample[0] = job.first_sample + s;
             render_samples<lens_kind>(job.scene, job.camera, job.max_bounces, block, scene, clock, results);
             sum.add(results, 0);
@@ -110,15 +111,15 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     if (inside) clock.report(job.counts);
 }
 
-__global__ void develop(const PixelSum* sums, std::int64_t pixels, int samples, double exposure_time_s, float* exposure,
-                        float* depth) {
+__global__ void develop(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
+                        float* exposure, float* depth) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
     for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, samples);
     depth[i] = sums[i].mean_depth();
 }
 
-__global__ void develop_codes(const PixelSum* sums, std::int64_t pixels, int samples, double exposure_time_s,
+__global__ void develop_codes(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
                               double iso, ToneCurve curve, std::uint8_t* codes) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
@@ -139,15 +140,6 @@ auto kernel_for(bool instanced, bool timed) {
     return timed ? render<lens_kind, false, StageClock> : render<lens_kind, false, NoClock>;
 }
 
-/// As many threads for a pixel as fill the largest GPU several times over, but none without a sample.
-int lanes_for(const RenderJob& job) {
-    constexpr std::int64_t kWanted = 1 << 22;
-    const std::int64_t pixels = static_cast<std::int64_t>(job.camera.width) * job.row_count;
-    int lanes = 1;
-    while (lanes < kWarpSize && pixels * lanes < kWanted && 2 * lanes <= static_cast<int>(job.sample_count)) lanes *= 2;
-    return lanes;
-}
-
 }  // namespace
 
 void check_render_code() {
@@ -156,7 +148,7 @@ void check_render_code() {
 }
 
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
-    const int lanes = lanes_for(job);
+    const int lanes = lanes_per_pixel(static_cast<std::int64_t>(job.camera.width) * job.row_count, job.sample_count);
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const bool instanced = job.scene.instance_count > 0;
@@ -166,14 +158,14 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     check_cuda(cudaGetLastError(), "starting to render");
 }
 
-void launch_develop(const PixelSum* sums, std::int64_t pixels, int samples, double exposure_time_s, float* exposure,
-                    float* depth, cudaStream_t stream) {
+void launch_develop(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
+                    float* exposure, float* depth, cudaStream_t stream) {
     develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, samples, exposure_time_s, exposure, depth);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 
-void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, int samples, double exposure_time_s, double iso,
-                          ToneCurve curve, std::uint8_t* codes, cudaStream_t stream) {
+void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
+                          double iso, ToneCurve curve, std::uint8_t* codes, cudaStream_t stream) {
     develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, samples, exposure_time_s, iso, curve,
                                                                  codes);
     check_cuda(cudaGetLastError(), "starting to develop");

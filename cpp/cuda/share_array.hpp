@@ -1,6 +1,6 @@
 #pragma once
-#include "current_device.hpp"
 #include "device_array.hpp"
+#include "on_device.hpp"
 #include "shared_device_array.hpp"
 
 namespace realcam {
@@ -23,17 +23,9 @@ constexpr NumberType number_type_of(unsigned char) {
 template <class T>
 SharedDeviceArray share(DeviceArray<T> array, int ordinal, std::vector<std::int64_t> shape) {
     void* const data = array.data();
-    auto* const owner = new DeviceArray<T>(std::move(array));
-    // Other libraries call this from threads that have a device of their own, and while the process ends, when no call
-    // succeeds any more.
-    const auto free = [owner, ordinal](void*) {
-        int before = ordinal;
-        cudaGetDevice(&before);
-        cudaSetDevice(ordinal);
-        delete owner;
-        if (before != ordinal) cudaSetDevice(before);
-    };
-    return {std::shared_ptr<void>(data, free), ordinal, number_type_of(T()), std::move(shape)};
+    // Other libraries give it back on threads that have a device of their own.
+    const std::shared_ptr<void> owner = make_on_device<DeviceArray<T>>(ordinal, std::move(array));
+    return {std::shared_ptr<void>(owner, data), ordinal, number_type_of(T()), std::move(shape)};
 }
 
 }  // namespace realcam

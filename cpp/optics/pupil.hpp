@@ -7,7 +7,7 @@
 
 #include "../math/random.hpp"
 #include "pupil_outline_search.hpp"
-#include "pupil_search.hpp"
+#include "pupil_row_search.hpp"
 #include "pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -15,7 +15,7 @@ namespace REALCAM_NAMESPACE {
 /// The directions that pass a lens, for every film radius. Found with real rays; owns the memory of its view.
 class Pupil {
 public:
-    static constexpr int kRows = 48;
+    static constexpr int kRows = PupilRowSearch::kRows;
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
     /// No search traces more, whatever the lens: 270 looks at a film radius (two tables of nodes, both looked for ahead
     /// too, the edge of the image, half-way between rows), outlines at both ends and seven places of each row, and 256
@@ -59,7 +59,7 @@ private:
 
     /// Finds how far out there is light, and the region's box at each node from the axis to there.
     void find_nodes() {
-        std::vector<std::optional<PupilBox>> boxes = look_from_axis();
+        PupilRowBoxes boxes = rows().look_from_axis();
         const auto lit = [](const std::optional<PupilBox>& box) { return box.has_value(); };
         const auto last = std::find_if(boxes.rbegin(), boxes.rend(), lit);
         if (last == boxes.rend()) {
@@ -68,10 +68,10 @@ private:
             return;
         }
         if (last != boxes.rbegin()) {
-            const Edge edge = edge_of_image(static_cast<int>(boxes.rend() - last - 1), boxes);
+            const PupilRowSearch::Edge edge = rows().edge_of_image(static_cast<int>(boxes.rend() - last - 1), boxes);
             image_radius_ = edge.radius;
             ends_inside_film_ = true;
-            boxes = look_from_axis();
+            boxes = rows().look_from_axis();
             boxes.back() = edge.last_box;
         }
         std::optional<PupilBox> box = *std::find_if(boxes.begin(), boxes.end(), lit);
@@ -89,32 +89,8 @@ private:
         }
     }
 
-    std::vector<std::optional<PupilBox>> look_from_axis() const {
-        std::vector<std::optional<PupilBox>> boxes;
-        PupilTrack track;
-        bool looked_ahead = false;
-        while (static_cast<int>(boxes.size()) <= kRows) {
-            boxes.push_back(search_.look(radius_at(static_cast<double>(boxes.size())), track));
-            if (boxes.back() || looked_ahead) continue;
-            // From the first dark row on all is dark, most often. Then what a row sees depends on no row before.
-            looked_ahead = true;
-            const int next = static_cast<int>(boxes.size());
-            std::vector<std::optional<PupilBox>> ahead(static_cast<std::size_t>(kRows + 1 - next));
-            search_.lens().for_each(kRows + 1 - next, [&](int i) {
-                PupilTrack own = track;
-                ahead[static_cast<std::size_t>(i)] = search_.look(radius_at(next + i), own);
-            });
-            const auto lit = std::find_if(ahead.begin(), ahead.end(), [](const auto& box) { return box.has_value(); });
-            boxes.insert(boxes.end(), ahead.begin(), lit);
-        }
-        return boxes;
-    }
-
-    /// Film radius at which a row, or a place inside one, lies.
-    double radius_at(double position) const {
-        const double inward = 1 - position / kRows;
-        return image_radius_ * (1 - inward * inward);
-    }
+    PupilRowSearch rows() const { return {search_, image_radius_}; }
+    double radius_at(double position) const { return rows().radius_at(position); }
 
     /// Whether a small pupil lies half-way between rows where its neighbours say. Of large ones the outlines see it;
     /// and slivers at the edge of the image are small without a small stop.
@@ -133,23 +109,6 @@ private:
                 return false;
         }
         return true;
-    }
-
-    struct Edge {
-        double radius;  ///< the first without light
-        PupilBox last_box;  ///< just inside
-    };
-
-    Edge edge_of_image(int last_lit_row, const std::vector<std::optional<PupilBox>>& boxes) const {
-        PupilTrack track;
-        for (int row = std::max(0, last_lit_row - 1); row <= last_lit_row; ++row)
-            if (const auto& box = boxes[static_cast<std::size_t>(row)]) track.add(radius_at(row), *box);
-        double dark = radius_at(last_lit_row + 1);
-        for (int i = 0; i < 24; ++i) {
-            const double middle = 0.5 * (track.last->radius + dark);
-            if (!search_.look(middle, track)) dark = middle;
-        }
-        return {dark, track.last->box};
     }
 
     PupilNode node_at(double position) const {

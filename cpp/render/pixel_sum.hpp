@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <limits>
 
 #include "../camera/develop.hpp"
@@ -10,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 struct PixelSum {
     double irradiance[3];  ///< lux, summed over the samples
     double depth;          ///< metres, summed over those that met something
-    std::uint32_t hits;    ///< samples that met something
+    std::uint64_t hits;    ///< samples that met something
 
     REALCAM_HD PixelSum& operator+=(const PixelSum& other) {
         for (int c = 0; c < 3; ++c) irradiance[c] += other.irradiance[c];
@@ -31,12 +32,13 @@ struct PixelSum {
     }
 
     /// Lux seconds on the film after `samples` samples.
-    REALCAM_HD float exposure(int channel, double exposure_time_s, int samples) const {
-        return film_exposure(irradiance[channel] * exposure_time_s / samples);
+    REALCAM_HD float exposure(int channel, double exposure_time_s, std::int64_t samples) const {
+        return film_exposure(irradiance[channel] * exposure_time_s / static_cast<double>(samples));
     }
     /// Mean depth, metres; infinite where nothing was met.
     REALCAM_HD float mean_depth() const {
-        return hits > 0 ? static_cast<float>(depth / hits) : std::numeric_limits<float>::infinity();
+        return hits > 0 ? static_cast<float>(depth / static_cast<double>(hits))
+                        : std::numeric_limits<float>::infinity();
     }
 };
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -10,9 +9,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Runs `work` on a thread of its own, so that the caller's thread is free to report and to stop it.
-template <class Work, class Share>
-void run_with_progress(Work&& work, Share&& share, const Progress& progress, std::atomic<bool>& stop) {
+/// Runs `work` on a thread of its own, so that the caller's thread is free to report and to stop it. `stop`: an
+/// std::atomic<bool>, or what takes `true` and is read in the same way.
+template <class Work, class Share, class Stop>
+void run_with_progress(Work&& work, Share&& share, const Progress& progress, Stop& stop) {
     if (!progress) {
         work();
         return;

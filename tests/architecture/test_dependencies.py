@@ -66,6 +66,7 @@ HOST_ONLY = {
     "optics/pupil_outline.hpp",
     "optics/pupil_outline_search.hpp",
     "optics/pupil_pattern.hpp",
+    "optics/pupil_row_search.hpp",
     "optics/pupil_search.hpp",
     "optics/pupil_tracer.hpp",
     "optics/ray_aiming.hpp",
@@ -179,6 +180,13 @@ def test_device_code_neither_allocates_nor_throws(path: Path) -> None:
     assert not match, f"{name_of(path)} is not host-only, and uses {match.group()}"
     wrong = [name_of(other) for other in included_by(path) if name_of(other) in HOST_ONLY]
     assert not wrong, f"{name_of(path)} is not host-only, and includes headers that are"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_one_file_changes_the_current_gpu(path: Path) -> None:
+    # It also brings back the one that was; others would leave the caller's thread with another GPU than it had.
+    if name_of(path) != "cuda/current_device.hpp":
+        assert "cudaSetDevice" not in code_of(path)
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)

@@ -1,5 +1,6 @@
 // Finding the pupil: on any threads, and not again for the same lens.
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <memory>
@@ -51,6 +52,29 @@ PupilTracer counting(std::atomic<int>& blocks) {
     }};
 }
 
+/// Blocks of rays, and those of them that cores enough would trace one after another.
+struct Blocks {
+    int all = 0, in_a_row = 0;
+
+    PupilTracer tracer() {
+        return {[this](const LensView<float>& view, PupilTracer::Rays& rays) {
+                    ++all;
+                    ++in_a_row;
+                    trace_lens(view, rays);
+                },
+                [this](int count, const PupilTracer::Task& task) {
+                    const int before = in_a_row;
+                    int longest = before;
+                    for (int i = 0; i < count; ++i) {
+                        in_a_row = before;
+                        task(i);
+                        longest = std::max(longest, in_a_row);
+                    }
+                    in_a_row = longest;
+                }};
+    }
+};
+
 }  // namespace
 
 TEST_CASE("the pupil is the same bits on one thread and on many, in any order") {
@@ -71,6 +95,20 @@ TEST_CASE("the pupil is the same bits on one thread and on many, in any order") 
             CHECK(same_pupil(alone.view(), reversed.view()));
             CHECK(same_pupil(alone.view(), on_five.view()));
         }
+}
+
+TEST_CASE("cores enough find the pupil in an eighth of the time of one") {
+    // 14 looks of 6 blocks, and the 29 steps of an outline: of all blocks a tenth. A few more where a look follows its
+    // box.
+    for (const char* name : {"double-gauss-50mm", "tessar-50mm", "singlet-100mm"}) {
+        CAPTURE(std::string(name));
+        const LensSystem lens = io::read_lens(name);
+        Blocks blocks;
+        const Pupil pupil(lens, half_diagonal(lens), blocks.tracer());
+        CAPTURE(blocks.all);
+        CAPTURE(blocks.in_a_row);
+        CHECK(8 * blocks.in_a_row <= blocks.all);
+    }
 }
 
 TEST_CASE("a camera of the same lens and film takes over the last one's pupil, and any other finds its own") {

@@ -118,16 +118,125 @@ def test_frames_outlive_their_view_and_do_not_share_memory(scene: rc.Scene) -> N
     assert (copies[0] != copies[5]).any()
 
 
+WIDE = rc.Camera(LENS, film=rc.Film(36, 24, (1200, 800)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+
+
+def seconds_of_one_sample(live: rc.LiveView) -> float:
+    """Of each pixel of WIDE. No stop takes longer, and it scales with tools that slow down the GPU."""
+    live.shoot(WIDE, spp=1).codes  # noqa: B018
+    start = time.perf_counter()
+    live.shoot(WIDE, spp=1).codes  # noqa: B018
+    return time.perf_counter() - start
+
+
+@needs_gpu
+@pytest.mark.gpu
+def test_cancel_takes_milliseconds(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, max_bounces=8)
+    one_sample = seconds_of_one_sample(live)
+    for _ in range(3):
+        frame = live.shoot(WIDE, spp=1 << 18)  # minutes
+        time.sleep(0.1)
+        start = time.perf_counter()
+        live.cancel()
+        # Each thread ends the sample that it has begun. The rest is for calls, for blocks that only look at the flag,
+        # and for a host that has other things to do.
+        assert time.perf_counter() - start < 0.03 + 2 * one_sample
+        with pytest.raises(rc.Cancelled):
+            frame.codes  # noqa: B018
+    with pytest.raises(rc.InputError, match="no picture yet"):
+        live.picture()
+    assert live.shoot(WIDE, spp=1).samples == 1
+
+
 @needs_gpu
 @pytest.mark.gpu
 def test_cancel_from_another_thread(scene: rc.Scene) -> None:
     live = rc.LiveView(scene, max_bounces=8)
-    wide = rc.Camera(LENS, film=rc.Film(36, 24, (1200, 800)), position=(0, 1, 3), look_at=(0, 0.6, -2))
-    live.shoot(wide, spp=1).codes  # noqa: B018
-    frame = live.shoot(wide, spp=1 << 18)  # minutes
-    threading.Timer(0.2, live.cancel).start()
+    one_sample = seconds_of_one_sample(live)
+    frames = [live.shoot(WIDE, spp=1 << 18) for _ in range(3)]
+    # The fourth waits for the first, which the stop ends.
+    timer = threading.Timer(0.2, live.cancel)
+    timer.start()
     start = time.perf_counter()
-    with pytest.raises(rc.Cancelled):
-        frame.codes  # noqa: B018
-    assert time.perf_counter() - start < 30
-    assert live.shoot(wide, spp=1).samples == 1
+    live.shoot(WIDE, spp=1 << 18)
+    for frame in frames:
+        with pytest.raises(rc.Cancelled):
+            frame.codes  # noqa: B018
+    assert time.perf_counter() - start < 0.3 + 4 * one_sample
+    timer.join()
+    assert live.shoot(WIDE, spp=1).samples == 1
+
+
+@needs_gpu
+@pytest.mark.gpu
+def test_cancel_leaves_a_whole_frame_or_none(scene: rc.Scene) -> None:
+    live, spp = rc.LiveView(scene, seed=3), 2048
+    live.shoot(camera(), spp=1).codes  # noqa: B018
+    live.cancel()
+    start = time.perf_counter()
+    live.shoot(camera(), spp=spp)
+    exposure, depth = (array.numpy() for array in live.picture())
+    whole = time.perf_counter() - start
+    codes = live.shoot(camera(), spp=spp).codes  # of twice the samples
+    seen = {"whole": 0, "stopped": 0}
+    for i in range(12):
+        live.cancel()
+        live.shoot(camera(), spp=spp)
+        second = live.shoot(camera(), spp=spp)
+        # From before the first frame's end to after the second's.
+        stop = threading.Timer(whole * i / 4, live.cancel)
+        stop.start()
+        try:
+            np.testing.assert_array_equal(second.codes, codes)
+            seen["whole"] += 1
+        except rc.Cancelled:
+            seen["stopped"] += 1
+        stop.join()
+        live.shoot(camera(), spp=spp)
+        stop = threading.Timer(whole * i / 8, live.cancel)
+        stop.start()
+        try:
+            pixels, distances = live.picture()
+            np.testing.assert_allclose(pixels.numpy(), exposure, rtol=1e-6)
+            np.testing.assert_allclose(distances.numpy(), depth, rtol=1e-6)
+            seen["whole"] += 1
+        except rc.Cancelled:
+            seen["stopped"] += 1
+        except rc.InputError as error:
+            assert "no picture yet" in str(error)  # the stop came first
+        stop.join()
+    assert min(seen.values()) > 0, seen
+
+
+@needs_gpu
+@pytest.mark.gpu
+def test_cancel_by_many_threads_at_once(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, max_bounces=8)
+    for _ in range(10):
+        frame = live.shoot(WIDE, spp=1 << 18)
+        threads = [threading.Thread(target=live.cancel) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        with pytest.raises(rc.Cancelled):
+            frame.codes  # noqa: B018
+        assert live.shoot(WIDE, spp=1).codes.any()
+
+
+@needs_gpu
+@pytest.mark.gpu
+@pytest.mark.slow
+def test_a_view_left_alone_counts_past_two_to_the_31() -> None:
+    sky = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(100.0)
+    pixel = rc.Camera(LENS, film=rc.Film(1e-3, 1e-3, (1, 1)), model="pinhole", exposure_time_s=0.01)
+    live = rc.LiveView(sky, max_bounces=0)
+    live.shoot(pixel, spp=1)
+    first = live.picture()[0].numpy()
+    for i in range(129):
+        frame = live.shoot(pixel, spp=1 << 24)
+        assert frame.samples == 1 + (i + 1) * (1 << 24)
+    assert frame.samples > 1 << 31
+    # Every sample sees the same sky, through a film of a micrometre: only their number could change the mean.
+    np.testing.assert_allclose(live.picture()[0].numpy(), first, rtol=1e-5)

@@ -1,0 +1,30 @@
+#pragma once
+#include <memory>
+#include <utility>
+
+#include "current_device.hpp"
+
+namespace realcam {
+
+struct DestroyOnDevice {
+    int ordinal = 0;
+
+    template <class T>
+    void operator()(T* object) const noexcept {
+        const CurrentDevice current(ordinal, std::nothrow);
+        delete object;
+    }
+};
+
+/// Owns what holds memory, streams or events of one GPU: they are made and given back while that GPU is current, on
+/// whichever thread.
+template <class T>
+using OnDevice = std::unique_ptr<T, DestroyOnDevice>;
+
+template <class T, class... Arguments>
+OnDevice<T> make_on_device(int ordinal, Arguments&&... arguments) {
+    const CurrentDevice current(ordinal);
+    return OnDevice<T>(new T(std::forward<Arguments>(arguments)...), {ordinal});
+}
+
+}  // namespace realcam

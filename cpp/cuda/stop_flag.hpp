@@ -1,0 +1,62 @@
+#pragma once
+#include <atomic>
+#include <mutex>
+
+#include "cuda_stream.hpp"
+#include "current_device.hpp"
+#include "device_array.hpp"
+#include "pinned_array.hpp"
+
+namespace realcam {
+
+/// Asks the kernels of one GPU to end early. Their threads read it before each sample: from the GPU's memory, because
+/// reading the host's takes longer than a sample. Made and destroyed while that GPU is current.
+class StopFlag {
+public:
+    explicit StopFlag(int ordinal) : ordinal_(ordinal), values_(2), flag_(1) {
+        values_.data()[0] = 0;
+        values_.data()[1] = 1;
+        write(false);
+    }
+
+    /// From any thread. The flag stands until it was lowered as often as it was raised. A GPU that cannot be reached
+    /// runs no kernel that could be stopped; whoever waits for its work is told.
+    void raise() noexcept {
+        const std::lock_guard lock(mutex_);
+        if (raised_++ > 0) return;
+        const CurrentDevice current(ordinal_, std::nothrow);
+        try {
+            write(true);
+        } catch (const DeviceError&) {
+        }
+    }
+    /// When the work that was to stop is over. Throws DeviceError.
+    void lower() {
+        const std::lock_guard lock(mutex_);
+        if (--raised_ > 0) return;
+        const CurrentDevice current(ordinal_);
+        write(false);
+    }
+    bool is_raised() const { return raised_ > 0; }
+
+    const volatile int* data() const { return flag_.data(); }
+    /// Starts to copy it to the host's memory. Not 0 there, if any kernel before it in the stream has read a raised
+    /// flag and it has not been lowered since.
+    void download(int* to, cudaStream_t stream) const { flag_.download(to, stream); }
+
+private:
+    void write(bool stop) {
+        check_cuda(cudaMemcpyAsync(flag_.data(), values_.data() + stop, sizeof(int), cudaMemcpyHostToDevice, stream_),
+                   "stopping it");
+        stream_.wait("stopping it");
+    }
+
+    int ordinal_;
+    CudaStream stream_;  // of its own, beside the work that it stops
+    PinnedArray<int> values_;
+    DeviceArray<int> flag_;
+    std::mutex mutex_;
+    std::atomic<int> raised_{0};
+};
+
+}  // namespace realcam

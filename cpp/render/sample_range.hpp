@@ -1,0 +1,23 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Samples of every pixel, as the random numbers know them.
+struct SampleRange {
+    std::uint32_t seed, first, count;
+};
+
+/// The next samples from `taken` to `wanted`, or those up to where a random sequence ends: it has 2^32 of them, and a
+/// picture that is never finished goes on with the sequence of the next seed.
+inline SampleRange next_samples(std::uint32_t seed, std::int64_t taken, std::int64_t wanted) {
+    constexpr std::int64_t kSequence = std::int64_t{1} << 32;
+    const std::int64_t first = taken % kSequence, count = std::min(wanted - taken, kSequence - first);
+    return {seed + static_cast<std::uint32_t>(taken / kSequence), static_cast<std::uint32_t>(first),
+            static_cast<std::uint32_t>(count)};
+}
+
+}  // namespace REALCAM_NAMESPACE
