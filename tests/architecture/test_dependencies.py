@@ -82,6 +82,7 @@ HOST_ONLY = {
     "render/scene_change.hpp",
     "scene/assembly.hpp",
     "scene/bounding_box.hpp",
+    "scene/instance_names.hpp",
     "scene/light_tables.hpp",
     "scene/render_space_mesh.hpp",
     "scene/render_space_scene.hpp",
