@@ -106,11 +106,10 @@ void bind_instances(py::class_<Assembly>& scene) {
             "name\n"
             "\"name/part\". A name that the scene has already gets a number: \"car\", \"car.2\", \"car.3\".\n"
             "Raises InputError for a matrix that is flat.")
-        .def(
-            "moved", &moved, "instance"_a, "scene_from_object"_a,
-            "With one of the instances, by its name or number, in another place, and with it its parts.\n"
-            "Made for every frame: the next picture takes over all that was built for the last.\n"
-            "Raises InputError where there is no such instance, or several.")
+        .def("moved", &moved, "instance"_a, "scene_from_object"_a,
+             "With one of the instances, by its name or number, in another place, and with it its parts.\n"
+             "Made for every frame: the next picture takes over all that was built for the last.\n"
+             "Raises InputError where there is no such instance, or several.")
         .def_property_readonly("instances", &instances_of, "For each its name and (4, 4) scene_from_object.");
 }
 
