@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include "../embree/lens_rays.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
@@ -31,9 +32,10 @@ std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples, co
         return points;
     }
     if (!(samples >= 1 && samples <= 2048)) throw InputError("samples must lie between 1 and 2048");
-    if (pattern == "grid") return square_grid(samples);
-    if (pattern == "rings") return gauss_rings(samples);
-    if (pattern == "hexapolar") return hexapolar(samples);
+    const RayLoop loop{heed_signals};
+    if (pattern == "grid") return square_grid(samples, loop);
+    if (pattern == "rings") return gauss_rings(samples, loop);
+    if (pattern == "hexapolar") return hexapolar(samples, loop);
     throw InputError("unknown pattern \"" + pattern + "\"; grid, rings or hexapolar is wanted");
 }
 
@@ -70,17 +72,25 @@ struct AimedRays {
     py::array_t<int> status;
 };
 
-AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, double object_distance_m,
+AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std::optional<double> object_distance_m,
               std::optional<double> wavelength_nm) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const std::vector<PupilPoint> pattern = pattern_from("", 1, pupil);
     const RayAimer aimer(lens, wavelength, field_from(field_deg, object_distance_m));
     const double reach = stop_reach(lens);
     std::vector<AimedRay> rays;
-    for (const PupilPoint& point : pattern) rays.push_back(aimer({reach * point.x, reach * point.y}));
+    {
+        const py::gil_scoped_release release;
+        parallel_ray_loop(heed_signals).append_all(rays, pattern.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) rays[i] = aimer({reach * pattern[i].x, reach * pattern[i].y});
+        });
+    }
     const auto component = [](const Vec3d& v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; };
     const auto of_entry = [&](auto&& f) {
-        return table_of(rays.size(), 3, [&](std::size_t i, std::size_t k) { return component(f(rays[i].entry), k); });
+        return table_of(rays.size(), 3, [&](std::size_t i, std::size_t k) {
+            return rays[i].status == RayStatus::ok ? component(f(rays[i].entry), k)
+                                                   : std::numeric_limits<double>::quiet_NaN();
+        });
     };
     return {of_entry([&](ObjectPoint::Entry e) { return aimer.object.at(e); }),
             of_entry([&](ObjectPoint::Entry e) { return aimer.object.direction(e); }),
@@ -93,24 +103,29 @@ struct PythonWavefront {
     int columns;  ///< of the grid; 0: no grid
 };
 
-PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, double object_distance_m,
+PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
                                std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
-                               const std::string& reference, const std::optional<std::string>& remove,
-                               const std::string& pattern, int samples, const std::optional<Points>& pupil) {
+                               const std::string& reference, const std::string& exit_pupil,
+                               const std::optional<std::string>& remove, const std::string& pattern, int samples,
+                               const std::optional<Points>& pupil) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const double distance = film_distance_from(lens, film_distance_mm);
     const FieldPoint field = field_from(field_deg, object_distance_m);
     std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
     if (reference != "chief" && reference != "centroid")
         throw InputError("unknown reference \"" + reference + "\"; chief or centroid is wanted");
+    if (exit_pupil != "real" && exit_pupil != "paraxial")
+        throw InputError("unknown exit_pupil \"" + exit_pupil + "\"; real or paraxial is wanted");
     if (remove && *remove != "tilt" && *remove != "focus")
         throw InputError("cannot remove \"" + *remove + "\"; tilt, focus or None is wanted");
     const py::gil_scoped_release release;
-    return {wavefront_of(lens, wavelength, field_rays(lens, wavelength, field, std::move(points)), distance,
+    const RayLoop loop = parallel_ray_loop(heed_signals);
+    return {wavefront_of(lens, wavelength, field_rays(lens, wavelength, field, std::move(points), loop), distance,
                          reference == "chief" ? SphereCentre::chief : SphereCentre::centroid,
                          !remove             ? Removed::nothing
                          : *remove == "tilt" ? Removed::tilt
-                                             : Removed::focus),
+                                             : Removed::focus,
+                         exit_pupil == "real" ? ExitPupil::real : ExitPupil::paraxial, loop),
             wavelength, stop_reach(lens), lens.last_vertex(), pattern == "grid" && !pupil ? samples : 0};
 }
 
@@ -123,20 +138,23 @@ Array map_of(const PythonWavefront& w) {
     return map;
 }
 
-Spot make_spot(const LensSystem& lens, double field_deg, double object_distance_m, std::optional<double> wavelength_nm,
-               std::optional<double> film_distance_mm, const std::string& pattern, int samples,
-               const std::optional<Points>& pupil) {
+Spot make_spot(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
+               std::optional<double> wavelength_nm, std::optional<double> film_distance_mm, const std::string& pattern,
+               int samples, const std::optional<Points>& pupil) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const double distance = film_distance_from(lens, film_distance_mm);
     std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
     const py::gil_scoped_release release;
-    return spot_of(field_rays(lens, wavelength, field_from(field_deg, object_distance_m), std::move(points)), distance);
+    const RayLoop loop = parallel_ray_loop(heed_signals);
+    const FieldPoint field = field_from(field_deg, object_distance_m);
+    return spot_of(field_rays(lens, wavelength, field, std::move(points), loop), distance, loop);
 }
 
 constexpr const char* kFieldText =
     R"(field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
   for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-object_distance_m: object plane to front vertex, inf allowed. wavelength_nm: None is the design wavelength.
+object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
+wavelength_nm: None is the design wavelength.
 )";
 constexpr const char* kPatternText =
     R"(pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
@@ -154,9 +172,10 @@ void bind_analysis(py::module_& m) {
     def_result(aimed_rays);
     aimed_rays
         .def_readonly("origins_mm", &AimedRays::origins_mm,
-                      "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light; nan "
-                      "where there is no ray.")
-        .def_readonly("directions", &AimedRays::directions, "(N, 3), unit.")
+                      "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which "
+                      "may lie\nbehind the front surface: the ray is that straight line, also in front of it. nan where "
+                      "status is not OK.")
+        .def_readonly("directions", &AimedRays::directions, "(N, 3), unit; nan where status is not OK.")
         .def_readonly("status", &AimedRays::status, kStatusText)
         .def("__repr__",
              [](const AimedRays& rays) { return "<realcam.AimedRays " + counted(py::len(rays.status), "ray") + '>'; });
@@ -239,15 +258,18 @@ void bind_analysis(py::module_& m) {
         std::string(R"(Rays of one object point that meet given places on the real stop, for Lens.trace(start="scene").
 pupil: (N, 2), places on the stop as shares of its radius.
 )") + kFieldText +
-        R"(Returns AimedRays; the status is that of the ray behind the lens. Raises InputError where no ray of the
-object point reaches the middle of the stop.)";
+        R"(Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
+lie behind the front surface: Lens.trace takes a ray for the whole straight line. Places on the very edge of the stop
+are aimed at 2e-10 of its radius further in, so that rounding does not block the ray when it is traced.
+Raises InputError where no ray of the object point reaches the middle of the stop.)";
     static const std::string wavefront_text =
         std::string(R"(The wavefront of one object point against a sphere, by real rays, in double precision.
 )") + kFieldText +
         R"(film_distance_mm: last vertex to the plane of the image point; None: the film.
 reference: the sphere's centre: "chief", where the chief ray (through the middle of the real stop) meets that plane, or
-  "centroid", of the spot there. Its radius is the distance from there to the exit pupil's middle on the chief ray:
-  where the chief ray crosses the axis; on the axis, the paraxial exit pupil. As in CODE V's listings.
+  "centroid", of the spot there. Its radius is the distance from the chief ray's point to the exit pupil on that ray.
+exit_pupil: "real", where the chief ray crosses the axis (on the axis, the paraxial exit pupil), as in CODE V's
+  listings; or "paraxial", where it crosses the plane of the paraxial exit pupil, as in OpticStudio.
 remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 of the stop and taken away.
 )" + kPatternText +
         "Returns a Wavefront. Raises InputError where no ray passes, or no reference sphere can be laid.";
@@ -257,13 +279,13 @@ remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 o
 )") + kFieldText +
         kPatternText + "Returns a Spot. Raises InputError where no ray passes.";
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
-        .def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = kInfinity,
+        .def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
              "wavelength_nm"_a = py::none(), aim_text.c_str())
-        .def("wavefront", &make_wavefront, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = kInfinity,
+        .def("wavefront", &make_wavefront, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
              "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "reference"_a = "chief",
-             "remove"_a = py::none(), "pattern"_a = "grid", "samples"_a = 64, "pupil"_a = py::none(),
-             wavefront_text.c_str())
-        .def("spot", &make_spot, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = kInfinity,
+             "exit_pupil"_a = "real", "remove"_a = py::none(), "pattern"_a = "grid", "samples"_a = 64,
+             "pupil"_a = py::none(), wavefront_text.c_str())
+        .def("spot", &make_spot, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
              "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "pattern"_a = "hexapolar",
              "samples"_a = 6, "pupil"_a = py::none(), spot_text.c_str());
 }

@@ -3,6 +3,7 @@
 #include <variant>
 #include <vector>
 
+#include "../scene/instance_names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 
@@ -47,13 +48,14 @@ py::array_t<double> matrix_of(const Affine<double>& map) {
 }
 
 Assembly with_instance(Assembly scene, const Assembly& object, const py::object& matrices, const std::string& name) {
+    DistinctNames names(scene);
     if (matrices.is_none()) {
-        add(scene, object, {}, name);
+        add(scene, object, {}, name, names);
     } else {
         const Places places = transforms_from(matrices);
         const bool numbered = places.several && !name.empty();
         for (std::size_t i = 0; i < places.list.size(); ++i)
-            add(scene, object, places.list[i], numbered ? name + ' ' + std::to_string(i) : name);
+            add(scene, object, places.list[i], numbered ? name + ' ' + std::to_string(i) : name, names);
     }
     validate(scene);
     return scene;
@@ -100,13 +102,14 @@ void bind_instances(py::class_<Assembly>& scene) {
             "With another scene in it as an object: its triangles and point lights, but not its suns and environment.\n"
             "scene_from_object: matrix of shape (4, 4) or (3, 4) for columns (x, y, z, 1), metres; none: as it is.\n"
             "(K, 4, 4) or (K, 3, 4): K of them, with names \"name 0\", \"name 1\", ... The object's triangles are\n"
-            "shared, however often it stands there; its own instances become parts, by the name \"name/part\".\n"
+            "shared, however often it stands there; its own instances become its parts, which move with it, by the "
+            "name\n"
+            "\"name/part\". A name that the scene has already gets a number: \"car\", \"car.2\", \"car.3\".\n"
             "Raises InputError for a matrix that is flat.")
-        .def(
-            "moved", &moved, "instance"_a, "scene_from_object"_a,
-            "With one of the instances, by its name or number, in another place, and with it its parts: those with\n"
-            "its name and a slash. Made for every frame: the next picture takes over all that was built for the last.\n"
-            "Raises InputError where there is no such instance, or several.")
+        .def("moved", &moved, "instance"_a, "scene_from_object"_a,
+             "With one of the instances, by its name or number, in another place, and with it its parts.\n"
+             "Made for every frame: the next picture takes over all that was built for the last.\n"
+             "Raises InputError where there is no such instance, or several.")
         .def_property_readonly("instances", &instances_of, "For each its name and (4, 4) scene_from_object.");
 }
 

@@ -23,7 +23,7 @@ Glass glass_from(const py::object& material) {
         } catch (const py::cast_error&) {
             // Named below: not two numbers.
         }
-        if (pair.size() != 2 || !(pair[1] > 0)) throw InputError("a material given as a pair must be (n_d, V_d)");
+        if (pair.size() != 2) throw InputError("a material given as a pair must be (n_d, V_d)");
         Glass glass = Glass::from_abbe_number(pair[0], pair[1]);
         glass.label = py::str(material).cast<std::string>();
         return glass;
@@ -133,8 +133,10 @@ std::map<int, double> aspheric_map(const Surface& surface) {
 
 LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std::optional<double> film_distance,
                      std::pair<double, double> film, double wavelength_nm, int blades, double rounding,
-                     double rotation_deg, std::optional<std::pair<int, int>> focus_group, double nearest_focus_m) {
+                     double rotation_deg, std::optional<std::pair<int, int>> focus_group, double nearest_focus_m,
+                     bool allow_crossing) {
     LensSystem lens;
+    lens.allow_crossing = allow_crossing;
     lens.name = name;
     lens.surfaces = std::move(surfaces);
     if (!lens.surfaces.empty()) lens.surfaces.back().thickness = 0;
@@ -156,10 +158,10 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     validate(lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
     lens.film_distance = film_distance ? *film_distance : best_focus_distance(lens, wavelength_nm, kInfinity);
-    if (!(lens.film_distance > 0) || !std::isfinite(lens.film_distance))
-        throw LensFileError(film_distance ? "the film must lie behind the last surface"
-                                          : "the lens makes no real image of infinity behind its last surface; "
-                                            "film_distance_mm is wanted");
+    if (!film_distance && !(lens.film_distance > 0))
+        throw LensFileError(
+            "the lens makes no real image of infinity behind its last surface; film_distance_mm is wanted");
+    if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
     return lens;
 }
 
@@ -208,8 +210,10 @@ void bind_glass(py::module_& m) {
             "index"_a, "The same index at every wavelength.")
         .def_static(
             "from_abbe_number", &Glass::from_abbe_number, "n_d"_a, "abbe_number"_a,
-            "Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).")
-        .def_static("cauchy", &Glass::cauchy, "coefficients"_a, "n = A + B/l^2 + C/l^4 + ..., l in um.")
+            "Two-term Cauchy glass with this index at the d line and this Abbe number V_d = (n_d - 1)/(n_F - n_C).\n"
+            "Raises InputError for an index below 1 or a number that is not positive.")
+        .def_static("cauchy", &Glass::cauchy, "coefficients"_a,
+                    "n = A + B/l^2 + C/l^4 + ..., l in um. Raises InputError where there is no coefficient.")
         .def_static(
             "sellmeier",
             [](const std::vector<double>& b, const std::vector<double>& c) {
@@ -222,7 +226,6 @@ void bind_glass(py::module_& m) {
         .def_static(
             "table",
             [](const std::vector<std::pair<double, double>>& points) {
-                if (points.empty()) throw InputError("a glass table needs at least one (wavelength_nm, index)");
                 std::vector<Glass::TablePoint> list;
                 for (const auto& [wavelength, index] : points) list.push_back({wavelength, index});
                 return Glass::table(std::move(list));
@@ -299,12 +302,13 @@ void bind_lens(py::module_& m) {
         .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
              "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(),
-             "nearest_focus_m"_a = 0.0,
+             "nearest_focus_m"_a = 0.0, "allow_crossing"_a = false,
              "surfaces: from the scene to the film, exactly one of them a Stop.\n"
              "film_distance_mm: last vertex to film; None: best focus at infinity by real rays.\n"
              "film_mm: (width, height) used where a Camera names no film.\n"
              "iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.\n"
              "focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.\n"
+             "allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.\n"
              "Raises LensFileError, naming the surface (from 1), where the lens cannot be built.")
         .def_static(
             "load", [](const py::object& name) { return io::read_lens(path_from(name)); }, "name_or_path"_a,
@@ -325,25 +329,26 @@ void bind_lens(py::module_& m) {
              "The lens with its diaphragm closed to an f-number. Raises InputError where it does not open that far.")
         .def(
             "best_focus_mm",
-            [](const LensSystem& lens, double object_m, std::optional<double> nm) {
-                if (!(object_m > 0))
-                    throw InputError("the object distance must be a positive number of metres, or inf");
-                const double plane = best_focus_distance(lens, wavelength_or_design(lens, nm), 1000 * object_m);
+            [](const LensSystem& lens, std::optional<double> object_m, std::optional<double> nm) {
+                const double object = object_distance_of(lens, field_from(0, object_m));
+                const double plane = best_focus_distance(lens, wavelength_or_design(lens, nm), object);
                 if (!std::isfinite(plane))
                     throw InputError(
                         "lens \"" + lens.name +
                         "\" has no best focus: no ray from the object passes it, or its light leaves parallel");
                 return plane;
             },
-            "object_distance_m"_a = kInfinity, "wavelength_nm"_a = py::none(),
+            "object_distance_m"_a = py::none(), "wavelength_nm"_a = py::none(),
             "Last vertex to the plane of the smallest RMS spot of an axial point this far in front of the front "
-            "vertex.\n"
+            "vertex;\n"
+            "None is the plane in focus.\n"
             "Raises InputError where there is none: no ray passes, or an afocal lens looks at infinity.")
         .def_readonly("name", &LensSystem::name)
         .def_readonly("title", &LensSystem::title)
         .def_readonly("source", &LensSystem::source)
         .def_readonly("surfaces", &LensSystem::surfaces)
         .def_readonly("wavelength_nm", &LensSystem::wavelength_nm)
+        .def_readonly("allow_crossing", &LensSystem::allow_crossing)
         .def_readonly("film_distance_mm", &LensSystem::film_distance)
         .def_property_readonly("film_position_mm", &LensSystem::film_position, "Front vertex to film.")
         .def_property_readonly("film_mm", [](const LensSystem& l) { return std::pair(l.film_width, l.film_height); })

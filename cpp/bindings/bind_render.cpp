@@ -44,10 +44,15 @@ ToneCurve tone_curve_from(const std::string& name) {
     throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
 }
 
+void heed_signals() {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
 Progress progress_of(const py::object& callback) {
     return [&callback](double done) {
+        heed_signals();
         const py::gil_scoped_acquire acquire;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (callback.is_none()) return true;
         const py::object answer = callback(done);
         return answer.is_none() || answer.cast<bool>();

@@ -90,7 +90,7 @@ void bind_seidel_table(py::module_& m) {
         });
 }
 
-SeidelTable make_seidel(const LensSystem& lens, double field_deg, double object_distance_m,
+SeidelTable make_seidel(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
                         std::optional<double> wavelength_nm, std::pair<double, double> colours_nm) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     for (const double nm : {colours_nm.first, colours_nm.second}) wavelength_or_design(lens, nm);
@@ -112,12 +112,13 @@ void bind_seidel(py::module_& m) {
                    digits(g.back_focal_distance) + " mm>";
         });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
-        .def("seidel", &make_seidel, "field_deg"_a, py::kw_only(), "object_distance_m"_a = kInfinity,
+        .def("seidel", &make_seidel, "field_deg"_a, py::kw_only(), "object_distance_m"_a = py::none(),
              "wavelength_nm"_a = py::none(), "colours_nm"_a = std::pair(kLineF_nm, kLineC_nm),
              "Third-order and primary chromatic aberrations, surface by surface, with conics, aspheres and mirrors\n"
              "(W. T. Welford, Aberrations of Optical Systems, chapters 8 and 10).\n"
              "field_deg: angle of the paraxial chief ray to the axis; positive: it rises towards +y and the film.\n"
-             "object_distance_m: object plane to front vertex. colours_nm: the short and the long wavelength.\n"
+             "object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.\n"
+             "colours_nm: the short and the long wavelength.\n"
              "Returns a Seidel. Raises InputError for angles of 90 deg and more, and for an afocal lens.")
         .def(
             "ghost",

@@ -42,9 +42,16 @@ ToneCurve tone_curve_from(const std::string& name);
 /// the interpreter's lock. The callback must outlive the result.
 Progress progress_of(const py::object& callback);
 
-/// A path as users give it, a text or anything with __fspath__, in the bytes that the system knows it by.
+/// Raises what a signal has raised in Python, above all KeyboardInterrupt. Called without the interpreter's lock, on
+/// the thread that Python called.
+void heed_signals();
+
+/// A path as users give it, a text or anything with __fspath__, in the bytes that the system knows it by. Throws
+/// InputError for a null character, at which the system would cut the name.
 inline std::string path_from(const py::object& path) {
-    return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+    std::string bytes = py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+    if (bytes.find('\0') != std::string::npos) throw InputError("a file name cannot hold a null character");
+    return bytes;
 }
 
 /// A text of the core, in which names of files may be no UTF-8, as Python has such names (os.fsdecode).
@@ -66,9 +73,11 @@ Glass glass_from(const py::object& material);
 /// The design wavelength where none is given. Throws InputError outside the limits of Lens.trace.
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm);
 
-/// A place in the field as users write it.
-inline FieldPoint field_from(double field_deg, double object_distance_m) {
-    return {field_deg * std::numbers::pi / 180, 1000 * object_distance_m};
+/// A place in the field as users write it; no distance: the plane in focus.
+inline FieldPoint field_from(double field_deg, std::optional<double> object_distance_m) {
+    const double angle_rad = field_deg * std::numbers::pi / 180;
+    if (!object_distance_m) return {angle_rad};
+    return {angle_rad, 1000 * *object_distance_m};
 }
 
 }  // namespace realcam::bindings

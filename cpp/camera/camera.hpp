@@ -74,8 +74,8 @@ inline void validate(const Camera& camera) {
         throw InputError("the exposure time must be a positive number of seconds, from 1e-37 to 1e38");
     if (!lies_between(kLeastDial, camera.iso, kMostDial))
         throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
-    if (!(camera.lens.film_distance > 0) || !(camera.lens.film_distance <= kLongest))
-        throw InputError("the film must lie behind the last surface of the lens, at most 1e9 mm away");
+    if (camera.lens.stop_index() < 0) throw InputError("the camera has no lens; one with a stop is wanted");
+    if (const std::string why = film_distance_error(camera.lens); !why.empty()) throw InputError(why);
     if (!(camera.lens.stop_semi_diameter >= 0))
         throw InputError("the radius of the lens's open stop must be a length of 0 or more");
     const Pose& pose = camera.pose;
@@ -180,8 +180,7 @@ public:
     /// Throws InputError. `tracer`: see Pupil. `last`: a set-up whose pupil is taken over if it is the same one:
     /// finding it is most of the work, and a camera that only moves keeps it.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr)
-        : camera_(camera), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
-        validate(camera);
+        : camera_(validated(camera)), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
         if (last && last->has_pupil_of(camera))
             pupil_ = last->pupil_;
         else if (camera.model == CameraModel::full_lens)
@@ -234,6 +233,12 @@ public:
     const Camera& camera() const { return camera_; }
 
 private:
+    /// Before anything is made from it: a camera without a lens has no surface to begin with.
+    static const Camera& validated(const Camera& camera) {
+        validate(camera);
+        return camera;
+    }
+
     bool has_pupil_of(const Camera& camera) const {
         return pupil_ && camera.model == CameraModel::full_lens && camera_.lens == camera.lens &&
                camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm;

@@ -3,6 +3,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "../camera/ray_request.hpp"
@@ -13,14 +15,14 @@ namespace {
 constexpr std::int64_t kChunk = 4096;
 
 template <class F>
-void in_chunks(std::int64_t count, F&& f) {
-    tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, count, kChunk),
+void in_chunks(std::int64_t from, std::int64_t to, F&& f) {
+    tbb::parallel_for(tbb::blocked_range<std::int64_t>(from, to, kChunk),
                       [&](const tbb::blocked_range<std::int64_t>& range) { f(range.begin(), range.end()); });
 }
 
 template <class T>
-void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*)) {
-    in_chunks(all.count, [&](std::int64_t first, std::int64_t last) {
+void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const std::function<void()>& keep_going) {
+    const auto trace = [&](std::int64_t first, std::int64_t last) {
         TraceRequest<T> request = all;
         request.count = last - first;
         request.origins += 3 * first;
@@ -31,21 +33,26 @@ void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*)) {
         request.status += first;
         request.surface_index += first;
         kernel(&request);
-    });
+    };
+    constexpr std::int64_t kBlock = 1 << 20;  // some 0.1 s
+    for (std::int64_t block = 0; block < all.count; block += kBlock) {
+        keep_going();
+        in_chunks(block, std::min(block + kBlock, all.count), trace);
+    }
 }
 
 }  // namespace
 
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                 int surface_count, std::int64_t count, const double* origins, const double* directions,
-                const TracedRays& out, const realcam_kernels* on) {
+                const TracedRays& out, const realcam_kernels* on, const std::function<void()>& keep_going) {
     const realcam_kernels& chosen = on ? *on : kernels();
     if (precision == Precision::float64) {
         const TracePath<double> path(lens, direction, wavelength_nm, surface_count);
-        trace_with(path.request(count, origins, directions, out), chosen.trace_f64);
+        trace_with(path.request(count, origins, directions, out), chosen.trace_f64, keep_going);
     } else {
         const TracePath<float> path(lens, direction, wavelength_nm, surface_count);
-        trace_with(path.request(count, origins, directions, out), chosen.trace_f32);
+        trace_with(path.request(count, origins, directions, out), chosen.trace_f32, keep_going);
     }
 }
 
@@ -79,6 +86,14 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
                               to[2] = place.z + static_cast<double>(from[2]);
                           }
                       });
+}
+
+RayLoop parallel_ray_loop(std::function<void()> keep_going) {
+    return {std::move(keep_going), [](std::size_t first, std::size_t last, const RayTask& task) {
+                tbb::parallel_for(
+                    tbb::blocked_range<std::size_t>(first, last, 64),
+                    [&](const tbb::blocked_range<std::size_t>& range) { task(range.begin(), range.end()); });
+            }};
 }
 
 }  // namespace realcam

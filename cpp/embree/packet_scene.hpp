@@ -40,14 +40,14 @@ struct PacketScene {
         order = RayOrder::incoherent;  // what follows the camera rays is scattered
     }
 
+    /// hidden: 1 where something is in the way, 0 elsewhere and for rays that are left out.
     template <int N>
     void occluded(const SceneRays<N>& rays, std::int32_t (&hidden)[N]) {
         for (int first = 0; first < N; first += 16) {
             RTCRay16 packet;
             alignas(64) int valid[16];
             const int used = load(rays, first, packet, valid);
-            if (used == 0) continue;
-            occluded16(valid, scene, order, &packet);
+            if (used > 0) occluded16(valid, scene, order, &packet);
             REALCAM_LANES
             for (int k = 0; k < 16; ++k) hidden[first + k] = packet.tfar[k] < 0.0f ? 1 : 0;  // Embree's mark
             rays_traced += static_cast<std::uint64_t>(used);
@@ -55,26 +55,28 @@ struct PacketScene {
     }
 
 private:
+    /// Rays that are left out may hold anything; the packet gets zeros for them.
     template <int N>
     static int load(const SceneRays<N>& rays, int first, RTCRay16& packet, int (&valid)[16]) {
         int used = 0;
         REALCAM_LANES
         for (int k = 0; k < 16; ++k) {
             const int i = first + k;
-            packet.org_x[k] = rays.origin.x[i];
-            packet.org_y[k] = rays.origin.y[i];
-            packet.org_z[k] = rays.origin.z[i];
-            packet.dir_x[k] = rays.direction.x[i];
-            packet.dir_y[k] = rays.direction.y[i];
-            packet.dir_z[k] = rays.direction.z[i];
+            const bool on = rays.active[i] != 0;
+            packet.org_x[k] = on ? rays.origin.x[i] : 0.0f;
+            packet.org_y[k] = on ? rays.origin.y[i] : 0.0f;
+            packet.org_z[k] = on ? rays.origin.z[i] : 0.0f;
+            packet.dir_x[k] = on ? rays.direction.x[i] : 0.0f;
+            packet.dir_y[k] = on ? rays.direction.y[i] : 0.0f;
+            packet.dir_z[k] = on ? rays.direction.z[i] : 0.0f;
             packet.tnear[k] = 0.0f;
-            packet.tfar[k] = rays.far[i];
+            packet.tfar[k] = on ? rays.far[i] : 0.0f;
             packet.time[k] = 0.0f;
             packet.mask[k] = 0xffffffffu;
             packet.id[k] = 0;
             packet.flags[k] = 0;
-            valid[k] = rays.active[i] ? -1 : 0;
-            used += rays.active[i] ? 1 : 0;
+            valid[k] = on ? -1 : 0;
+            used += on ? 1 : 0;
         }
         return used;
     }

@@ -75,6 +75,7 @@ Glass glass_from_table(const TomlTable& table) {
         return Glass::table(std::move(list));
     }
     if (!n_d || !v_d) table.fail("n_d and V_d are wanted together");
+    if (!(*n_d >= 1)) table.fail("the index n_d must be at least 1", table.find("n_d"));
     if (!(*v_d > 0)) table.fail("the Abbe number V_d must be positive", table.find("V_d"));
     return Glass::from_abbe_number(*n_d, *v_d);
 }

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <system_error>
 
 #include "../optics/focus.hpp"
 #include "bundled_lenses.hpp"
@@ -145,10 +145,42 @@ void read_focusing(const TomlTable& file, LensSystem& lens) {
     lens.focusing.group_last = static_cast<int>(group[1]) - 1;
 }
 
-/// The line on which a [[surface]] begins, for checks made on the finished lens.
-int line_of_surface(const toml::array& surfaces, int number) {
-    const auto index = static_cast<std::size_t>(number) - 1;
-    return index < surfaces.size() ? static_cast<int>(surfaces[index].source().begin.line) : 0;
+/// A check of the finished lens, which knows nothing of the file: the error gets the line of the surface that it names,
+/// or else of the part of the file that it is about.
+template <class Check>
+void check_part(const TomlTable& file, const toml::node& part, const toml::array& surfaces, Check&& check) {
+    try {
+        check();
+    } catch (const LensFileError& error) {
+        const toml::node& place = error.surface > 0 ? surfaces[static_cast<std::size_t>(error.surface) - 1] : part;
+        throw LensFileError(error.detail, file.file(), static_cast<int>(place.source().begin.line), error.surface);
+    }
+}
+
+void check_lens(const TomlTable& file, const toml::array& surfaces, const LensSystem& lens) {
+    const auto part = [&](std::string_view table, std::string_view key = {}) -> const toml::node& {
+        const toml::node* node = file.find(table);
+        if (node && !key.empty()) node = node->as_table()->get(key);
+        return node ? *node : file.raw();
+    };
+    check_part(file, surfaces[0], surfaces, [&] { check_surfaces(lens); });
+    check_part(file, part("iris"), surfaces, [&] { check_iris(lens); });
+    check_part(file, part("film_mm"), surfaces, [&] { check_film_size(lens); });
+    check_part(file, part("focus", "group"), surfaces, [&] { check_focusing(lens); });
+}
+
+/// A text of one line, fit for a terminal and a drawing.
+std::string read_line(const TomlTable& file, std::string_view key) {
+    const std::string text = file.text(key);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto c = static_cast<unsigned char>(text[i]),
+                   next = static_cast<unsigned char>(text[std::min(i + 1, text.size() - 1)]);
+        // In UTF-8 the second block of control characters, U+0080 to U+009F, begins with C2.
+        if (c < 0x20 || c == 0x7f || (c == 0xc2 && next < 0xa0))
+            file.fail('"' + std::string(key) + "\" must be one line of text, without control characters",
+                      file.find(key));
+    }
+    return text;
 }
 
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
@@ -160,21 +192,23 @@ void set_film_distance(const TomlTable& file, LensSystem& lens) {
     if (!distance && !(at_infinity > 0))
         file.fail("the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is wanted");
     lens.film_distance = distance.value_or(at_infinity);
+    if (const std::string why = film_distance_error(lens); !why.empty()) file.fail(why, file.find("film_distance_mm"));
 }
 
 LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     const TomlTable top(root, file);
     top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm", "glass", "surface",
-               "iris", "focus"});
+               "iris", "focus", "allow_crossing"});
     const auto format = top.number("format");
     if (!format) top.fail("\"format = 1\" is missing");
     if (*format != kFormat)
         top.fail("format " + number_label(*format) + " is not known; this program reads format 1", top.find("format"));
     LensSystem lens;
-    lens.name = top.text("name");
+    lens.name = read_line(top, "name");
     if (lens.name.empty()) top.fail("\"name\" is missing");
-    lens.title = top.text("title");
-    lens.source = top.text("source");
+    lens.title = read_line(top, "title");
+    lens.source = read_line(top, "source");
+    lens.allow_crossing = top.flag("allow_crossing");
     lens.wavelength_nm = top.number("wavelength_nm").value_or(kLineD_nm);
     if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
         top.fail("\"wavelength_nm\" must lie between 100 and 20000", top.find("wavelength_nm"));
@@ -192,14 +226,30 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     }
     read_iris(top, lens);
     read_focusing(top, lens);
-    try {
-        validate(lens);
-    } catch (const LensFileError& error) {
-        throw LensFileError(error.detail, file, line_of_surface(*surfaces, error.surface), error.surface);
-    }
+    check_lens(top, *surfaces, lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
     set_film_distance(top, lens);
     return lens;
+}
+
+/// Throws LensFileError for what is no file with an end, and for one that is too long to be a lens.
+std::string text_of_file(const std::string& path) {
+    constexpr std::uintmax_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::none || status.type() == fs::file_type::not_found)
+        throw LensFileError("cannot be opened (" + error.message() + "); a readable lens file (.toml) is wanted", path);
+    if (fs::is_directory(status)) throw LensFileError("is a folder; a lens file is wanted", path);
+    if (!fs::is_regular_file(status)) throw LensFileError("is no regular file; a lens file (.toml) is wanted", path);
+    const std::uintmax_t size = fs::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    if (error || !stream) throw LensFileError("cannot be opened; a readable lens file (.toml) is wanted", path);
+    if (size > kLargest) throw LensFileError("is larger than 16 MiB; a lens file (.toml) is wanted", path);
+    std::string text(size, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(size));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    return text;
 }
 
 }  // namespace
@@ -229,12 +279,7 @@ LensSystem parse_lens(std::string_view text, const std::string& file) {
 LensSystem read_lens(const std::string& name_or_path) {
     if (name_or_path.find_first_of("/.") == std::string::npos)
         return parse_lens(bundled_lens_text(name_or_path), name_or_path);
-    if (std::filesystem::is_directory(name_or_path))
-        throw LensFileError("is a folder; a lens file is wanted", name_or_path);
-    std::ifstream stream(name_or_path, std::ios::binary);
-    if (!stream) throw LensFileError("cannot be opened; a readable lens file (.toml) is wanted", name_or_path);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    return parse_lens(text, name_or_path);
+    return parse_lens(text_of_file(name_or_path), name_or_path);
 }
 
 }  // namespace realcam::io

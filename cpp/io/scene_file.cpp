@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "../error.hpp"
+#include "../scene/instance_names.hpp"
 #include "ply_file.hpp"
 #include "scene_checks.hpp"
 #include "scene_geometry.hpp"
@@ -79,6 +80,7 @@ Assembly read_other_scene(const std::string& path, SceneFormat format, const Sce
         keep_used_materials(static_geometry, materials);
     Assembly scene(std::move(static_geometry));
     scene.instances = std::move(instances);
+    make_names_distinct(scene);
     return scene;
 }
 

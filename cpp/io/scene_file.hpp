@@ -25,7 +25,8 @@ using ImageReader =
 
 struct SceneFileOptions {
     double scale = 1.0;  ///< metres per unit of the file
-    std::vector<std::string> objects = {};  ///< names of nodes that stand as objects, each with all below it
+    std::vector<std::string> objects = {};  ///< names of nodes that become instances, each with all below it;
+                                            ///< of nodes of one name the second is NAME.2, the third NAME.3
 };
 
 /// Reads a scene; the suffix picks the format. Throws SceneFileError if the file cannot be used, InputError for a

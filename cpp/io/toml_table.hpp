@@ -67,6 +67,14 @@ public:
         return *node->value<std::string>();
     }
 
+    /// False where the key is absent.
+    bool flag(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return false;
+        if (!node->is_boolean()) fail('"' + std::string(key) + "\" must be true or false", node);
+        return *node->value<bool>();
+    }
+
     /// An array of exactly `count` numbers (any number of them where count is 0); empty where the key is absent.
     std::vector<double> numbers(std::string_view key, std::size_t count) const {
         const toml::node* node = find(key);

@@ -4,7 +4,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Warps of the unit square, each with its density beside it: samplers, tests and other estimators share one formula.
+// Warps of the unit square, each with its density beside it, to which tests hold the warp. What uses both may divide by
+// the density, or, as scatter does, by a form in which factors have cancelled.
 
 /// Uniform on the unit disc.
 REALCAM_INLINE Vec2f sample_disc(Vec2f u) {

@@ -1,6 +1,7 @@
 #pragma once
 #include "pupil_pattern.hpp"
 #include "ray_aiming.hpp"
+#include "ray_loop.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -21,23 +22,22 @@ inline Vec3d crossing(const AimedRay& ray, double z) {
 }
 
 /// Aims a ray at every point of the pattern. Throws InputError where the field point makes no sense, or where the lens
-/// lets none of the rays pass.
+/// lets none of the rays pass, and what `loop` throws to stop it.
 inline FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
-                            std::vector<PupilPoint> pattern) {
+                            std::vector<PupilPoint> pattern, const RayLoop& loop = {}) {
     const RayAimer aim(lens, wavelength_nm, field);
     const double reach = stop_reach(lens);
     FieldRays result{field, std::move(pattern), {}, aim.chief_ray()};
-    result.rays.reserve(result.pattern.size());
     const std::string where = "at a field angle of " + object_point_detail::degrees(field.angle_rad);
     if (result.chief.status != RayStatus::ok)
         throw InputError("the ray " + where + " through the middle of the stop does not leave lens \"" + lens.name +
                          "\"");
-    int passing = 0;
-    for (const PupilPoint& point : result.pattern) {
-        result.rays.push_back(aim({reach * point.x, reach * point.y}));
-        passing += static_cast<int>(result.rays.back().status == RayStatus::ok);
-    }
-    if (passing == 0)
+    loop.append_all(result.rays, result.pattern.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            result.rays[i] = aim({reach * result.pattern[i].x, reach * result.pattern[i].y});
+    });
+    if (std::none_of(result.rays.begin(), result.rays.end(),
+                     [](const AimedRay& ray) { return ray.status == RayStatus::ok; }))
         throw InputError("none of " + std::to_string(result.rays.size()) + " rays " + where + " passes lens \"" +
                          lens.name + "\"");
     return result;

@@ -4,6 +4,7 @@
 
 #include "../math/root.hpp"
 #include "best_focus.hpp"
+#include "lens_checks.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -91,6 +92,7 @@ inline LensSystem moved_by_group(const LensSystem& lens, double focus_distance) 
     const double forth = last + 1 < s.size() ? s[last].thickness : lens.film_distance;
     const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
     if (start == 0) return lens;
+    std::optional<FaceCrossing> crossing;
     // From the resting place outwards, to the first change of sign on either side that is a root: where the image goes
     // through infinity, or the last ray ends, there is none.
     constexpr int kSteps = 200;
@@ -101,10 +103,18 @@ inline LensSystem moved_by_group(const LensSystem& lens, double focus_distance) 
             const bool bracket = std::isfinite(inner[side]) && std::isfinite(outer) && (inner[side] > 0) != (outer > 0);
             if (bracket) {
                 const Root shift = find_root(error, reach * (i - 1), inner[side], reach * i, outer, 1e-5 * tolerance);
-                if (std::fabs(shift.value) <= tolerance) return with_group_moved(lens, shift.at);
+                if (std::fabs(shift.value) <= tolerance) {
+                    LensSystem moved = with_group_moved(lens, shift.at);
+                    if (!lens.allow_crossing) crossing = find_crossing(moved);
+                    if (!crossing) return moved;
+                }
             }
             inner[side] = outer;
         }
+    if (crossing)
+        fail(lens, focus_distance,
+             "would have to move its focusing group so far that surfaces " + std::to_string(crossing->first + 1) +
+                 " and " + std::to_string(crossing->second + 1) + " cross");
     throw InputError("cannot focus at " + metres(focus_distance) + ": no position of the focusing group of lens \"" +
                      lens.name + "\" (surfaces " + std::to_string(first + 1) + " to " + std::to_string(last + 1) +
                      ") images it on the film");
@@ -115,7 +125,8 @@ inline LensSystem moved_by_group(const LensSystem& lens, double focus_distance) 
 /// The lens focused on an object plane `focus_distance` mm from the film (infinity allowed): real rays from the axial
 /// point, over the full aperture, make their smallest spot on the film. Moves the film, or the focusing group.
 /// A diaphragm that is closed does not refocus the lens, as on a camera.
-/// Throws InputError where the lens cannot. The object plane lies within 1e-9 of its distance where it was asked for.
+/// Throws InputError where the lens cannot, also because glass or film are in the way. The object plane lies within
+/// 1e-9 of its distance where it was asked for.
 inline LensSystem focused(const LensSystem& lens, double focus_distance) {
     using namespace focus_detail;
     if (!(focus_distance > 0))
@@ -136,6 +147,7 @@ inline LensSystem focused(const LensSystem& lens, double focus_distance) {
         throw InputError("cannot focus lens \"" + lens.name + "\": no ray from the object passes it");
     if (!(result.film_distance > 0))
         throw InputError("cannot focus lens \"" + lens.name + "\": it makes no real image behind its last surface");
+    if (const std::string why = film_distance_error(result); !why.empty()) fail(lens, focus_distance, "cannot: " + why);
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "../error.hpp"
 #include "../platform.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -32,27 +33,47 @@ public:
     static Glass air() { return constant(1.0); }
 
     /// From the index at the d line and the Abbe number V_d = (n_d - 1) / (n_F - n_C): the two terms of Cauchy's
-    /// formula that have both.
+    /// formula that have both. Throws InputError for an index below 1 or an Abbe number that is not positive.
     static Glass from_abbe_number(double n_d, double abbe_number) {
+        check_all_finite({n_d, abbe_number});
+        if (!(n_d >= 1)) throw InputError("a glass needs an index n_d of at least 1");
+        if (!(abbe_number > 0)) throw InputError("a glass needs a positive Abbe number V_d");
         const double spread = per_um2(kLineF_nm) - per_um2(kLineC_nm);
         const double b = (n_d - 1) / (abbe_number * spread);
         return {Formula::cauchy, {n_d - b * per_um2(kLineD_nm), b}, {}};
     }
-    /// n = A + B / l^2 + C / l^4 + ..., l in um.
-    static Glass cauchy(std::vector<double> coefficients) { return {Formula::cauchy, std::move(coefficients), {}}; }
+    /// n = A + B / l^2 + C / l^4 + ..., l in um. Throws InputError where there is no coefficient, or one not finite.
+    static Glass cauchy(std::vector<double> coefficients) {
+        if (coefficients.empty()) throw InputError("Cauchy's formula needs at least one coefficient, the index");
+        check_all_finite(coefficients);
+        return {Formula::cauchy, std::move(coefficients), {}};
+    }
 
+    /// Throws InputError where there is no term, or one not finite.
     static Glass sellmeier(const std::vector<SellmeierTerm>& terms) {
+        if (terms.empty()) throw InputError("Sellmeier's equation needs at least one term");
         Glass glass{Formula::sellmeier, {}, {}};
         for (const SellmeierTerm& term : terms) {
+            check_all_finite({term.B, term.C});
             glass.coefficients_.push_back(term.B);
             glass.coefficients_.push_back(term.C);
         }
         return glass;
     }
     /// Interpolated in 1 / l^2 by the cubic through the four nearest points (fewer where fewer are given).
+    /// Throws InputError where there is no point, two have one wavelength, or a number makes no sense.
     static Glass table(std::vector<TablePoint> points) {
+        if (points.empty()) throw InputError("a glass table needs at least one (wavelength_nm, index)");
+        for (const TablePoint& point : points) {
+            check_all_finite({point.wavelength_nm, point.index});
+            if (!(point.wavelength_nm > 0)) throw InputError("wavelengths are positive numbers, in nm");
+        }
         std::sort(points.begin(), points.end(),
                   [](const TablePoint& a, const TablePoint& b) { return a.wavelength_nm < b.wavelength_nm; });
+        const auto twice = std::adjacent_find(points.begin(), points.end(), [](const auto& a, const auto& b) {
+            return a.wavelength_nm == b.wavelength_nm;
+        });
+        if (twice != points.end()) throw InputError("a glass table gives a wavelength twice");
         return {Formula::table, {}, std::move(points)};
     }
 
@@ -94,6 +115,11 @@ public:
 private:
     Glass(Formula formula, std::vector<double> coefficients, std::vector<TablePoint> points)
         : formula_(formula), coefficients_(std::move(coefficients)), points_(std::move(points)) {}
+
+    static void check_all_finite(const std::vector<double>& numbers) {
+        for (const double number : numbers)
+            if (!std::isfinite(number)) throw InputError("a glass needs finite numbers");
+    }
 
     static double per_um2(double wavelength_nm) { return 1e6 / (wavelength_nm * wavelength_nm); }
 

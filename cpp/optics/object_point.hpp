@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdio>
 #include <numbers>
+#include <optional>
 
 #include "../math/vec3.hpp"
 #include "paraxial.hpp"
@@ -11,9 +12,9 @@ namespace REALCAM_NAMESPACE {
 /// its way to the film, from below the axis.
 struct FieldPoint {
     double angle_rad = 0;  ///< at which the chief ray comes, to the axis; up to 180 degrees for an object at infinity
-    /// mm from the object plane to the front vertex. The point of a finite plane is seen at the angle from the middle
-    /// of the paraxial entrance pupil.
-    double object_distance = kInfinity;
+    /// mm from the object plane to the front vertex, infinity allowed; none: the plane in focus. The point of a finite
+    /// plane is seen at the angle from the middle of the paraxial entrance pupil.
+    std::optional<double> object_distance = std::nullopt;
 };
 
 namespace object_point_detail {
@@ -26,15 +27,24 @@ inline std::string degrees(double radians) {
 
 }  // namespace object_point_detail
 
-/// Throws InputError for what is no place in the field.
-inline void validate(const FieldPoint& field) {
+/// mm from the plane in focus to the front vertex.
+inline double distance_in_focus(const LensSystem& lens) {
+    return lens.focus_distance - lens.film_position();
+}
+
+/// mm from the object plane of a field point to the front vertex. Throws InputError for what is no place in the field.
+inline double object_distance_of(const LensSystem& lens, const FieldPoint& field) {
+    const double distance = field.object_distance.value_or(distance_in_focus(lens));
     const double degrees = field.angle_rad * 180 / std::numbers::pi;
-    const bool finite = std::isfinite(field.object_distance);
-    if (!(field.object_distance > 0)) throw InputError("the object distance must be a positive length, or inf");
+    const bool finite = std::isfinite(distance);
+    if (!(distance > 0)) throw InputError("the object distance must be a positive length, or inf");
     if (!(std::fabs(degrees) < (finite ? 90 : 180)))
         throw InputError("the field angle is " + object_point_detail::degrees(field.angle_rad) +
-                         (finite ? "; less than 90 deg is wanted for an object at a finite distance"
-                                 : "; less than 180 deg is wanted"));
+                         (!finite ? "; less than 180 deg is wanted"
+                          : field.object_distance
+                              ? "; less than 90 deg is wanted for an object at a finite distance"
+                              : "; less than 90 deg is wanted for the plane in focus, at a finite distance"));
+    return distance;
 }
 
 /// One point of the object, as its rays are near the lens. A point at infinity is no special case: lengths from the
@@ -51,7 +61,7 @@ public:
     double inverse_distance;  ///< 1 / distance of the object from the centre, 1/mm; 0: infinity
 
     ObjectPoint(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
-        validate(field);
+        const double object_distance = object_distance_of(lens, field);
         const double pupil = first_order(lens, wavelength_nm).entrance_pupil_position;
         if (!std::isfinite(pupil))
             throw InputError("lens \"" + lens.name +
@@ -60,7 +70,7 @@ public:
         const double cosine = std::cos(field.angle_rad);
         centre = {0, 0, pupil};
         towards = {0, std::sin(field.angle_rad), cosine};
-        inverse_distance = cosine / (field.object_distance + pupil);
+        inverse_distance = cosine / (object_distance + pupil);
         if (!std::isfinite(inverse_distance))
             throw InputError("the object lies in the entrance pupil of lens \"" + lens.name + "\"");
     }

@@ -6,6 +6,7 @@
 #include "../math/gauss_legendre.hpp"
 #include "iris_shape.hpp"
 #include "lens_system.hpp"
+#include "ray_loop.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -16,35 +17,44 @@ struct PupilPoint {
     int cell = -1;  ///< of a square grid: its number, row by row from the lowest y
 };
 
+// Points of the stop, for integrals over it. Each throws what `loop` throws to stop it.
+
 /// Midpoints of the cells of an n x n grid over the circle, those outside of it left out.
-inline std::vector<PupilPoint> square_grid(int n) {
+inline std::vector<PupilPoint> square_grid(int n, const RayLoop& loop = {}) {
     std::vector<PupilPoint> points;
-    for (int row = 0; row < n; ++row)
+    for (int row = 0; row < n; ++row) {
+        loop.keep_going();
         for (int column = 0; column < n; ++column) {
             const double x = (2 * column + 1.0) / n - 1, y = (2 * row + 1.0) / n - 1;
             if (x * x + y * y <= 1) points.push_back({x, y, 1, row * n + column});
         }
+    }
     return points;
 }
 
 /// A middle point and n rings of 6, 12, 18 ... points at equal distances, all of one weight: as OpticStudio's standard
 /// spot diagram. The outermost ring lies on the edge.
-inline std::vector<PupilPoint> hexapolar(int n) {
+inline std::vector<PupilPoint> hexapolar(int n, const RayLoop& loop = {}) {
     std::vector<PupilPoint> points{{0, 0, 1}};
-    for (int ring = 1; ring <= n; ++ring)
+    points.reserve(1 + 3 * static_cast<std::size_t>(n) * static_cast<std::size_t>(n + 1));
+    for (int ring = 1; ring <= n; ++ring) {
+        loop.keep_going();
         for (int i = 0; i < 6 * ring; ++i) {
             const double radius = static_cast<double>(ring) / n, angle = 2 * std::numbers::pi * i / (6 * ring);
             points.push_back({radius * std::cos(angle), radius * std::sin(angle), 1});
         }
+    }
     return points;
 }
 
 /// n rings at the nodes of Gauss and Legendre in the squared radius, 4 n points each: integrals over a full round
 /// pupil are exact for polynomials up to degree 4 n - 2 (G. W. Forbes, "Optical system assessment for design:
 /// numerical ray tracing in the Gaussian pupil", J. Opt. Soc. Am. A 5, 1943, 1988).
-inline std::vector<PupilPoint> gauss_rings(int n) {
+inline std::vector<PupilPoint> gauss_rings(int n, const RayLoop& loop = {}) {
     std::vector<PupilPoint> points;
+    points.reserve(4 * static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
     for (int ring = 0; ring < n; ++ring) {
+        loop.keep_going();
         const GaussNode rule = gauss_node(n, ring);
         const double weight = rule.weight / (4 * n), radius = std::sqrt(rule.node);
         for (int i = 0; i < 4 * n; ++i) {

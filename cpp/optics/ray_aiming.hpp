@@ -3,6 +3,7 @@
 
 #include "lens_path.hpp"
 #include "object_point.hpp"
+#include "pupil_pattern.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -20,12 +21,8 @@ public:
         }
         return result;
     }
-    /// The real lens, but that a ray aimed at the very edge of the stop does not fall off it by rounding.
-    static AimingPath real(const LensPath<double>& path, int stop) {
-        AimingPath result(path);
-        result.steps_[static_cast<std::size_t>(stop)].rim_squared *= 1 + 1e-9;
-        return result;
-    }
+    /// The lens as it is.
+    static AimingPath real(const LensPath<double>& path) { return AimingPath(path); }
     LensView<double> view() const { return {steps_.data(), static_cast<int>(steps_.size()), LensKind::any, iris_}; }
 
 private:
@@ -54,6 +51,8 @@ struct AimedRay {
 /// so that of several rays through the middle of the stop the one is found that belongs to the lens's image; the
 /// others start from the chief ray, and where that fails go out to their place in 4, then in 16 steps. Each search has
 /// at most 40 Newton steps of at most 24 halvings; a ray that is not within 1e-10 of the stop's radius then is no ray.
+/// Places on the very edge of the stop's opening are aimed at 2e-10 further in, so that no rounding blocks the ray,
+/// here or where it is traced again.
 class RayAimer {
 public:
     using Entry = ObjectPoint::Entry;
@@ -64,7 +63,8 @@ public:
           path_(lens, LightDirection::to_film, wavelength_nm),
           stop_(lens.stop_index()),
           open_(AimingPath::open(path_)),
-          real_(AimingPath::real(path_, stop_)),
+          real_(AimingPath::real(path_)),
+          reach_(stop_reach(lens)),
           stop_radius_(std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter)) {
         const FirstOrder data = first_order(lens, wavelength_nm);
         step_ = 1e-6 * data.entrance_pupil_diameter;
@@ -76,7 +76,7 @@ public:
 
     /// The ray through a place on the stop, mm, by the lens as it is: blocked rays have the status that ended them.
     AimedRay operator()(Vec2<double> place) const {
-        const std::optional<Entry> entry = aimed_from_chief(place);
+        const std::optional<Entry> entry = aimed_from_chief(off_the_edge(place));
         if (!entry) {
             constexpr double nan = std::numeric_limits<double>::quiet_NaN();
             return {RayStatus::no_convergence, {nan, nan}, {nan, nan, nan}, {nan, nan, nan}, nan};
@@ -92,6 +92,13 @@ private:
         Vec2<double> by_x, by_y;  ///< its derivatives by the entry
     };
     static constexpr int kMaxSteps = 40, kMaxHalvings = 24;
+    static constexpr double kMiss = 1e-10, kEdge = 2 * kMiss;  ///< shares of the stop's radius
+
+    Vec2<double> off_the_edge(Vec2<double> place) const {
+        const double share = std::hypot(place.x, place.y) / reach_;
+        const double inwards = std::fabs(share - 1) < kEdge ? (1 - kEdge) / share : 1.0;
+        return {inwards * place.x, inwards * place.y};
+    }
 
     AimedRay through(LensView<double> view, Entry entry) const {
         LensRays<double, 1> ray;
@@ -136,7 +143,7 @@ private:
         if (!here) return {};
         for (int i = 0; i < kMaxSteps; ++i) {
             const double error = miss(*here, place);
-            if (error <= 1e-10 * stop_radius_) return entry;
+            if (error <= kMiss * stop_radius_) return entry;
             const double dx = place.x - here->at.x, dy = place.y - here->at.y;
             const double determinant = here->by_x.x * here->by_y.y - here->by_y.x * here->by_x.y;
             Entry change = {(dx * here->by_y.y - dy * here->by_y.x) / determinant,
@@ -189,6 +196,7 @@ private:
     LensPath<double> path_;
     int stop_;
     AimingPath open_, real_;
+    double reach_;  ///< of the stop's opening, which may have blades
     double stop_radius_, step_;
     Entry chief_{0, 0};
 };

@@ -119,7 +119,6 @@ inline SeidelRow row_of(const Surface& surface, double before, double after, Par
 inline SeidelTable seidel(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double short_nm,
                           double long_nm) {
     using namespace seidel_detail;
-    validate(field);
     const ParaxialPair start = entering_rays(lens, wavelength_nm, field);
     const std::vector<double> n = lens.indices(wavelength_nm);
     const std::vector<double> n_short = lens.indices(short_nm), n_long = lens.indices(long_nm);

@@ -12,6 +12,12 @@ enum class SphereCentre {
     centroid,  ///< the centroid of the spot there
 };
 
+/// How far the reference sphere is from its centre: to where the chief ray meets
+enum class ExitPupil {
+    real,      ///< the axis, as in CODE V's listings; on the axis, as below
+    paraxial,  ///< the plane of the paraxial exit pupil, as in OpticStudio
+};
+
 /// What is fitted to the optical path difference by least squares over the open stop, in the stop's coordinates x, y,
 /// and taken away.
 enum class Removed {
@@ -24,9 +30,9 @@ enum class Removed {
 ///
 /// W = (optical path of the chief ray - optical path of the ray) / wavelength, both from the object to the reference
 /// sphere: positive where the wavefront is ahead of the sphere, so that an undercorrected lens has a positive W040. The
-/// sphere's radius is the distance from its centre to the exit pupil's on the chief ray: where the chief ray crosses
-/// the axis, and on the axis the paraxial exit pupil. These are the definitions of CODE V's listings. The radius R is
-/// in W by p^2 / 2R, p the ray's distance from the centre: another radius changes little, another centre much.
+/// sphere's radius is the distance from the chief ray's film point to the exit pupil on that ray (ExitPupil). The
+/// radius R is in W by p^2 / 2R, p the ray's distance from the centre: another radius changes little, another centre
+/// much.
 struct Wavefront {
     FieldRays rays;
     std::vector<double> opd;  ///< W in waves; NaN where the ray does not pass
@@ -41,12 +47,13 @@ struct Wavefront {
 namespace wavefront_detail {
 
 /// One over the distance from the exit pupil to the point where the chief ray meets the plane z, along the ray.
-inline double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double z) {
+inline double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double z,
+                                  ExitPupil exit_pupil) {
     const Vec3d direction = normalized(rays.chief.direction);
     const Vec3d image = crossing(rays.chief, z);
     // A chief ray on the axis does not cross it; one at 1e-6 crosses it within 1e-12 of the paraxial place, which is
     // what rounding leaves of a quotient of two such numbers.
-    if (std::fabs(rays.field.angle_rad) < 1e-6) {
+    if (exit_pupil == ExitPupil::paraxial || std::fabs(rays.field.angle_rad) < 1e-6) {
         const double pupil = first_order(lens, wavelength_nm).exit_pupil_position - lens.last_vertex();
         return direction.z / (z - pupil);
     }
@@ -83,20 +90,22 @@ std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::
     return b;
 }
 
-inline void remove_fit(Wavefront& wavefront, Removed removed) {
+inline void remove_fit(Wavefront& wavefront, Removed removed, const RayLoop& loop) {
     const std::size_t terms = removed == Removed::focus ? 4 : 3;
     std::array<std::array<double, 4>, 4> matrix{};
     std::array<double, 4> right{};
     const auto basis = [](const PupilPoint& p) { return std::array<double, 4>{1, p.x, p.y, p.x * p.x + p.y * p.y}; };
-    for (std::size_t i = 0; i < wavefront.opd.size(); ++i) {
-        if (!wavefront.rays.passes(i)) continue;
-        const PupilPoint& point = wavefront.rays.pattern[i];
-        const std::array<double, 4> f = basis(point);
-        for (std::size_t j = 0; j < terms; ++j) {
-            for (std::size_t k = 0; k <= j; ++k) matrix[j][k] += point.weight * f[j] * f[k];
-            right[j] += point.weight * f[j] * wavefront.opd[i];
+    loop.in_order(wavefront.opd.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (!wavefront.rays.passes(i)) continue;
+            const PupilPoint& point = wavefront.rays.pattern[i];
+            const std::array<double, 4> f = basis(point);
+            for (std::size_t j = 0; j < terms; ++j) {
+                for (std::size_t k = 0; k <= j; ++k) matrix[j][k] += point.weight * f[j] * f[k];
+                right[j] += point.weight * f[j] * wavefront.opd[i];
+            }
         }
-    }
+    });
     const std::array<double, 4> fit = solve_normal(matrix, right, terms);
     if (!std::isfinite(fit[terms - 1]))
         throw InputError("the rays that pass are too few, or too close together, for a fit of tilt and focus");
@@ -106,12 +115,14 @@ inline void remove_fit(Wavefront& wavefront, Removed removed) {
     }
 }
 
-inline void summarize(Wavefront& wavefront) {
+inline void summarize(Wavefront& wavefront, const RayLoop& loop) {
     double weight = 0, sum = 0, low = kInfinity, high = -kInfinity, square = 0;
     std::complex<double> amplitude = 0;
     const auto for_passing = [&](auto&& f) {
-        for (std::size_t i = 0; i < wavefront.opd.size(); ++i)
-            if (wavefront.rays.passes(i)) f(wavefront.rays.pattern[i].weight, wavefront.opd[i]);
+        loop.in_order(wavefront.opd.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                if (wavefront.rays.passes(i)) f(wavefront.rays.pattern[i].weight, wavefront.opd[i]);
+        });
     };
     for_passing([&](double share, double w) {
         weight += share;
@@ -131,33 +142,35 @@ inline void summarize(Wavefront& wavefront) {
 
 /// The wavefront of the rays of one object point, with its reference sphere centred on the plane `film_distance` mm
 /// behind the last vertex. Throws InputError where no reference sphere can be laid: the exit pupil lies in that plane,
-/// or a ray passes the centre at more than the sphere's radius; and where a fit has too few rays.
+/// or a ray passes the centre at more than the sphere's radius; and where a fit has too few rays. Throws what `loop`
+/// throws to stop it.
 inline Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
-                              SphereCentre centre, Removed removed) {
+                              SphereCentre centre, Removed removed, ExitPupil exit_pupil = ExitPupil::real,
+                              const RayLoop& loop = {}) {
     using namespace wavefront_detail;
     Wavefront result{};
     result.centre = crossing(rays.chief, film_distance);
-    result.reference_curvature = reference_curvature(lens, wavelength_nm, rays, film_distance);
+    result.reference_curvature = reference_curvature(lens, wavelength_nm, rays, film_distance, exit_pupil);
     if (centre == SphereCentre::centroid) {
-        const Vec2<double> middle = spot_of(rays, film_distance).centroid;
+        const Vec2<double> middle = spot_of(rays, film_distance, loop).centroid;
         result.centre = {middle.x, middle.y, film_distance};
     }
     const double index = lens.indices(wavelength_nm).back(), curvature = result.reference_curvature;
     const double waves_per_mm = 1e6 / wavelength_nm;
     const double reference = path_to_sphere(rays.chief, result.centre, curvature, index);
-    for (std::size_t i = 0; i < rays.rays.size(); ++i) {
-        double w = std::numeric_limits<double>::quiet_NaN();
-        if (rays.passes(i)) {
-            w = waves_per_mm * (reference - path_to_sphere(rays.rays[i], result.centre, curvature, index));
-            if (!std::isfinite(w))
+    result.opd.assign(rays.rays.size(), std::numeric_limits<double>::quiet_NaN());
+    loop.for_all(rays.rays.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (!rays.passes(i)) continue;
+            result.opd[i] = waves_per_mm * (reference - path_to_sphere(rays.rays[i], result.centre, curvature, index));
+            if (!std::isfinite(result.opd[i]))
                 throw InputError("no reference sphere from the exit pupil of lens \"" + lens.name +
                                  "\" holds all its rays: the image is too far out of focus, or lies in the exit pupil");
         }
-        result.opd.push_back(w);
-    }
+    });
     result.rays = std::move(rays);
-    if (removed != Removed::nothing) remove_fit(result, removed);
-    summarize(result);
+    if (removed != Removed::nothing) remove_fit(result, removed, loop);
+    summarize(result, loop);
     return result;
 }
 

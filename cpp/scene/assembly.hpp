@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,9 +14,13 @@ namespace REALCAM_NAMESPACE {
 
 /// A place where an object stands: triangles and point lights of another scene, whose suns and environment stay behind.
 struct Instance {
+    static constexpr std::ptrdiff_t kNoWhole = -1;
+
     std::shared_ptr<const Scene> object;
     Affine<double> scene_from_object;  ///< metres on both sides
     std::string name;  ///< for messages, and to find it by
+    /// Number of the instance of which this one is a part, and with which it moves. A part comes after its whole.
+    std::ptrdiff_t part_of = kNoWhole;
 };
 
 /// A scene as static geometry, and objects that stand in it, as often as one likes. A value: copies share what is
@@ -100,23 +105,15 @@ Assembly with_static_geometry(Assembly assembly, Change&& change) {
     return assembly;
 }
 
-/// Puts an object into a scene. What the object is itself made of has names of the form name/part.
-inline void add(Assembly& assembly, const Assembly& object, const Affine<double>& scene_from_object,
-                const std::string& name) {
-    const std::vector<Instance> parts = object.instances;  // it may be the assembly itself
-    if (!object.static_geometry->triangles.empty() || !object.static_geometry->points.empty())
-        assembly.instances.push_back({object.static_geometry, scene_from_object, name});
-    for (const Instance& part : parts)
-        assembly.instances.push_back({part.object, scene_from_object * part.scene_from_object,
-                                      name + (name.empty() || part.name.empty() ? "" : "/") + part.name});
-}
-
-/// Puts an instance elsewhere, and its parts along with it: those that bear its name and a slash.
+/// Puts an instance elsewhere, and with it its parts, and theirs.
 inline void move(Assembly& assembly, std::size_t instance, const Affine<double>& scene_from_object) {
-    const Instance before = assembly.instances[instance];
-    const InverseAffine<double> back = before.scene_from_object.inverse();
-    for (Instance& part : assembly.instances) {
-        if (before.name.empty() || !part.name.starts_with(before.name + '/')) continue;
+    const InverseAffine<double> back = assembly.instances[instance].scene_from_object.inverse();
+    std::vector<bool> moves(assembly.instances.size(), false);
+    moves[instance] = true;
+    for (std::size_t i = instance + 1; i < assembly.instances.size(); ++i) {
+        Instance& part = assembly.instances[i];
+        if (part.part_of == Instance::kNoWhole || !moves[static_cast<std::size_t>(part.part_of)]) continue;
+        moves[i] = true;
         const Affine<double>& map = part.scene_from_object;
         const Affine<double> within = {back.direction(map.x), back.direction(map.y), back.direction(map.z),
                                        back.point(map.origin)};

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <limits>
+#include <unordered_map>
 
 #include "assembly.hpp"
 
@@ -12,10 +13,21 @@ struct BoundingBox {
 
     Vec3d middle() const { return 0.5 * (low + high); }
     bool empty() const { return !(low.x <= high.x); }
+    Vec3d size() const { return high - low; }
+    double diagonal() const { return empty() ? 0.0 : length(size()); }
+    /// One of the eight, by three bits.
+    Vec3d corner(int bits) const {
+        return {bits & 1 ? high.x : low.x, bits & 2 ? high.y : low.y, bits & 4 ? high.z : low.z};
+    }
 
     void add(Vec3d p) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    void add(const BoundingBox& other) {
+        if (other.empty()) return;
+        add(other.low);
+        add(other.high);
     }
     Vec3d nearest(Vec3d p) const {
         return {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y), std::clamp(p.z, low.z, high.z)};
@@ -28,11 +40,47 @@ inline void add_triangles(BoundingBox& box, const Scene& scene, const Affine<dou
         for (const std::uint32_t vertex : t.vertices) box.add(map.point(scene.positions_m[vertex]));
 }
 
+/// Boxes of objects in their own coordinates, each made once, however many instances an object has.
+class ObjectBoxes {
+public:
+    const BoundingBox& of(const Scene& object) {
+        const auto [place, is_new] = boxes_.try_emplace(&object);
+        if (is_new) add_triangles(place->second, object, {});
+        return place->second;
+    }
+    /// In the scene's coordinates: of the eight corners of the object's box, which may reach past its triangles.
+    BoundingBox of(const Instance& instance) {
+        BoundingBox box;
+        const BoundingBox& own = of(*instance.object);
+        for (int corner = 0; corner < 8 && !own.empty(); ++corner)
+            box.add(instance.scene_from_object.point(own.corner(corner)));
+        return box;
+    }
+
+private:
+    std::unordered_map<const Scene*, BoundingBox> boxes_;
+};
+
+/// Up to here each triangle of each instance is asked by itself; beyond, the box of an object stands for it.
+inline constexpr std::size_t kMostTrianglesAsked = std::size_t{1} << 22;
+
+inline bool asks_every_triangle(const Assembly& assembly) {
+    return assembly.triangle_count() - assembly.static_geometry->triangles.size() <= kMostTrianglesAsked;
+}
+
+/// Of a scene, metres. Of instances with many triangles in all (kMostTrianglesAsked), a box that holds those of their
+/// objects, which is larger where they are turned.
 inline BoundingBox bounding_box(const Assembly& assembly) {
     BoundingBox box;
     add_triangles(box, *assembly.static_geometry, {});
-    for (const Instance& instance : assembly.instances)
-        add_triangles(box, *instance.object, instance.scene_from_object);
+    ObjectBoxes objects;
+    const bool every = asks_every_triangle(assembly);
+    for (const Instance& instance : assembly.instances) {
+        if (every)
+            add_triangles(box, *instance.object, instance.scene_from_object);
+        else
+            box.add(objects.of(instance));
+    }
     return box;
 }
 

@@ -55,7 +55,8 @@ REALCAM_INLINE LightChoice choose_light(int kinds, float u) {
     return {kind, 1.0f / static_cast<float>(kinds), select(fresh < 1.0f, fresh, 0x1.fffffep-1f)};
 }
 
-/// Chooses one light, and triangles among the area lights as append_area_lights says.
+/// Chooses one kind of light with equal probability (light_kinds), and of area lights a triangle and of an environment
+/// image a pixel by their tables (light_tables.hpp). A constant environment is sampled by the cosine at the point.
 REALCAM_INLINE LightSample sample_light(const SceneView& scene, const SurfacePoint& point, Vec2f u) {
     const int kinds = light_kinds(scene);
     if (kinds == 0) return {{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}};

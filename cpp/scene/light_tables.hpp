@@ -7,8 +7,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-// By which probabilities lights are chosen. Most by their power; a share without regard to it, because a light that is
-// 1e8 times dimmer than another is all the light there is where the other does not reach.
+// By which probabilities one is chosen of the triangles that emit light, and of the pixels of an environment. (Between
+// the kinds of light sample_light chooses with equal probability.) Most by their power; a share without regard to it,
+// because a light that is 1e8 times dimmer than another is all the light there is where the other does not reach.
 
 inline constexpr double kEvenShare = 0.125;  ///< its price: where power is the best choice, 1/7 more variance
 
@@ -47,7 +48,7 @@ inline std::vector<double> mixed(std::vector<double> weights, const std::vector<
     return weights;
 }
 
-/// Chooses triangles by their power and, for the even share, every shining material alike and its triangles by area.
+/// Chooses triangles by their power and, for the even share, every emitting material alike and its triangles by area.
 /// Sets the densities. `areas` and `materials`: of the lights; there are `material_count` materials.
 inline std::vector<float> area_light_cdf(std::vector<AreaLight>& lights, const std::vector<double>& areas,
                                          const std::vector<std::uint32_t>& materials, std::size_t material_count) {

@@ -299,13 +299,14 @@ class Lens(_Value):
         iris_rotation_deg: float = 0.0,
         focus_group: tuple[int, int] | None = None,
         nearest_focus_m: float = 0.0,
+        allow_crossing: bool = False,
     ) -> None: ...
     @staticmethod
     def load(name_or_path: _Path) -> Lens: ...
     def first_order(self, wavelength_nm: float | None = None) -> FirstOrder: ...
     def focused(self, focus_distance_m: float) -> Lens: ...
     def stopped_down(self, f_number: float) -> Lens: ...
-    def best_focus_mm(self, object_distance_m: float = ..., wavelength_nm: float | None = None) -> float: ...
+    def best_focus_mm(self, object_distance_m: float | None = None, wavelength_nm: float | None = None) -> float: ...
     @overload
     def trace(
         self,
@@ -334,7 +335,7 @@ class Lens(_Value):
         self,
         field_deg: float,
         *,
-        object_distance_m: float = ...,
+        object_distance_m: float | None = None,
         wavelength_nm: float | None = None,
         colours_nm: tuple[float, float] = (486.1327, 656.2725),
     ) -> Seidel: ...
@@ -344,17 +345,18 @@ class Lens(_Value):
         pupil: ArrayLike,
         field_deg: float = 0.0,
         *,
-        object_distance_m: float = ...,
+        object_distance_m: float | None = None,
         wavelength_nm: float | None = None,
     ) -> AimedRays: ...
     def wavefront(
         self,
         field_deg: float = 0.0,
         *,
-        object_distance_m: float = ...,
+        object_distance_m: float | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
         reference: str = "chief",
+        exit_pupil: str = "real",
         remove: str | None = None,
         pattern: str = "grid",
         samples: int = 64,
@@ -364,7 +366,7 @@ class Lens(_Value):
         self,
         field_deg: float = 0.0,
         *,
-        object_distance_m: float = ...,
+        object_distance_m: float | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
         pattern: str = "hexapolar",
@@ -381,6 +383,8 @@ class Lens(_Value):
     def surfaces(self) -> list[Surface]: ...
     @property
     def wavelength_nm(self) -> float: ...
+    @property
+    def allow_crossing(self) -> bool: ...
     @property
     def film_distance_mm(self) -> float: ...
     @property

@@ -55,7 +55,9 @@ def draw_cross_section(lens: Lens, axes: Axes, rays: int = 7) -> None:
     half = 0.5 * float(np.hypot(*lens.film_mm))
     axes.plot([lens.film_position_mm] * 2, [-half, half], color="black", linewidth=2)
     data = lens.first_order()
-    axes.set_title(f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}")
+    title = f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}"
+    # Titles are text, and a dollar sign in one begins no formula.
+    axes.set_title("".join(c for c in title if c.isprintable()), parse_math=False)
     axes.set_xlabel("z / mm")
     axes.set_ylabel("y / mm")
     axes.set_aspect("equal")
@@ -118,20 +120,39 @@ def _draw_stop(axes: Axes, position: float, surface: Surface, lens: Lens) -> Non
 def _film_heights(lens: Lens) -> list[float]:
     """Heights on the film of axis, 0.7 and full field: the corner of the film, or the edge of the image circle."""
     corner = 0.5 * float(np.hypot(*lens.film_mm))
-    lit = [h for h in np.linspace(0, corner, 41) if len(_passing_slopes(lens, h))]
+    lit = [h for h in np.linspace(0, corner, 41) if len(_passing_angles(lens, h))]
     if not lit:
         raise InputError(f'no light passes lens "{lens.name}"')
     return [0.0, 0.7 * lit[-1], lit[-1]]
 
 
-def _passing_slopes(lens: Lens, height: float, count: int = 2001) -> np.ndarray:
+def _passing_angles(lens: Lens, height: float, count: int = 2001) -> np.ndarray:
     """Angles in the meridional plane under which rays from a film point leave the lens."""
     last = lens.surfaces[-1].clear_semi_diameter_mm
-    angles = np.arctan2(np.array([-last, last]) * 1.05 - height, lens.film_distance_mm)
-    angle = np.linspace(angles[0], angles[1], count)
-    out = lens.trace(*_film_rays(lens, height, angle), start="film")
-    passing: np.ndarray = angle[out.status == RayStatus.OK]
+    ends = np.arctan2(np.array([-last, last]) * 1.05 - height, lens.film_distance_mm)
+    angle = np.linspace(ends[0], ends[1], count)
+    # A closed diaphragm may lie between two of these rays: the next ones go between the two beside its middle, until
+    # there are enough that pass.
+    for _ in range(4):
+        passing: np.ndarray = angle[lens.trace(*_film_rays(lens, height, angle), start="film").status == RayStatus.OK]
+        if len(passing) > count // 20:
+            break
+        around = passing if len(passing) else _beside_the_middle_of_the_stop(lens, height, angle)
+        if not len(around):
+            break
+        step = angle[1] - angle[0]
+        angle = np.linspace(around[0] - step, around[-1] + step, count)
     return passing
+
+
+def _beside_the_middle_of_the_stop(lens: Lens, height: float, angle: np.ndarray) -> np.ndarray:
+    """Of rays that all miss the stop's opening: the two between which its middle lies. Empty where there are none."""
+    behind = len(lens.surfaces) - lens.stop_index
+    out = lens.trace(*_film_rays(lens, height, angle), start="film", surface_count=behind)
+    at_stop = (out.surface_index == lens.stop_index) & (out.status != RayStatus.MISSED)
+    y = np.where(at_stop, out.origins_mm[:, 1], np.nan)
+    crossing = np.flatnonzero(y[:-1] * y[1:] <= 0)[:1]
+    return np.concatenate([angle[crossing], angle[crossing + 1]])
 
 
 def _film_rays(lens: Lens, height: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -142,7 +163,9 @@ def _film_rays(lens: Lens, height: float, angle: np.ndarray) -> tuple[np.ndarray
 
 def _ray_paths(lens: Lens, height: float, count: int, reach: float) -> list[np.ndarray]:
     """Points of each ray, from the film to `reach` mm past the front surface: (surfaces + 2, 3) mm each."""
-    passing = _passing_slopes(lens, height)
+    passing = _passing_angles(lens, height)
+    if not len(passing):  # the image may be lit in a ring alone
+        return []
     angle = (
         np.linspace(passing[0], passing[-1], count) if count > 1 else passing[len(passing) // 2 : len(passing) // 2 + 1]
     )

@@ -137,6 +137,9 @@ TEST_CASE("a camera that cannot take a picture is refused with the reason") {
     };
     const double nan = std::nan("");
     CHECK(complaint([](Camera&) {}) == "(no error)");
+    CHECK(complaint([](Camera& c) { c = Camera{}; }).find("the camera has no lens") != std::string::npos);
+    CHECK(complaint([](Camera& c) { c = Camera{}, c.model = CameraModel::pinhole; }).find("no lens") !=
+          std::string::npos);
     CHECK(complaint([](Camera& c) { c.film.width = 0; }).find("resolution is 0 x 64") != std::string::npos);
     CHECK(complaint([](Camera& c) { c.film.height = 1 << 20; }).find("1 to 32768") != std::string::npos);
     CHECK(complaint([](Camera& c) { c.film.width_mm = -1; }).find("film's width") != std::string::npos);

@@ -125,3 +125,16 @@ TEST_CASE("glTF: what cannot be an object is said") {
     CHECK(has(error_of_objects(flat, {"a"}), "instance 0 (\"a\"): a transform must"));
     CHECK(has(error_of_objects(folder.write("a.ply", "ply\n"), {"a"}), "a .ply file has no nodes"));
 }
+
+TEST_CASE("glTF: nodes of one name become instances of distinct names") {
+    const Folder folder;
+    folder.write("tri.bin", triangle_bytes());
+    const std::string nodes = R"([{"name":"chair","mesh":0},{"name":"chair","mesh":0,"translation":[1,0,0]},
+        {"name":"chair","mesh":0,"translation":[2,0,0]}])";
+    const Assembly scene = read_assembly(folder.write("room.gltf", gltf(nodes, "[0,1,2]")), {"chair"});
+    REQUIRE(scene.instances.size() == 3);
+    CHECK(scene.instances[0].name == "chair");
+    CHECK(scene.instances[1].name == "chair.2");
+    CHECK(scene.instances[2].name == "chair.3");
+    CHECK(scene.instances[2].scene_from_object.origin.x == 2.0);
+}

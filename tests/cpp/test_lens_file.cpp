@@ -147,7 +147,7 @@ TEST_CASE("bad materials are named with file, line and surface") {
     check_complaint(with_line(8, "material = \"schott:N-XX99\""), "probe.toml:8: surface 1",
                     "unknown glass \"schott:N-XX99\"");
     check_complaint(with_line(8, "type = \"mirror\""), "probe.toml:5: surface 1", "light travels back behind a mirror");
-    check_complaint(with_line(19, "type = \"mirror\""), "probe.toml", "odd number of mirrors");
+    check_complaint(with_line(19, "type = \"mirror\""), "probe.toml:16: surface 3", "odd number of mirrors");
     check_complaint(with_line(19, "type = \"mirror\"\nmaterial = 1.5"), "probe.toml:20: surface 3",
                     "a mirror has no material");
     const std::string own = "[glass.OWN]\n";
@@ -163,12 +163,12 @@ TEST_CASE("bad materials are named with file, line and surface") {
 }
 
 TEST_CASE("bad lenses are named with their file") {
-    check_complaint(with_line(12, "type = \"aperture\""), "probe.toml", "0 surfaces of type \"stop\"");
+    check_complaint(with_line(12, "type = \"aperture\""), "probe.toml:5", "no surface of type \"stop\"");
     check_complaint(joined(kGoodLines) + "type = \"stop\"\n", "probe.toml:17: surface 3", "unknown key");
     std::vector<std::string> two = kGoodLines;
     two.insert(two.begin() + 14,
                {"[[surface]]", "type = \"stop\"", "thickness_mm = 1.0", "clear_semi_diameter_mm = 6.0"});
-    check_complaint(joined(two), "probe.toml", "2 surfaces of type \"stop\"; exactly one is wanted");
+    check_complaint(joined(two), "probe.toml:15: surface 3", "a second \"stop\", after surface 2; exactly one");
     check_complaint(with_line(3, "film_distance_mm = -5.0"), "probe.toml:3", "the film lies behind the last surface");
     check_complaint(with_line(3, "film_distance_mm = 0.0"), "probe.toml:3", "the film lies behind the last surface");
     std::vector<std::string> diverging = kGoodLines;
@@ -183,19 +183,46 @@ TEST_CASE("bad lenses are named with their file") {
     check_complaint(with_line(4, "colour = 1"), "probe.toml:4", "unknown key \"colour\"");
     check_complaint(with_line(4, "wavelength_nm = -5"), "probe.toml:4", "between 100 and 20000");
     check_complaint(with_line(4, "film_mm = [36.0]"), "probe.toml:4", "2 numbers");
-    check_complaint(with_line(4, "film_mm = [36.0, -24.0]"), "probe.toml", "positive lengths");
-    check_complaint(joined(kGoodLines) + "[iris]\nblades = 2\n", "probe.toml", "2 blades");
+    check_complaint(with_line(4, "film_mm = [36.0, -24.0]"), "probe.toml:4", "positive lengths");
+    check_complaint(joined(kGoodLines) + "[iris]\nblades = 2\n", "probe.toml:20", "2 blades");
     check_complaint(joined(kGoodLines) + "[iris]\nblades = 5.5\n", "probe.toml:21", "whole number");
-    check_complaint(joined(kGoodLines) + "[iris]\nblades = 5\nrounding = 1.5\n", "probe.toml", "rounding");
-    check_complaint(joined(kGoodLines) + "[focus]\ngroup = [2, 9]\n", "probe.toml", "focusing group");
-    check_complaint(joined(kGoodLines) + "[focus]\ngroup = [3, 1]\n", "probe.toml", "focusing group");
+    check_complaint(joined(kGoodLines) + "[iris]\nblades = 5\nrounding = 1.5\n", "probe.toml:20", "rounding");
+    check_complaint(joined(kGoodLines) + "[focus]\ngroup = [2, 9]\n", "probe.toml:21", "focusing group");
+    check_complaint(joined(kGoodLines) + "[focus]\ngroup = [3, 1]\n", "probe.toml:21", "focusing group");
     check_complaint(joined(kGoodLines) + "[focus]\ngroup = [1e18, 2]\n", "probe.toml:21", "first and last surface");
     check_complaint(joined(kGoodLines) + "[focus]\ngroup = [1, -1e18]\n", "probe.toml:21", "first and last surface");
     check_complaint(joined(kGoodLines) + "[focus]\nnearest_m = -1.0\n", "probe.toml:21", "positive distance");
+    for (const char* distance : {"1e10", "1e308"})
+        check_complaint(with_line(3, "film_distance_mm = " + std::string(distance)), "probe.toml:3", "at most 1e9 mm");
+    for (const char* line :
+         {"name = \"a\\u0000b\"", "name = \"a\\u001b[31m\"", "name = \"a\\u009bm\"", "name = \"a\\nb\""})
+        check_complaint(with_line(2, line), "probe.toml:2", "without control characters");
+    CHECK(complaint(with_line(2, "name = \"Objektiv f\u00fcr 50 \u00b5m $\"")) == "(no error)");
+    check_complaint(with_line(4, "title = \"a\\u0000b\""), "probe.toml:4", "one line of text");
     check_complaint("", "probe.toml:1", "is missing");
     check_complaint("format = 1\nname = \"x\"\n", "probe.toml:1", "the lens has no surfaces");
     check_complaint("format = 1\nname = \"x\"\nsurface = 3\n", "probe.toml:1", "the lens has no surfaces");
     check_complaint("format = 1\nname = \"x\"\nsurface = []\n", "probe.toml:1", "no surfaces");
+}
+
+TEST_CASE("faces that cross are named with file, line and surface, and allowed where the file says so") {
+    // The stop between them has no substance: the faces' sags at 8 mm are 0.644 and -0.536 mm.
+    const std::string thin = with_line(7, "thickness_mm = 0.1");
+    check_complaint(thin, "probe.toml:5: surface 1", "crosses surface 3, by 0.0796 mm at 8 mm from the axis");
+    CHECK(complaint(with_line(7, "thickness_mm = 0.2")) == "(no error)");
+    const std::string allowed = "allow_crossing = true\n" + thin;
+    CHECK(complaint(allowed) == "(no error)");
+    CHECK(io::parse_lens(allowed, "probe.toml").allow_crossing);
+    CHECK(!io::parse_lens(joined(kGoodLines), "probe.toml").allow_crossing);
+    check_complaint("allow_crossing = 1\n" + thin, "probe.toml:1", "must be true or false");
+    // The film, half of whose diagonal is 21.6 mm, cuts through a last face whose rim is 0.536 mm behind its vertex.
+    const std::string hollow = "radius_of_curvature_mm = 60.0";
+    std::vector<std::string> lines = kGoodLines;
+    lines[16] = hollow;
+    lines[2] = "film_distance_mm = 0.5";
+    check_complaint(joined(lines), "probe.toml:3", "cuts through its last face");
+    lines[2] = "film_distance_mm = 0.54";
+    CHECK(complaint(joined(lines)) == "(no error)");
 }
 
 TEST_CASE("text that is not TOML is named with file and line") {

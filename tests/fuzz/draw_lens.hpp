@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "../../cpp/optics/lens_system.hpp"
+#include "../../cpp/optics/lens_checks.hpp"
 #include "bytes.hpp"
 
 namespace realcam::fuzz {
@@ -101,6 +101,15 @@ inline Surface draw_plane(Bytes& in, const LensStyle& style, SurfaceType type) {
     return s;
 }
 
+inline Glass any_glass(Bytes& in) {
+    try {
+        if (in.chance(128)) return Glass::cauchy({in.any(), in.any(), in.any()});
+        return Glass::from_abbe_number(in.between(1, 2), in.any());
+    } catch (const InputError&) {
+        return Glass::air();  // refused, as numbers that no glass has are
+    }
+}
+
 /// One number of the lens becomes any number at all, or one of its rules is broken.
 inline void spoil(Bytes& in, LensSystem& lens) {
     Surface& s = lens.surfaces[static_cast<std::size_t>(in.below(256)) % lens.surfaces.size()];
@@ -111,8 +120,8 @@ inline void spoil(Bytes& in, LensSystem& lens) {
         case 3: s.clear_semi_diameter = in.any(); break;
         case 4: s.inner_semi_diameter = in.any(); break;
         case 5: s.material = Glass::constant(in.any()); break;
-        case 6: s.material = Glass::cauchy({in.any(), in.any(), in.any()}); break;
-        case 7: s.material = Glass::from_abbe_number(in.between(1, 2), in.any()); break;
+        case 6:
+        case 7: s.material = any_glass(in); break;
         case 8: s.type = static_cast<SurfaceType>(in.below(4)); break;
         case 9: lens.stop_semi_diameter = in.any(); break;
         case 10: s.aspheric.assign(static_cast<std::size_t>(in.below(kMaxAsphericTerms + 1)), in.any()); break;
@@ -131,6 +140,7 @@ inline LensSystem draw_lens(Bytes& in) {
     const int bending = limit <= 4 ? limit : 1 + in.below(limit);
 
     LensSystem lens;
+    lens.allow_crossing = true;  // rays through what nobody can make must end too
     for (int i = 0; i < bending; ++i) lens.surfaces.push_back(draw_surface(in, style));
     if (bending > 1 && in.chance(48)) {
         const int first = in.below(bending - 1), second = first + 1 + in.below(bending - 1 - first);

@@ -7,6 +7,7 @@
 
 #include "../../cpp/io/bundled_lenses.hpp"
 #include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/optics/lens_checks.hpp"
 #include "bytes.hpp"
 #include "target.hpp"
 

@@ -124,8 +124,10 @@ def test_a_spot_on_another_plane() -> None:
 def test_a_near_object_is_sharp_on_a_film_that_is_focused_on_it() -> None:
     near = LENS.focused(0.8)
     to_object = 0.8 - near.film_position_mm / 1000
-    assert near.spot(5.0, object_distance_m=to_object).rms_radius_mm < 0.03
-    assert near.spot(5.0).rms_radius_mm > 0.3
+    # What is in focus is the object where no other is given.
+    for given in ({}, {"object_distance_m": to_object}):
+        assert near.spot(5.0, **given).rms_radius_mm < 0.03
+    assert near.spot(5.0, object_distance_m=math.inf).rms_radius_mm > 0.3
     # A far object is one at infinity.
     far, infinite = LENS.wavefront(5.0, object_distance_m=1e9), LENS.wavefront(5.0)
     np.testing.assert_allclose(far.opd_waves, infinite.opd_waves, atol=1e-6)
@@ -138,14 +140,16 @@ def test_aimed_rays_meet_the_stop_where_they_are_to(name: str) -> None:
     places = np.array([(0.0, 0.3), (-0.6, 0.2), (0.4, -0.5), (0.7, 0.1)])
     aimed = lens.aim(places, angle)
     assert aimed.origins_mm.shape == aimed.directions.shape == (4, 3)
-    np.testing.assert_allclose(np.linalg.norm(aimed.directions, axis=1), 1, rtol=1e-15)
     at_stop = lens.trace(aimed.origins_mm, aimed.directions, start="scene", surface_count=lens.stop_index + 1)
     passed = aimed.status == rc.RayStatus.OK
+    assert np.isnan(aimed.origins_mm[~passed]).all()
+    assert np.isnan(aimed.directions[~passed]).all()
     assert passed.sum() >= 2
+    np.testing.assert_allclose(np.linalg.norm(aimed.directions[passed], axis=1), 1, rtol=1e-15)
     radius = lens.stop_semi_diameter_mm
     np.testing.assert_allclose(at_stop.origins_mm[passed, :2], radius * places[passed], atol=1e-9 * radius)
     # Beyond 90 degrees the light comes from behind.
-    assert (np.sign(aimed.directions[:, 2]) == np.sign(math.cos(math.radians(angle)))).all()
+    assert (np.sign(aimed.directions[passed, 2]) == np.sign(math.cos(math.radians(angle)))).all()
 
 
 def test_a_place_that_no_ray_reaches() -> None:
@@ -169,6 +173,7 @@ TELECENTRIC = rc.Lens(
         rc.Stop(clear_semi_diameter_mm=5),
     ],
     film_distance_mm=10,
+    allow_crossing=True,
 )
 
 
@@ -203,3 +208,53 @@ def test_mistakes_get_one_clear_error(call: object, wanted: str) -> None:
     with pytest.raises(rc.InputError, match=wanted) as error:
         call()
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", rc.lens_names())
+@pytest.mark.parametrize("f_number", [None, 8.0])
+def test_a_ray_aimed_at_the_edge_of_the_stop_passes_it_when_it_is_traced(name: str, f_number: float | None) -> None:
+    lens = rc.Lens.load(name) if f_number is None else rc.Lens.load(name).stopped_down(f_number)
+    turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    aimed = lens.aim(np.column_stack([np.cos(turn), np.sin(turn)]))
+    ok = aimed.status == rc.RayStatus.OK
+    assert ok.any() or f_number is None
+    again = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene")
+    assert (again.status == rc.RayStatus.OK).all()
+    at_stop = lens.trace(aimed.origins_mm[ok], aimed.directions[ok], start="scene", surface_count=lens.stop_index + 1)
+    # As near to the edge as it says: aimed at 2e-10 further in, within 1e-10.
+    share = np.hypot(*at_stop.origins_mm[:, :2].T) / lens.stop_semi_diameter_mm
+    assert share.min(initial=1) > 1 - 4e-10
+    assert share.max(initial=0) <= 1
+
+
+def test_a_ray_aimed_past_the_edge_of_the_stop_is_blocked() -> None:
+    aimed = LENS.aim([[1 + 1e-8, 0.0], [1.2, 0.0]])
+    assert aimed.status.tolist() == [rc.RayStatus.VIGNETTED, rc.RayStatus.VIGNETTED]
+    assert np.isnan(aimed.origins_mm).all()
+
+
+def test_the_plane_in_focus_is_the_object_where_none_is_given() -> None:
+    near = LENS.focused(0.8)
+    to_object = 0.8 - near.film_position_mm / 1000
+    given = {"object_distance_m": to_object}
+    # Metres and back to millimetres: a rounding of the distance.
+    assert near.wavefront(5.0).strehl == pytest.approx(near.wavefront(5.0, **given).strehl, rel=1e-8)
+    assert near.wavefront(0.0).rms_waves < 0.1 * near.wavefront(0.0, object_distance_m=math.inf).rms_waves
+    np.testing.assert_allclose(near.seidel(5.0).seidel_mm, near.seidel(5.0, **given).seidel_mm, rtol=1e-9, atol=1e-15)
+    places = [[0.3, 0.4], [0.0, 0.9]]
+    np.testing.assert_allclose(near.aim(places, 5.0).directions, near.aim(places, 5.0, **given).directions, atol=1e-12)
+    # The film is where the axial spot of the plane in focus is smallest; focusing ends within 1e-9 of the distance.
+    assert near.best_focus_mm() == pytest.approx(near.film_distance_mm, rel=1e-9)
+    assert near.best_focus_mm(math.inf) == pytest.approx(LENS.film_distance_mm, rel=1e-9)
+    # Of a lens focused at infinity that is infinity, also past 90 degrees.
+    fisheye = rc.Lens.load("fisheye-6mm-220deg")
+    assert fisheye.spot(100.0).rms_radius_mm == fisheye.spot(100.0, object_distance_m=math.inf).rms_radius_mm
+    with pytest.raises(rc.InputError, match="less than 90 deg is wanted for the plane in focus"):
+        fisheye.focused(1.0).spot(100.0)
+
+
+def test_the_example_of_the_readme_is_that_of_a_lens_in_focus() -> None:
+    lens = LENS.focused(1.2).stopped_down(2.8)
+    # The figures of an image that is in focus; asking for infinity instead gave 0.0005.
+    assert lens.wavefront(10).strehl == pytest.approx(0.011, abs=0.0005)
+    assert lens.spot(10).rms_radius_mm < 0.02

@@ -323,5 +323,49 @@ def test_what_is_no_place_is_refused() -> None:
         GROUND.with_instance(egg, np.diag([1, 1, 0, 1]))
     with pytest.raises(rc.InputError, match='no instance "eg"'):
         scene.moved("eg", np.eye(4))
-    with pytest.raises(rc.InputError, match='2 instances "egg"'):
-        scene.moved("egg", np.eye(4))
+
+
+def places_of(scene: rc.Scene) -> dict[str, list[float]]:
+    """Where the origin of each instance is."""
+    return {name: list(matrix[:3, 3]) for name, matrix in scene.instances}
+
+
+CAR = as_scene(ball()).with_instance(as_scene(ball()), placed(1, 0, 0), name="wheel")
+
+
+def test_an_instance_takes_its_own_parts_along_and_no_others() -> None:
+    scene = GROUND.with_instance(CAR, name="car").with_instance(CAR, placed(10, 0, 0), name="car")
+    # A name that only looks like that of a part.
+    scene = scene.with_instance(as_scene(ball()), placed(5, 0, 0), name="car/flag")
+    assert list(places_of(scene)) == ["car", "car/wheel", "car.2", "car.2/wheel", "car/flag"]
+    moved = places_of(scene.moved(0, placed(0, 0, 3)))
+    assert moved["car"] == [0, 0, 3]
+    assert moved["car/wheel"] == [1, 0, 3]
+    assert [moved[name][0] for name in ("car.2", "car.2/wheel", "car/flag")] == [10, 11, 5]
+    assert places_of(scene.moved("car", placed(0, 0, 3))) == moved
+    assert places_of(scene.moved("car.2", placed(20, 0, 0)))["car.2/wheel"] == [21, 0, 0]
+
+
+def test_parts_of_parts_move_with_the_whole_and_without_a_name() -> None:
+    train = as_scene(ball()).with_instance(CAR, placed(0, 0, 2))
+    scene = GROUND.with_instance(train).with_instance(train, placed(7, 0, 0))
+    moved = scene.moved(3, placed(7, 4, 0))
+    assert [list(matrix[:3, 3]) for _, matrix in moved.instances] == [
+        [0, 0, 0], [0, 0, 2], [1, 0, 2], [7, 4, 0], [7, 4, 2], [8, 4, 2]
+    ]  # fmt: skip
+    # A part that was moved on its own stays where it was put in the whole.
+    apart = places_of(
+        GROUND.with_instance(CAR, name="car").moved("car/wheel", placed(0, 5, 0)).moved("car", placed(3, 0, 0))
+    )
+    assert apart["car/wheel"] == [3, 5, 0]
+
+
+def test_names_stay_distinct() -> None:
+    egg = as_scene(ball())
+    scene = GROUND
+    for name in ("egg", "egg.2", "egg", "egg", ""):
+        scene = scene.with_instance(egg, name=name)
+    scene = scene.with_instance(egg, [placed(0, 0, 0), placed(1, 0, 0)], name="nest").with_instance(egg, name="nest 1")
+    assert [name for name, _ in scene.instances] == [
+        "egg", "egg.2", "egg.3", "egg.4", "", "nest 0", "nest 1", "nest 1.2"
+    ]  # fmt: skip

@@ -156,7 +156,7 @@ def test_a_surface_that_cannot_be_is_named(changes: dict[str, float], says: str)
     ("arguments", "says"),
     [
         ({"surfaces": []}, "no surfaces"),
-        ({"surfaces": [STOP, STOP]}, "2 surfaces of type"),
+        ({"surfaces": [STOP, STOP]}, 'surface 2: is a second "stop"'),
         ({"surfaces": [rc.Surface(clear_semi_diameter_mm=5)]}, "exactly one"),
         ({"surfaces": [STOP]}, "film_distance_mm"),
         ({"surfaces": [STOP], "film_distance_mm": -1.0}, "behind the last surface"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import realcam as rc
 
@@ -57,3 +58,40 @@ def test_axial_spot_of_the_singlet(wavelength_nm: float) -> None:
     # On the axis the chief ray is the centroid.
     assert spot.rms_radius_about_chief_ray_mm == pytest.approx(spot.rms_radius_mm, rel=1e-9)
     assert spot.max_radius_about_chief_ray_mm == pytest.approx(spot.max_radius_mm, rel=1e-9)
+
+
+def test_reference_sphere_through_the_paraxial_exit_pupil() -> None:
+    """OpticStudio's reference sphere: about the chief ray's image point, to where that ray crosses the plane of the
+    paraxial exit pupil, which the run at f/5 states 114.6444 mm in front of its image."""
+    lens = code_v_listing.listed_lens().stopped_down(5.0)
+    first = lens.first_order()
+    film = first.back_focal_distance_mm
+    on_axis = lens.wavefront(film_distance_mm=film, exit_pupil="paraxial")
+    assert on_axis.reference_radius_mm == pytest.approx(114.6444, abs=0.6e-4)
+    assert on_axis.rms_waves == lens.wavefront(film_distance_mm=film).rms_waves
+
+    for angle in (5.0, 10.0, 14.0):
+        chief = lens.aim([[0.0, 0.0]], angle)
+        out = lens.trace(chief.origins_mm, chief.directions, start="scene")
+        point, way = out.origins_mm[0], out.directions[0]
+        at_pupil = point + (first.exit_pupil_position_mm - point[2]) / way[2] * way
+        at_film = point + (lens.vertices_mm[-1] + film - point[2]) / way[2] * way
+        ours = lens.wavefront(angle, film_distance_mm=film, pattern="hexapolar", samples=8)
+        theirs = lens.wavefront(angle, film_distance_mm=film, pattern="hexapolar", samples=8, exit_pupil="paraxial")
+        assert theirs.centre_mm == pytest.approx(tuple(at_film), abs=1e-9)
+        assert theirs.reference_radius_mm == pytest.approx(np.linalg.norm(at_film - at_pupil), rel=1e-9)
+        # The real chief ray crosses the axis elsewhere: pupil aberration.
+        assert abs(theirs.reference_radius_mm / ours.reference_radius_mm - 1) > 1e-4
+        # Two spheres about one centre: a ray that passes it at p has p^2 / 2 times the difference of the curvatures
+        # between them, to (p / R)^2 of that.
+        aimed = lens.aim(ours.pupil, angle)
+        rays = lens.trace(aimed.origins_mm, aimed.directions, start="scene")
+        good = ours.status == rc.RayStatus.OK
+        off = np.linalg.norm(np.cross(rays.origins_mm - at_film, rays.directions), axis=1)
+        curvature = 1 / theirs.reference_radius_mm - 1 / ours.reference_radius_mm
+        wanted = -0.5 * off**2 * curvature * 1e6 / ours.wavelength_nm
+        difference = theirs.opd_waves - ours.opd_waves
+        np.testing.assert_allclose(difference[good], wanted[good], rtol=2e-5, atol=1e-8)
+        assert np.abs(wanted[good]).max() > 1e-6
+    with pytest.raises(rc.InputError, match='unknown exit_pupil "entrance"; real or paraxial'):
+        lens.wavefront(exit_pupil="entrance")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -25,7 +26,7 @@ options.add_command_of_the_executable(app, "info", "Print a lens's table of surf
 @app.command("draw")
 def draw(
     name: LensName,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="A .svg or .png file [LENS.svg].")] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="A .svg or .png file [LENS.svg, here].")] = None,
     f_number: FNumber = None,
     focus: Focus = None,
     rays: Annotated[int, typer.Option(help="Rays for each of three points of the film.", min=1, max=101)] = 7,
@@ -34,6 +35,7 @@ def draw(
     from ..draw import save_cross_section
 
     lens = options.lens(name, focus, f_number)
-    target = output or Path(f"{lens.name or 'lens'}.svg")
+    # By what the user called the lens: the name in a file may be any text.
+    target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.svg")
     save_cross_section(lens, target, rays=rays)
-    typer.echo(f"wrote {target}")
+    typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")

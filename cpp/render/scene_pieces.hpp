@@ -1,0 +1,67 @@
+#pragma once
+#include <vector>
+
+#include "../scene/bounding_box.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A triangle as it stands in the scene; or, where instances have too many, an instance.
+struct Piece {
+    BoundingBox box;
+    Vec3d area;  ///< of a triangle: along its normal, m^2; of an instance zero
+    bool emits;
+};
+
+/// What a scene consists of, for questions about its whole.
+class ScenePieces {
+public:
+    explicit ScenePieces(const Assembly& assembly) : assembly_(assembly), every_(asks_every_triangle(assembly)) {
+        ObjectBoxes objects;
+        for (const Instance& instance : assembly.instances)
+            if (!every_) boxes_.push_back(objects.of(instance));
+    }
+
+    std::size_t count() const {
+        return every_ ? assembly_.triangle_count()
+                      : assembly_.static_geometry->triangles.size() + assembly_.instances.size();
+    }
+
+    /// f(number, piece) for those whose number is wanted(number), always in the same order.
+    template <class Wanted, class F>
+    void for_each(Wanted&& wanted, F&& f) const {
+        std::size_t number = 0;
+        for_triangles(*assembly_.static_geometry, [](Vec3d p) { return p; }, number, wanted, f);
+        for (std::size_t i = 0; i < assembly_.instances.size(); ++i) {
+            const Instance& instance = assembly_.instances[i];
+            if (every_) {
+                const auto placed = [&](Vec3d p) { return instance.scene_from_object.point(p); };
+                for_triangles(*instance.object, placed, number, wanted, f);
+            } else {
+                if (wanted(number)) f(number, Piece{boxes_[i], {0, 0, 0}, false});
+                ++number;
+            }
+        }
+    }
+
+private:
+    template <class Placed, class Wanted, class F>
+    static void for_triangles(const Scene& scene, Placed&& placed, std::size_t& number, Wanted& wanted, F& f) {
+        for (const Triangle& t : scene.triangles) {
+            const std::size_t own = number++;
+            if (!wanted(own)) continue;
+            const Vec3d a = placed(scene.positions_m[t.vertices[0]]), b = placed(scene.positions_m[t.vertices[1]]),
+                        c = placed(scene.positions_m[t.vertices[2]]);
+            const Vec3f e = scene.materials.empty() ? Vec3f{0, 0, 0} : scene.materials[t.material].emission;
+            Piece piece{{a, a}, 0.5 * cross(b - a, c - a), e.x > 0 || e.y > 0 || e.z > 0};
+            piece.box.add(b);
+            piece.box.add(c);
+            f(own, piece);
+        }
+    }
+
+    const Assembly& assembly_;
+    bool every_;
+    std::vector<BoundingBox> boxes_;  ///< of the instances, where they count as one piece each
+};
+
+}  // namespace REALCAM_NAMESPACE

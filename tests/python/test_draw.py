@@ -1,0 +1,84 @@
+"""Cross-sections of lenses: what they show of lenses at their limits, and which file they go to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib.figure
+import numpy as np
+import pytest
+import realcam as rc
+from realcam import cli
+from realcam.draw import RAYS, draw_cross_section, save_cross_section
+from typer.testing import CliRunner
+
+GAUSS = rc.Lens.load("double-gauss-50mm")
+LENS_FILE = """format = 1
+name = "{name}"
+title = "{title}"
+[[surface]]
+radius_of_curvature_mm = 50.0
+thickness_mm = 5.0
+material = 1.5
+clear_semi_diameter_mm = 10.0
+[[surface]]
+radius_of_curvature_mm = -50.0
+thickness_mm = 1.0
+clear_semi_diameter_mm = 10.0
+[[surface]]
+type = "stop"
+clear_semi_diameter_mm = 5.0
+"""
+
+
+def lens_file(path: Path, name: str = "mine", title: str = "") -> Path:
+    path.write_text(LENS_FILE.format(name=name, title=title))
+    return path
+
+
+@pytest.mark.parametrize("f_number", [4.0, 22.0, 1e3, 1e5])
+def test_rays_pass_however_far_the_diaphragm_is_closed(f_number: float) -> None:
+    axes = matplotlib.figure.Figure().add_subplot()
+    draw_cross_section(GAUSS.stopped_down(f_number), axes, rays=7)
+    rays = [line for line in axes.lines if line.get_color() in RAYS]
+    assert len(rays) == 21
+    stop = GAUSS.vertices_mm[GAUSS.stop_index]
+    radius = GAUSS.stopped_down(f_number).stop_semi_diameter_mm
+    for line in rays:
+        z, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        at_stop = np.flatnonzero(np.abs(z - stop) < 1e-9)
+        assert len(at_stop) == 1
+        assert abs(y[at_stop[0]]) <= radius
+
+
+@pytest.mark.parametrize("title", ["$\\\\foo$", "$x", "a_b^c"])
+def test_a_title_is_no_formula(tmp_path: Path, title: str) -> None:
+    lens = rc.Lens.load(lens_file(tmp_path / "mine.toml", title=title))
+    save_cross_section(lens, tmp_path / "out.svg")
+    save_cross_section(lens, tmp_path / "out.png")
+    axes = matplotlib.figure.Figure().add_subplot()
+    draw_cross_section(lens, axes)
+    assert axes.get_title().startswith(title.replace("\\\\", "\\"))
+
+
+def test_a_name_with_control_characters_is_drawn_without_them(tmp_path: Path) -> None:
+    lens = rc.Lens(surfaces=GAUSS.surfaces, name="a\0b\x1b[31m")
+    save_cross_section(lens, tmp_path / "out.svg")
+    assert "\0" not in (tmp_path / "out.svg").read_text()
+
+
+def test_the_drawing_goes_where_the_user_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    here = tmp_path / "here"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    file = lens_file(tmp_path / "trav.toml", name="../victim")
+    result = CliRunner().invoke(cli.app, ["lens", "draw", str(file)])
+    assert result.exit_code == 0, result.output
+    assert [path.name for path in here.iterdir()] == ["trav.svg"]
+    assert {path.name for path in tmp_path.iterdir()} == {"here", "trav.toml"}
+    assert CliRunner().invoke(cli.app, ["lens", "draw", "tessar-50mm"]).exit_code == 0
+    assert (here / "tessar-50mm.svg").is_file()
+
+
+def test_an_image_that_is_lit_in_a_ring_alone_is_drawn(tmp_path: Path) -> None:
+    save_cross_section(rc.Lens.load("mirror-telephoto-500mm"), tmp_path / "mirror.svg")
