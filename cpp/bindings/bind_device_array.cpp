@@ -73,6 +73,10 @@ void bind_device_array(py::module_& m) {
         .def("__len__",
              [](const SharedDeviceArray& array) { return array.shape().empty() ? 0 : array.shape().front(); })
         .def("__repr__", &text_of)
+        .def("__reduce__",
+             [](const SharedDeviceArray&) -> py::tuple {
+                 throw py::type_error("a DeviceArray lies in a GPU's memory; pickle what its numpy() returns");
+             })
         .def_property_readonly("__cuda_array_interface__", &interface_of, "Version 3.")
         .def(
             "__dlpack__",

@@ -13,6 +13,9 @@ py::object& type_of() {
     return *type;
 }
 
+/// Raised in Python alone.
+struct ArgumentError;
+
 template <class E>
 void define(py::module_& m, const char* name, const py::object& base, const char* doc) {
     const std::string full = std::string("realcam.") + name;
@@ -41,6 +44,10 @@ void bind_errors(py::module_& m) {
     const py::object base = type_of<Error>();
     const py::object value_error = py::make_tuple(base, py::reinterpret_borrow<py::object>(PyExc_ValueError));
     define<InputError>(m, "InputError", value_error, "A value that makes no sense. Also a ValueError.");
+    const py::object type_error =
+        py::make_tuple(type_of<InputError>(), py::reinterpret_borrow<py::object>(PyExc_TypeError));
+    define<ArgumentError>(m, "ArgumentError", type_error,
+                          "An argument of the wrong type, missing, or not known. Also a TypeError.");
     define<LensFileError>(
         m, "LensFileError", base,
         "A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and "

@@ -74,7 +74,7 @@ void bind_live(py::module_& m) {
             },
             "camera"_a, py::kw_only(), "spp"_a = 1, "tone"_a = "film",
             "Starts to take spp more samples of each pixel, developed with the camera's exposure time and ISO and a\n"
-            "tone curve (see develop). Returns a LiveFrame at once, or when the oldest of three is there.")
+            "tone curve (see Image.developed). Returns a LiveFrame at once, or when the oldest of three is there.")
         .def(
             "show", [](PythonLiveView& live, const Assembly& scene) { live.view->show(scene); }, "scene"_a,
             "Another scene for the frames to come. Made for every frame: of one that comes from the last by moved(),\n"

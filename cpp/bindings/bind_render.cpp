@@ -50,12 +50,19 @@ void heed_signals() {
 }
 
 Progress progress_of(const py::object& callback) {
+    if (!callback.is_none() && !PyCallable_Check(callback.ptr()))
+        throw InputError("progress must be a function of the share done, 0 to 1");
     return [&callback](double done) {
         heed_signals();
         const py::gil_scoped_acquire acquire;
         if (callback.is_none()) return true;
         const py::object answer = callback(done);
-        return answer.is_none() || answer.cast<bool>();
+        if (answer.is_none()) return true;
+        const int goes_on = py::isinstance<py::str>(answer) ? -1 : PyObject_IsTrue(answer.ptr());
+        if (goes_on >= 0) return goes_on != 0;
+        PyErr_Clear();
+        throw InputError("progress must return False to stop, and else True or None; it returned " +
+                         py::module_::import("reprlib").attr("repr")(answer).cast<std::string>());
     };
 }
 

@@ -32,6 +32,9 @@ void bind_shot(py::module_& m);
 void bind_live(py::module_& m);
 void bind_bench(py::module_& m);
 
+/// What all functions and classes of the module have in common; the last of all.
+void finish_module(py::module_& m);
+
 /// The backend of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
 Backend& backend_for(const std::string& device);
 

@@ -20,4 +20,5 @@ PYBIND11_MODULE(_core, m) {
     bind_shot(m);
     bind_live(m);
     bind_bench(m);
+    finish_module(m);
 }

@@ -21,7 +21,7 @@ void def_result(pybind11::class_<T, Options...>& type, Check&& check) {
         },
         "other"_a);
     const std::string name = type.attr("__name__").template cast<std::string>();
-    type.def("__reduce__", [name](const py::object& self) {
+    type.def("__reduce__", [name](const py::object& self) -> py::tuple {
         const py::object state = StateWriter(self).write(self.cast<const T&>());
         return py::make_tuple(
             py::module_::import("realcam.pickling").attr("restored"),

@@ -10,6 +10,7 @@ rc.render(scene, camera, spp=64).save("photograph.png")
 
 from ._core import (
     AimedRays,
+    ArgumentError,
     Camera,
     CameraRays,
     Cancelled,
@@ -49,6 +50,7 @@ from .shot import Shot
 
 __all__ = [
     "AimedRays",
+    "ArgumentError",
     "Camera",
     "CameraRays",
     "Cancelled",

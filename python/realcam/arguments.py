@@ -1,0 +1,204 @@
+"""Words about arguments: signatures as Python writes types, and one sentence where an argument is of the wrong type.
+
+The extension comes here while it is loaded, and where a call does not fit its function: others cost nothing.
+"""
+
+from __future__ import annotations
+
+import ast
+import difflib
+import inspect
+import operator
+import re
+import reprlib
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
+# What pybind11 calls a type, and what Python's users call it.
+SPELLINGS = (
+    (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
+    (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
+    (r"(?:typing\.Annotated\[)?numpy\.typing\.ArrayLike, numpy\.\w+\]", "ArrayLike"),
+    (r"numpy\.typing\.NDArray\[numpy\.(\w+)\]", r"NDArray[\1]"),
+    (r"realcam\._core\.|collections\.abc\.|typing_extensions\.", ""),
+    (r"\(arg0: ", "(self: "),
+)
+FIXED_SIZE = re.compile(r'(?:typing\.)?Annotated\[(?:Sequence|list)\[(\w+)\], "?FixedSize\((\d)\)"?\]')
+
+
+def cleaned(doc: str) -> str:
+    """A docstring of pybind11 with a signature that a person can read."""
+    signature, *rest = doc.split("\n")
+    for pattern, spelling in SPELLINGS:
+        signature = re.sub(pattern, spelling, signature)
+    signature = FIXED_SIZE.sub(lambda m: f"tuple[{', '.join([m[1]] * int(m[2]))}]", signature)
+    return "\n".join([signature, *rest])
+
+
+def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> str:
+    """What is wrong with the arguments of a call that does not fit the signature in the docstring."""
+    function = _definition(doc.split("\n")[0])
+    own = function.args.args[0].annotation if function.args.args and function.args.args[0].arg == "self" else None
+    name = f"{ast.unparse(own)}()" if own and function.name == "__init__" else f"{function.name}()"
+    parameters = _parameters(function)
+    problem = _misfit_of_names(name, parameters, arguments, named)
+    if problem:
+        return problem
+    bound = inspect.Signature(list(parameters)).bind(*arguments, **named).arguments
+    annotations = {p.name: p.annotation for p in parameters}
+    for check in (_misfit, _out_of_range):
+        for what, value in bound.items():
+            wanted = check(annotations[what], value)
+            if wanted:
+                return f"{what} must be {wanted}; it is {_text(value)}"
+    return f"{name} cannot take {', '.join(f'{k}={_text(v)}' for k, v in bound.items())}"
+
+
+def _definition(signature: str) -> ast.FunctionDef:
+    # Defaults are written as their repr, which need not be Python; and getters have no name.
+    text = re.sub(r"<[^<>]*>", "None", signature)
+    tree = ast.parse(f"def {'property' if text.startswith('(') else ''}{text}: ...")
+    node = tree.body[0]
+    assert isinstance(node, ast.FunctionDef)
+    return node
+
+
+def _parameters(function: ast.FunctionDef) -> Sequence[inspect.Parameter]:
+    arguments = function.args
+    required = len(arguments.args) - len(arguments.defaults)
+
+    def made(argument: ast.arg, kind: Any, given: bool) -> inspect.Parameter:
+        default = inspect.Parameter.empty if given else None
+        return inspect.Parameter(argument.arg, kind, default=default, annotation=argument.annotation)
+
+    positional = [made(a, inspect.Parameter.POSITIONAL_OR_KEYWORD, i < required) for i, a in enumerate(arguments.args)]
+    by_name = [
+        made(a, inspect.Parameter.KEYWORD_ONLY, default is None)
+        for a, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    ]
+    return [*positional, *by_name]
+
+
+def _counted(count: int) -> str:
+    return NUMBERS[count] if count < len(NUMBERS) else str(count)
+
+
+def _text(value: Any) -> str:
+    """Short: realcam's own objects are."""
+    return repr(value) if type(value).__module__.startswith("realcam") else reprlib.repr(value)
+
+
+def _misfit_of_names(
+    function: str, parameters: Sequence[inspect.Parameter], arguments: tuple[Any, ...], named: dict[str, Any]
+) -> str | None:
+    positional = [p.name for p in parameters if p.kind is inspect.Parameter.POSITIONAL_OR_KEYWORD]
+    names = [p.name for p in parameters]
+    for name in named:
+        if name not in names:
+            near = difflib.get_close_matches(name, names, 1)
+            return f"{function} has no argument {name}" + (f"; is {near[0]} meant?" if near else "")
+        if name in positional[: len(arguments)]:
+            return f"{function} has the argument {name} twice"
+    if len(arguments) > len(positional):
+        own = positional[:1] == ["self"]
+        most, given = len(positional) - own, len(arguments) - own
+        rest = ", ".join(p.name for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY)
+        return (
+            f"{function} takes at most {_counted(most)} argument{'' if most == 1 else 's'} without a name, "
+            f"and {_counted(given)} are given" + (f"; by name there are {rest}" if rest else "")
+        )
+    there = {*positional[: len(arguments)], *named}
+    missing = [p.name for p in parameters if p.default is inspect.Parameter.empty and p.name not in there]
+    return f"{function} needs the argument {' and '.join(missing)}" if missing else None
+
+
+def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
+    """What is wanted where a value is of another type; None where it fits."""
+    if isinstance(annotation, ast.BinOp):
+        wanted = [_misfit(side, value) for side in (annotation.left, annotation.right)]
+        return f"{wanted[0]} or {wanted[1]}" if wanted[0] and wanted[1] else None
+    if isinstance(annotation, ast.Constant):  # None
+        return None if value is None else "None"
+    if isinstance(annotation, ast.Subscript):
+        return _misfit_of_items(annotation, value)
+    kind = annotation.id if isinstance(annotation, ast.Name) else "object"
+    if kind in SCALARS:
+        wanted_here, fits = SCALARS[kind]
+        return None if fits(value) else wanted_here
+    if kind == "object" or type(value).__name__ == kind:
+        return None
+    return f"{'an' if kind[0] in 'AEIO' else 'a'} {kind}"
+
+
+def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
+    outer = ast.unparse(annotation.value)
+    items = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
+    if outer == "Mapping":
+        return None if isinstance(value, Mapping) and all(_all_fit(items, pair) for pair in value.items()) else "a dict"
+    if outer == "tuple":
+        words = SCALARS[ast.unparse(items[0])][0].split(" ", 1)[-1]
+        return None if _all_fit(items, value) else f"{NUMBERS[len(items)]} {words}s"
+    listed = _listed(value)
+    if listed is not None and all(_misfit(items[0], item) is None for item in listed):
+        return None
+    return f"a list, each of them {_misfit(items[0], _Misfit())}"
+
+
+class _Misfit:
+    """What fits no type."""
+
+
+def _listed(value: Any) -> list[Any] | None:
+    if isinstance(value, (str, bytes)):
+        return None
+    try:
+        return list(value)
+    except TypeError:
+        return None
+
+
+def _all_fit(annotations: Sequence[ast.expr], value: Any) -> bool:
+    listed = _listed(value)
+    return (
+        listed is not None
+        and len(listed) == len(annotations)
+        and all(_misfit(a, v) is None for a, v in zip(annotations, listed, strict=True))
+    )
+
+
+def _succeeds(convert: Callable[[Any], object], value: Any) -> bool:
+    try:
+        convert(value)
+    except (TypeError, ValueError, OverflowError):
+        return False
+    return True
+
+
+def _is_number(value: Any) -> bool:
+    return not isinstance(value, (str, bytes)) and _succeeds(float, value)
+
+
+def _is_array(value: Any) -> bool:
+    import numpy as np
+
+    return _succeeds(lambda v: np.asarray(v, dtype=float), value)
+
+
+SCALARS: dict[str, tuple[str, Callable[[Any], bool]]] = {
+    "float": ("a number", _is_number),
+    "int": ("a whole number", lambda value: _succeeds(operator.index, value)),
+    "bool": ("True or False", lambda value: isinstance(value, bool) or type(value).__name__ in ("bool_", "bool")),
+    "str": ("a text", lambda value: isinstance(value, str)),
+    "ArrayLike": ("an array of numbers", _is_array),
+}
+
+
+def _out_of_range(annotation: ast.expr | None, value: Any) -> str | None:
+    """The same for whole numbers that are none of C++."""
+    limit = 2**31
+    values = _listed(value) or [value]
+    wanted = annotation is not None and re.search(r"\bint\b", ast.unparse(annotation))
+    if wanted and any(isinstance(v, int) and not -limit <= v < limit for v in values):
+        return f"a whole number between {-limit} and {limit - 1}"
+    return None
