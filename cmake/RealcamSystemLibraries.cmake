@@ -12,11 +12,6 @@ endmacro()
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h)
 realcam_need(TOMLPLUSPLUS_INCLUDE_DIR "toml++, reads lens files" libtomlplusplus-dev)
 
-if(REALCAM_IO_SOURCES)
-  find_package(assimp CONFIG QUIET)
-  realcam_need(assimp_FOUND "assimp, reads scenes" libassimp-dev)
-endif()
-
 if(REALCAM_EMBREE_SOURCES)
   find_package(TBB CONFIG QUIET)
   realcam_need(TBB_FOUND "TBB, uses all cores" libtbb-dev)

@@ -88,7 +88,8 @@ Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& ins
 
 py::tuple instances_of(const Assembly& scene) {
     py::list list;
-    for (const Instance& i : scene.instances) list.append(py::make_tuple(i.name, matrix_of(i.scene_from_object)));
+    for (const Instance& i : scene.instances)
+        list.append(py::make_tuple(text_from(i.name), matrix_of(i.scene_from_object)));
     return py::tuple(list);
 }
 

@@ -30,8 +30,17 @@ Vec3d vector_of(const Triple& v) {
     return {v[0], v[1], v[2]};
 }
 
+/// Lets Python handle its signals, so that Ctrl-C ends what takes long. Called without the interpreter's lock.
+bool check_signals() {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    return true;
+}
+
 Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
-    return io::read_scene(path_from(path), {scale, objects}, picture_readers().texture);
+    const std::string name = path_from(path);
+    const py::gil_scoped_release release;
+    return io::read_scene(name, {scale, objects, check_signals}, picture_readers().texture);
 }
 
 template <class Change>
@@ -93,8 +102,10 @@ void bind_scene(py::module_& m) {
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
             "Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names\n"
-            "of nodes that stand as instances, each with all below it, to be moved by their names.\n"
-            "Raises SceneFileError. What could be put up with is in warnings.")
+            "of nodes (of an OBJ: what follows \"o\" or \"g\") that stand as instances, each with all below it, to be "
+            "moved\n"
+            "by their names; of several nodes \"car\" the second is \"car.2\". Only regular files are read.\n"
+            "Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.")
         .def_static(
             "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
             "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
@@ -136,7 +147,12 @@ void bind_scene(py::module_& m) {
         .def_property_readonly("has_light", &Assembly::has_light)
         .def_property_readonly("bounds_m", &bounds, "Lowest and highest corner of the bounding box.")
         .def_property_readonly(
-            "warnings", [](const Assembly& s) { return s.static_geometry->warnings; },
+            "warnings",
+            [](const Assembly& s) {
+                py::list texts;
+                for (const std::string& warning : s.static_geometry->warnings) texts.append(text_from(warning));
+                return texts;
+            },
             "What the reader put up with, such as a missing texture.")
         .def("__repr__", [](const Assembly& s) { return text_of(s); });
     bind_instances(scene_class);

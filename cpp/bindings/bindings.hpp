@@ -3,6 +3,7 @@
 
 #include <numbers>
 #include <optional>
+#include <string>
 
 #include "../camera/develop.hpp"
 #include "../io/lens_file.hpp"

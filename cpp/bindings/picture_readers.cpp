@@ -18,6 +18,7 @@ py::module_ pictures() {
 }
 
 std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<const std::uint8_t> bytes) {
+    const py::gil_scoped_acquire acquire;
     const auto encoded = py::memoryview::from_memory(bytes.data(), static_cast<py::ssize_t>(bytes.size()));
     const py::object result = pictures().attr("read_texture")(py::bytes(path), encoded);
     if (result.is_none()) return std::nullopt;

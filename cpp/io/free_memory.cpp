@@ -1,5 +1,8 @@
 #include "free_memory.hpp"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -47,10 +50,34 @@ std::uint64_t limit_of_groups() {
     return limit;
 }
 
+/// What this process has taken: addresses, and of these what lies in memory.
+struct Taken {
+    std::uint64_t addresses = 0, memory = 0;
+};
+
+Taken taken_by_process() {
+    Taken pages;
+    std::ifstream("/proc/self/statm") >> pages.addresses >> pages.memory;
+    const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    return {page * pages.addresses, page * pages.memory};
+}
+
+/// As `ulimit -v` sets it.
+std::uint64_t limit_of_addresses() {
+    rlimit limit{};
+    return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY ? limit.rlim_cur : kUnknown;
+}
+
+std::uint64_t left_of(std::uint64_t limit, std::uint64_t taken) {
+    return limit == kUnknown ? kUnknown : limit - std::min(limit, taken);
+}
+
 }  // namespace
 
 std::uint64_t free_memory() {
-    return std::min(available_on_machine(), limit_of_groups());
+    const Taken taken = taken_by_process();
+    return std::min({available_on_machine(), left_of(limit_of_groups(), taken.memory),
+                     left_of(limit_of_addresses(), taken.addresses)});
 }
 
 }  // namespace realcam::io

@@ -3,8 +3,8 @@
 
 namespace realcam::io {
 
-/// Bytes that a program may still take: what the machine has free, and no more than the limit of the container or
-/// control group that it runs in. The largest number where the system does not say.
+/// Bytes that this process may still take: what the machine has free, and no more than what the limits of its container
+/// or control group, and of its addresses (`ulimit -v`), leave to it. The largest number where the system does not say.
 ///
 /// Linux hands out more memory than there is and ends the program when it is used; a large picture therefore asks
 /// first.

@@ -1,156 +1,88 @@
 #include "gltf_document.hpp"
 
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <limits>
+#include <cstdint>
 #include <stdexcept>
 
 #include "../error.hpp"
+#include "printable.hpp"
+#include "regular_file.hpp"
 
 namespace realcam::io {
 namespace {
 
-constexpr std::size_t no_index = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;
 
-const Json nothing;
-
-// A GLB is a header of 12 bytes, then chunks of a length, a kind and their bytes; JSON is the first.
-std::string json_text(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (!text.starts_with("glTF")) {
-        if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
-        return text;
-    }
-    const auto word = [&](std::size_t at) {
-        unsigned value = 0;  // little-endian
-        for (std::size_t i = 4; i-- > 0;) value = 256 * value + static_cast<unsigned char>(text[at + i]);
-        return value;
-    };
-    if (text.size() < 20) throw SceneFileError(path + ": ends inside the header of a GLB");
-    if (word(4) != 2) throw SceneFileError(path + ": is glTF " + std::to_string(word(4)) + "; glTF 2.0 is wanted");
-    if (word(8) > text.size()) {
-        throw SceneFileError(path + ": is cut short: " + std::to_string(text.size()) + " of " +
-                             std::to_string(word(8)) + " bytes");
-    }
-    if (std::memcmp(text.data() + 16, "JSON", 4) != 0) throw SceneFileError(path + ": a JSON chunk is wanted first");
-    return text.substr(20, word(12));
-}
-
-// A required extension that is not listed here means other geometry than assimp would read.
-bool may_be_required(const std::string& extension) {
+// A required extension that is not listed here stores geometry in a way that is not read.
+bool may_be_required(std::string_view extension) {
     return extension == "KHR_lights_punctual" || extension == "KHR_texture_transform" ||
-           extension.starts_with("KHR_materials_");
+           extension == "KHR_mesh_quantization" || extension.starts_with("KHR_materials_");
 }
 
-Vec3d vec3d(const Json& numbers, Vec3d otherwise) {
-    return {numbers[std::size_t{0}].number(otherwise.x), numbers[1].number(otherwise.y),
-            numbers[2].number(otherwise.z)};
+std::size_t word_at(std::string_view bytes, std::size_t at) {
+    std::uint32_t value = 0;  // little-endian
+    for (std::size_t i = 4; i-- > 0;) value = 256 * value + static_cast<unsigned char>(bytes[at + i]);
+    return value;
 }
 
 }  // namespace
 
-GltfDocument::GltfDocument(const std::string& path) : path_(path) {
+std::string gltf_label(const std::string& kind, std::size_t number, const Json& element) {
+    const std::string& name = element["name"].text();
+    return kind + ' ' + std::to_string(number) + (name.empty() ? "" : ' ' + quoted(name));
+}
+
+void GltfDocument::fail(const std::string& message) const {
+    throw SceneFileError(path_ + ": " + message);
+}
+
+// A GLB is a header of 12 bytes, then chunks of a length, a kind and their bytes; JSON is the first.
+std::string_view GltfDocument::json_text() {
+    const std::string_view file = file_;
+    if (!file.starts_with("glTF")) return file.substr(file.starts_with("\xef\xbb\xbf") ? 3 : 0);
+    const auto room = [&](std::size_t size) {
+        if (size > file.size())
+            fail("is cut short: " + std::to_string(file.size()) + " of " + std::to_string(size) + " bytes");
+    };
+    if (file.size() < kGlbHeader + kChunkHeader) fail("ends inside the header of a GLB");
+    if (word_at(file, 4) != 2) fail("is glTF " + std::to_string(word_at(file, 4)) + "; glTF 2.0 is wanted");
+    room(word_at(file, 8));
+    if (file.substr(kGlbHeader + 4, 4) != "JSON") fail("a JSON chunk is wanted first");
+    const std::size_t begin = kGlbHeader + kChunkHeader, size = word_at(file, kGlbHeader), end = begin + size;
+    room(end);
+    if (file.size() >= end + kChunkHeader && file.substr(end + 4, 4) == std::string_view("BIN\0", 4)) {
+        binary_begin_ = end + kChunkHeader;
+        binary_size_ = word_at(file, end);
+        room(binary_begin_ + binary_size_);
+    }
+    return file.substr(begin, size);
+}
+
+GltfDocument::GltfDocument(const std::string& path, Checkpoint& checkpoint)
+    : path_(path), file_(read_whole_file(path, checkpoint)) {
     try {
-        root_ = Json::parse(json_text(path));
+        root_ = Json::parse(json_text(), checkpoint);
+    } catch (const Error&) {
+        throw;
     } catch (const std::runtime_error& error) {
-        if (dynamic_cast<const Error*>(&error)) throw;
-        throw SceneFileError(path + ": is no valid glTF: " + error.what());
+        fail(std::string("is no valid glTF: ") + error.what());
     }
-    const std::string version = root_["asset"]["version"].text();
-    if (!version.starts_with('2')) {
-        throw SceneFileError(path + ": is glTF " + (version.empty() ? "of no version" : version) +
-                             "; glTF 2.0 is wanted");
-    }
-    for (std::size_t i = 0; i < root_["extensionsRequired"].size(); ++i) {
-        const std::string name = root_["extensionsRequired"][i].text();
-        if (!may_be_required(name)) {
-            throw SceneFileError(path + ": needs the glTF extension " + name +
-                                 ", which is not read; export it without compression");
-        }
+    if (binary_size_ == 0) file_ = {};
+    const std::string& version = root_["asset"]["version"].text();
+    if (!version.starts_with('2'))
+        fail("is glTF " + (version.empty() ? "of no version" : quoted(version)) + "; glTF 2.0 is wanted");
+    const Json& required = root_["extensionsRequired"];
+    for (std::size_t i = 0; i < required.size(); ++i) {
+        if (may_be_required(required[i].text())) continue;
+        fail("needs the glTF extension " + printable(required[i].text().substr(0, 60)) +
+             ", which is not read; export it without compression");
     }
 }
 
-void GltfDocument::match(const aiScene& content) {
-    const Json& roots = root_["scenes"][root_["scene"].index(0)]["nodes"];
-    // assimp keeps the tree, and puts a node above it if it has several roots.
-    if (roots.size() == 1) {
-        match_node(content, *content.mRootNode, roots[std::size_t{0}].index(no_index));
-    } else {
-        if (content.mRootNode->mNumChildren != roots.size()) throw SceneFileError(path_ + ": a root node is not there");
-        for (std::size_t i = 0; i < roots.size(); ++i) {
-            match_node(content, *content.mRootNode->mChildren[i], roots[i].index(no_index));
-        }
-    }
-}
-
-void GltfDocument::match_node(const aiScene& content, const aiNode& made, std::size_t index) {
-    const Json& from = root_["nodes"][index];
-    nodes_[&made] = &from;
-    const std::size_t mesh = from["mesh"].index(no_index);
-    const Json& primitives = root_["meshes"][mesh]["primitives"];
-    if (made.mNumMeshes != primitives.size() || made.mNumChildren != from["children"].size()) {
-        throw SceneFileError(path_ + ": node " + std::to_string(index) + ": its mesh or a child is not there");
-    }
-    for (unsigned i = 0; i < made.mNumMeshes; ++i) {
-        const aiMesh& mesh_made = *content.mMeshes[made.mMeshes[i]];
-        check_faces(mesh_made, mesh, i);
-        const std::size_t material = primitives[i]["material"].index(no_index);
-        materials_[mesh_made.mMaterialIndex] = &root_["materials"][material];
-    }
-    for (unsigned i = 0; i < made.mNumChildren; ++i) {
-        match_node(content, *made.mChildren[i], from["children"][i].index(no_index));
-    }
-}
-
-void GltfDocument::check_faces(const aiMesh& made, std::size_t mesh, std::size_t primitive) const {
-    const Json& from = root_["meshes"][mesh]["primitives"][primitive];
-    const std::size_t mode = from["mode"].index(4);
-    if (mode < 4 || !from["indices"].is_number()) return;
-    const std::size_t indices = root_["accessors"][from["indices"].index(no_index)]["count"].index(0);
-    if (indices < 3) return;
-    const std::size_t triangles = mode == 4 ? indices / 3 : indices - 2;
-    if (made.mNumFaces < triangles) {
-        throw SceneFileError(path_ + ": mesh " + std::to_string(mesh) + ", primitive " + std::to_string(primitive) +
-                             ": " + std::to_string(triangles - made.mNumFaces) + " triangles of " +
-                             std::to_string(triangles) + " have an index that is not smaller than the number of " +
-                             "vertices, " + std::to_string(made.mNumVertices));
-    }
-}
-
-const Json& GltfDocument::node(const aiNode& from) const {
-    const auto found = nodes_.find(&from);
-    return found == nodes_.end() ? nothing : *found->second;
-}
-
-const Json& GltfDocument::material(unsigned assimp_index) const {
-    const auto found = materials_.find(assimp_index);
-    return found == materials_.end() ? nothing : *found->second;
-}
-
-Affine<double> GltfDocument::transform(const aiNode& from) const {
-    const Json& n = node(from);
-    Affine<double> out;
-    if (const Json& m = n["matrix"]; m.size() == 16) {  // by columns
-        const auto column = [&](std::size_t c) {
-            return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};
-        };
-        out.x = column(0), out.y = column(1), out.z = column(2), out.origin = column(3);
-        return out;
-    }
-    const Json& q = n["rotation"];
-    double x = q[std::size_t{0}].number(0), y = q[1].number(0), z = q[2].number(0), w = q[3].number(1);
-    // Files round quaternions to seven digits, which would scale what they turn.
-    if (const double size = std::sqrt(x * x + y * y + z * z + w * w); size > 0) {
-        x /= size, y /= size, z /= size, w /= size;
-    }
-    const Vec3d scale = vec3d(n["scale"], {1, 1, 1});
-    out.x = scale.x * Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)};
-    out.y = scale.y * Vec3d{2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)};
-    out.z = scale.z * Vec3d{2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
-    out.origin = vec3d(n["translation"], {0, 0, 0});
-    return out;
+std::optional<std::size_t> GltfDocument::find(const char* list, const Json& reference, const std::string& where) const {
+    if (reference.is_null()) return std::nullopt;
+    const std::size_t count = root_[list].size(), number = reference.index(count);
+    if (number < count) return number;
+    fail(where + ": a number of \"" + list + "\" is wanted there, of which there are " + std::to_string(count));
 }
 
 }  // namespace realcam::io

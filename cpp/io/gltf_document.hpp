@@ -1,44 +1,41 @@
 #pragma once
-// What assimp leaves out of a glTF file, or rounds, read from the file's own JSON.
-
-#include <assimp/scene.h>
-
-#include <functional>
-#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 
-#include "affine.hpp"
+#include "checkpoint.hpp"
 #include "json.hpp"
 
 namespace realcam::io {
 
+/// The JSON of a .gltf or .glb, and what lies behind it in a .glb.
 class GltfDocument {
 public:
-    /// Reads the JSON of a .gltf or .glb. Throws SceneFileError: no JSON, or an extension is required that changes how
-    /// geometry is stored and that assimp does not know.
-    explicit GltfDocument(const std::string& path);
+    /// Throws FileError, and SceneFileError: no JSON, or an extension is required that is not read.
+    GltfDocument(const std::string& path, Checkpoint& checkpoint);
 
-    /// Finds for every node, mesh and material that assimp made the one of the file that it comes from; assimp numbers
-    /// them anew and keeps no trace. Throws SceneFileError if a mesh lost triangles, which is how assimp answers
-    /// indices out of range.
-    void match(const aiScene& content);
-
-    /// Null if the file does not have the node, such as the root that assimp puts above several others.
-    const Json& node(const aiNode& from) const;
-    /// Relative to the parent, in double precision.
-    Affine<double> transform(const aiNode& from) const;
-    /// Null for a mesh without a material.
-    const Json& material(unsigned assimp_index) const;
+    const std::string& path() const { return path_; }
     const Json& root() const { return root_; }
+    /// The second chunk of a .glb; empty where there is none.
+    std::string_view binary_chunk() const { return std::string_view(file_).substr(binary_begin_, binary_size_); }
+
+    /// Throws SceneFileError "PATH: message".
+    [[noreturn]] void fail(const std::string& message) const;
+
+    /// The element of a list of the root that `reference` numbers; nothing where there is no reference. Throws
+    /// SceneFileError, which begins with `where`, if there is no such element.
+    std::optional<std::size_t> find(const char* list, const Json& reference, const std::string& where) const;
 
 private:
-    void match_node(const aiScene& content, const aiNode& made, std::size_t index);
-    void check_faces(const aiMesh& made, std::size_t mesh, std::size_t primitive) const;
+    std::string_view json_text();
 
     std::string path_;
+    std::string file_;
+    std::size_t binary_begin_ = 0, binary_size_ = 0;
     Json root_;
-    std::map<const aiNode*, const Json*> nodes_;
-    std::map<unsigned, const Json*> materials_;
 };
+
+/// How messages name an element: "mesh 3", and its name if it has one.
+std::string gltf_label(const std::string& kind, std::size_t number, const Json& element);
 
 }  // namespace realcam::io

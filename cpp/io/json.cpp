@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "text_number.hpp"
 
 namespace realcam::io {
 namespace {
 
+constexpr int kMostNesting = 200;
+constexpr std::size_t kMostValues = std::size_t{1} << 23;
+
 class Parser {
 public:
-    explicit Parser(std::string_view text) : text_(text) {}
+    Parser(std::string_view text, Checkpoint& checkpoint) : text_(text), checkpoint_(checkpoint) {}
 
     Json document() {
         Json value = parse_value(0);
@@ -39,18 +45,27 @@ private:
     }
 
     Json parse_value(int depth) {
-        if (depth > 200) fail("less nesting");
+        if (depth > kMostNesting) fail("less nesting");
+        if (++values_ > kMostValues) fail("fewer than 8388608 values");
+        checkpoint_.pass();
         if (take("{")) return parse_object(depth);
         if (take("[")) return parse_array(depth);
         if (take("\"")) return Json(parse_string());
         if (take("true")) return Json(true);
         if (take("false")) return Json(false);
         if (take("null")) return Json();
-        double value = 0;
-        const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
-        if (error != std::errc()) fail("a value");
-        at_ = static_cast<std::size_t>(end - text_.data());
-        return Json(value);
+        return Json(parse_number());
+    }
+
+    double parse_number() {
+        std::string_view rest = text_.substr(at_);
+        // JSON has neither "+1" nor "nan", which other formats have.
+        const std::size_t first = rest.starts_with('-') ? 1 : 0;
+        const bool is_number = first < rest.size() && rest[first] >= '0' && rest[first] <= '9';
+        const std::optional<double> value = is_number ? take_number(rest) : std::nullopt;
+        if (!value) fail("a value");
+        at_ = text_.size() - rest.size();
+        return *value;
     }
 
     Json parse_object(int depth) {
@@ -60,10 +75,26 @@ private:
             need("\"");
             std::string name = parse_string();
             need(":");
-            members.insert_or_assign(std::move(name), parse_value(depth + 1));
+            members.emplace_back(std::move(name), parse_value(depth + 1));
         } while (take(","));
         need("}");
+        sort_members(members);
         return Json(std::move(members));
+    }
+
+    static void sort_members(Json::Object& members) {
+        const auto before = [](const auto& a, const auto& b) { return a.first < b.first; };
+        std::stable_sort(members.begin(), members.end(), before);
+        const auto last_of_name = [&](auto from) {
+            return std::find_if(from, members.end(), [&](const auto& m) { return m.first != from->first; }) - 1;
+        };
+        auto kept = members.begin();
+        for (auto member = members.begin(); member != members.end(); ++kept) {
+            const auto last = last_of_name(member);
+            if (kept != last) *kept = std::move(*last);
+            member = last + 1;
+        }
+        members.erase(kept, members.end());
     }
 
     Json parse_array(int depth) {
@@ -82,8 +113,12 @@ private:
         while (at_ < text_.size() && text_[at_] != '"') {
             if (text_[at_] != '\\') {
                 // Embedded buffers are strings of megabytes.
-                const std::size_t end = std::min(text_.find_first_of("\"\\", at_), text_.size());
+                constexpr std::size_t kPiece = 1 << 20;
+                const std::size_t last = std::min(at_ + kPiece, text_.size());
+                std::size_t end = at_;
+                while (end < last && text_[end] != '"' && text_[end] != '\\') ++end;
                 out += text_.substr(at_, end - at_);
+                checkpoint_.pass((end - at_) / 16);
                 at_ = end;
             } else {
                 parse_escape(out);
@@ -104,7 +139,9 @@ private:
             unsigned point = hex4();
             if (point >= 0xd800 && point < 0xdc00 && text_.substr(at_).starts_with("\\u")) {
                 at_ += 2;
-                point = 0x10000 + ((point - 0xd800) << 10) + (hex4() - 0xdc00);
+                const unsigned second = hex4();
+                if (second < 0xdc00 || second >= 0xe000) fail("the second half of a surrogate pair after '\\u'");
+                point = 0x10000 + ((point - 0xd800) << 10) + (second - 0xdc00);
             }
             add_utf8(out, point);
         } else {
@@ -140,22 +177,26 @@ private:
     }
 
     std::string_view text_;
-    std::size_t at_ = 0;
+    Checkpoint& checkpoint_;
+    std::size_t at_ = 0, values_ = 0;
 };
 
 const Json none;
+const std::string no_text;
 
 }  // namespace
 
-Json Json::parse(std::string_view text) {
-    return Parser(text).document();
+Json Json::parse(std::string_view text, Checkpoint& checkpoint) {
+    return Parser(text, checkpoint).document();
 }
 
 const Json& Json::operator[](std::string_view name) const {
     const auto* object = std::get_if<Object>(&value_);
     if (!object) return none;
-    const auto found = object->find(name);
-    return found == object->end() ? none : found->second;
+    const auto found =
+        std::lower_bound(object->begin(), object->end(), name,
+                         [](const auto& member, std::string_view wanted) { return member.first < wanted; });
+    return found == object->end() || found->first != name ? none : found->second;
 }
 
 const Json& Json::operator[](std::size_t i) const {
@@ -175,12 +216,13 @@ double Json::number(double otherwise) const {
 
 std::size_t Json::index(std::size_t otherwise) const {
     const auto* value = std::get_if<double>(&value_);
-    return value && *value >= 0 && *value < 4294967296.0 ? static_cast<std::size_t>(*value) : otherwise;
+    return value && *value >= 0 && *value <= 0x1p53 && *value == std::floor(*value) ? static_cast<std::size_t>(*value)
+                                                                                    : otherwise;
 }
 
-std::string Json::text() const {
+const std::string& Json::text() const {
     const auto* value = std::get_if<std::string>(&value_);
-    return value ? *value : std::string();
+    return value ? *value : no_text;
 }
 
 }  // namespace realcam::io

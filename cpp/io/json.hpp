@@ -2,18 +2,21 @@
 // As much JSON as a glTF file needs: reading, and asking for what may be absent.
 
 #include <cstddef>
-#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
+
+#include "checkpoint.hpp"
 
 namespace realcam::io {
 
 class Json {
 public:
     using Array = std::vector<Json>;
-    using Object = std::map<std::string, Json, std::less<>>;
+    /// Sorted by name.
+    using Object = std::vector<std::pair<std::string, Json>>;
 
     Json() = default;
     Json(bool value) : value_(value) {}
@@ -22,8 +25,9 @@ public:
     Json(Array value) : value_(std::move(value)) {}
     Json(Object value) : value_(std::move(value)) {}
 
-    /// Throws std::runtime_error, with the line, if the text is no JSON.
-    static Json parse(std::string_view text);
+    /// Throws std::runtime_error, with the line, if the text is no JSON, is nested more than 200 deep, or holds more
+    /// than eight million values (some 600 MB). Of members with one name the last counts.
+    static Json parse(std::string_view text, Checkpoint& checkpoint);
 
     /// The member or element, or null (a Json that is_null()) if there is none or this is something else.
     const Json& operator[](std::string_view name) const;
@@ -32,13 +36,14 @@ public:
 
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_number() const { return std::holds_alternative<double>(value_); }
+    bool is_true() const { return std::holds_alternative<bool>(value_) && std::get<bool>(value_); }
     /// Elements of an array; 0 for anything else.
     std::size_t size() const;
     double number(double otherwise) const;
-    /// A whole number of at least 0, as glTF counts and numbers things.
+    /// A whole number from 0 to 2^53, as glTF counts and numbers things.
     std::size_t index(std::size_t otherwise) const;
     /// Empty for anything but a string.
-    std::string text() const;
+    const std::string& text() const;
 
 private:
     std::variant<std::monostate, bool, double, std::string, Array, Object> value_;

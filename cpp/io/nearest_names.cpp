@@ -35,8 +35,13 @@ bool contains(std::string_view text, std::string_view part) {
 }  // namespace
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
+    // Nobody misspells a word of a page, and no list of ten thousand is searched for what was meant: the work grows
+    // with the product of the lengths.
+    constexpr std::size_t kLongestName = 64, kMostCandidates = 10000;
+    if (name.size() > kLongestName || candidates.size() > kMostCandidates) return {};
     std::vector<std::pair<std::size_t, std::string_view>> near;
     for (const std::string& candidate : candidates) {
+        if (candidate.size() > kLongestName) continue;
         const bool part = !name.empty() && (contains(candidate, name) || contains(name, candidate));
         const std::size_t distance = part ? 0 : edit_distance(name, candidate);
         if (distance <= std::max<std::size_t>(2, candidate.size() / 3)) near.emplace_back(distance, candidate);

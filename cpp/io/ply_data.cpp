@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
 
 #include "../error.hpp"
+#include "printable.hpp"
+#include "text_number.hpp"
 
 namespace realcam::io {
 namespace {
@@ -30,6 +31,8 @@ std::optional<PlyType> type_of(const std::string& name) {
     return std::nullopt;
 }
 
+constexpr std::size_t kPiece = 1 << 20;
+
 template <class T>
 double value_of(const std::array<char, 8>& bytes) {
     T value;
@@ -41,15 +44,15 @@ double value_of(const std::array<char, 8>& bytes) {
 
 PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
     PlyHeader header;
-    std::size_t number = 0;
+    std::size_t line = 0;
     const auto fail = [&](const std::string& wanted) {
-        throw SceneFileError(path + ": line " + std::to_string(number) + ": " + wanted);
+        throw SceneFileError(path + ": line " + std::to_string(line) + ": " + wanted);
     };
     const auto next_type = [&](std::istringstream& words) {
         std::string name;
         words >> name;
         const std::optional<PlyType> type = type_of(name);
-        if (!type) fail("a type such as float or uchar is wanted, not \"" + name + "\"");
+        if (!type) fail("a type such as float or uchar is wanted, not " + quoted(name));
         return *type;
     };
     bool has_format = false;
@@ -59,7 +62,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
         header.size = std::min(end + 1, text.size());
         std::string word, what;
         words >> word;
-        if (++number == 1) {
+        if (++line == 1) {
             if (word != "ply") fail("\"ply\" is wanted");
         } else if (word == "format") {
             words >> what;
@@ -75,7 +78,12 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             while (header.texture.ends_with('\r')) header.texture.pop_back();
         } else if (word == "element") {
             PlyElement& element = header.elements.emplace_back();
-            if (!(words >> element.name >> element.count)) fail("\"element\", a name and a number are wanted");
+            words >> element.name >> what;
+            std::string_view number = what;
+            const std::optional<std::int64_t> count = take_integer(number);
+            if (!count || !number.empty() || *count < 0)
+                fail("\"element\", a name and a number of at least 0 are wanted");
+            element.count = static_cast<std::uint64_t>(*count);
         } else if (word == "property") {
             if (header.elements.empty()) fail("an element is wanted before its properties");
             PlyProperty property{{}, {}, std::nullopt};
@@ -98,23 +106,41 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
     return header;
 }
 
-std::optional<double> PlyData::next(PlyType type) {
-    if (format_ == PlyHeader::Format::ascii) {
-        bytes_.remove_prefix(std::min(bytes_.find_first_not_of(" \t\r\n"), bytes_.size()));
-        if (bytes_.starts_with('+')) bytes_.remove_prefix(1);
-        double value = 0;
-        const auto [end, error] = std::from_chars(bytes_.data(), bytes_.data() + bytes_.size(), value);
-        // A number too large or too small for a double leaves value as it is.
-        if (error != std::errc()) return std::nullopt;
-        bytes_.remove_prefix(static_cast<std::size_t>(end - bytes_.data()));
-        return value;
+PlyData::PlyData(const std::string& path, Checkpoint& checkpoint)
+    : checkpoint_(checkpoint), file_(path), buffer_(kPiece + kLongestNumber) {
+    read_more();
+    header_ = parse_ply_header({buffer_.data(), end_}, path);
+    begin_ = header_.size;
+}
+
+void PlyData::read_more() {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    const std::size_t n = file_.read(buffer_.data() + end_, std::min(kPiece, buffer_.size() - end_));
+    checkpoint_.pass(n / 64);
+    end_ += n;
+}
+
+std::optional<double> PlyData::next_ascii() {
+    const auto is_blank = [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
+    while (begin_ < end_ && is_blank(buffer_[begin_])) {
+        ++begin_;
+        if (begin_ == end_ && file_.left() > 0) read_more();
     }
-    if (bytes_.size() < type.bytes) return std::nullopt;
+    std::string_view text{buffer_.data() + begin_, end_ - begin_};
+    const std::optional<double> value = take_number(text);
+    if (value) begin_ = end_ - text.size();
+    return value;
+}
+
+std::optional<double> PlyData::next_binary(PlyType type) {
+    if (end_ - begin_ < type.bytes) return std::nullopt;
     std::array<char, 8> bytes{};
-    std::copy_n(bytes_.begin(), type.bytes, bytes.begin());
-    if (format_ == PlyHeader::Format::big_endian)
+    std::memcpy(bytes.data(), buffer_.data() + begin_, type.bytes);
+    begin_ += type.bytes;
+    if (header_.format == PlyHeader::Format::big_endian)
         std::reverse(bytes.begin(), bytes.begin() + std::ptrdiff_t(type.bytes));
-    bytes_.remove_prefix(type.bytes);
     if (type.kind == 'f') return type.bytes == 4 ? value_of<float>(bytes) : value_of<double>(bytes);
     const bool is_signed = type.kind == 'i';
     switch (type.bytes) {

@@ -1,16 +1,17 @@
 #pragma once
-// PLY, ASCII and binary. Not through assimp, which loops for ever on some broken files and crashes on others.
+// PLY, ASCII and binary.
 
 #include <string>
 
 #include "../scene/scene.hpp"
+#include "checkpoint.hpp"
 
 namespace realcam::io {
 
 /// Adds the triangles of `path` to an empty scene, `scale` metres per unit; polygons are cut into fans. Read are x, y,
 /// z, nx, ny, nz and s, t (also u, v and texture_u, texture_v) of the vertices, and the vertex indices of the faces.
-/// Returns the name of the texture that a comment gives ("comment TextureFile name"), or nothing. Throws SceneFileError
-/// that names the line of the header, the vertex or the face, counted from 0.
-std::string read_ply(Scene& scene, const std::string& path, double scale);
+/// Returns the name of the texture that a comment gives ("comment TextureFile name"), or nothing. Throws FileError, and
+/// SceneFileError that names the line of the header, the vertex or the face, counted from 0.
+std::string read_ply(Scene& scene, const std::string& path, double scale, Checkpoint& checkpoint);
 
 }  // namespace realcam::io

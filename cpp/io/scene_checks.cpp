@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "../error.hpp"
 
@@ -24,13 +25,6 @@ bool is_reflectance(Vec3f v) {
 bool is_light(Vec3f v, float most) {
     return is_reflectance(v) && v.x <= most && v.y <= most && v.z <= most;
 }
-bool in_reach(double v) {
-    return std::abs(v) <= farthest_m;
-}
-bool in_reach(Vec3d v) {
-    return in_reach(v.x) && in_reach(v.y) && in_reach(v.z);
-}
-
 class Checker {
 public:
     Checker(const Scene& scene, const std::string& file) : scene_(scene), file_(file) {}
@@ -175,6 +169,21 @@ void validate(const Assembly& scene, const std::string& file) {
         if (file.empty()) throw;
         throw SceneFileError(file + ": " + error.what());
     }
+}
+
+bool is_finite(Vec3d p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+bool in_reach(Vec3d p) {
+    return std::abs(p.x) <= farthest_m && std::abs(p.y) <= farthest_m && std::abs(p.z) <= farthest_m;
+}
+
+std::string why_out_of_reach(Vec3d p) {
+    std::ostringstream text;
+    text << "coordinates must be finite numbers" << (is_finite(p) ? " of at most 1e12 m" : "") << ", not (" << p.x
+         << ", " << p.y << ", " << p.z << ')';
+    return text.str();
 }
 
 bool is_degenerate(const Scene& scene, const Triangle& triangle) {

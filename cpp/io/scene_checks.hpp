@@ -17,6 +17,12 @@ void validate(const Scene& scene, const std::string& file = {}, bool may_be_empt
 /// The same of static geometry, of the objects, and of their places.
 void validate(const Assembly& scene, const std::string& file = {});
 
+/// Whether coordinates in metres are finite, and near enough to be rendered.
+bool is_finite(Vec3d position);
+bool in_reach(Vec3d position_m);
+/// What messages say of coordinates, as the file gives them, that are not in reach.
+std::string why_out_of_reach(Vec3d position);
+
 /// No area to speak of: less than (1 nm)^2, or thinner than 1e-12 of its length. Its indices have to be in range.
 bool is_degenerate(const Scene& scene, const Triangle& triangle);
 

@@ -11,28 +11,29 @@ void warn_count(Scene& scene, const std::string& path, std::size_t n, const std:
     if (n > 0) scene.warnings.push_back(path + ": " + std::to_string(n) + " " + what);
 }
 
-void clean_geometry(Scene& scene, const std::vector<std::uint32_t>& smooth, const std::string& path) {
+void clean_geometry(Scene& scene, std::vector<bool> is_smooth, const std::string& path, Checkpoint& checkpoint) {
     if (scene.triangles.empty()) {
         throw SceneFileError(path + ": holds no triangles" +
                              (scene.positions_m.empty() ? "" : ", only points or lines"));
     }
-    // Like drop_degenerate_triangles, but the list of those to be smoothed has to follow.
-    std::vector<bool> is_smooth(scene.triangles.size(), false);
-    for (const std::uint32_t t : smooth) is_smooth[t] = true;
-    std::vector<std::uint32_t> still_smooth;
+    // Like drop_degenerate_triangles, but the flags have to follow.
     std::size_t kept = 0;
+    bool any_smooth = false;
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        checkpoint.pass();
         if (is_degenerate(scene, scene.triangles[t])) continue;
-        if (is_smooth[t]) still_smooth.push_back(static_cast<std::uint32_t>(kept));
+        any_smooth |= is_smooth[t];
+        is_smooth[kept] = is_smooth[t];
         scene.triangles[kept++] = scene.triangles[t];
     }
     const std::size_t dropped = scene.triangles.size() - kept;
     scene.triangles.resize(kept);
+    is_smooth.resize(kept);
     if (kept == 0) throw SceneFileError(path + ": all of its triangles are without area");
     warn_count(scene, path, dropped, dropped == 1 ? "triangle without area dropped" : "triangles without area dropped");
 
-    if (!still_smooth.empty()) smooth_normals(scene, still_smooth);
-    weld_vertices(scene);
+    if (any_smooth) smooth_normals(scene, is_smooth, checkpoint);
+    weld_vertices(scene, checkpoint);
 }
 
 }  // namespace realcam::io

@@ -4,14 +4,18 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <new>
+#include <stdexcept>
+#include <utility>
 
 #include "../error.hpp"
 #include "../scene/instance_names.hpp"
+#include "gltf_file.hpp"
+#include "obj_file.hpp"
 #include "ply_file.hpp"
+#include "regular_file.hpp"
 #include "scene_checks.hpp"
 #include "scene_geometry.hpp"
-#include "scene_import.hpp"
 #include "scene_lights.hpp"
 #include "scene_materials.hpp"
 #include "scene_objects.hpp"
@@ -20,68 +24,84 @@
 namespace realcam::io {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::string suffix_of(const std::string& path) {
-    std::string suffix = fs::path(path).extension().string();
+    std::string suffix = std::filesystem::path(path).extension().string();
     std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
     if (suffix == ".obj" || suffix == ".gltf" || suffix == ".glb" || suffix == ".ply") return suffix;
     throw SceneFileError(path + ": a scene file ends in .glb, .gltf, .obj or .ply" +
                          (suffix.empty() ? "" : ", not in " + suffix));
 }
 
-void check_readable(const std::string& path) {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw SceneFileError(path + ": no such file");
-    if (fs::is_directory(status)) throw SceneFileError(path + ": is a folder; a scene file is wanted");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw SceneFileError(path + ": cannot be opened; permission to read it is wanted");
-    if (file.peek() == std::ifstream::traits_type::eof()) {
-        throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
-    }
+void append(std::vector<std::string>& warnings, std::vector<std::string> more) {
+    warnings.insert(warnings.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-Scene read_ply_scene(const std::string& path, double scale, const ImageReader& read_image) {
+/// A file may be wrong in a million places.
+void limit_warnings(std::vector<std::string>& warnings, const std::string& path) {
+    constexpr std::size_t kMost = 50;
+    if (warnings.size() <= kMost) return;
+    const std::size_t left_out = warnings.size() - (kMost - 1);
+    warnings.resize(kMost - 1);
+    warnings.push_back(path + ": and " + std::to_string(left_out) + " warnings more");
+}
+
+Scene read_ply_scene(const std::string& path, double scale, const ImageReader& read_image, Checkpoint& checkpoint) {
     Scene scene;
     scene.materials = {Material{}};
-    const std::string texture = read_ply(scene, path, scale);
-    if (!texture.empty() && !scene.uvs.empty()) {
-        SceneTextures textures(scene, nullptr, path, read_image);
-        scene.materials[0] = {{1, 1, 1}, {0, 0, 0}, 0, {0, 0, 0}, textures.find(texture).index};
+    FileScene file;
+    file.path = path;
+    file.pictures.push_back({read_ply(scene, path, scale, checkpoint), false, {}});
+    if (!file.pictures[0].name.empty() && !scene.uvs.empty()) {
+        SceneTextures textures(scene, file, read_image, checkpoint);
+        scene.materials[0] = {{1, 1, 1}, {0, 0, 0}, 0, {0, 0, 0}, textures.find(0).index};
     }
     return scene;
 }
 
-Assembly read_other_scene(const std::string& path, SceneFormat format, const SceneFileOptions& options,
-                          const ImageReader& read_image) {
-    const ImportedScene file(path, format);
+Assembly assemble(const FileScene& file, const SceneFileOptions& options, const ImageReader& read_image,
+                  Checkpoint& checkpoint) {
     Scene static_geometry, materials;
-    for (const std::string& complaint : file.complaints()) static_geometry.warnings.push_back(path + ": " + complaint);
-    SceneTextures textures(materials, &file.content(), path, read_image);
-    read_materials(materials, file, textures, path);
-    static_geometry.warnings.insert(static_geometry.warnings.end(), materials.warnings.begin(),
-                                    materials.warnings.end());
+    for (const std::string& warning : file.warnings) static_geometry.warnings.push_back(file.path + ": " + warning);
+    SceneTextures textures(materials, file, read_image, checkpoint);
+    make_materials(materials, file, textures);
+    append(static_geometry.warnings, std::move(materials.warnings));
 
-    SceneObjects objects(file, path, options.scale, options.objects);
-    const aiNode& root = *file.content().mRootNode;
-    const ScenePart all{file, path, options.scale, root, file.transform(root)};
-    read_geometry(static_geometry, all, [&](const aiNode& node, const Affine<double>& transform) {
-        const LeftOut left_out = objects.left_out(node, transform);
+    SceneObjects objects(file, options.scale, options.objects, checkpoint);
+    const LeavesOut leaves_out = [&](std::uint32_t node, const Affine<double>& transform) {
+        return objects.left_out(node, transform);
+    };
+    const ScenePart all{file,         options.scale, 0, static_cast<std::uint32_t>(file.nodes.size()),
+                        std::nullopt, checkpoint};
+    visit_nodes(all, [&](std::uint32_t node, const Affine<double>& transform) {
+        const LeftOut left_out = leaves_out(node, transform);
         if (left_out != LeftOut::nothing) objects.add(node, transform, static_geometry);
-        return left_out;
+        return left_out != LeftOut::all;
     });
-    read_lights(static_geometry, all,
-                [&](const aiNode& node, const Affine<double>& transform) { return objects.left_out(node, transform); });
+    read_geometry(static_geometry, all, leaves_out);
+    read_lights(static_geometry, all, leaves_out);
     std::vector<Instance> instances = objects.finish(materials);
     if (instances.empty())
         keep_all_materials(static_geometry, std::move(materials));
     else
         keep_used_materials(static_geometry, materials);
+    limit_warnings(static_geometry.warnings, file.path);
     Assembly scene(std::move(static_geometry));
     scene.instances = std::move(instances);
     make_names_distinct(scene);
     return scene;
+}
+
+Assembly read_any(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
+    Checkpoint checkpoint(options.keep_going);
+    const std::string suffix = suffix_of(path);
+    if (RegularFile(path).size() == 0)
+        throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
+    if (suffix == ".ply") {
+        if (!options.objects.empty()) throw InputError(path + ": a .ply file has no nodes that could be objects");
+        return read_ply_scene(path, options.scale, read_image, checkpoint);
+    }
+    const FileScene file = suffix == ".obj" ? read_obj(path, options.scale, checkpoint) : read_gltf(path, checkpoint);
+    return assemble(file, options, read_image, checkpoint);
 }
 
 }  // namespace
@@ -91,15 +111,17 @@ Assembly read_scene(const std::string& path, const SceneFileOptions& options, co
         throw InputError("scale must be a positive number of metres per unit of the file, not " +
                          std::to_string(options.scale));
     }
-    const std::string suffix = suffix_of(path);
-    check_readable(path);
-    if (suffix == ".ply" && !options.objects.empty())
-        throw InputError(path + ": a .ply file has no nodes that could be objects");
-    Assembly scene = suffix == ".ply" ? read_ply_scene(path, options.scale, read_image)
-                                      : read_other_scene(path, suffix == ".obj" ? SceneFormat::obj : SceneFormat::gltf,
-                                                         options, read_image);
-    validate(scene, path);
-    return scene;
+    try {
+        Assembly scene = read_any(path, options, read_image);
+        validate(scene, path);
+        return scene;
+    } catch (const FileError& error) {
+        throw SceneFileError(path + ": " + error.reason);
+    } catch (const std::bad_alloc&) {
+        throw SceneFileError(path + ": there is too little memory for it");
+    } catch (const std::length_error&) {
+        throw SceneFileError(path + ": there is too little memory for it");
+    }
 }
 
 }  // namespace realcam::io

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../keep_going.hpp"
 #include "../scene/assembly.hpp"
 
 namespace realcam::io {
@@ -27,16 +28,23 @@ struct SceneFileOptions {
     double scale = 1.0;  ///< metres per unit of the file
     std::vector<std::string> objects = {};  ///< names of nodes that become instances, each with all below it;
                                             ///< of nodes of one name the second is NAME.2, the third NAME.3
+    /// Asked some fifty times a second, on the thread that reads; where it returns false, reading ends with Cancelled.
+    KeepGoing keep_going = {};
 };
 
 /// Reads a scene; the suffix picks the format. Throws SceneFileError if the file cannot be used, InputError for a
-/// scale that makes no sense. What could be put up with is in Scene::warnings.
+/// scale that makes no sense, Cancelled. What could be put up with is in Scene::warnings, at most 50 lines.
+///
+/// Only regular files are read, and what a file promises is held against its size, and against the memory that is free,
+/// before memory is taken for it.
 ///
 /// Geometry: nodes are flattened, transforms applied in double precision; mirrored ones keep outward faces outward.
-/// Named nodes become instances, and so do meshes whose copies would take a million triangles or more.
-/// Coordinates in an OBJ or in a mesh of a glTF are taken as float: put far-away objects under a translated node.
-/// Triangles without area are dropped. glTF meshes without normals are flat, as that format demands; OBJ and PLY say
-/// nothing, and get smooth normals where faces share vertices and meet at less than 45 degrees.
+/// Named nodes become instances, several of one name "car", "car.2"; so do meshes whose copies would take a million
+/// triangles or more. Nodes of an OBJ are what follows a line "o" or "g". Coordinates in a mesh of a glTF are floats:
+/// put far-away objects under a translated node. Skins and morph targets have the pose and weights of the file.
+/// Polygons of an OBJ may be concave. Triangles without area are dropped. glTF meshes without normals are flat, as that
+/// format demands; OBJ and PLY say nothing, and get smooth normals where faces share vertices and meet at less than 45
+/// degrees.
 ///
 /// Materials: MTL's Kd, map_Kd, Ks, Ns (Phong exponent) and Ke (radiance, cd/m^2) are taken as they are. glTF's
 /// metallic-roughness model becomes a diffuse and a Phong lobe (see scene_materials.cpp), with their sum at most 1;

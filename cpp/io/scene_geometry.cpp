@@ -3,135 +3,152 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "../error.hpp"
-#include "affine.hpp"
+#include "regular_file.hpp"
+#include "scene_checks.hpp"
 #include "scene_cleanup.hpp"
-#include "texture_transform.hpp"
 
 namespace realcam::io {
 namespace {
 
-Vec3d as_vec3d(const aiVector3D& v) {
-    return {double(v.x), double(v.y), double(v.z)};
+constexpr std::uint32_t kUnset = 0xffffffffu;
+
+bool has_normal(Vec3f n) {
+    return n.x != 0 || n.y != 0 || n.z != 0;
 }
 
 class Flattener {
 public:
     Flattener(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out)
-        : scene_(scene), file_(part.file), path_(part.path), scale_(part.scale), leaves_out_(leaves_out) {
-        const aiScene& content = file_.content();
-        for (unsigned m = 0; m < content.mNumMeshes; ++m) {
-            any_normals_ |= content.mMeshes[m]->HasNormals();
-            any_uvs_ |= content.mMeshes[m]->HasTextureCoords(uv_channel(*content.mMeshes[m]));
+        : scene_(scene), part_(part), file_(part.file), leaves_out_(leaves_out) {
+        for (const FileMesh& mesh : file_.meshes) {
+            any_normals_ |= !vertices_of(mesh).normals.empty();
+            any_uvs_ |= !vertices_of(mesh).uvs.empty();
         }
     }
 
-    void add_node(const aiNode& node, const Affine<double>& transform) {
-        const LeftOut left_out = leaves_out_(node, transform);
-        left_out_ |= left_out != LeftOut::nothing;
-        if (left_out == LeftOut::all) return;
-        if (left_out == LeftOut::nothing)
-            for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(node.mMeshes[i], transform);
-        for (unsigned i = 0; i < node.mNumChildren; ++i) {
-            const aiNode& child = *node.mChildren[i];
-            add_node(child, transform * file_.transform(child));
-        }
-    }
-
-    void finish() {
-        if (!left_out_ || !scene_.triangles.empty()) clean_geometry(scene_, smooth_, path_);
-        warn_count(scene_, path_, bad_normals_, "normals are no finite numbers; their faces are flat there");
-        warn_count(scene_, path_, bad_uvs_, "texture coordinates are no finite numbers, 0 taken");
-        warn_count(scene_, path_, uncovered_, "meshes have a texture and no coordinates for it");
-        warn_count(scene_, path_, coloured_, "meshes have colours at their vertices, which are not read");
+    void flatten() {
+        make_room();
+        for_each_mesh([&](const FileMesh& mesh, const Affine<double>& transform) { add_mesh(mesh, transform); });
+        if (!left_out_ || !scene_.triangles.empty())
+            clean_geometry(scene_, std::move(smooth_), file_.path, part_.checkpoint);
+        warn_count(scene_, file_.path, bad_normals_, "normals are no finite numbers; their faces are flat there");
+        warn_count(scene_, file_.path, bad_uvs_, "texture coordinates are no finite numbers, 0 taken");
+        warn_count(scene_, file_.path, uncovered_, "meshes have a texture and no coordinates for it");
+        warn_count(scene_, file_.path, coloured_, "meshes have colours at their vertices, which are not read");
     }
 
 private:
-    const Json& texture_info(const aiMesh& mesh) const {
-        const GltfDocument* gltf = file_.gltf();
-        return gltf ? gltf->material(mesh.mMaterialIndex)["pbrMetallicRoughness"]["baseColorTexture"] : none_;
+    const FileVertices& vertices_of(const FileMesh& mesh) const { return file_.vertices[mesh.vertices]; }
+
+    template <class Use>
+    void for_each_mesh(Use&& use) {
+        visit_nodes(part_, [&](std::uint32_t number, const Affine<double>& transform) {
+            const LeftOut left_out = leaves_out_(number, transform);
+            left_out_ |= left_out != LeftOut::nothing;
+            const FileNode& node = file_.nodes[number];
+            for (std::uint32_t i = 0; left_out == LeftOut::nothing && i < node.mesh_count; ++i)
+                use(file_.meshes[node.first_mesh + i], transform);
+            return left_out != LeftOut::all;
+        });
     }
 
-    unsigned uv_channel(const aiMesh& mesh) const {
-        const Json& moved = texture_info(mesh)["extensions"]["KHR_texture_transform"]["texCoord"];
-        if (moved.is_number()) return static_cast<unsigned>(std::min<std::size_t>(moved.index(0), 7));
-        int channel = 0;
-        file_.content().mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_UVWSRC_DIFFUSE(0), channel);
-        return channel >= 0 && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS ? static_cast<unsigned>(channel) : 0u;
+    /// All at once: growing step by step would take twice the memory. Throws where there is too little.
+    void make_room() {
+        std::size_t vertices = 0, triangles = 0;
+        for_each_mesh([&](const FileMesh& mesh, const Affine<double>&) {
+            triangles += mesh.triangles.size();
+            vertices += std::min(vertices_of(mesh).positions.size(), 3 * mesh.triangles.size());
+        });
+        const std::size_t per_vertex = sizeof(Vec3d) + any_normals_ * sizeof(Vec3f) + any_uvs_ * sizeof(Vec2f);
+        const std::size_t bytes = vertices * per_vertex + triangles * sizeof(Triangle);
+        constexpr std::size_t kAlwaysThere = 1 << 24;
+        const std::string why = bytes > kAlwaysThere ? too_much_memory(bytes) : std::string();
+        if (!why.empty()) throw SceneFileError(file_.path + ": its triangles need " + why);
+        if (std::max(vertices, triangles) >= kUnset)
+            throw SceneFileError(file_.path + ": more than 4294967294 vertices or triangles");
+        scene_.positions_m.reserve(vertices);
+        if (any_normals_) scene_.normals.reserve(vertices);
+        if (any_uvs_) scene_.uvs.reserve(vertices);
+        scene_.triangles.reserve(triangles);
+        smooth_.reserve(triangles);
     }
 
-    void add_mesh(unsigned index, const Affine<double>& transform) {
-        const aiMesh& mesh = *file_.content().mMeshes[index];
-        const std::size_t first = scene_.positions_m.size();
-        if (first + mesh.mNumVertices > std::numeric_limits<std::uint32_t>::max()) {
-            throw SceneFileError(path_ + ": more than 4294967295 vertices");
-        }
-        add_vertices(mesh, transform);
-
-        const bool smooth = !mesh.HasNormals() && file_.format() == SceneFormat::obj;
+    void add_mesh(const FileMesh& mesh, const Affine<double>& transform) {
+        const FileVertices& vertices = vertices_of(mesh);
+        if (new_numbers_.size() < vertices.positions.size()) new_numbers_.resize(vertices.positions.size(), kUnset);
         const bool mirrored = transform.determinant() < 0;
-        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-            const aiFace& face = mesh.mFaces[f];
-            if (face.mNumIndices != 3) continue;  // points and lines
-            Triangle t{{0, 0, 0}, mesh.mMaterialIndex};
-            for (int i = 0; i < 3; ++i) t.vertices[i] = static_cast<std::uint32_t>(first + face.mIndices[i]);
+        bool is_textured = false;
+        for (const Triangle& from : mesh.triangles) {
+            part_.checkpoint.pass();
+            Triangle t{{0, 0, 0}, from.material};
+            for (int i = 0; i < 3; ++i) t.vertices[i] = vertex(mesh, from.vertices[i], transform);
+            const bool has_normals = any_normals_ && (has_normal(scene_.normals[t.vertices[0]]) ||
+                                                      has_normal(scene_.normals[t.vertices[1]]) ||
+                                                      has_normal(scene_.normals[t.vertices[2]]));
             if (mirrored) std::swap(t.vertices[1], t.vertices[2]);
-            if (smooth) smooth_.push_back(static_cast<std::uint32_t>(scene_.triangles.size()));
             scene_.triangles.push_back(t);
+            smooth_.push_back(file_.smooths && !has_normals);
+            is_textured |= bool(file_.materials[from.material].colour_texture());
         }
+        // The next use of these vertices has another transform.
+        for (const Triangle& t : mesh.triangles)
+            for (const std::uint32_t v : t.vertices) new_numbers_[v] = kUnset;
+        if (is_textured && vertices.uvs.empty()) ++uncovered_;
+        if (vertices.has_colours && !mesh.triangles.empty()) ++coloured_;
     }
 
-    void add_vertices(const aiMesh& mesh, const Affine<double>& transform) {
-        const aiVector3D* uvs = mesh.mTextureCoords[uv_channel(mesh)];
-        const TextureTransform move_uv(texture_info(mesh));
-        aiString texture;
-        const aiMaterial& material = *file_.content().mMaterials[mesh.mMaterialIndex];
-        if (!uvs && material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS) ++uncovered_;
-        if (mesh.HasVertexColors(0)) ++coloured_;
-
-        for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-            scene_.positions_m.push_back(scale_ * transform.point(as_vec3d(mesh.mVertices[v])));
-            if (any_normals_)
-                scene_.normals.push_back(mesh.HasNormals() ? normal(mesh.mNormals[v], transform) : Vec3f{});
-            if (any_uvs_) scene_.uvs.push_back(uvs ? uv(uvs[v], move_uv) : Vec2f{});
-        }
+    /// Number in scene_ of a vertex of the mesh at work, which is added when it is first used.
+    std::uint32_t vertex(const FileMesh& mesh, std::uint32_t number, const Affine<double>& transform) {
+        std::uint32_t& known = new_numbers_[number];
+        if (known != kUnset) return known;
+        const FileVertices& from = vertices_of(mesh);
+        const Vec3d p = part_.scale * transform.point(from.positions[number]);
+        if (!in_reach(p))
+            throw SceneFileError(file_.path + ": " + mesh.label + ": vertex " + std::to_string(number) + ": " +
+                                 why_out_of_reach(p));
+        known = static_cast<std::uint32_t>(scene_.positions_m.size());
+        scene_.positions_m.push_back(p);
+        if (any_normals_)
+            scene_.normals.push_back(from.normals.empty() ? Vec3f{0, 0, 0} : normal(from.normals[number], transform));
+        if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number], mesh.uv_transform));
+        return known;
     }
 
-    Vec3f normal(const aiVector3D& given, const Affine<double>& transform) {
+    Vec3f normal(Vec3f given, const Affine<double>& transform) {
         if (!std::isfinite(given.x + given.y + given.z)) {
             ++bad_normals_;
             return {0, 0, 0};
         }
-        const Vec3d n = transform.normal(as_vec3d(given));
+        const Vec3d n = transform.normal(static_cast<Vec3d>(given));
         const double size = length(n);
         return size > 0 && std::isfinite(size) ? static_cast<Vec3f>((1 / size) * n) : Vec3f{0, 0, 0};
     }
 
-    Vec2f uv(const aiVector3D& given, const TextureTransform& move) {
-        if (std::isfinite(given.x + given.y)) return move(given.x, given.y);
+    Vec2f uv(Vec2f given, const TextureTransform& move) {
+        const Vec2f moved = move(given.x, given.y);
+        if (std::isfinite(moved.x) && std::isfinite(moved.y)) return moved;
         ++bad_uvs_;
         return {0, 0};
     }
 
     Scene& scene_;
-    const ImportedScene& file_;
-    const std::string& path_;
-    double scale_;
+    const ScenePart& part_;
+    const FileScene& file_;
     const LeavesOut& leaves_out_;
     bool left_out_ = false;
     bool any_normals_ = false, any_uvs_ = false;
-    std::vector<std::uint32_t> smooth_;
-    const Json none_;
+    std::vector<bool> smooth_;
+    std::vector<std::uint32_t> new_numbers_;  // in scene_, of the vertices of the mesh at work
     std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0, coloured_ = 0;
 };
 
 }  // namespace
 
 void read_geometry(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out) {
-    Flattener flattener(scene, part, leaves_out);
-    flattener.add_node(part.node, part.transform);
-    flattener.finish();
+    Flattener(scene, part, leaves_out).flatten();
 }
 
 }  // namespace realcam::io

@@ -4,8 +4,7 @@
 
 namespace realcam::io {
 
-/// The punctual lights of a glTF file, intensity in cd, illuminance in lux; other formats have none. From the file's
-/// own JSON: assimp knows one node for each light only, and finds it by name.
+/// The punctual lights of a glTF file, intensity in cd, illuminance in lux; other formats have none.
 void read_lights(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out);
 
 }  // namespace realcam::io

@@ -4,56 +4,58 @@
 
 #include "../error.hpp"
 #include "nearest_names.hpp"
+#include "printable.hpp"
 #include "scene_geometry.hpp"
 #include "scene_lights.hpp"
 
 namespace realcam::io {
 namespace {
 
-bool has_meshes(const aiNode& node) {
-    bool found = node.mNumMeshes > 0;
-    for (unsigned i = 0; i < node.mNumChildren; ++i) found |= has_meshes(*node.mChildren[i]);
-    return found;
-}
+const LeavesOut kLeavesOutNothing = [](std::uint32_t, const Affine<double>&) { return LeftOut::nothing; };
 
-std::size_t triangle_count(const aiScene& content, const std::vector<unsigned>& meshes) {
-    std::size_t count = 0;
-    for (const unsigned m : meshes) count += content.mMeshes[m]->mNumFaces;
-    return count;
+bool has_triangles(const FileScene& file, std::uint32_t node) {
+    for (std::uint32_t i = node; i < file.nodes[node].end; ++i)
+        if (file.nodes[i].mesh_count > 0) return true;
+    return false;
 }
 
 }  // namespace
 
-SceneObjects::SceneObjects(const ImportedScene& file, const std::string& path, double scale,
-                           const std::vector<std::string>& names)
-    : file_(file), path_(path), scale_(scale), names_(names) {
+SceneObjects::SceneObjects(const FileScene& file, double scale, const std::vector<std::string>& names,
+                           Checkpoint& checkpoint)
+    : file_(file), scale_(scale), checkpoint_(checkpoint), names_(names.begin(), names.end()) {
     std::map<Meshes, std::size_t> uses;
     std::set<std::string> found;
-    if (file.content().mRootNode) count_uses(*file.content().mRootNode, uses, found);
+    for (std::uint32_t i = 0; i < file.nodes.size(); ++i) {
+        checkpoint.pass();
+        if (!names.empty()) found.insert(file.nodes[i].name);
+        if (file.nodes[i].mesh_count > 0) ++uses[meshes_of(i)];
+    }
     for (const std::string& name : names)
         if (!found.contains(name))
-            throw SceneFileError(path + ": has no node \"" + name + '"' +
+            throw SceneFileError(file.path + ": has no node " + quoted(name) +
                                  did_you_mean(name, {found.begin(), found.end()}));
     for (const auto& [meshes, times] : uses)
-        if ((times - 1) * triangle_count(file.content(), meshes) >= kSharedTriangles) shared_.insert(meshes);
+        if ((times - 1) * triangle_count(meshes) >= kSharedTriangles) shared_.insert(meshes);
 }
 
-void SceneObjects::count_uses(const aiNode& node, std::map<Meshes, std::size_t>& uses,
-                              std::set<std::string>& found) const {
-    found.insert(node.mName.C_Str());
-    if (node.mNumMeshes > 0) ++uses[meshes_of(node)];
-    for (unsigned i = 0; i < node.mNumChildren; ++i) count_uses(*node.mChildren[i], uses, found);
+std::size_t SceneObjects::triangle_count(const Meshes& meshes) const {
+    std::size_t count = 0;
+    for (std::uint32_t m = meshes.first; m < meshes.first + meshes.second; ++m)
+        count += file_.meshes[m].triangles.size();
+    return count;
 }
 
-LeftOut SceneObjects::left_out(const aiNode& node, const Affine<double>& transform) const {
-    if (std::find(names_.begin(), names_.end(), node.mName.C_Str()) != names_.end()) return LeftOut::all;
+LeftOut SceneObjects::left_out(std::uint32_t node, const Affine<double>& transform) const {
+    if (names_.contains(file_.nodes[node].name)) return LeftOut::all;
     // What is scaled to nothing, as animations hide nodes, has no triangles in static geometry, and no place as an
     // object.
-    const bool shared = node.mNumMeshes > 0 && shared_.contains(meshes_of(node)) && transform_error(transform).empty();
-    return shared ? LeftOut::meshes : LeftOut::nothing;
+    const bool is_shared =
+        file_.nodes[node].mesh_count > 0 && shared_.contains(meshes_of(node)) && transform_error(transform).empty();
+    return is_shared ? LeftOut::meshes : LeftOut::nothing;
 }
 
-void SceneObjects::add(const aiNode& node, const Affine<double>& transform, Scene& static_geometry) {
+void SceneObjects::add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry) {
     std::shared_ptr<Scene> scene;
     if (left_out(node, transform) == LeftOut::all) {
         scene = read_object(node, transform, static_geometry);
@@ -66,32 +68,32 @@ void SceneObjects::add(const aiNode& node, const Affine<double>& transform, Scen
     scene->warnings.clear();
     Affine<double> place = transform;
     place.origin = scale_ * place.origin;
-    instances_.push_back({scene, {nullptr, place, node.mName.C_Str()}});
+    instances_.push_back({scene, {nullptr, place, file_.nodes[node].name}});
 }
 
-std::shared_ptr<Scene> SceneObjects::read_object(const aiNode& node, const Affine<double>& transform,
+std::shared_ptr<Scene> SceneObjects::read_object(std::uint32_t node, const Affine<double>& transform,
                                                  Scene& static_geometry) const {
-    const LeavesOut nothing = [](const aiNode&, const Affine<double>&) { return LeftOut::nothing; };
     auto scene = std::make_shared<Scene>();
-    const ScenePart part{file_, path_, scale_, node};
-    read_lights(*scene, part, nothing);
-    if (has_meshes(node))
-        read_geometry(*scene, part, nothing);
+    const std::uint32_t end = file_.nodes[node].end;
+    const ScenePart part{file_, scale_, node, end, Affine<double>(), checkpoint_};
+    read_lights(*scene, part, kLeavesOutNothing);
+    if (has_triangles(file_, node))
+        read_geometry(*scene, part, kLeavesOutNothing);
     else if (scene->points.empty())
-        throw SceneFileError(path_ + ": node \"" + node.mName.C_Str() + "\" holds neither triangles nor a light");
-    // A sun has no place: it shines on all, from where it does now.
+        throw SceneFileError(file_.path + ": node " + quoted(file_.nodes[node].name) +
+                             " holds neither triangles nor a light");
+    // A sun has no place: it lights all, from where it does now.
     Scene in_place;
-    read_lights(in_place, {file_, path_, scale_, node, transform}, nothing);
+    read_lights(in_place, {file_, scale_, node, end, transform, checkpoint_}, kLeavesOutNothing);
     static_geometry.suns.insert(static_geometry.suns.end(), in_place.suns.begin(), in_place.suns.end());
     scene->suns.clear();
     return scene;
 }
 
-std::shared_ptr<Scene> SceneObjects::read_meshes(const aiNode& node) const {
+std::shared_ptr<Scene> SceneObjects::read_meshes(std::uint32_t node) const {
     auto scene = std::make_shared<Scene>();
-    read_geometry(*scene, {file_, path_, scale_, node}, [&node](const aiNode& other, const Affine<double>&) {
-        return &other == &node ? LeftOut::nothing : LeftOut::all;  // children stand for themselves
-    });
+    // Without what is below the node, which stands for itself.
+    read_geometry(*scene, {file_, scale_, node, node + 1, Affine<double>(), checkpoint_}, kLeavesOutNothing);
     return scene;
 }
 
@@ -99,6 +101,7 @@ std::vector<Instance> SceneObjects::finish(const Scene& materials) {
     std::set<Scene*> done;
     std::vector<Instance> instances;
     for (auto& [scene, instance] : instances_) {
+        checkpoint_.pass();
         if (done.insert(scene.get()).second) keep_used_materials(*scene, materials);
         instance.object = scene;
         instances.push_back(instance);

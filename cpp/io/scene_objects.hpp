@@ -3,6 +3,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../scene/assembly.hpp"
@@ -15,35 +16,36 @@ namespace realcam::io {
 class SceneObjects {
 public:
     /// All arguments have to outlive it. Throws SceneFileError for a name that no node has.
-    SceneObjects(const ImportedScene& file, const std::string& path, double scale,
-                 const std::vector<std::string>& names);
+    SceneObjects(const FileScene& file, double scale, const std::vector<std::string>& names, Checkpoint& checkpoint);
 
-    LeftOut left_out(const aiNode& node, const Affine<double>& transform) const;
+    LeftOut left_out(std::uint32_t node, const Affine<double>& transform) const;
 
     /// Of a node that is left out. Warnings go to `static_geometry`. Throws SceneFileError for one without triangles
     /// and lights.
-    void add(const aiNode& node, const Affine<double>& transform, Scene& static_geometry);
+    void add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry);
 
-    /// With the materials and textures that they use, of those that the file has.
+    /// With the materials and textures that they use, of those that the file has. Of several with one name, the second
+    /// is "name.2" and so on.
     std::vector<Instance> finish(const Scene& materials);
 
 private:
-    /// Meshes of a node that are worth sharing once more; fewer triangles are met faster in one hierarchy with all
-    /// others.
+    /// Triangles, or vertices, of a node that are worth sharing once more; fewer triangles are met faster in one
+    /// hierarchy with all others.
     static constexpr std::size_t kSharedTriangles = 1 << 20;
 
-    std::shared_ptr<Scene> read_object(const aiNode& node, const Affine<double>& transform,
+    std::shared_ptr<Scene> read_object(std::uint32_t node, const Affine<double>& transform,
                                        Scene& static_geometry) const;
-    std::shared_ptr<Scene> read_meshes(const aiNode& node) const;
+    std::shared_ptr<Scene> read_meshes(std::uint32_t node) const;
 
-    using Meshes = std::vector<unsigned>;
-    static Meshes meshes_of(const aiNode& node) { return {node.mMeshes, node.mMeshes + node.mNumMeshes}; }
-    void count_uses(const aiNode& node, std::map<Meshes, std::size_t>& uses, std::set<std::string>& found) const;
+    /// The meshes of a node: the first of them, and how many there are.
+    using Meshes = std::pair<std::uint32_t, std::uint32_t>;
+    Meshes meshes_of(std::uint32_t node) const { return {file_.nodes[node].first_mesh, file_.nodes[node].mesh_count}; }
+    std::size_t triangle_count(const Meshes& meshes) const;
 
-    const ImportedScene& file_;
-    const std::string& path_;
+    const FileScene& file_;
     double scale_;
-    const std::vector<std::string>& names_;
+    Checkpoint& checkpoint_;
+    std::set<std::string> names_;
     std::set<Meshes> shared_;
     std::map<Meshes, std::shared_ptr<Scene>> shared_scenes_;
     std::vector<std::pair<std::shared_ptr<Scene>, Instance>> instances_;

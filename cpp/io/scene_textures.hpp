@@ -1,11 +1,12 @@
 #pragma once
-#include <assimp/scene.h>
-
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "../scene/scene.hpp"
+#include "checkpoint.hpp"
+#include "file_scene.hpp"
 #include "scene_file.hpp"
 
 namespace realcam::io {
@@ -13,32 +14,32 @@ namespace realcam::io {
 /// The pictures of a scene file, each decoded once.
 class SceneTextures {
 public:
-    /// All arguments have to outlive it. `content`: where pictures may be inside, or null. `path`: of the scene file.
-    SceneTextures(Scene& scene, const aiScene* content, const std::string& path, const ImageReader& read_image);
+    /// `scene`: gets textures and warnings. All arguments have to outlive it.
+    SceneTextures(Scene& scene, const FileScene& file, const ImageReader& read_image, Checkpoint& checkpoint);
 
     struct Found {
         std::int32_t index;
         bool stand_in;
     };
-    /// Number in scene.textures of the picture with this name in the file, added if it is new. A picture that cannot be
-    /// had becomes a checker in magenta and black, with a warning.
-    Found find(const std::string& name);
+    /// Number in scene.textures of one of the file's pictures, added if it is new. A picture that cannot be had becomes
+    /// a checker in magenta and black, with a warning.
+    Found find(std::int32_t picture);
 
     /// Mean of a picture of numbers, each 0..1, such as a roughness map; nothing, and a warning, if it cannot be had.
-    std::optional<Vec3f> mean_value(const std::string& name);
+    std::optional<Vec3f> mean_value(std::int32_t picture) { return mean(picture, false); }
     /// Mean colour of a picture, linear; nothing, and a warning, if it cannot be had.
-    std::optional<Vec3f> mean_colour(const std::string& name);
+    std::optional<Vec3f> mean_colour(std::int32_t picture) { return mean(picture, true); }
 
 private:
-    std::optional<DecodedImage> decode(const std::string& name);
-    std::optional<Vec3f> mean(const std::string& name, bool is_colour);
+    std::optional<DecodedImage> decode(std::int32_t picture);
+    std::optional<Vec3f> mean(std::int32_t picture, bool is_colour);
 
     Scene& scene_;
-    const aiScene* content_;
-    const std::string& path_;
+    const FileScene& file_;
     const ImageReader& read_image_;
-    std::map<std::string, Found> found_;
-    std::map<std::pair<std::string, bool>, std::optional<Vec3f>> means_;
+    Checkpoint& checkpoint_;
+    std::map<std::int32_t, Found> found_;
+    std::map<std::pair<std::int32_t, bool>, std::optional<Vec3f>> means_;
 };
 
 }  // namespace realcam::io

@@ -1,24 +1,20 @@
 #pragma once
 #include <cmath>
-#include <cstddef>
 
 #include "../math/vec3.hpp"
-#include "json.hpp"
 
 namespace realcam::io {
 
-/// glTF's KHR_texture_transform, to be applied to the coordinates of vertices.
+/// glTF's KHR_texture_transform, to be applied to the coordinates of vertices. Identity by default.
 class TextureTransform {
 public:
-    /// `texture_info`: the place in a material that names a texture; identity if it is null or has no such extension.
-    explicit TextureTransform(const Json& texture_info) {
-        const Json& json = texture_info["extensions"]["KHR_texture_transform"];
-        const Json &offset = json["offset"], &scale = json["scale"];
-        const double angle = json["rotation"].number(0), c = std::cos(angle), s = std::sin(angle);
-        const double u = scale[std::size_t{0}].number(1), v = scale[1].number(1);
-        from_u_ = {c * u, -s * u, 0};
-        from_v_ = {s * v, c * v, 0};
-        offset_ = {offset[std::size_t{0}].number(0), offset[1].number(0), 0};
+    TextureTransform() = default;
+    /// As the extension has them, with v downwards: scaled first, then turned, then moved.
+    TextureTransform(double scale_u, double scale_v, double rotation, double offset_u, double offset_v) {
+        const double c = std::cos(rotation), s = std::sin(rotation);
+        from_u_ = {c * scale_u, -s * scale_u, 0};
+        from_v_ = {s * scale_v, c * scale_v, 0};
+        offset_ = {offset_u, offset_v, 0};
     }
 
     /// v upwards; the extension itself has it downwards, and turns against the clock as seen on the picture.
@@ -28,7 +24,7 @@ public:
     }
 
 private:
-    Vec3d from_u_, from_v_, offset_;
+    Vec3d from_u_ = {1, 0, 0}, from_v_ = {0, 1, 0}, offset_ = {0, 0, 0};
 };
 
 }  // namespace realcam::io

@@ -38,7 +38,7 @@ std::uint64_t hash_of(Vec3d p) {
     return mix(state, state >> 32);
 }
 
-void weld_vertices(Scene& scene) {
+void weld_vertices(Scene& scene, Checkpoint& checkpoint) {
     const auto hash = [&](std::size_t i) {
         std::uint64_t state = hash_of(scene.positions_m[i]);
         const auto add = [&](float value) { state = mix(state, std::bit_cast<std::uint32_t>(value + 0.0f)); };
@@ -51,10 +51,11 @@ void weld_vertices(Scene& scene) {
                (scene.normals.empty() || same(scene.normals[a], scene.normals[b])) &&
                (scene.uvs.empty() || same(scene.uvs[a], scene.uvs[b]));
     };
-    const std::vector<std::uint32_t> first = first_equal(scene.positions_m.size(), hash, equal);
+    const std::vector<std::uint32_t> first = first_equal(scene.positions_m.size(), hash, equal, checkpoint);
 
     std::vector<bool> used(first.size(), false);
     for (const Triangle& t : scene.triangles) {
+        checkpoint.pass();
         for (const std::uint32_t v : t.vertices) used[first[v]] = true;
     }
     std::vector<std::uint32_t> kept, number(first.size(), 0);
@@ -63,7 +64,9 @@ void weld_vertices(Scene& scene) {
         number[v] = static_cast<std::uint32_t>(kept.size());
         kept.push_back(v);
     }
+    if (kept.size() == first.size()) return;
     for (Triangle& t : scene.triangles) {
+        checkpoint.pass();
         for (std::uint32_t& v : t.vertices) v = number[first[v]];
     }
     keep(scene.positions_m, kept);

@@ -9,6 +9,7 @@
 #include "../../cpp/io/lens_file.hpp"
 #include "../../cpp/optics/lens_checks.hpp"
 #include "bytes.hpp"
+#include "mutate_text.hpp"
 #include "target.hpp"
 
 namespace realcam::fuzz {
@@ -77,128 +78,6 @@ material = "N-BK7"
 clear_semi_diameter_mm = 15.0
 )";
 
-struct Span {
-    std::size_t begin, end;
-};
-
-Span pick(Bytes& in, const std::vector<Span>& spans) {
-    return spans[in.word() % spans.size()];
-}
-
-/// Runs of what a number is written with.
-std::vector<Span> numbers_of(const std::string& text) {
-    std::vector<Span> found;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const std::size_t begin = i;
-        while (i < text.size() && std::strchr("0123456789.+-e", text[i]) && text[i]) ++i;
-        if (i > begin && text.substr(begin, i - begin).find_first_of("0123456789") != std::string::npos)
-            found.push_back({begin, i});
-    }
-    return found;
-}
-
-std::vector<Span> lines_of(const std::string& text) {
-    std::vector<Span> found;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
-        found.push_back({begin, end});
-        begin = end;
-    }
-    return found;
-}
-
-std::string number_or_not(Bytes& in) {
-    static constexpr const char* odd[] = {"nan",
-                                          "-nan",
-                                          "inf",
-                                          "-inf",
-                                          "0",
-                                          "-0.0",
-                                          "1e400",
-                                          "-1e-400",
-                                          "0x10",
-                                          "0b1",
-                                          "1_000",
-                                          "1__0",
-                                          "true",
-                                          "''",
-                                          "\"1\"",
-                                          "[]",
-                                          "[1]",
-                                          "[[1.0, 2.0]]",
-                                          "{}",
-                                          "1979-05-27",
-                                          "9223372036854775807",
-                                          "9223372036854775808",
-                                          "1e18",
-                                          "."};
-    if (in.chance(128)) return odd[in.below(static_cast<int>(sizeof odd / sizeof *odd))];
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", in.chance(128) ? in.any() : in.sign() * in.decades(-3, 3));
-    return text;
-}
-
-void mutate(Bytes& in, std::string& text) {
-    if (text.empty()) text = "\n";
-    switch (in.below(12)) {
-        case 0:
-        case 1:
-        case 2:
-        case 3: {
-            const std::vector<Span> numbers = numbers_of(text);
-            if (numbers.empty()) return;
-            const Span at = pick(in, numbers);
-            text.replace(at.begin, at.end - at.begin, number_or_not(in));
-            return;
-        }
-        case 4: {
-            const Span line = pick(in, lines_of(text));
-            text.erase(line.begin, line.end - line.begin);
-            return;
-        }
-        case 5: {
-            const std::vector<Span> lines = lines_of(text);
-            const Span from = pick(in, lines), to = pick(in, lines);
-            text.insert(to.begin, text.substr(from.begin, from.end - from.begin));
-            return;
-        }
-        case 6: {  // a block of lines many times: the same surface, the same table
-            const std::vector<Span> lines = lines_of(text);
-            const std::size_t first = in.word() % lines.size(),
-                              last = std::min(first + static_cast<std::size_t>(in.below(8)), lines.size() - 1);
-            const std::string block = text.substr(lines[first].begin, lines[last].end - lines[first].begin);
-            for (int i = in.below(256); i > 0 && text.size() < 100000; --i) text.insert(lines[last].end, block);
-            return;
-        }
-        case 7: text[in.word() % text.size()] = static_cast<char>(in.byte()); return;
-        case 8: {
-            std::string some;
-            for (int i = 1 + in.below(16); i > 0; --i) some += static_cast<char>(in.byte());
-            text.insert(in.word() % text.size(), some);
-            return;
-        }
-        case 9: text.resize(in.word() % text.size()); return;
-        case 10: {  // nesting
-            const char open = in.chance(128) ? '[' : '{';
-            text.insert(in.word() % text.size(), std::string(static_cast<std::size_t>(in.below(256)) * 40, open));
-            return;
-        }
-        default: {  // a key in another's place
-            const std::vector<Span> lines = lines_of(text);
-            const Span from = pick(in, lines), to = pick(in, lines);
-            const std::string key = text.substr(from.begin, text.find('=', from.begin) - from.begin);
-            const std::size_t equals = text.find('=', to.begin);
-            if (key.size() < 40 && equals < to.end) text.replace(to.begin, equals - to.begin, key);
-        }
-    }
-}
-
-std::string start_of(std::string text) {
-    for (char& c : text)
-        if (c == '\n') c = '|';
-    return text.substr(0, 700);
-}
-
 }  // namespace
 
 int fuzz_lens_file(const std::uint8_t* data, std::size_t size) {
@@ -210,7 +89,7 @@ int fuzz_lens_file(const std::uint8_t* data, std::size_t size) {
         text.assign(reinterpret_cast<const char*>(data) + (size > 0), size - (size > 0));
     } else {
         text = choice % 2 ? std::string(kEveryKey) : std::string(files[choice / 2 % files.size()].text);
-        for (int i = in.below(5); i >= 0; --i) mutate(in, text);
+        for (int i = in.below(5); i >= 0; --i) mutate_text(in, text);
     }
     ++findings().files;
     try {

@@ -11,7 +11,6 @@
 
 namespace realcam::fuzz {
 
-using Target = int (*)(const std::uint8_t* data, std::size_t size);
 using Input = std::vector<std::uint8_t>;
 
 inline Input input_of(std::uint32_t seed, std::uint64_t number) {

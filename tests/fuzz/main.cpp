@@ -17,7 +17,8 @@
 
 /// A sanitizer's finding becomes a signal, which saves the input.
 extern "C" const char* __asan_default_options() {
-    return "abort_on_error=1";
+    // In MB. A piece larger than the first is a promise that a file did not keep; the second is for all of them.
+    return "abort_on_error=1:max_allocation_size_mb=1500:hard_rss_limit_mb=3000";
 }
 extern "C" const char* __ubsan_default_options() {
     return "abort_on_error=1:print_stacktrace=1";
@@ -27,20 +28,34 @@ namespace {
 
 using namespace realcam::fuzz;
 
-/// Of processor time, for one input: a thousand times what they take.
-constexpr long kHangSeconds = 60;
-
 struct NamedTarget {
     const char* name;
     Target target;
     std::uint64_t Findings::* counts;  ///< what is counted up to the wanted number
     const char* unit;
+    long hang_seconds;  ///< of processor time, for one input: a thousand times what they take
 };
+#if defined(REALCAM_FUZZ_FILES)
 constexpr NamedTarget kTargets[] = {
-    {"lens_trace", fuzz_lens_trace, &Findings::rays, "rays"},
-    {"lens_file", fuzz_lens_file, &Findings::files, "files"},
-    {"camera", fuzz_camera, &Findings::pupil_samples, "pupil samples"},
+    {"obj", fuzz_obj, &Findings::files, "files", 10},
+    {"mtl", fuzz_mtl, &Findings::files, "files", 10},
+    {"gltf", fuzz_gltf, &Findings::files, "files", 10},
+    {"glb", fuzz_glb, &Findings::files, "files", 10},
+    {"ply", fuzz_ply, &Findings::files, "files", 10},
+#if defined(REALCAM_FUZZ_SHOT_FILES)
+    {"shot_file", fuzz_shot_file, &Findings::files, "files", 10},
+#endif
+#if defined(REALCAM_FUZZ_PICTURES)
+    {"picture", fuzz_picture, &Findings::files, "files", 10},
+#endif
 };
+#else
+constexpr NamedTarget kTargets[] = {
+    {"lens_trace", fuzz_lens_trace, &Findings::rays, "rays", 60},
+    {"lens_file", fuzz_lens_file, &Findings::files, "files", 60},
+    {"camera", fuzz_camera, &Findings::pupil_samples, "pupil samples", 60},
+};
+#endif
 
 Input current;
 std::string saved_as = "fuzz-input.bin";
@@ -73,8 +88,8 @@ void watch() {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stopped = 1; });
 }
 
-void start_clock() {
-    const itimerval limit{{0, 0}, {kHangSeconds, 0}};
+void start_clock(long seconds) {
+    const itimerval limit{{0, 0}, {seconds, 0}};
     setitimer(ITIMER_PROF, &limit, nullptr);
 }
 
@@ -87,7 +102,7 @@ int print(const Run& run, const NamedTarget& target) {
     if (all.rays)
         std::printf("  %.3g of the rays left their lens\n",
                     static_cast<double>(all.passed) / static_cast<double>(all.rays));
-    if (all.files) std::printf("  %llu of the files were lenses\n", static_cast<unsigned long long>(all.files_read));
+    if (all.files) std::printf("  %llu of the files could be read\n", static_cast<unsigned long long>(all.files_read));
     if (all.cameras)
         std::printf("  %llu of %llu cameras took %llu rays\n", static_cast<unsigned long long>(all.cameras_made),
                     static_cast<unsigned long long>(all.cameras), static_cast<unsigned long long>(all.camera_rays));
@@ -98,12 +113,13 @@ int print(const Run& run, const NamedTarget& target) {
 }
 
 int usage() {
-    std::fprintf(
-        stderr,
-        "realcam_fuzz TARGET COUNT [SEED] [FILE]   runs COUNT rays, files or samples; FILE is where the first\n"
-        "                                          input that breaks something is saved (fuzz-input.bin)\n"
-        "realcam_fuzz TARGET replay FILE           runs one saved input\n"
-        "targets: lens_trace, lens_file, camera\n");
+    std::fprintf(stderr,
+                 "PROGRAM TARGET COUNT [SEED] [FILE]   runs COUNT rays, files or samples; FILE is where the first\n"
+                 "                                     input that breaks something is saved (fuzz-input.bin)\n"
+                 "PROGRAM TARGET replay FILE           runs one saved input\n"
+                 "targets:");
+    for (const NamedTarget& target : kTargets) std::fprintf(stderr, " %s", target.name);
+    std::fprintf(stderr, "\n");
     return 2;
 }
 
@@ -130,7 +146,7 @@ int main(int argc, char** argv) {
         target->target, seed, [&] { return stopped || static_cast<double>(findings().*target->counts) >= count; },
         [](const Input& input) {
             current = input;
-            start_clock();
+            start_clock(target->hang_seconds);
         });
     if (!run.first_broken.empty()) save(run.first_broken);
     return print(run, *target);

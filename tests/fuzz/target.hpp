@@ -12,6 +12,18 @@ int fuzz_lens_trace(const std::uint8_t* data, std::size_t size);
 int fuzz_lens_file(const std::uint8_t* data, std::size_t size);
 int fuzz_camera(const std::uint8_t* data, std::size_t size);
 
+// Of realcam_fuzz_files.
+int fuzz_obj(const std::uint8_t* data, std::size_t size);
+int fuzz_mtl(const std::uint8_t* data, std::size_t size);
+int fuzz_gltf(const std::uint8_t* data, std::size_t size);
+int fuzz_glb(const std::uint8_t* data, std::size_t size);
+int fuzz_ply(const std::uint8_t* data, std::size_t size);
+int fuzz_scene_file(const std::uint8_t* data, std::size_t size);
+int fuzz_shot_file(const std::uint8_t* data, std::size_t size);
+int fuzz_picture(const std::uint8_t* data, std::size_t size);
+
+using Target = int (*)(const std::uint8_t* data, std::size_t size);
+
 }  // namespace realcam::fuzz
 
 /// libFuzzer takes one target for each program.

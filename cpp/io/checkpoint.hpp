@@ -1,0 +1,41 @@
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <utility>
+
+#include "../error.hpp"
+#include "../keep_going.hpp"
+
+namespace realcam::io {
+
+/// Asks the caller of a long task, some fifty times a second, whether to go on.
+class Checkpoint {
+public:
+    /// No function: go on.
+    explicit Checkpoint(KeepGoing keep_going = {}) : keep_going_(std::move(keep_going)) {}
+
+    /// Reports work done; a unit is some nanoseconds to a microsecond. Throws Cancelled where the caller wants to stop.
+    void pass(std::size_t work = 1) {
+        work_ += work;
+        if (work_ >= kWorkBetweenClocks) look_at_clock();
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::size_t kWorkBetweenClocks = 1 << 14;
+    static constexpr std::chrono::milliseconds kBetweenQuestions{20};
+
+    void look_at_clock() {
+        work_ = 0;
+        const Clock::time_point now = Clock::now();
+        if (!keep_going_ || now - last_ < kBetweenQuestions) return;
+        last_ = now;
+        if (!keep_going_()) throw Cancelled();
+    }
+
+    KeepGoing keep_going_;
+    std::size_t work_ = 0;
+    Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace realcam::io

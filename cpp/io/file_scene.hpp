@@ -1,0 +1,65 @@
+#pragma once
+// What a scene file says, whatever its format: the readers write it, and scene_geometry, scene_objects, scene_lights
+// and scene_materials make a Scene of it.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "../math/affine.hpp"
+#include "../scene/scene_view.hpp"
+#include "file_material.hpp"
+
+namespace realcam::io {
+
+/// Vertices, in units of the file. Several meshes may share them.
+struct FileVertices {
+    std::vector<Vec3d> positions;
+    std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): none
+    std::vector<Vec2f> uvs;      ///< empty, or one per position; v upwards
+    bool has_colours = false;
+};
+
+struct FileMesh {
+    std::string label;  ///< for messages
+    std::uint32_t vertices = 0;  ///< number in FileScene::vertices
+    std::vector<Triangle> triangles;  ///< indices in range; material: number in FileScene::materials
+    TextureTransform uv_transform;
+};
+
+constexpr std::uint32_t kNoParent = 0xffffffffu;
+
+/// Nodes stand in depth-first order: those below number i are i + 1 to end - 1.
+struct FileNode {
+    std::string name;  ///< valid UTF-8
+    Affine<double> parent_from_node;
+    std::uint32_t parent = kNoParent, end = 0;
+    std::uint32_t first_mesh = 0, mesh_count = 0;  ///< in FileScene::meshes
+    std::int32_t light = -1;  ///< number in FileScene::lights
+};
+
+/// A picture that materials name.
+struct FilePicture {
+    std::string name;    ///< as the file spells it; of one inside the file, a label
+    bool is_inside = false;
+    std::string bytes;  ///< of one inside the file: encoded, as PNG or JPEG; empty where they cannot be had
+};
+
+struct FileLight {
+    std::string type;  ///< of KHR_lights_punctual: point, directional, spot, or what else the file says
+    Vec3d strength;    ///< colour times intensity: cd, or lux for "directional"
+};
+
+struct FileScene {
+    std::string path;
+    bool smooths = false;  ///< whether triangles without normals are smooth, and not flat
+    std::vector<FileVertices> vertices;
+    std::vector<FileMesh> meshes;
+    std::vector<FileNode> nodes;
+    std::vector<FileMaterial> materials;
+    std::vector<FilePicture> pictures;
+    std::vector<FileLight> lights;
+    std::vector<std::string> warnings;  ///< without the path
+};
+
+}  // namespace realcam::io

@@ -1,0 +1,163 @@
+#include "gltf_accessors.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+namespace realcam::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+/// What an accessor without bytes may promise, of which all but the sparse ones are 0.
+constexpr std::size_t kMostWithoutBytes = std::size_t{1} << 20;
+
+std::size_t components_of(std::string_view type) {
+    if (type == "SCALAR") return 1;
+    if (type == "VEC2") return 2;
+    if (type == "VEC3") return 3;
+    return type == "MAT4" ? 16 : 4;
+}
+
+/// Elements of one component type in a row of bytes.
+struct Elements {
+    std::string_view bytes;
+    std::size_t component_type, components, count, stride;
+    bool normalised;
+};
+
+std::size_t size_of_component(std::size_t type) {
+    switch (type) {
+        case 5120:
+        case 5121: return 1;
+        case 5122:
+        case 5123: return 2;
+        case 5125:
+        case 5126: return 4;
+        default: return 0;
+    }
+}
+
+/// Normalised, a signed integer means -1 to 1, an unsigned one 0 to 1.
+template <class Stored, class Value>
+Value meaning_of(Stored stored, bool normalised) {
+    if constexpr (std::is_same_v<Value, float> && std::is_integral_v<Stored>) {
+        if (normalised) {
+            const float share = static_cast<float>(stored) / static_cast<float>(std::numeric_limits<Stored>::max());
+            return std::max(share, -1.0f);
+        }
+    }
+    return static_cast<Value>(stored);
+}
+
+template <class Stored, class Value>
+void copy_elements(const Elements& from, std::vector<Value>& to, Checkpoint& checkpoint) {
+    for (std::size_t i = 0; i < from.count; ++i) {
+        const char* element = from.bytes.data() + i * from.stride;
+        for (std::size_t c = 0; c < from.components; ++c) {
+            Stored stored;
+            std::memcpy(&stored, element + c * sizeof stored, sizeof stored);
+            to.push_back(meaning_of<Stored, Value>(stored, from.normalised));
+        }
+        checkpoint.pass();
+    }
+}
+
+template <class Value>
+std::vector<Value> values_of(const Elements& from, Checkpoint& checkpoint) {
+    std::vector<Value> to;
+    to.reserve(from.count * from.components);
+    switch (from.component_type) {
+        case 5120: copy_elements<std::int8_t>(from, to, checkpoint); break;
+        case 5121: copy_elements<std::uint8_t>(from, to, checkpoint); break;
+        case 5122: copy_elements<std::int16_t>(from, to, checkpoint); break;
+        case 5123: copy_elements<std::uint16_t>(from, to, checkpoint); break;
+        case 5125: copy_elements<std::uint32_t>(from, to, checkpoint); break;
+        default:
+            // Floats where whole numbers are wanted have been refused.
+            if constexpr (std::is_same_v<Value, float>) copy_elements<float>(from, to, checkpoint);
+    }
+    return to;
+}
+
+/// `from`: an accessor, or a part of a sparse one, with bufferView, byteOffset and componentType.
+template <class Value>
+std::vector<Value> read_view(const GltfDocument& document, GltfBuffers& buffers, Checkpoint& checkpoint,
+                             const Json& from, std::size_t components, std::size_t count, const Json& component_type,
+                             bool normalised, const std::string& where) {
+    const std::size_t type = component_type.index(0), size = size_of_component(type) * components;
+    if (size == 0 || (type == 5126 && !std::is_same_v<Value, float>))
+        document.fail(where + ": its componentType is none that is wanted here");
+    std::string_view bytes = buffers.view(from["bufferView"], where);
+    const std::size_t offset = from["byteOffset"].index(0);
+    const Json& view = document.root()["bufferViews"][from["bufferView"].index(0)];
+    const std::size_t given_stride = view["byteStride"].index(0), stride = given_stride > 0 ? given_stride : size;
+    const std::size_t room = offset <= bytes.size() ? bytes.size() - offset : 0;
+    // Elements may overlap, but for one that reaches into the next.
+    if (stride < size || (count > 0 && (room < size || count - 1 > (room - size) / stride)))
+        document.fail(where + ": promises " + std::to_string(count) + " elements of " + std::to_string(size) +
+                      " bytes, and its bufferView has " + std::to_string(room) + " bytes for them");
+    return values_of<Value>({bytes.substr(std::min(offset, bytes.size())), type, components, count, stride, normalised},
+                            checkpoint);
+}
+
+}  // namespace
+
+std::size_t GltfAccessors::count(const Json& reference) const {
+    const Json& accessors = document_.root()["accessors"];
+    return accessors[reference.index(accessors.size())]["count"].index(0);
+}
+
+template <class Value>
+void GltfAccessors::read_sparse(const Json& accessor, std::size_t components, const std::string& where,
+                                std::vector<Value>& values) {
+    const Json &sparse = accessor["sparse"], &indices = sparse["indices"];
+    const std::size_t count = sparse["count"].index(0), elements = values.size() / components;
+    const std::vector<std::uint32_t> places =
+        read_view<std::uint32_t>(document_, buffers_, checkpoint_, indices, 1, count, indices["componentType"], false,
+                                 where + ": its sparse indices");
+    const std::vector<Value> replacements =
+        read_view<Value>(document_, buffers_, checkpoint_, sparse["values"], components, count,
+                         accessor["componentType"], accessor["normalized"].is_true(), where + ": its sparse values");
+    for (std::size_t i = 0; i < count; ++i) {
+        if (places[i] >= elements)
+            document_.fail(where + ": its sparse index " + std::to_string(places[i]) +
+                           " is not smaller than the number of elements, " + std::to_string(elements));
+        std::copy_n(replacements.begin() + static_cast<std::ptrdiff_t>(i * components), components,
+                    values.begin() + static_cast<std::ptrdiff_t>(places[i] * components));
+    }
+}
+
+template <class Value>
+std::vector<Value> GltfAccessors::read(const Json& reference, const std::string& type, const std::string& use) {
+    const std::optional<std::size_t> number = document_.find("accessors", reference, use);
+    if (!number) document_.fail(use + ": names no accessor");
+    const std::string where = use + ": accessor " + std::to_string(*number);
+    const Json& accessor = document_.root()["accessors"][*number];
+    if (accessor["type"].text() != type) document_.fail(where + ": elements of type " + type + " are wanted");
+    const std::size_t count = accessor["count"].index(0), components = components_of(type);
+    std::vector<Value> values;
+    if (!accessor["bufferView"].is_null())
+        values = read_view<Value>(document_, buffers_, checkpoint_, accessor, components, count,
+                                  accessor["componentType"], accessor["normalized"].is_true(), where);
+    else if (count > kMostWithoutBytes)
+        document_.fail(where + ": promises " + std::to_string(count) + " elements and has no bytes for them");
+    else
+        values.assign(count * components, Value(0));
+    if (!accessor["sparse"].is_null()) read_sparse(accessor, components, where, values);
+    return values;
+}
+
+std::vector<float> GltfAccessors::numbers(const Json& reference, const std::string& type, const std::string& where) {
+    return read<float>(reference, type, where);
+}
+
+std::vector<std::uint32_t> GltfAccessors::integers(const Json& reference, const std::string& type,
+                                                   const std::string& where) {
+    return read<std::uint32_t>(reference, type, where);
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,61 @@
+#include "gltf_buffers.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "file_beside.hpp"
+#include "printable.hpp"
+#include "regular_file.hpp"
+#include "uri.hpp"
+
+namespace realcam::io {
+
+std::string GltfBuffers::read_buffer(std::size_t number, std::size_t size) {
+    const std::string& uri = document_.root()["buffers"][number]["uri"].text();
+    const std::string label = "buffer " + std::to_string(number);
+    if (is_data_uri(uri)) {
+        std::optional<std::string> data = data_of_uri(uri);
+        if (!data) document_.fail(label + ": its data: address is no base64");
+        return std::move(*data);
+    }
+    const std::optional<std::string> file = find_beside(document_.path(), uri);
+    if (!file)
+        document_.fail(label + " cannot be read: " + (uri.empty() ? "it has no bytes" : quoted(uri)) +
+                       (uri.empty() ? "" : ": no such file beside the scene"));
+    try {
+        return read_whole_file(*file, checkpoint_, size);
+    } catch (const FileError& error) {
+        document_.fail(label + " cannot be read: " + quoted(uri) + ": " + error.reason);
+    }
+}
+
+std::string_view GltfBuffers::buffer(std::size_t number) {
+    const Json& buffer = document_.root()["buffers"][number];
+    const std::size_t size = buffer["byteLength"].index(0);
+    std::string_view bytes = document_.binary_chunk();
+    if (!buffer["uri"].is_null() || number != 0 || bytes.empty()) {
+        auto found = read_.find(number);
+        if (found == read_.end()) found = read_.emplace(number, read_buffer(number, size)).first;
+        bytes = found->second;
+    }
+    if (bytes.size() < size)
+        document_.fail("buffer " + std::to_string(number) + ": is cut short: " + std::to_string(bytes.size()) + " of " +
+                       std::to_string(size) + " bytes");
+    return bytes.substr(0, size);
+}
+
+std::string_view GltfBuffers::view(const Json& reference, const std::string& where) {
+    const std::optional<std::size_t> number = document_.find("bufferViews", reference, where);
+    if (!number) document_.fail(where + ": names no bufferView");
+    const Json& view = document_.root()["bufferViews"][*number];
+    const std::string label = where + ": bufferView " + std::to_string(*number);
+    const std::optional<std::size_t> buffer_number = document_.find("buffers", view["buffer"], label);
+    if (!buffer_number) document_.fail(label + ": names no buffer");
+    const std::string_view bytes = buffer(*buffer_number);
+    const std::size_t offset = view["byteOffset"].index(0), size = view["byteLength"].index(0);
+    if (offset > bytes.size() || size > bytes.size() - offset)
+        document_.fail(label + ": reaches beyond the " + std::to_string(bytes.size()) + " bytes of its buffer");
+    return bytes.substr(offset, size);
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,53 @@
+#include "gltf_file.hpp"
+
+#include <optional>
+
+#include "../error.hpp"
+#include "gltf_materials.hpp"
+#include "gltf_meshes.hpp"
+#include "gltf_nodes.hpp"
+
+namespace realcam::io {
+namespace {
+
+/// A skin of a node whose transform has no inverse is left out, and counted.
+void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                const std::vector<std::size_t>& numbers, Checkpoint& checkpoint) {
+    const GltfSkins skins(document, accessors, scene, numbers, checkpoint);
+    GltfMeshes meshes(document, accessors, scene, checkpoint);
+    std::size_t left_out = 0;
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        const Json& node = document.root()["nodes"][numbers[i]];
+        const std::string label = gltf_label("node", numbers[i], node);
+        const std::optional<std::size_t> mesh = document.find("meshes", node["mesh"], label + ": its mesh");
+        if (!mesh) continue;
+        std::optional<JointMaps> joints;
+        if (const auto skin = document.find("skins", node["skin"], label + ": its skin")) {
+            joints = skins.joint_maps(*skin, i);
+            if (!joints) ++left_out;
+        }
+        const GltfMeshes::Range range = meshes.add(*mesh, node["weights"], joints);
+        scene.nodes[i].first_mesh = range.first;
+        scene.nodes[i].mesh_count = range.count;
+    }
+    if (left_out > 0)
+        scene.warnings.push_back(std::to_string(left_out) + " skins are left out: their nodes are scaled to nothing");
+}
+
+}  // namespace
+
+FileScene read_gltf(const std::string& path, Checkpoint& checkpoint) {
+    const GltfDocument document(path, checkpoint);
+    GltfBuffers buffers(document, checkpoint);
+    GltfAccessors accessors(document, buffers, checkpoint);
+    FileScene scene;
+    scene.path = path;
+    read_gltf_lights(scene, document);
+    read_gltf_materials(scene, document);
+    const std::vector<std::size_t> numbers = lay_out_nodes(scene, document, checkpoint);
+    add_meshes(scene, document, accessors, numbers, checkpoint);
+    fetch_pictures(scene, document, buffers);
+    return scene;
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,159 @@
+#include "gltf_nodes.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "../error.hpp"
+#include "printable.hpp"
+
+namespace realcam::io {
+namespace {
+
+constexpr std::size_t kNoNode = static_cast<std::size_t>(-1);
+
+Vec3d vector_of(const Json& numbers, Vec3d otherwise) {
+    return {numbers[std::size_t{0}].number(otherwise.x), numbers[1].number(otherwise.y),
+            numbers[2].number(otherwise.z)};
+}
+
+Affine<double> matrix_of(const Json& m) {  // by columns
+    const auto column = [&](std::size_t c) {
+        return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};
+    };
+    return {column(0), column(1), column(2), column(3)};
+}
+
+Affine<double> transform_of(const Json& node) {
+    if (node["matrix"].size() == 16) return matrix_of(node["matrix"]);
+    const Json& q = node["rotation"];
+    double x = q[std::size_t{0}].number(0), y = q[1].number(0), z = q[2].number(0), w = q[3].number(1);
+    // Files round quaternions to seven digits, which would scale what they turn.
+    if (const double size = std::sqrt(x * x + y * y + z * z + w * w); size > 0) {
+        x /= size, y /= size, z /= size, w /= size;
+    }
+    const Vec3d scale = vector_of(node["scale"], {1, 1, 1});
+    Affine<double> out;
+    out.x = scale.x * Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)};
+    out.y = scale.y * Vec3d{2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)};
+    out.z = scale.z * Vec3d{2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
+    out.origin = vector_of(node["translation"], {0, 0, 0});
+    return out;
+}
+
+class NodeLayout {
+public:
+    NodeLayout(FileScene& scene, const GltfDocument& document, Checkpoint& checkpoint)
+        : scene_(scene), document_(document), nodes_(document.root()["nodes"]), checkpoint_(checkpoint) {}
+
+    std::vector<std::size_t> lay_out() {
+        find_parents();
+        const std::vector<std::size_t> roots = find_roots();
+        for (const std::size_t root : roots) add_tree(root);
+        return std::move(numbers_);
+    }
+
+private:
+    std::string label(std::size_t node) const { return gltf_label("node", node, nodes_[node]); }
+
+    void find_parents() {
+        parents_.assign(nodes_.size(), kNoNode);
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            const Json& children = nodes_[n]["children"];
+            for (std::size_t i = 0; i < children.size(); ++i) {
+                checkpoint_.pass();
+                const std::size_t child = *document_.find("nodes", not_null(children[i], n), label(n) + ": its child");
+                if (parents_[child] != kNoNode)
+                    document_.fail(label(child) + ": is listed twice as a child; a node has at most one parent");
+                parents_[child] = n;
+            }
+        }
+    }
+
+    const Json& not_null(const Json& reference, std::size_t parent) const {
+        if (reference.is_null()) document_.fail(label(parent) + ": its child is no number");
+        return reference;
+    }
+
+    std::vector<std::size_t> find_roots() const {
+        const Json& root = document_.root();
+        std::vector<std::size_t> roots;
+        if (root["scenes"].size() == 0) {
+            for (std::size_t n = 0; n < nodes_.size(); ++n)
+                if (parents_[n] == kNoNode) roots.push_back(n);
+            return roots;
+        }
+        const std::size_t number = document_.find("scenes", root["scene"], "scene").value_or(0);
+        const Json& listed = root["scenes"][number]["nodes"];
+        std::vector<bool> is_listed(nodes_.size(), false);
+        for (std::size_t i = 0; i < listed.size(); ++i) {
+            const std::optional<std::size_t> node =
+                document_.find("nodes", listed[i], "scene " + std::to_string(number));
+            if (!node) continue;
+            if (parents_[*node] != kNoNode || is_listed[*node])
+                document_.fail(label(*node) + ": a node of a scene is listed once, and has no parent");
+            is_listed[*node] = true;
+            roots.push_back(*node);
+        }
+        return roots;
+    }
+
+    /// Without recursion: a chain may be as long as the file. As every node has one parent, none comes twice.
+    void add_tree(std::size_t root) {
+        struct Open {
+            std::size_t node, next_child;
+            std::uint32_t index;
+        };
+        std::vector<Open> open = {{root, 0, add_node(root, kNoParent)}};
+        while (!open.empty()) {
+            Open& last = open.back();
+            const Json& children = nodes_[last.node]["children"];
+            if (last.next_child == children.size()) {
+                scene_.nodes[last.index].end = static_cast<std::uint32_t>(scene_.nodes.size());
+                open.pop_back();
+                continue;
+            }
+            const std::size_t child = children[last.next_child++].index(kNoNode);
+            open.push_back({child, 0, add_node(child, last.index)});
+        }
+    }
+
+    std::uint32_t add_node(std::size_t number, std::uint32_t parent) {
+        checkpoint_.pass();
+        const Json& from = nodes_[number];
+        FileNode node{printable(from["name"].text()), transform_of(from), parent};
+        const Json& light = from["extensions"]["KHR_lights_punctual"]["light"];
+        if (!light.is_null()) {
+            const std::size_t which = light.index(scene_.lights.size());
+            if (which >= scene_.lights.size())
+                document_.fail(label(number) + ": its light does not exist; there are " +
+                               std::to_string(scene_.lights.size()));
+            node.light = static_cast<std::int32_t>(which);
+        }
+        scene_.nodes.push_back(std::move(node));
+        numbers_.push_back(number);
+        return static_cast<std::uint32_t>(scene_.nodes.size() - 1);
+    }
+
+    FileScene& scene_;
+    const GltfDocument& document_;
+    const Json& nodes_;
+    Checkpoint& checkpoint_;
+    std::vector<std::size_t> parents_, numbers_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> lay_out_nodes(FileScene& scene, const GltfDocument& document, Checkpoint& checkpoint) {
+    return NodeLayout(scene, document, checkpoint).lay_out();
+}
+
+std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes) {
+    std::vector<Affine<double>> transforms;
+    transforms.reserve(nodes.size());
+    for (const FileNode& node : nodes)
+        transforms.push_back(node.parent == kNoParent ? node.parent_from_node
+                                                      : transforms[node.parent] * node.parent_from_node);
+    return transforms;
+}
+
+}  // namespace realcam::io

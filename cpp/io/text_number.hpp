@@ -1,0 +1,48 @@
+#pragma once
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+namespace realcam::io {
+
+/// Takes a number from the beginning of a text, also "nan" and "inf", a "+" and ".5"; nothing, and the text as it was,
+/// where there is none. One too large for a double is infinite, and one too small is 0.
+inline std::optional<double> take_number(std::string_view& text) {
+    std::string_view rest = text;
+    if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);
+    double value = 0;
+    auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error == std::errc::invalid_argument) return std::nullopt;
+    const auto length = static_cast<std::size_t>(end - rest.data());
+    if (error == std::errc::result_out_of_range) {
+        // A long double reaches farther. Beyond that, the exponent's sign tells which end it is.
+        long double wide = 0;
+        const bool known = std::from_chars(rest.data(), rest.data() + rest.size(), wide).ec == std::errc();
+        const std::string_view token = rest.substr(0, length);
+        const bool tiny =
+            known ? wide < 1 && wide > -1
+                  : token.find("e-") != std::string_view::npos || token.find("E-") != std::string_view::npos;
+        const double infinite =
+            token.starts_with('-') ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+        value = tiny ? 0 : infinite;
+    }
+    text = rest.substr(length);
+    return value;
+}
+
+/// The same for a whole number, which ends where its digits do. Those beyond 64 bits become the largest or the least.
+inline std::optional<std::int64_t> take_integer(std::string_view& text) {
+    std::string_view rest = text;
+    if (rest.starts_with('+') && !rest.substr(1).starts_with('-')) rest.remove_prefix(1);
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error == std::errc::invalid_argument) return std::nullopt;
+    using Limits = std::numeric_limits<std::int64_t>;
+    if (error == std::errc::result_out_of_range) value = rest.starts_with('-') ? Limits::min() : Limits::max();
+    text = rest.substr(static_cast<std::size_t>(end - rest.data()));
+    return value;
+}
+
+}  // namespace realcam::io

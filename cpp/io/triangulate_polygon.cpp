@@ -1,0 +1,208 @@
+#include "triangulate_polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace realcam::io {
+namespace {
+
+struct Point {
+    double x, y;
+    bool operator==(const Point&) const = default;
+};
+
+/// Twice the area of a triangle, positive where it turns left.
+double turn(Point a, Point b, Point c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+bool is_inside(Point p, Point a, Point b, Point c) {
+    return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+}
+
+/// The polygon seen along the axis that is nearest to its normal (Newell's), from the side where it runs to the left.
+/// Empty where it has no normal.
+std::vector<Point> projected(std::span<const Vec3d> corners) {
+    Vec3d normal = {0, 0, 0};
+    const Vec3d origin = corners[0];
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        normal += cross(corners[i] - origin, corners[(i + 1) % corners.size()] - origin);
+    const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
+    if (!(x + y + z > 0)) return {};
+    std::vector<Point> points;
+    points.reserve(corners.size());
+    for (const Vec3d& corner : corners) {
+        const Vec3d p = corner - origin;
+        if (z >= x && z >= y)
+            points.push_back(normal.z > 0 ? Point{p.x, p.y} : Point{p.y, p.x});
+        else if (x >= y)
+            points.push_back(normal.x > 0 ? Point{p.y, p.z} : Point{p.z, p.y});
+        else
+            points.push_back(normal.y > 0 ? Point{p.z, p.x} : Point{p.x, p.z});
+    }
+    return points;
+}
+
+/// Points by the cell of a square grid that they lie in: about as many cells as points.
+class Grid {
+public:
+    Grid(const std::vector<Point>& points, const std::vector<std::uint32_t>& members) {
+        low_ = high_ = points[0];
+        for (const Point& p : points) {
+            low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+            high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y)};
+        }
+        side_ = static_cast<std::size_t>(std::sqrt(static_cast<double>(members.size()))) + 1;
+        begin_.assign(side_ * side_ + 1, 0);
+        for (const std::uint32_t m : members) ++begin_[cell(points[m]) + 1];
+        for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+        members_.resize(members.size());
+        std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+        for (const std::uint32_t m : members) members_[next[cell(points[m])]++] = m;
+    }
+
+    /// Whether `test` is true of any member in the cells that a triangle touches. Adds what it looked at to `work`.
+    template <class Test>
+    bool any_in(const std::array<Point, 3>& triangle, std::size_t& work, Test&& test) const {
+        const auto [lowest, highest] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
+        const std::size_t last = row(highest);
+        for (std::size_t y = row(lowest); y <= last; ++y) {
+            const auto [left, right] = columns_in_row(triangle, y);
+            for (std::size_t c = y * side_ + left; c <= y * side_ + right; ++c) {
+                work += 1 + begin_[c + 1] - begin_[c];
+                for (std::uint32_t k = begin_[c]; k < begin_[c + 1]; ++k)
+                    if (test(members_[k])) return true;
+            }
+        }
+        return false;
+    }
+
+private:
+    std::size_t place(double v, double low, double high) const {
+        const double share = high > low ? (v - low) / (high - low) : 0;
+        return std::min(static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(side_)), side_ - 1);
+    }
+    /// Of a long triangle that lies across the grid, a row has few cells. A row more on both sides keeps roundings out.
+    std::pair<std::size_t, std::size_t> columns_in_row(const std::array<Point, 3>& triangle, std::size_t y) const {
+        const double height = (high_.y - low_.y) / static_cast<double>(side_);
+        const double bottom = low_.y + (static_cast<double>(y) - 1) * height, top = bottom + 3 * height;
+        double left = high_.x, right = low_.x;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Point a = triangle[i], b = triangle[(i + 1) % 3];
+            if (std::max(a.y, b.y) < bottom || std::min(a.y, b.y) > top) continue;
+            for (const double end : {bottom, top}) {
+                // The edge's end, or where it leaves the row.
+                const double share =
+                    a.y == b.y ? (end == top ? 1 : 0) : std::clamp((end - a.y) / (b.y - a.y), 0.0, 1.0);
+                const double x = a.x + share * (b.x - a.x);
+                left = std::min(left, x);
+                right = std::max(right, x);
+            }
+        }
+        const std::size_t first = column(left), last = column(std::max(left, right));
+        return {first > 0 ? first - 1 : 0, std::min(last + 1, side_ - 1)};
+    }
+    std::size_t column(double x) const { return place(x, low_.x, high_.x); }
+    std::size_t row(double y) const { return place(y, low_.y, high_.y); }
+    std::size_t cell(Point p) const { return row(p.y) * side_ + column(p.x); }
+
+    Point low_{}, high_{};
+    std::size_t side_ = 1;
+    std::vector<std::uint32_t> begin_, members_;
+};
+
+std::vector<std::uint32_t> reflex_corners(const std::vector<Point>& points) {
+    // What is straight but for rounding is no corner that turns right.
+    double size = 0;
+    for (const Point& p : points) size = std::max({size, std::abs(p.x), std::abs(p.y)});
+    const double rounding = 1e-12 * size * size;
+    std::vector<std::uint32_t> found;
+    const std::size_t n = points.size();
+    for (std::size_t i = 0; i < n; ++i)
+        if (turn(points[(i + n - 1) % n], points[i], points[(i + 1) % n]) < -rounding)
+            found.push_back(static_cast<std::uint32_t>(i));
+    return found;
+}
+
+class EarClipper {
+public:
+    EarClipper(const std::vector<Point>& points, const std::vector<std::uint32_t>& reflex)
+        : points_(points),
+          grid_(points, reflex),
+          is_reflex_(points.size(), false),
+          before_(points.size()),
+          after_(points.size()) {
+        for (const std::uint32_t r : reflex) is_reflex_[r] = true;
+        const auto n = static_cast<std::uint32_t>(points.size());
+        for (std::uint32_t i = 0; i < n; ++i) before_[i] = (i + n - 1) % n, after_[i] = (i + 1) % n;
+    }
+
+    bool clip(std::vector<PolygonTriangle>& triangles, Checkpoint& checkpoint) {
+        std::size_t left = points_.size(), work = 0, since_last = 0;
+        const std::size_t most_work = 1000 * left + 1000000;
+        std::uint32_t at = 0;
+        while (left > 3 && work < most_work) {
+            const std::size_t before = work++;
+            // After a round without an ear the polygon crosses itself, and any corner is as good as another.
+            const bool clips = since_last >= left || is_ear(at, work);
+            checkpoint.pass(work - before);
+            const std::uint32_t next = after_[at];
+            if (clips) {
+                triangles.push_back({before_[at], at, next});
+                remove(at);
+                --left;
+            }
+            since_last = clips ? 0 : since_last + 1;
+            // The corner after the ear's neighbour: ears all around, not a fan of slivers at one corner.
+            at = clips ? after_[next] : next;
+        }
+        for (std::uint32_t second = after_[at]; left > 2; --left, second = after_[second])
+            triangles.push_back({at, second, after_[second]});
+        return work < most_work;
+    }
+
+private:
+    bool is_ear(std::uint32_t at, std::size_t& work) const {
+        if (is_reflex_[at]) return false;
+        const Point a = points_[before_[at]], b = points_[at], c = points_[after_[at]];
+        return !grid_.any_in({a, b, c}, work, [&](std::uint32_t other) {
+            const Point p = points_[other];
+            // Where a cut leads to a hole and back, corners lie on each other.
+            return is_reflex_[other] && p != a && p != b && p != c && is_inside(p, a, b, c);
+        });
+    }
+
+    void remove(std::uint32_t at) {
+        const std::uint32_t neighbours[] = {before_[at], after_[at]};
+        after_[neighbours[0]] = neighbours[1];
+        before_[neighbours[1]] = neighbours[0];
+        is_reflex_[at] = false;
+        for (const std::uint32_t i : neighbours)
+            is_reflex_[i] = is_reflex_[i] && turn(points_[before_[i]], points_[i], points_[after_[i]]) < 0;
+    }
+
+    const std::vector<Point>& points_;
+    Grid grid_;
+    std::vector<bool> is_reflex_;
+    std::vector<std::uint32_t> before_, after_;
+};
+
+}  // namespace
+
+bool triangulate_polygon(std::span<const Vec3d> corners, std::vector<PolygonTriangle>& triangles,
+                         Checkpoint& checkpoint) {
+    const auto n = static_cast<std::uint32_t>(corners.size());
+    if (n > 3) {
+        const std::vector<Point> points = projected(corners);
+        const std::vector<std::uint32_t> reflex =
+            points.empty() ? std::vector<std::uint32_t>() : reflex_corners(points);
+        if (!reflex.empty()) return EarClipper(points, reflex).clip(triangles, checkpoint);
+    }
+    checkpoint.pass(n);
+    for (std::uint32_t i = 2; i < n; ++i) triangles.push_back({0, i - 1, i});
+    return true;
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,71 @@
+#include "uri.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace realcam::io {
+namespace {
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+constexpr int kNoDigit = -1;
+
+constexpr std::array<int, 256> base64_digits() {
+    std::array<int, 256> digits{};
+    digits.fill(kNoDigit);
+    constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (std::size_t i = 0; i < alphabet.size(); ++i)
+        digits[static_cast<unsigned char>(alphabet[i])] = static_cast<int>(i);
+    return digits;
+}
+
+std::optional<std::string> base64_decoded(std::string_view text) {
+    static constexpr std::array<int, 256> digits = base64_digits();
+    while (text.ends_with('=')) text.remove_suffix(1);
+    if (text.size() % 4 == 1) return std::nullopt;
+    std::string out;
+    out.reserve(text.size() / 4 * 3 + 2);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        const int digit = digits[static_cast<unsigned char>(c)];
+        if (digit == kNoDigit) return std::nullopt;
+        bits = (bits << 6 | static_cast<std::uint32_t>(digit)) & 0xffffff;
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        out += static_cast<char>(bits >> count & 0xff);
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string percent_decoded(std::string_view text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0) {
+            out += static_cast<char>(16 * hex_digit(text[i + 1]) + hex_digit(text[i + 2]));
+            i += 2;
+        } else {
+            out += text[i];
+        }
+    }
+    return out;
+}
+
+std::optional<std::string> data_of_uri(std::string_view uri) {
+    constexpr std::string_view mark = ";base64,";
+    // The kind before it is short; a long text without the mark is not searched to its end.
+    const std::size_t at = uri.substr(0, 1000).find(mark);
+    if (!is_data_uri(uri) || at == std::string_view::npos) return std::nullopt;
+    return base64_decoded(uri.substr(at + mark.size()));
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,101 @@
+// Fuzz target: a picture, mutated from one that can be read, becomes pixels or an error, as a texture in a file and in
+// memory, and as an environment.
+
+#include <OpenImageIO/imageio.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "../../cpp/error.hpp"
+#include "../../cpp/image_io/image_file.hpp"
+#include "fuzz_folder.hpp"
+#include "mutate_bytes.hpp"
+#include "target.hpp"
+
+namespace realcam::fuzz {
+namespace {
+
+struct Kind {
+    const char* suffix;
+    int channels;
+    OIIO::TypeDesc::BASETYPE type;
+    const char* compression;  ///< empty: the format's own
+    int tile;                 ///< 0: rows
+};
+constexpr Kind kKinds[] = {{"png", 4, OIIO::TypeDesc::UINT8, "", 0},      {"png", 1, OIIO::TypeDesc::UINT16, "", 0},
+                           {"png", 3, OIIO::TypeDesc::UINT8, "", 0},      {"jpg", 3, OIIO::TypeDesc::UINT8, "", 0},
+                           {"jpg", 1, OIIO::TypeDesc::UINT8, "", 0},      {"exr", 3, OIIO::TypeDesc::HALF, "zip", 0},
+                           {"exr", 4, OIIO::TypeDesc::FLOAT, "none", 0},  {"exr", 3, OIIO::TypeDesc::HALF, "piz", 0},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "pxr24", 16}, {"exr", 3, OIIO::TypeDesc::HALF, "b44", 0},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "dwaa", 0},   {"exr", 1, OIIO::TypeDesc::FLOAT, "rle", 0},
+                           {"hdr", 3, OIIO::TypeDesc::FLOAT, "", 0},      {"tif", 3, OIIO::TypeDesc::UINT8, "zip", 0},
+                           {"tif", 4, OIIO::TypeDesc::FLOAT, "lzw", 16},  {"tif", 1, OIIO::TypeDesc::UINT16, "none", 0},
+                           {"bmp", 3, OIIO::TypeDesc::UINT8, "", 0},      {"tga", 4, OIIO::TypeDesc::UINT8, "rle", 0}};
+
+struct Seed {
+    std::string suffix, bytes;
+};
+
+Seed make_seed(const Kind& kind) {
+    constexpr int width = 24, height = 18;
+    OIIO::ImageSpec spec(width, height, kind.channels, kind.type);
+    if (*kind.compression) spec.attribute("compression", kind.compression);
+    spec.tile_width = spec.tile_height = kind.tile;
+    std::vector<float> pixels;
+    for (int i = 0; i < width * height * kind.channels; ++i)
+        pixels.push_back(0.5f + 0.4f * std::sin(0.1f * static_cast<float>(i)));
+    const std::string path = FuzzFolder::get().path(std::string("made.") + kind.suffix);
+    const auto output = OIIO::ImageOutput::create(path);
+    if (!output || !output->open(path, spec) || !output->write_image(OIIO::TypeDesc::FLOAT, pixels.data())) return {};
+    output->close();
+    std::ifstream file(path, std::ios::binary);
+    return {kind.suffix, {std::istreambuf_iterator<char>(file), {}}};
+}
+
+const std::vector<Seed>& seeds() {
+    static const std::vector<Seed> all = [] {
+        std::vector<Seed> made;
+        for (const Kind& kind : kKinds) {
+            made.push_back(make_seed(kind));
+            if (made.back().bytes.empty()) report("a seed cannot be written", "%s", kind.suffix);
+        }
+        return made;
+    }();
+    return all;
+}
+
+}  // namespace
+
+int fuzz_picture(const std::uint8_t* data, std::size_t size) {
+    Bytes in(data, size);
+    const Seed& seed = seeds()[in.word() % seeds().size()];
+    std::string bytes = seed.bytes;
+    for (int i = in.below(8); i >= 0; --i) mutate_bytes(in, bytes);
+    const std::string path = FuzzFolder::get().write("seed." + seed.suffix, bytes);
+    ++findings().files;
+    try {
+        const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+        const bool in_memory = image_io::read_image("", {first, bytes.size()}).has_value();
+        const bool in_file = image_io::read_image(path, {}).has_value();
+        findings().files_read += in_memory || in_file;
+    } catch (const std::exception& error) {
+        report("a picture raises something", "%s: %s", seed.suffix.c_str(), error.what());
+    }
+    try {
+        const Environment light = image_io::read_environment(path);
+        for (const Vec3f& p : light.pixels)
+            if (!(p.x >= 0 && p.x <= 65504 && p.y >= 0 && p.y <= 65504 && p.z >= 0 && p.z <= 65504))
+                return report("an environment has light that is none", "%s", seed.suffix.c_str()), 0;
+    } catch (const ImageFileError& error) {
+        if (std::strchr(error.what(), '\n')) report("a message of several lines", "%s", error.what());
+    } catch (const std::exception& error) {
+        report("an environment raises something else", "%s: %s", seed.suffix.c_str(), error.what());
+    }
+    return 0;
+}
+
+}  // namespace realcam::fuzz
+
+REALCAM_FUZZ_TARGET(fuzz_picture)
