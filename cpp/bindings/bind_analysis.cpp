@@ -171,10 +171,11 @@ void bind_analysis(py::module_& m) {
     py::class_<AimedRays> aimed_rays(m, "AimedRays", "Rays of one object point, in front of the lens. Lens frame.");
     def_result(aimed_rays);
     aimed_rays
-        .def_readonly("origins_mm", &AimedRays::origins_mm,
-                      "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which "
-                      "may lie\nbehind the front surface: the ray is that straight line, also in front of it. nan where "
-                      "status is not OK.")
+        .def_readonly(
+            "origins_mm", &AimedRays::origins_mm,
+            "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which "
+            "may lie\nbehind the front surface: the ray is that straight line, also in front of it. nan where "
+            "status is not OK.")
         .def_readonly("directions", &AimedRays::directions, "(N, 3), unit; nan where status is not OK.")
         .def_readonly("status", &AimedRays::status, kStatusText)
         .def("__repr__",

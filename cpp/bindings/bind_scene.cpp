@@ -69,7 +69,8 @@ Environment environment_from(const py::object& radiance) {
             const float value = several ? 0.0f : radiance.cast<float>();
             environment.constant = several ? rgb(radiance.cast<Colour>()) : Vec3f{value, value, value};
         } catch (const py::cast_error&) {
-            throw InputError("an environment must be a number, (r, g, b), an image of shape (H, W, 3), or the path of one");
+            throw InputError(
+                "an environment must be a number, (r, g, b), an image of shape (H, W, 3), or the path of one");
         }
     }
     return environment;

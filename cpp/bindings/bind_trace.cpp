@@ -135,9 +135,10 @@ void bind_trace(py::module_& m) {
         "Rays after a lens, lens frame. Arrays of numpy; DeviceArrays where the rays came in a GPU's memory.");
     def_result(result);
     result
-        .def_readonly("origins_mm", &TraceResult::origins_mm,
-                      "(N, 3): on the last surface met. Of a ray whose status is not OK, where it ended: ask status before "
-                      "you use it.")
+        .def_readonly(
+            "origins_mm", &TraceResult::origins_mm,
+            "(N, 3): on the last surface met. Of a ray whose status is not OK, where it ended: ask status before "
+            "you use it.")
         .def_readonly("directions", &TraceResult::directions, "(N, 3), unit.")
         .def_readonly("optical_path_mm", &TraceResult::optical_path_mm, "(N,): index times distance, from the origin.")
         .def_readonly("status", &TraceResult::status, "(N,): RayStatus values.")

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,11 @@ template <class T, std::size_t n>
 inline constexpr bool is_range<std::array<T, n>> = true;
 
 template <class T>
+inline constexpr bool is_optional = false;
+template <class T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+
+template <class T>
 inline constexpr bool is_shared = false;
 template <class T>
 inline constexpr bool is_shared<std::shared_ptr<T>> = true;
@@ -68,6 +74,8 @@ bool equal(const T& a, const T& b) {
         return equal_ranges(a, b);
     else if constexpr (is_shared<T>)
         return a == b || (a && b && equal(*a, *b));
+    else if constexpr (is_optional<T>)
+        return a.has_value() == b.has_value() && (!a || equal(*a, *b));
     else
         return [&]<std::size_t... i>(std::index_sequence<i...>) {
             const auto x = members(a), y = members(b);
@@ -91,7 +99,7 @@ std::size_t hash_of(const T& value) {
         hash = hash_of(value.parts());
     else if constexpr (is_range<T>)
         for (const auto& item : value) hash = mixed(hash, hash_of(item));
-    else if constexpr (is_shared<T>)
+    else if constexpr (is_shared<T> || is_optional<T>)
         hash = value ? hash_of(*value) : 0;
     else
         std::apply([&](const auto&... member) { ((hash = mixed(hash, hash_of(member))), ...); }, members(value));

@@ -40,6 +40,8 @@ public:
             return StateWriter(pybind11::object()).write(value.parts());  // which nothing keeps: copied
         else if constexpr (is_shared<T>)
             return write_shared(value);
+        else if constexpr (is_optional<T>)
+            return value ? write(*value) : pybind11::none();
         else if constexpr (is_range<T>)
             return write_range(value);
         else
@@ -102,6 +104,8 @@ public:
             value = made<Glass>(state);
         else if constexpr (is_shared<T>)
             read_shared(value, state);
+        else if constexpr (is_optional<T>)
+            state.is_none() ? value.reset() : read(value.emplace(), state);
         else if constexpr (is_range<T>)
             read_range(value, state);
         else

@@ -94,8 +94,7 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
 Assembly read_any(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
     Checkpoint checkpoint(options.keep_going);
     const std::string suffix = suffix_of(path);
-    if (RegularFile(path).size() == 0)
-        throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
+    if (RegularFile(path).size() == 0) throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
     if (suffix == ".ply") {
         if (!options.objects.empty()) throw InputError(path + ": a .ply file has no nodes that could be objects");
         return read_ply_scene(path, options.scale, read_image, checkpoint);

@@ -29,8 +29,8 @@ struct Face {
 };
 
 /// Where two faces are farthest into each other, between two distances from the axis. A face is edged flat at its rim.
-inline FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& second, double direction, double from,
-                        double to) {
+inline FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& second, double direction,
+                            double from, double to) {
     const Surface &a = lens.surfaces[static_cast<std::size_t>(first.index)],
                   &b = lens.surfaces[static_cast<std::size_t>(second.index)];
     const double rim = std::min(a.clear_semi_diameter, b.clear_semi_diameter);
@@ -54,7 +54,7 @@ inline FaceCrossing deepest(const LensSystem& lens, const Face& first, const Fac
 
 /// The first crossing of a run of faces. `in_glass`: for each face, whether glass lies between it and the next one.
 inline std::optional<FaceCrossing> crossing_of(const LensSystem& lens, const std::vector<Face>& run,
-                                           const std::vector<bool>& in_glass, double direction) {
+                                               const std::vector<bool>& in_glass, double direction) {
     const auto surface = [&](std::size_t i) -> const Surface& {
         return lens.surfaces[static_cast<std::size_t>(run[i].index)];
     };

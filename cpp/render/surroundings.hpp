@@ -124,7 +124,9 @@ private:
         const double longest_kept = kLong * box_.diagonal();
         for (std::size_t axis = 0; axis < 3; ++axis)
             std::erase_if(sheets[axis], [&](const auto& entry) { return !is_vast(entry.second, axis); });
-        if (sheets[0].empty() && sheets[1].empty() && sheets[2].empty() && longest_squared <= longest_kept * longest_kept) return rest;
+        if (sheets[0].empty() && sheets[1].empty() && sheets[2].empty() &&
+            longest_squared <= longest_kept * longest_kept)
+            return rest;
         rest.any_left_out = true;
         for_chosen(kept_, [&](std::size_t i, const Piece& piece) {
             for (std::size_t axis = 0; axis < 3; ++axis)

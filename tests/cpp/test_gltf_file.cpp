@@ -168,7 +168,8 @@ TEST_CASE("bad glTF: the mesh and the vertex are named") {
     const Folder folder;
     const std::string nodes = R"([{"mesh":0}])";
     folder.write("tri.bin", triangle_bytes({0, 1, 7}));
-    CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]"))), "index 7 is not smaller than the number of vertices, 3"));
+    CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]"))),
+              "index 7 is not smaller than the number of vertices, 3"));
     folder.write("tri.bin", triangle_bytes({0, 1, 2, 0, 1, 3}));
     CHECK(has(error_of(folder.write("a.gltf", gltf(nodes, "[0]", "", "", 6))),
               "mesh 0 \"tri\": index 3 is not smaller than the number of vertices, 3"));

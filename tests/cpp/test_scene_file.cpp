@@ -188,7 +188,8 @@ TEST_CASE("bad files: one line that names the file and what is wanted") {
     const std::string two = "v 0 0 0\nv 1 0 0\n";
     CHECK(has(error_of(folder.write("nan.obj", two + "v nan 1 0\nf 1 2 3\n")), "line 3: coordinates must be finite"));
     CHECK(has(error_of(folder.write("inf.obj", two + "v 0 1e39 0\nf 1 2 3\n")), "line 3: coordinates must be finite"));
-    CHECK(has(error_of(folder.write("index.obj", two + "v 0 1 0\nf 1 2 9\n")), "line 4: vertex 9 does not exist; there are 3"));
+    CHECK(has(error_of(folder.write("index.obj", two + "v 0 1 0\nf 1 2 9\n")),
+              "line 4: vertex 9 does not exist; there are 3"));
     CHECK(has(error_of(folder.write("nan.ply", ply("0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n"))),
               "vertex 2: coordinates must be finite numbers, not (0, nan, 0)"));
     CHECK(has(error_of(folder.write("index.ply", ply("0 0 0\n1 0 0\n0 1 0\n3 0 1 8\n"))), "face 0: index 8"));
