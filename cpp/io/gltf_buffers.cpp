@@ -20,12 +20,12 @@ std::string GltfBuffers::read_buffer(std::size_t number, std::size_t size) {
     }
     const std::optional<std::string> file = find_beside(document_.path(), uri);
     if (!file)
-        document_.fail(label + " cannot be read: " + (uri.empty() ? "it has no bytes" : quoted(uri)) +
+        document_.fail(label + " cannot be read: " + (uri.empty() ? "it has no bytes" : in_quotes(uri)) +
                        (uri.empty() ? "" : ": no such file beside the scene"));
     try {
         return read_whole_file(*file, checkpoint_, size);
     } catch (const FileError& error) {
-        document_.fail(label + " cannot be read: " + quoted(uri) + ": " + error.reason);
+        document_.fail(label + " cannot be read: " + in_quotes(uri) + ": " + error.reason);
     }
 }
 

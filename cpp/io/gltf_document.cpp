@@ -28,7 +28,7 @@ std::size_t word_at(std::string_view bytes, std::size_t at) {
 
 std::string gltf_label(const std::string& kind, std::size_t number, const Json& element) {
     const std::string& name = element["name"].text();
-    return kind + ' ' + std::to_string(number) + (name.empty() ? "" : ' ' + quoted(name));
+    return kind + ' ' + std::to_string(number) + (name.empty() ? "" : ' ' + in_quotes(name));
 }
 
 void GltfDocument::fail(const std::string& message) const {
@@ -69,7 +69,7 @@ GltfDocument::GltfDocument(const std::string& path, Checkpoint& checkpoint)
     if (binary_size_ == 0) file_ = {};
     const std::string& version = root_["asset"]["version"].text();
     if (!version.starts_with('2'))
-        fail("is glTF " + (version.empty() ? "of no version" : quoted(version)) + "; glTF 2.0 is wanted");
+        fail("is glTF " + (version.empty() ? "of no version" : in_quotes(version)) + "; glTF 2.0 is wanted");
     const Json& required = root_["extensionsRequired"];
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (may_be_required(required[i].text())) continue;

@@ -91,7 +91,7 @@ private:
             const std::optional<double> value = take_number(rest);
             if (!value || !(rest.empty() || rest[0] == ' ' || rest[0] == '\t')) {
                 std::string_view shown = word;
-                fail("a number is wanted, not " + quoted(take_word(shown)));
+                fail("a number is wanted, not " + in_quotes(take_word(shown)));
             }
             numbers[count++] = *value;
             rest = trimmed(rest);
@@ -146,7 +146,7 @@ private:
         const std::string_view from = rest;
         const auto fail_form = [&] {
             std::string_view shown = from;
-            fail("a corner is v, v/vt, v//vn or v/vt/vn, not " + quoted(take_word(shown)));
+            fail("a corner is v, v/vt, v//vn or v/vt/vn, not " + in_quotes(take_word(shown)));
         };
         std::array<std::optional<std::int64_t>, 3> numbers;
         for (std::size_t i = 0; i < 3; ++i) {

@@ -102,14 +102,14 @@ private:
         if (!file) {
             // Renamed together with its OBJ, it still has the old name inside.
             const std::string own = scene_.path.substr(0, scene_.path.rfind('.')) + ".mtl";
-            scene_.warnings.push_back("mtllib " + quoted(name) + ": no such file beside the scene");
+            scene_.warnings.push_back("mtllib " + in_quotes(name) + ": no such file beside the scene");
             file = find_beside(own, own.substr(own.rfind('/') + 1));
         }
         if (!file || !read.insert(*file).second) return;
         try {
             read_mtl(scene_, *file, checkpoint_);
         } catch (const FileError& error) {
-            scene_.warnings.push_back("mtllib " + quoted(name) + ": " + error.reason);
+            scene_.warnings.push_back("mtllib " + in_quotes(name) + ": " + error.reason);
         }
     }
 
@@ -124,7 +124,7 @@ private:
         }
         if (unknown.empty()) return;
         scene_.warnings.push_back(
-            "no MTL file has the material " + quoted(unknown[0]) +
+            "no MTL file has the material " + in_quotes(unknown[0]) +
             (unknown.size() > 1 ? ", nor " + std::to_string(unknown.size() - 1) + " others" : "") +
             "; the default one is taken");
     }
@@ -142,7 +142,7 @@ private:
         const auto count = static_cast<std::uint32_t>(data_.groups.size());
         scene_.meshes.resize(count);
         for (std::uint32_t g = 0; g < count; ++g) {
-            scene_.meshes[g].label = "group " + quoted(data_.groups[g]);
+            scene_.meshes[g].label = "group " + in_quotes(data_.groups[g]);
             scene_.nodes.push_back({data_.groups[g], {}, kNoParent, g + 1, g, 1});
         }
     }

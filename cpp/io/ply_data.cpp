@@ -52,7 +52,7 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
         std::string name;
         words >> name;
         const std::optional<PlyType> type = type_of(name);
-        if (!type) fail("a type such as float or uchar is wanted, not " + quoted(name));
+        if (!type) fail("a type such as float or uchar is wanted, not " + in_quotes(name));
         return *type;
     };
     bool has_format = false;

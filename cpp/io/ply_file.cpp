@@ -59,7 +59,7 @@ private:
     }
     [[noreturn]] void fail_short(const PlyElement& element, const std::string& what) const {
         throw SceneFileError(path_ + ": is cut short: its header promises " + std::to_string(element.count) + " of " +
-                             quoted(element.name) + ", and " + what);
+                             in_quotes(element.name) + ", and " + what);
     }
 
     /// Before any memory is taken for them. The last number of an ASCII file needs no blank behind it.

@@ -55,7 +55,7 @@ std::string printable(std::string_view bytes) {
     return cleaned(bytes, std::string_view::npos);
 }
 
-std::string quoted(std::string_view bytes) {
+std::string in_quotes(std::string_view bytes) {
     return '"' + cleaned(bytes, kMostQuoted) + '"';
 }
 

@@ -8,6 +8,6 @@ namespace realcam::io {
 std::string printable(std::string_view bytes);
 
 /// The same between quotes, cut to some 60 bytes: what an error message repeats of its input.
-std::string quoted(std::string_view bytes);
+std::string in_quotes(std::string_view bytes);
 
 }  // namespace realcam::io

@@ -20,7 +20,7 @@ void add_light(Scene& scene, const FileLight& light, const Affine<double>& trans
     if (light.type == "point" || light.type == "spot") {
         scene.points.push_back({scale * transform.origin, static_cast<Vec3f>(light.strength)});
     } else {
-        scene.warnings.push_back(label + ": point, directional or spot is wanted, not " + quoted(light.type));
+        scene.warnings.push_back(label + ": point, directional or spot is wanted, not " + in_quotes(light.type));
     }
 }
 

@@ -136,7 +136,7 @@ void make_materials(Scene& scene, const FileScene& file, SceneTextures& textures
         const std::string& name = file.materials[i].name;
         scene.material_names[i] = printable(name);
         const std::string label =
-            file.path + ": material " + std::to_string(i) + (name.empty() ? "" : ' ' + quoted(name));
+            file.path + ": material " + std::to_string(i) + (name.empty() ? "" : ' ' + in_quotes(name));
         scene.materials[i] = MaterialMaker(scene, textures, label).make(file.materials[i]);
     }
 }

@@ -33,7 +33,7 @@ SceneObjects::SceneObjects(const FileScene& file, double scale, const std::vecto
     }
     for (const std::string& name : names)
         if (!found.contains(name))
-            throw SceneFileError(file.path + ": has no node " + quoted(name) +
+            throw SceneFileError(file.path + ": has no node " + in_quotes(name) +
                                  did_you_mean(name, {found.begin(), found.end()}));
     for (const auto& [meshes, times] : uses)
         if ((times - 1) * triangle_count(meshes) >= kSharedTriangles) shared_.insert(meshes);
@@ -80,7 +80,7 @@ std::shared_ptr<Scene> SceneObjects::read_object(std::uint32_t node, const Affin
     if (has_triangles(file_, node))
         read_geometry(*scene, part, kLeavesOutNothing);
     else if (scene->points.empty())
-        throw SceneFileError(file_.path + ": node " + quoted(file_.nodes[node].name) +
+        throw SceneFileError(file_.path + ": node " + in_quotes(file_.nodes[node].name) +
                              " holds neither triangles nor a light");
     // A sun has no place: it lights all, from where it does now.
     Scene in_place;

@@ -44,7 +44,7 @@ Vec3f mean_of(const DecodedImage& image, bool is_colour, Checkpoint& checkpoint)
 
 /// As warnings name it: one line, and not the megabyte that a file may give for a name.
 std::string shown(const FilePicture& picture) {
-    const std::string name = quoted(picture.name);
+    const std::string name = in_quotes(picture.name);
     return name.substr(1, name.size() - 2);
 }
 
