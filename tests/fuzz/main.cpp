@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
     watch();
     const Run run = run_inputs(
         target->target, seed, [&] { return stopped || static_cast<double>(findings().*target->counts) >= count; },
-        [](const Input& input) {
+        [target](const Input& input) {
             current = input;
             start_clock(target->hang_seconds);
         });
