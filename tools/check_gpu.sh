@@ -87,7 +87,7 @@ for wanted in "${steps[@]}"; do
                 selected=("${sanitized[@]}")
                 # It runs kernels one after the other, so that a stop never overtakes the frame of minutes it is for.
                 [[ $tool == initcheck ]] && selected+=(-k "not test_cancel")
-                step "$tool" compute-sanitizer "${options[@]}" "$python" -m pytest -q -p no:faulthandler \
+                step "$tool" compute-sanitizer "${options[@]}" "$python" -m pytest -q -p no:faulthandler -m "not slow" \
                     "${selected[@]}"
             done
             ;;
