@@ -1,13 +1,9 @@
 #include "lens_file.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <system_error>
-
 #include "../optics/focus.hpp"
 #include "bundled_lenses.hpp"
 #include "glass_table.hpp"
-#include "readable_file.hpp"
+#include "regular_file.hpp"
 
 namespace realcam::io {
 namespace {
@@ -235,17 +231,16 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
 
 /// Throws LensFileError for what is no ordinary file, and for one that is too long to be a lens.
 std::string text_of_file(const std::string& path) {
-    constexpr std::uintmax_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
-    if (const std::string why = why_unreadable(path); !why.empty()) throw LensFileError(why, path);
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (!error && size > kLargest) throw LensFileError("is larger than 16 MiB; a lens file (.toml) is wanted", path);
-    std::ifstream stream(path, std::ios::binary);
-    if (error || !stream) throw LensFileError("cannot be read; a lens file (.toml) is wanted", path);
-    std::string text(size, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(size));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    return text;
+    constexpr std::size_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
+    try {
+        RegularFile file(path);
+        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; a lens file (.toml) is wanted", path);
+        std::string text(file.size(), '\0');
+        text.resize(file.read(text.data(), text.size()));
+        return text;
+    } catch (const FileError& error) {
+        throw LensFileError(error.reason, path);
+    }
 }
 
 }  // namespace
