@@ -261,7 +261,7 @@ pupil: (N, 2), places on the stop as shares of its radius.
 )") + kFieldText +
         R"(Returns AimedRays; the status is that of the ray behind the lens, and a ray that is not OK is nan. Origins may
 lie behind the front surface: Lens.trace takes a ray for the whole straight line. Places on the very edge of the stop
-are aimed at 2e-10 of its radius further in, so that rounding does not block the ray when it is traced.
+are aimed at 5e-11 of its radius further in, so that rounding does not block the ray when it is traced.
 Raises InputError where no ray of the object point reaches the middle of the stop.)";
     static const std::string wavefront_text =
         std::string(R"(The wavefront of one object point against a sphere, by real rays, in double precision.

@@ -44,9 +44,10 @@ ToneCurve tone_curve_from(const std::string& name) {
     throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
 }
 
-void heed_signals() {
+bool heed_signals() {
     const py::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    return true;
 }
 
 Progress progress_of(const py::object& callback) {

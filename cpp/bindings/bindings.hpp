@@ -46,9 +46,9 @@ ToneCurve tone_curve_from(const std::string& name);
 /// the interpreter's lock. The callback must outlive the result.
 Progress progress_of(const py::object& callback);
 
-/// Raises what a signal has raised in Python, above all KeyboardInterrupt. Called without the interpreter's lock, on
-/// the thread that Python called.
-void heed_signals();
+/// A KeepGoing: true, or raises what a signal has raised in Python, above all KeyboardInterrupt. Called with or without
+/// the interpreter's lock, on the thread that Python called.
+bool heed_signals();
 
 /// A path as users give it, a text or anything with __fspath__, in the bytes that the system knows it by. Throws
 /// InputError for a null character, at which the system would cut the name.

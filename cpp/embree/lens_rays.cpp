@@ -21,7 +21,7 @@ void in_chunks(std::int64_t from, std::int64_t to, F&& f) {
 }
 
 template <class T>
-void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const std::function<void()>& keep_going) {
+void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const KeepGoing& keep_going) {
     const auto trace = [&](std::int64_t first, std::int64_t last) {
         TraceRequest<T> request = all;
         request.count = last - first;
@@ -36,7 +36,7 @@ void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const s
     };
     constexpr std::int64_t kBlock = 1 << 20;  // some 0.1 s
     for (std::int64_t block = 0; block < all.count; block += kBlock) {
-        keep_going();
+        if (keep_going && !keep_going()) throw Cancelled();
         in_chunks(block, std::min(block + kBlock, all.count), trace);
     }
 }
@@ -45,7 +45,7 @@ void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const s
 
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                 int surface_count, std::int64_t count, const double* origins, const double* directions,
-                const TracedRays& out, const realcam_kernels* on, const std::function<void()>& keep_going) {
+                const TracedRays& out, const realcam_kernels* on, const KeepGoing& keep_going) {
     const realcam_kernels& chosen = on ? *on : kernels();
     if (precision == Precision::float64) {
         const TracePath<double> path(lens, direction, wavelength_nm, surface_count);
@@ -88,7 +88,7 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
                       });
 }
 
-RayLoop parallel_ray_loop(std::function<void()> keep_going) {
+RayLoop parallel_ray_loop(KeepGoing keep_going) {
     return {std::move(keep_going), [](std::size_t first, std::size_t last, const RayTask& task) {
                 tbb::parallel_for(
                     tbb::blocked_range<std::size_t>(first, last, 64),

@@ -12,15 +12,13 @@ namespace realcam {
 /// count x 3. Rays with a component that is not finite, a direction of length zero or an origin beyond kFarthestOrigin
 /// end as bad_input with zeros; a ray from far away that meets no surface ends where it is nearest to the first vertex.
 /// Only the first `surface_count` surfaces that the light meets are crossed (all where it is negative). `on`: kernels
-/// of one instruction set; nullptr: the machine's best. `keep_going` is called several times a second on the calling
-/// thread; what it throws ends the trace.
-void trace_rays(
-    const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision, int surface_count,
-    std::int64_t count, const double* origins, const double* directions, const TracedRays& out,
-    const realcam_kernels* on = nullptr, const std::function<void()>& keep_going = [] {});
+/// of one instruction set; nullptr: the machine's best. Throws Cancelled.
+void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
+                int surface_count, std::int64_t count, const double* origins, const double* directions,
+                const TracedRays& out, const realcam_kernels* on = nullptr, const KeepGoing& keep_going = {});
 
 /// A loop over rays on all cores.
-RayLoop parallel_ray_loop(std::function<void()> keep_going);
+RayLoop parallel_ray_loop(KeepGoing keep_going);
 
 /// The camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
 /// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of width * height * spp rays.

@@ -1,12 +1,9 @@
 #include "lens_file.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <system_error>
-
 #include "../optics/focus.hpp"
 #include "bundled_lenses.hpp"
 #include "glass_table.hpp"
+#include "regular_file.hpp"
 
 namespace realcam::io {
 namespace {
@@ -232,24 +229,18 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     return lens;
 }
 
-/// Throws LensFileError for what is no file with an end, and for one that is too long to be a lens.
+/// Throws LensFileError for what is no ordinary file, and for one that is too long to be a lens.
 std::string text_of_file(const std::string& path) {
-    constexpr std::uintmax_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
-    namespace fs = std::filesystem;
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (status.type() == fs::file_type::none || status.type() == fs::file_type::not_found)
-        throw LensFileError("cannot be opened (" + error.message() + "); a readable lens file (.toml) is wanted", path);
-    if (fs::is_directory(status)) throw LensFileError("is a folder; a lens file is wanted", path);
-    if (!fs::is_regular_file(status)) throw LensFileError("is no regular file; a lens file (.toml) is wanted", path);
-    const std::uintmax_t size = fs::file_size(path, error);
-    std::ifstream stream(path, std::ios::binary);
-    if (error || !stream) throw LensFileError("cannot be opened; a readable lens file (.toml) is wanted", path);
-    if (size > kLargest) throw LensFileError("is larger than 16 MiB; a lens file (.toml) is wanted", path);
-    std::string text(size, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(size));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    return text;
+    constexpr std::size_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
+    try {
+        RegularFile file(path);
+        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; a lens file (.toml) is wanted", path);
+        std::string text(file.size(), '\0');
+        text.resize(file.read(text.data(), text.size()));
+        return text;
+    } catch (const FileError& error) {
+        throw LensFileError(error.reason, path);
+    }
 }
 
 }  // namespace

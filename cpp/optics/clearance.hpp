@@ -52,6 +52,14 @@ inline FaceCrossing deepest(const LensSystem& lens, const Face& first, const Fac
     return result;
 }
 
+/// Whether the smaller of an element's faces is hollow. It may be sunk into the glass then, which reaches past it to
+/// the rim of the other, as in the front element of a fisheye.
+inline bool is_sunk(const Surface& front, const Surface& back, double direction) {
+    const bool is_back = back.clear_semi_diameter < front.clear_semi_diameter;
+    const Surface& smaller = is_back ? back : front;
+    return direction * smaller.sag(smaller.clear_semi_diameter) * (is_back ? 1 : -1) > 0;
+}
+
 /// The first crossing of a run of faces. `in_glass`: for each face, whether glass lies between it and the next one.
 inline std::optional<FaceCrossing> crossing_of(const LensSystem& lens, const std::vector<Face>& run,
                                                const std::vector<bool>& in_glass, double direction) {
@@ -63,7 +71,7 @@ inline std::optional<FaceCrossing> crossing_of(const LensSystem& lens, const std
         double between = 0;
         for (std::size_t j = i + 1; j < run.size(); ++j) {
             const Surface &a = surface(i), &b = surface(j);
-            const bool element = j == i + 1 && in_glass[i];
+            const bool element = j == i + 1 && in_glass[i] && !is_sunk(a, b, direction);
             const double from = std::max({between, a.inner_semi_diameter, b.inner_semi_diameter});
             // Glass has to be there up to its rim; faces with air between them just must not overlap.
             const double to = element ? std::max(a.clear_semi_diameter, b.clear_semi_diameter)
@@ -83,8 +91,9 @@ inline std::optional<FaceCrossing> crossing_of(const LensSystem& lens, const std
 }  // namespace clearance_detail
 
 /// The first two refracting or reflecting faces that cross inside their clear apertures, whether or not they are
-/// neighbours; or of an element, anywhere up to the larger of its two rims, the smaller face being edged flat. Stops
-/// and apertures are planes of no substance, and may cross a face: a stop may be given at the vertex of one.
+/// neighbours; or of an element, anywhere up to the larger of its two rims, the smaller face being edged flat unless it
+/// is hollow. Stops and apertures are planes of no substance, and may cross a face: a stop may be given at the vertex
+/// of one.
 inline std::optional<FaceCrossing> find_crossing(const LensSystem& lens) {
     using namespace clearance_detail;
     const std::vector<double> z = lens.vertices();

@@ -8,7 +8,7 @@ namespace REALCAM_NAMESPACE {
 /// The rays of one object point over the stop, behind the lens: what wavefronts and spots are made from. Lengths in mm;
 /// points relative to the last vertex.
 struct FieldRays {
-    FieldPoint field;
+    double field_angle_rad;
     std::vector<PupilPoint> pattern;
     std::vector<AimedRay> rays;  ///< one for each point of the pattern; only those whose status is ok count
     AimedRay chief;  ///< through the middle of the stop, even where the lens blocks it
@@ -27,7 +27,7 @@ inline FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const 
                             std::vector<PupilPoint> pattern, const RayLoop& loop = {}) {
     const RayAimer aim(lens, wavelength_nm, field);
     const double reach = stop_reach(lens);
-    FieldRays result{field, std::move(pattern), {}, aim.chief_ray()};
+    FieldRays result{field.angle_rad, std::move(pattern), {}, aim.chief_ray()};
     const std::string where = "at a field angle of " + object_point_detail::degrees(field.angle_rad);
     if (result.chief.status != RayStatus::ok)
         throw InputError("the ray " + where + " through the middle of the stop does not leave lens \"" + lens.name +

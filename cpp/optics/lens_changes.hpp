@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "lens_system.hpp"
+#include "lens_checks.hpp"
 
 namespace REALCAM_NAMESPACE {
 

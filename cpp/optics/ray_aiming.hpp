@@ -50,9 +50,9 @@ struct AimedRay {
 /// come nearer is halved. The chief ray is followed from the axis out to its field angle in steps of at most 5 degrees,
 /// so that of several rays through the middle of the stop the one is found that belongs to the lens's image; the
 /// others start from the chief ray, and where that fails go out to their place in 4, then in 16 steps. Each search has
-/// at most 40 Newton steps of at most 24 halvings; a ray that is not within 1e-10 of the stop's radius then is no ray.
-/// Places on the very edge of the stop's opening are aimed at 2e-10 further in, so that no rounding blocks the ray,
-/// here or where it is traced again.
+/// at most 40 Newton steps of at most 24 halvings; a ray that is not within 2.5e-11 of the stop's radius then is no
+/// ray. Places on the very edge of the stop's opening are aimed at 5e-11 further in, so that no rounding blocks the
+/// ray, here or where it is traced again.
 class RayAimer {
 public:
     using Entry = ObjectPoint::Entry;
@@ -92,7 +92,7 @@ private:
         Vec2<double> by_x, by_y;  ///< its derivatives by the entry
     };
     static constexpr int kMaxSteps = 40, kMaxHalvings = 24;
-    static constexpr double kMiss = 1e-10, kEdge = 2 * kMiss;  ///< shares of the stop's radius
+    static constexpr double kMiss = 2.5e-11, kEdge = 2 * kMiss;  ///< shares of the stop's radius
 
     Vec2<double> off_the_edge(Vec2<double> place) const {
         const double share = std::hypot(place.x, place.y) / reach_;

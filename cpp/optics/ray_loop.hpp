@@ -4,6 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "../error.hpp"
+#include "../keep_going.hpp"
 #include "../platform.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -14,12 +16,15 @@ using RayTask = std::function<void(std::size_t first, std::size_t last)>;
 /// How an analysis goes through its rays: on the calling thread, and not to be stopped. A program that has threads
 /// brings a loop that uses them, and one whose user may lose patience asks him in `keep_going`.
 struct RayLoop {
-    /// Called on the calling thread, several times a second; an exception that it throws ends the analysis.
-    std::function<void()> keep_going = [] {};
+    KeepGoing keep_going = {};  ///< what it throws ends the analysis too
     /// Calls the task for all of [first, last), in parts of any size and on any threads.
     std::function<void(std::size_t first, std::size_t last, const RayTask& task)> run =
         [](std::size_t first, std::size_t last, const RayTask& task) { task(first, last); };
 
+    /// Throws Cancelled where the caller wants to stop.
+    void heed() const {
+        if (keep_going && !keep_going()) throw Cancelled();
+    }
     /// For work of a microsecond or more a ray. No ray's result may depend on another's.
     void for_all(std::size_t count, const RayTask& task) const {
         in_blocks(count, 1 << 14, [&](std::size_t first, std::size_t last) { run(first, last, task); });
@@ -40,7 +45,7 @@ private:
     template <class F>
     void in_blocks(std::size_t count, std::size_t block, F&& f) const {
         for (std::size_t first = 0; first < count; first += block) {
-            keep_going();
+            heed();
             f(first, std::min(first + block, count));
         }
     }

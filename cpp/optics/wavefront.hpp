@@ -53,7 +53,7 @@ inline double reference_curvature(const LensSystem& lens, double wavelength_nm, 
     const Vec3d image = crossing(rays.chief, z);
     // A chief ray on the axis does not cross it; one at 1e-6 crosses it within 1e-12 of the paraxial place, which is
     // what rounding leaves of a quotient of two such numbers.
-    if (exit_pupil == ExitPupil::paraxial || std::fabs(rays.field.angle_rad) < 1e-6) {
+    if (exit_pupil == ExitPupil::paraxial || std::fabs(rays.field_angle_rad) < 1e-6) {
         const double pupil = first_order(lens, wavelength_nm).exit_pupil_position - lens.last_vertex();
         return direction.z / (z - pupil);
     }

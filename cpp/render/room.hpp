@@ -13,25 +13,22 @@ namespace REALCAM_NAMESPACE {
 inline bool is_room(const Assembly& assembly, const Surroundings& subject, Vec3d backward) {
     const BoundingBox box = subject.box();
     const double thick = 0.02 * box.diagonal();
-    const auto numbers = [](Vec3d v) { return std::array<double, 3>{v.x, v.y, v.z}; };
     const auto low = numbers(box.low), high = numbers(box.high), size = numbers(box.size()),
                to_camera = numbers(backward);
     std::array<double, 6> covered{};  // the low and the high side of each axis, m^2
     double inwards = 0, all = 0;
     bool lit_within = false;
-    subject.pieces().for_each(
-        [&](std::size_t i) { return subject.keeps(i); },
-        [&](std::size_t, const Piece& piece) {
-            const auto from = numbers(piece.box.low), to = numbers(piece.box.high), area = numbers(piece.area);
-            if (piece.emits) lit_within |= dot(box.middle() - piece.box.middle(), piece.area) > 0;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const bool at_low = to[axis] <= low[axis] + thick, at_high = from[axis] >= high[axis] - thick;
-                if (!at_low && !at_high) continue;
-                covered[2 * axis + (at_high ? 1 : 0)] += std::fabs(area[axis]);
-                inwards += at_high ? -area[axis] : area[axis];
-                all += std::fabs(area[axis]);
-            }
-        });
+    subject.for_each([&](std::size_t, const Piece& piece) {
+        const auto from = numbers(piece.box.low), to = numbers(piece.box.high), area = numbers(piece.area);
+        if (piece.emits) lit_within |= dot(box.middle() - piece.box.middle(), piece.area) > 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool at_low = to[axis] <= low[axis] + thick, at_high = from[axis] >= high[axis] - thick;
+            if (!at_low && !at_high) continue;
+            covered[2 * axis + (at_high ? 1 : 0)] += std::fabs(area[axis]);
+            inwards += at_high ? -area[axis] : area[axis];
+            all += std::fabs(area[axis]);
+        }
+    });
     int walls = 0;
     bool front = false;
     for (std::size_t axis = 0; axis < 3; ++axis)

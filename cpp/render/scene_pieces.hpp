@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "../scene/bounding_box.hpp"
@@ -11,6 +12,9 @@ struct Piece {
     Vec3d area;  ///< of a triangle: along its normal, m^2; of an instance zero
     bool emits;
 };
+
+/// Some of the pieces, by their numbers.
+using ChosenPieces = std::vector<bool>;
 
 /// What a scene consists of, for questions about its whole.
 class ScenePieces {
@@ -43,6 +47,12 @@ public:
         }
     }
 
+    /// f(number, piece) for the chosen ones.
+    template <class F>
+    void for_chosen(const ChosenPieces& chosen, F&& f) const {
+        for_each([&](std::size_t i) { return chosen[i]; }, f);
+    }
+
 private:
     template <class Placed, class Wanted, class F>
     static void for_triangles(const Scene& scene, Placed&& placed, std::size_t& number, Wanted& wanted, F& f) {
@@ -63,5 +73,10 @@ private:
     bool every_;
     std::vector<BoundingBox> boxes_;  ///< of the instances, where they count as one piece each
 };
+
+/// The coordinates, to be counted through.
+inline std::array<double, 3> numbers(Vec3d v) {
+    return {v.x, v.y, v.z};
+}
 
 }  // namespace REALCAM_NAMESPACE
