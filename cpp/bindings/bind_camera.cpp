@@ -6,12 +6,8 @@
 #include <tuple>
 
 #include "../camera/default_film.hpp"
-#include "../camera/last_setup.hpp"
 #include "../camera/picture_angle.hpp"
-#include "../cuda/ray_arrays.hpp"
-#include "../devices/devices.hpp"
 #include "../embree/embree_backend.hpp"
-#include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
@@ -92,49 +88,6 @@ std::optional<std::tuple<double, double, double>> pupil_position(const Camera& c
     return triple_of(*position);
 }
 
-/// Arrays of numpy, or DeviceArrays.
-struct CameraRaysResult {
-    py::object origins_m, directions, weights, pixels;
-};
-
-/// To be called without the interpreter's lock.
-std::shared_ptr<const CameraSetup> setup_of(const Camera& camera) {
-    static LastSetup last;
-    return last.make(camera, fast_pupil_tracer());
-}
-
-CameraRaysResult rays_on_gpu(const Camera& camera, std::uint32_t spp, std::uint32_t seed, int gpu) {
-    const CameraRayArrays rays = [&] {
-        const py::gil_scoped_release release;
-        return generate_ray_arrays(gpu, *setup_of(camera), spp, seed);
-    }();
-    return {py::cast(rays.origins_m), py::cast(rays.directions), py::cast(rays.weights), py::cast(rays.pixels)};
-}
-
-CameraRaysResult rays_on_host(const Camera& camera, std::uint32_t spp, std::uint32_t seed) {
-    const std::int64_t count = static_cast<std::int64_t>(camera.film.width) * camera.film.height * spp;
-    py::array_t<double> origins_m({count, std::int64_t{3}});
-    py::array_t<float> directions({count, std::int64_t{3}}), weights(count);
-    py::array_t<int> pixels(count);
-    double* origins = origins_m.mutable_data();
-    float *ways = directions.mutable_data(), *shares = weights.mutable_data();
-    int* of = pixels.mutable_data();
-    {
-        const py::gil_scoped_release release;
-        generate_camera_rays(*setup_of(camera), spp, seed, origins, ways, shares);
-        for (std::int64_t i = 0; i < count; ++i) of[i] = static_cast<int>(i / spp);
-    }
-    return {origins_m, directions, weights, pixels};
-}
-
-CameraRaysResult rays_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device) {
-    if (spp < 1) throw InputError("spp must be at least 1");
-    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
-    const std::optional<int> gpu = gpu_for_rays(device);
-    return gpu ? rays_on_gpu(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), *gpu)
-               : rays_on_host(camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed));
-}
-
 std::string text_of(const Film& film) {
     return "<realcam.Film " + digits(film.width_mm) + " x " + digits(film.height_mm) + " mm, " +
            std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels>";
@@ -150,10 +103,6 @@ std::string text_of(const Camera& camera) {
            time_text(camera.exposure_time_s) + ", ISO " + digits(camera.iso) + '>';
 }
 
-std::string text_of(const CameraRaysResult& rays) {
-    return "<realcam.CameraRays " + counted(py::len(rays.weights), "ray") + '>';
-}
-
 void bind_film(py::module_& m) {
     py::class_<Film> film(m, "Film", "The light-sensitive rectangle and its pixels.");
     def_hashable_value(film);
@@ -167,27 +116,10 @@ void bind_film(py::module_& m) {
         .def("__repr__", [](const Film& f) { return text_of(f); });
 }
 
-void bind_camera_rays(py::module_& m) {
-    py::class_<CameraRaysResult> rays(
-        m, "CameraRays",
-        "The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or\n"
-        "DeviceArrays.");
-    def_result(rays);
-    rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
-        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
-        .def_readonly(
-            "weights", &CameraRaysResult::weights,
-            "(N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
-            "radiance is its irradiance. 0: the lens blocks the ray.")
-        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
-        .def("__repr__", [](const CameraRaysResult& r) { return text_of(r); });
-}
-
 }  // namespace
 
 void bind_camera(py::module_& m) {
     bind_film(m);
-    bind_camera_rays(m);
     m.attr("FieldOfView") = py::module_::import("collections")
                                 .attr("namedtuple")("FieldOfView", py::make_tuple("horizontal", "vertical", "diagonal"),
                                                     "module"_a = "realcam");
@@ -218,11 +150,6 @@ void bind_camera(py::module_& m) {
                                "(x, y, z), scene: the middle of the paraxial entrance pupil, from where the camera "
                                "sees the scene; turning\n"
                                "about it shows no parallax. None where it lies at infinity.")
-        .def(
-            "generate_rays", &rays_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
-            "The rays that render would trace, for any other renderer. Returns CameraRays.\n"
-            "device: \"cpu\": arrays of numpy. \"cuda\", \"cuda:1\": DeviceArrays, made in that GPU's memory and left\n"
-            "there. \"auto\": a GPU if there is one. Raises InputError, DeviceError.")
         .def_readonly("lens", &Camera::lens)
         .def_readonly("film", &Camera::film)
         .def_property_readonly("position", [](const Camera& c) { return triple_of(c.pose.position_m); })

@@ -23,6 +23,7 @@ void bind_trace(py::module_& m);
 void bind_seidel(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_camera(py::module_& m);
+void bind_camera_rays(py::module_& m);
 void bind_material(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_scene_materials(py::class_<Assembly>& scene);

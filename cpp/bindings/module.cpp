@@ -13,6 +13,7 @@ PYBIND11_MODULE(_core, m) {
     bind_seidel(m);
     bind_analysis(m);
     bind_camera(m);
+    bind_camera_rays(m);
     bind_material(m);
     bind_scene(m);
     bind_render(m);

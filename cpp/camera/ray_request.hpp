@@ -3,32 +3,41 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Some of a camera's rays, of which there are spp for each pixel, row by row.
+struct RayRange {
+    std::int64_t first, count;
+};
+
+inline RayRange all_rays(int width, int height, std::uint32_t spp) {
+    return {0, static_cast<std::int64_t>(width) * height * spp};
+}
+
 /// The camera's own rays, sample by sample of pixel by pixel. Arrays lie where the rays are made, on the host or on a
 /// device.
 struct RayRequest {
     CameraView camera;
-    std::int32_t first_pixel, pixel_count;
-    std::uint32_t sample_count, seed;
+    RayRange range;
+    std::uint32_t spp, seed;
     float *origins, *directions;  ///< 3 for each ray: metres in the placed scene; unit
     float* weights;               ///< irradiance on the film for unit radiance; 0: blocked
 
-    REALCAM_HD std::int64_t count() const { return static_cast<std::int64_t>(pixel_count) * sample_count; }
+    REALCAM_HD std::int64_t count() const { return range.count; }
 };
 
-/// Makes the N rays from `first` on; fewer at the end of the arrays.
+/// Makes N rays of the range, from its `first` on; fewer at the end of the arrays.
 template <int N>
 REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t first) {
     SampleBlock<N> block;
     CameraRays<N> rays;
     const int used = static_cast<int>(request.count() - first < N ? request.count() - first : N);
     for (int k = 0; k < N; ++k) {
-        const std::int64_t ray = first + (k < used ? k : 0);
-        const auto pixel = static_cast<std::int32_t>(request.first_pixel + ray / request.sample_count);
+        const std::int64_t ray = request.range.first + first + (k < used ? k : 0);
+        const auto pixel = static_cast<std::int32_t>(ray / request.spp);
         block.column[k] = pixel % request.camera.width;
         block.row[k] = pixel / request.camera.width;
         block.used[k] = k < used;
         block.stream[k] = pixel_stream(pixel, request.seed);
-        block.sample[k] = static_cast<std::uint32_t>(ray % request.sample_count);
+        block.sample[k] = static_cast<std::uint32_t>(ray % request.spp);
     }
     generate_rays(request.camera, block, rays);
     for (int k = 0; k < used; ++k) {

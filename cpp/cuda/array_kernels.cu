@@ -12,13 +12,13 @@ __global__ void widen(const float* from, std::int64_t count, double* to) {
 
 __global__ void place(const __grid_constant__ PlaceRays rays) {
     const std::int64_t ray = thread_index();
-    if (ray >= rays.count) return;
+    if (ray >= rays.range.count) return;
     const float* from = rays.relative + 3 * ray;
     double* to = rays.origins + 3 * ray;
     to[0] = rays.place.x + static_cast<double>(from[0]);
     to[1] = rays.place.y + static_cast<double>(from[1]);
     to[2] = rays.place.z + static_cast<double>(from[2]);
-    rays.pixels[ray] = static_cast<int>(ray / rays.sample_count);
+    rays.pixels[ray] = static_cast<int>((rays.range.first + ray) / rays.spp);
 }
 
 }  // namespace
@@ -30,8 +30,8 @@ void launch_widen(const float* from, std::int64_t count, double* to, cudaStream_
 }
 
 void launch_place(const PlaceRays& rays, cudaStream_t stream) {
-    if (rays.count == 0) return;
-    place<<<blocks_for(rays.count), kBlockSize, 0, stream>>>(rays);
+    if (rays.range.count == 0) return;
+    place<<<blocks_for(rays.range.count), kBlockSize, 0, stream>>>(rays);
     check_cuda(cudaGetLastError(), "starting to place rays");
 }
 

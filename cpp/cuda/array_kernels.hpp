@@ -3,21 +3,22 @@
 
 #include <cstdint>
 
-#include "../math/vec3.hpp"
+#include "../camera/ray_request.hpp"
 
 namespace realcam {
 
 /// float32 as float64. Arrays here lie on the current device; all throw DeviceError where they cannot be started.
 void launch_widen(const float* from, std::int64_t count, double* to, cudaStream_t stream);
 
-/// Of rays with origins relative to the camera, `sample_count` for each pixel: origins in the scene, and pixels. The
-/// camera's place is added in double, as on the CPU: far from the scene's origin float would lose the pupil.
+/// Of rays with origins relative to the camera, spp for each pixel, from the ray `first` on: origins in the scene, and
+/// pixels. The camera's place is added in double, as on the CPU: far from the scene's origin float would lose the
+/// pupil.
 struct PlaceRays {
-    const float* relative;  ///< count x 3, m
+    const float* relative;  ///< range.count x 3, m
     Vec3d place;
-    std::int64_t count;
-    std::uint32_t sample_count;
-    double* origins;  ///< count x 3, m
+    RayRange range;
+    std::uint32_t spp;
+    double* origins;  ///< range.count x 3, m
     int* pixels;
 };
 void launch_place(const PlaceRays& rays, cudaStream_t stream);

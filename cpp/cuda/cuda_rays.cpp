@@ -60,14 +60,14 @@ void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direc
 }
 
 void generate_camera_rays_on_device(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
-                                    float* origins, float* directions, float* weights) {
+                                    RayRange range, float* origins, float* directions, float* weights) {
     const CurrentDevice current(ordinal);
     const CudaStream stream;
     DeviceArrays arrays;
     const CameraView view =
         with_copied_arrays(setup.view(setup.camera().pose.position_m),
                            [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); });
-    launch_generate({view, 0, view.width * view.height, spp, seed, origins, directions, weights}, stream);
+    launch_generate({view, range, spp, seed, origins, directions, weights}, stream);
     stream.wait("generating rays");
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "../camera/camera.hpp"
+#include "../camera/ray_request.hpp"
 #include "../optics/trace_path.hpp"
 
 namespace realcam {
@@ -15,9 +16,9 @@ void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direc
                        Precision precision, int surface_count, std::int64_t count, const double* origins,
                        const double* directions, const TracedRays& out);
 
-/// The camera's own rays into arrays of the GPU's memory, as generate_camera_rays of the CPU, but for the origins: they
-/// are floats, relative to the camera's position. Returns when they are made.
+/// Some of the camera's own rays into arrays of the GPU's memory, as generate_camera_rays of the CPU, but for the
+/// origins: they are floats, relative to the camera's position. Returns when they are made.
 void generate_camera_rays_on_device(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
-                                    float* origins, float* directions, float* weights);
+                                    RayRange range, float* origins, float* directions, float* weights);
 
 }  // namespace realcam

@@ -44,21 +44,24 @@ TracedArrays trace_arrays(const LensSystem& lens, LightDirection direction, doub
             share(std::move(surface), ordinal, {count})};
 }
 
-CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed) {
+CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
+                                    RayRange range) {
     const Camera& camera = setup.camera();
-    const std::int64_t count = static_cast<std::int64_t>(camera.film.width) * camera.film.height * spp;
+    const std::int64_t count = range.count;
     // Beyond that their bytes have no number.
     if (count > (std::int64_t{1} << 48))
-        throw OutOfDeviceMemory(std::to_string(count) +
-                                " rays are more than any GPU's memory holds; ask for fewer spp");
+        throw OutOfDeviceMemory(
+            std::to_string(count) +
+            " rays are more than any GPU's memory holds; ask for fewer spp, or take them in chunks");
     const CurrentDevice current(ordinal);
     const CudaStream stream;
     const auto rays = static_cast<std::size_t>(count);
     DeviceArray<float> relative(3 * rays), directions(3 * rays), weights(rays);
     DeviceArray<double> origins(3 * rays);
     DeviceArray<int> pixels(rays);
-    generate_camera_rays_on_device(ordinal, setup, spp, seed, relative.data(), directions.data(), weights.data());
-    launch_place({relative.data(), camera.pose.position_m, count, spp, origins.data(), pixels.data()}, stream);
+    generate_camera_rays_on_device(ordinal, setup, spp, seed, range, relative.data(), directions.data(),
+                                   weights.data());
+    launch_place({relative.data(), camera.pose.position_m, range, spp, origins.data(), pixels.data()}, stream);
     stream.wait("placing rays");
     return {share(std::move(origins), ordinal, {count, 3}), share(std::move(directions), ordinal, {count, 3}),
             share(std::move(weights), ordinal, {count}), share(std::move(pixels), ordinal, {count})};

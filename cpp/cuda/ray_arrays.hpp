@@ -1,5 +1,6 @@
 #pragma once
 #include "../camera/camera.hpp"
+#include "../camera/ray_request.hpp"
 #include "../optics/trace_path.hpp"
 #include "shared_device_array.hpp"
 
@@ -30,6 +31,7 @@ struct CameraRayArrays {
 };
 
 /// Throws InputError and DeviceError.
-CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed);
+CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
+                                    RayRange range);
 
 }  // namespace realcam

@@ -39,7 +39,7 @@ TracedArrays trace_arrays(const LensSystem&, LightDirection, double, Precision, 
                           ForeignNumbers) {
     fail();
 }
-CameraRayArrays generate_ray_arrays(int, const CameraSetup&, std::uint32_t, std::uint32_t) {
+CameraRayArrays generate_ray_arrays(int, const CameraSetup&, std::uint32_t, std::uint32_t, RayRange) {
     fail();
 }
 std::optional<int> gpu_of_address(const void*) {

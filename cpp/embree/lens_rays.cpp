@@ -56,36 +56,25 @@ void trace_rays(const LensSystem& lens, LightDirection direction, double wavelen
     }
 }
 
-void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, double* origins_m,
-                          float* directions, float* weights) {
-    const Camera& camera = setup.camera();
-    const CameraView view = setup.view(camera.pose.position_m);
-    const std::int32_t pixels = camera.film.width * camera.film.height;
-    tbb::parallel_for(tbb::blocked_range<std::int32_t>(0, pixels, static_cast<std::size_t>(kChunk / spp + 1)),
-                      [&](const tbb::blocked_range<std::int32_t>& range) {
-                          const std::int64_t first = static_cast<std::int64_t>(range.begin()) * spp,
-                                             count = static_cast<std::int64_t>(range.size()) * spp;
-                          std::vector<float> origins(static_cast<std::size_t>(3 * count));
-                          const RayRequest request{view,
-                                                   range.begin(),
-                                                   static_cast<std::int32_t>(range.size()),
-                                                   spp,
-                                                   seed,
-                                                   origins.data(),
-                                                   directions + 3 * first,
-                                                   weights + first};
-                          kernels().generate_rays(&request);
-                          // The camera's place is added in double: far from the scene's origin float would lose the
-                          // pupil.
-                          const Vec3d place = camera.pose.position_m;
-                          for (std::int64_t i = 0; i < count; ++i) {
-                              const float* from = origins.data() + 3 * i;
-                              double* to = origins_m + 3 * (first + i);
-                              to[0] = place.x + static_cast<double>(from[0]);
-                              to[1] = place.y + static_cast<double>(from[1]);
-                              to[2] = place.z + static_cast<double>(from[2]);
-                          }
-                      });
+void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, RayRange range,
+                          double* origins_m, float* directions, float* weights) {
+    const Vec3d place = setup.camera().pose.position_m;
+    const CameraView view = setup.view(place);
+    in_chunks(range.count, [&](std::int64_t begin, std::int64_t end) {
+        std::vector<float> origins(static_cast<std::size_t>(3 * (end - begin)));
+        const RayRequest request{
+            view,           {range.first + begin, end - begin}, spp, seed, origins.data(), directions + 3 * begin,
+            weights + begin};
+        kernels().generate_rays(&request);
+        // The camera's place is added in double: far from the scene's origin float would lose the pupil.
+        for (std::int64_t i = 0; i < end - begin; ++i) {
+            const float* from = origins.data() + 3 * i;
+            double* to = origins_m + 3 * (begin + i);
+            to[0] = place.x + static_cast<double>(from[0]);
+            to[1] = place.y + static_cast<double>(from[1]);
+            to[2] = place.z + static_cast<double>(from[2]);
+        }
+    });
 }
 
 RayLoop parallel_ray_loop(KeepGoing keep_going) {

@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "../camera/camera.hpp"
+#include "../camera/ray_request.hpp"
 #include "../optics/ray_loop.hpp"
 #include "../optics/trace_path.hpp"
 #include "kernels.hpp"
@@ -20,9 +21,9 @@ void trace_rays(const LensSystem& lens, LightDirection direction, double wavelen
 /// A loop over rays on all cores.
 RayLoop parallel_ray_loop(KeepGoing keep_going);
 
-/// The camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
-/// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of width * height * spp rays.
-void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, double* origins_m,
-                          float* directions, float* weights);
+/// Some of the camera's own rays, spp for each pixel, row by row: origins (metres, scene), unit directions, and weights
+/// (irradiance on the film for unit radiance; 0: the ray does not leave the lens). Arrays of range.count rays.
+void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed, RayRange range,
+                          double* origins_m, float* directions, float* weights);
 
 }  // namespace realcam

@@ -459,6 +459,11 @@ class CameraRays(Generic[_Doubles, _Floats, _Integers]):
     @property
     def pixels(self) -> _Integers: ...
 
+@final
+class RayChunks(Generic[_Doubles, _Floats, _Integers]):
+    def __iter__(self) -> Self: ...
+    def __next__(self) -> CameraRays[_Doubles, _Floats, _Integers]: ...
+
 class FieldOfView(NamedTuple):
     horizontal: float
     vertical: float
@@ -510,6 +515,14 @@ class Camera(_Value):
     def generate_rays(self, *, spp: int = 1, seed: int = 0, device: Literal["cpu"] = "cpu") -> CameraRays: ...
     @overload
     def generate_rays(self, *, spp: int = 1, seed: int = 0, device: str = "cpu") -> CameraRays[Any, Any, Any]: ...
+    @overload
+    def ray_chunks(
+        self, *, spp: int = 1, seed: int = 0, device: Literal["cpu"] = "cpu", max_rays: int = 4194304
+    ) -> RayChunks: ...
+    @overload
+    def ray_chunks(
+        self, *, spp: int = 1, seed: int = 0, device: str = "cpu", max_rays: int = 4194304
+    ) -> RayChunks[Any, Any, Any]: ...
     @property
     def lens(self) -> Lens: ...
     @property

@@ -26,8 +26,8 @@ inline FieldPicture photograph(const LensSystem& lens, double film_mm, int pixel
     const std::size_t count = static_cast<std::size_t>(pixels * pixels) * spp;
     std::vector<double> origins(3 * count);
     std::vector<float> directions(3 * count), weights(count);
-    generate_camera_rays(CameraSetup(camera, fast_pupil_tracer()), spp, 3, origins.data(), directions.data(),
-                         weights.data());
+    generate_camera_rays(CameraSetup(camera, fast_pupil_tracer()), spp, 3, all_rays(pixels, pixels, spp),
+                         origins.data(), directions.data(), weights.data());
     FieldPicture picture;
     for (std::size_t i = 0; i < count; ++i) {
         const double weight = static_cast<double>(weights[i]);

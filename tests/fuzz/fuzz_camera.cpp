@@ -106,13 +106,14 @@ void check_rays(Bytes& in, const Camera& camera) {
     const CameraView view = setup.view(camera.pose.position_m);
     const int pixels = camera.film.width * camera.film.height;
     std::vector<float> origins(3 * kCount), directions(3 * kCount), weights(kCount);
-    RayRequest request{view, 0, 0, 0, 0, origins.data(), directions.data(), weights.data()};
-    request.sample_count = in.chance(128) ? 1 : 8;
-    request.pixel_count = std::min(pixels, kCount / static_cast<int>(request.sample_count));
-    request.first_pixel = static_cast<int>(in.word() % static_cast<unsigned>(pixels - request.pixel_count + 1));
+    RayRequest request{view, {0, 0}, 0, 0, origins.data(), directions.data(), weights.data()};
+    request.spp = in.chance(128) ? 1 : 8;
+    const std::int64_t all = static_cast<std::int64_t>(pixels) * request.spp;
+    request.range.count = std::min<std::int64_t>(all, kCount);
+    request.range.first = in.word() % (all - request.range.count + 1);
     request.seed = in.word();
     kernels().generate_rays(&request);
-    const int rays = request.pixel_count * static_cast<int>(request.sample_count);
+    const int rays = static_cast<int>(request.range.count);
     findings().camera_rays += static_cast<std::uint64_t>(rays);
     for (int i = 0; i < rays; ++i) {
         const float *o = origins.data() + 3 * i, *d = directions.data() + 3 * i,

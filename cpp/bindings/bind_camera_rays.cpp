@@ -1,0 +1,138 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "../camera/last_setup.hpp"
+#include "../cuda/ray_arrays.hpp"
+#include "../devices/devices.hpp"
+#include "../embree/embree_backend.hpp"
+#include "../embree/lens_rays.hpp"
+#include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// Arrays of numpy, or DeviceArrays.
+struct CameraRaysResult {
+    py::object origins_m, directions, weights, pixels;
+};
+
+/// What is asked for, checked.
+struct RayOrder {
+    Camera camera;
+    std::uint32_t spp, seed;
+    std::optional<int> gpu;
+
+    RayRange all() const { return all_rays(camera.film.width, camera.film.height, spp); }
+};
+
+RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device) {
+    if (spp < 1) throw InputError("spp must be at least 1");
+    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
+    return {camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), gpu_for_rays(device)};
+}
+
+/// To be called without the interpreter's lock.
+std::shared_ptr<const CameraSetup> setup_of(const Camera& camera) {
+    static LastSetup last;
+    return last.make(camera, fast_pupil_tracer());
+}
+
+CameraRaysResult rays_on_gpu(const RayOrder& order, RayRange range) {
+    const CameraRayArrays rays = [&] {
+        const py::gil_scoped_release release;
+        return generate_ray_arrays(*order.gpu, *setup_of(order.camera), order.spp, order.seed, range);
+    }();
+    return {py::cast(rays.origins_m), py::cast(rays.directions), py::cast(rays.weights), py::cast(rays.pixels)};
+}
+
+CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
+    constexpr std::int64_t kBetweenSignals = 1 << 20;  // some ten milliseconds
+    const std::int64_t count = range.count;
+    py::array_t<double> origins_m({count, std::int64_t{3}});
+    py::array_t<float> directions({count, std::int64_t{3}}), weights(count);
+    py::array_t<int> pixels(count);
+    double* origins = origins_m.mutable_data();
+    float *ways = directions.mutable_data(), *shares = weights.mutable_data();
+    int* of = pixels.mutable_data();
+    for (std::int64_t done = 0; done < count; done += kBetweenSignals) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        const py::gil_scoped_release release;
+        const RayRange part = {range.first + done, std::min(kBetweenSignals, count - done)};
+        generate_camera_rays(*setup_of(order.camera), order.spp, order.seed, part, origins + 3 * done, ways + 3 * done,
+                             shares + done);
+        for (std::int64_t i = 0; i < part.count; ++i) of[done + i] = static_cast<int>((part.first + i) / order.spp);
+    }
+    return {origins_m, directions, weights, pixels};
+}
+
+CameraRaysResult rays_of(const RayOrder& order, RayRange range) {
+    return order.gpu ? rays_on_gpu(order, range) : rays_on_host(order, range);
+}
+
+/// An iterator over pieces of all rays.
+struct RayChunks {
+    RayOrder order;
+    std::int64_t max_rays, next = 0;
+};
+
+RayChunks chunks_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device,
+                    std::int64_t max_rays) {
+    if (max_rays < 1) throw InputError("max_rays must be at least 1");
+    return {order_of(camera, spp, seed, device), max_rays};
+}
+
+CameraRaysResult next_chunk(RayChunks& chunks) {
+    const std::int64_t left = chunks.order.all().count - chunks.next;
+    if (left <= 0) throw py::stop_iteration();
+    const RayRange range = {chunks.next, std::min(left, chunks.max_rays)};
+    chunks.next += range.count;
+    return rays_of(chunks.order, range);
+}
+
+}  // namespace
+
+void bind_camera_rays(py::module_& m) {
+    py::class_<CameraRaysResult> rays(
+        m, "CameraRays",
+        "The rays of a camera, spp for each pixel, row by row from the top left. Arrays of numpy, or\n"
+        "DeviceArrays.");
+    def_result(rays);
+    rays.def_readonly("origins_m", &CameraRaysResult::origins_m, "(N, 3) float64, scene.")
+        .def_readonly("directions", &CameraRaysResult::directions, "(N, 3) float32, unit, scene.")
+        .def_readonly(
+            "weights", &CameraRaysResult::weights,
+            "(N,) float32: irradiance on the film for unit radiance; the mean over a pixel's rays of weight times\n"
+            "radiance is its irradiance. 0: the lens blocks the ray.")
+        .def_readonly("pixels", &CameraRaysResult::pixels, "(N,) int32: row * columns + column.")
+        .def("__repr__", [](const CameraRaysResult& r) {
+            return "<realcam.CameraRays " + counted(py::len(r.weights), "ray") + '>';
+        });
+    py::class_<RayChunks>(m, "RayChunks", "An iterator over a camera's rays: see Camera.ray_chunks.")
+        .def("__iter__", [](const py::object& self) { return self; })
+        .def("__next__", &next_chunk, "Returns CameraRays.");
+    py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
+        .def(
+            "generate_rays",
+            [](const Camera& camera, int spp, std::int64_t seed, const std::string& device) {
+                const RayOrder order = order_of(camera, spp, seed, device);
+                return rays_of(order, order.all());
+            },
+            py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
+            "The rays that render would trace, for any other renderer, 44 bytes each. Returns CameraRays.\n"
+            "device: \"cpu\": arrays of numpy. \"cuda\", \"cuda:1\": DeviceArrays, made in that GPU's memory and left\n"
+            "there. \"auto\": a GPU if there is one. Raises InputError, DeviceError.")
+        .def("ray_chunks", &chunks_of, py::kw_only(), "spp"_a = 1, "seed"_a = 0, "device"_a = "cpu",
+             "max_rays"_a = std::int64_t{1} << 22,
+             "The same rays in pieces of at most max_rays, for pictures whose rays memory does not hold: an iterator\n"
+             "over CameraRays. A piece may end between two rays of a pixel. Raises InputError, DeviceError.");
+}
+
+}  // namespace realcam::bindings
