@@ -60,7 +60,7 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
                           double* origins_m, float* directions, float* weights) {
     const Vec3d place = setup.camera().pose.position_m;
     const CameraView view = setup.view(place);
-    in_chunks(range.count, [&](std::int64_t begin, std::int64_t end) {
+    in_chunks(0, range.count, [&](std::int64_t begin, std::int64_t end) {
         std::vector<float> origins(static_cast<std::size_t>(3 * (end - begin)));
         const RayRequest request{
             view,           {range.first + begin, end - begin}, spp, seed, origins.data(), directions + 3 * begin,
