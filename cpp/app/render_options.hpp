@@ -17,7 +17,7 @@ struct RenderWords {
 
 void add_render_options(CLI::App& command, RenderWords& words);
 
-/// What they mean: those of the shot file, if `scene` is one, with what was typed in the stead of what stands there.
+/// What they mean: those of the shot file, if `scene` is one, with typed values instead of those in the file.
 /// Throws InputError that names option or file.
 shot::ShotRequest understand(const RenderWords& words);
 

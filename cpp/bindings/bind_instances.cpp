@@ -21,22 +21,22 @@ Affine<double> affine_from(const double* m, bool has_last_row) {
     return {column(0), column(1), column(2), column(3)};
 }
 
-struct Places {
+struct Transforms {
     std::vector<Affine<double>> list;
     bool several;  ///< given as an array of matrices
 };
 
-Places transforms_from(const py::object& matrices) {
+Transforms transforms_from(const py::object& matrices) {
     const auto m = matrices.is_none() ? InputArray<double>() : InputArray<double>::ensure(matrices);
     if (!m) PyErr_Clear();
     const py::ssize_t axes = m && !matrices.is_none() ? m.ndim() : 0;
     if (axes < 2 || axes > 3 || m.shape(axes - 1) != 4 || (m.shape(axes - 2) != 3 && m.shape(axes - 2) != 4))
         throw InputError("scene_from_object must be an array of numbers of shape (4, 4) or (3, 4), or several of them");
     const py::ssize_t count = axes == 3 ? m.shape(0) : 1, rows = m.shape(axes - 2);
-    std::vector<Affine<double>> places;
-    if (count == 0) throw InputError("scene_from_object holds no matrix; one for each place is wanted");
-    for (py::ssize_t i = 0; i < count; ++i) places.push_back(affine_from(m.data() + 4 * rows * i, rows == 4));
-    return {places, axes == 3};
+    std::vector<Affine<double>> transforms;
+    if (count == 0) throw InputError("scene_from_object holds no matrix; one for each instance is wanted");
+    for (py::ssize_t i = 0; i < count; ++i) transforms.push_back(affine_from(m.data() + 4 * rows * i, rows == 4));
+    return {transforms, axes == 3};
 }
 
 py::array_t<double> matrix_of(const Affine<double>& map) {
@@ -52,10 +52,10 @@ Assembly with_instance(Assembly scene, const Assembly& object, const py::object&
     if (matrices.is_none()) {
         add(scene, object, {}, name, names);
     } else {
-        const Places places = transforms_from(matrices);
-        const bool numbered = places.several && !name.empty();
-        for (std::size_t i = 0; i < places.list.size(); ++i)
-            add(scene, object, places.list[i], numbered ? name + ' ' + std::to_string(i) : name, names);
+        const Transforms transforms = transforms_from(matrices);
+        const bool numbered = transforms.several && !name.empty();
+        for (std::size_t i = 0; i < transforms.list.size(); ++i)
+            add(scene, object, transforms.list[i], numbered ? name + ' ' + std::to_string(i) : name, names);
     }
     validate(scene);
     return scene;
@@ -79,9 +79,9 @@ std::size_t find_instance(const Assembly& scene, const std::variant<py::ssize_t,
 }
 
 Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& instance, const py::object& matrix) {
-    const Places places = transforms_from(matrix);
-    if (places.several) throw InputError("one instance moves to one place; a single matrix is wanted");
-    move(scene, find_instance(scene, instance), places.list.front());
+    const Transforms transforms = transforms_from(matrix);
+    if (transforms.several) throw InputError("one instance has one transform; a single matrix is wanted");
+    move(scene, find_instance(scene, instance), transforms.list.front());
     validate(scene);
     return scene;
 }
@@ -103,12 +103,12 @@ void bind_instances(py::class_<Assembly>& scene) {
             "With another scene in it as an object: its triangles and point lights, but not its suns and environment.\n"
             "scene_from_object: matrix of shape (4, 4) or (3, 4) for columns (x, y, z, 1), metres; none: as it is.\n"
             "(K, 4, 4) or (K, 3, 4): K of them, with names \"name 0\", \"name 1\", ... The object's triangles are\n"
-            "shared, however often it stands there; its own instances become its parts, which move with it, by the "
+            "shared by all of them; its own instances become its parts, which move with it, by the "
             "name\n"
             "\"name/part\". A name that the scene has already gets a number: \"car\", \"car.2\", \"car.3\".\n"
             "Raises InputError for a matrix that is flat.")
         .def("moved", &moved, "instance"_a, "scene_from_object"_a,
-             "With one of the instances, by its name or number, in another place, and with it its parts.\n"
+             "With another transform of one of the instances, by its name or number, and of its parts.\n"
              "Made for every frame: the next picture takes over all that was built for the last.\n"
              "Raises InputError where there is no such instance, or several.")
         .def_property_readonly("instances", &instances_of, "For each its name and (4, 4) scene_from_object.");

@@ -95,7 +95,7 @@ std::string text_of(const Assembly& scene) {
 void bind_scene(py::module_& m) {
     py::class_<Assembly> scene_class(
         m, "Scene",
-        "Triangles, materials and lights, and objects that stand among them, as often as one likes;\n"
+        "Triangles, materials and lights, and instances of other scenes, any number of each;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
         "those of static geometry; objects bring their own along.");
     def_value(scene_class, [](const Assembly& scene) { io::validate(scene); });
@@ -103,7 +103,7 @@ void bind_scene(py::module_& m) {
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},
             "Reads .obj (with its .mtl), .gltf, .glb or .ply. scale: metres per unit of the file; objects: names\n"
-            "of nodes (of an OBJ: what follows \"o\" or \"g\") that stand as instances, each with all below it, to be "
+            "of nodes (of an OBJ: what follows \"o\" or \"g\") that become instances, each with all below it, to be "
             "moved\n"
             "by their names; of several nodes \"car\" the second is \"car.2\". Only regular files are read.\n"
             "Raises SceneFileError, and KeyboardInterrupt on Ctrl-C. What could be put up with is in warnings.")
@@ -142,8 +142,7 @@ void bind_scene(py::module_& m) {
                     scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
             },
             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
-        .def_property_readonly("triangle_count", &Assembly::triangle_count,
-                               "Of all instances, each as often as it stands there.")
+        .def_property_readonly("triangle_count", &Assembly::triangle_count, "Of static geometry and all instances.")
         .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
         .def_property_readonly("has_light", &Assembly::has_light)
         .def_property_readonly("bounds_m", &bounds, "Lowest and highest corner of the bounding box.")

@@ -57,7 +57,7 @@ void bind_view(py::module_& m) {
         .def("framing", &framed, "scene"_a, py::kw_only(), "position"_a = py::none(), "look_at"_a = py::none(),
              "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(),
              "The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as\n"
-             "given, and what is None chosen. It looks at the middle of the scene, stands in front of it along +z\n"
+             "given, and what is None chosen. It looks at the middle of the scene, in front of it along +z\n"
              "(-y where up is z) where the scene fills nine tenths of the film, and focuses on the first surface on\n"
              "its axis. Of the camera itself lens, film, model and exposure stay. Raises InputError.")
         .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = 1,

@@ -6,8 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// The hierarchies of a placed scene: one of its static geometry, one of each object, and one over the objects where
-/// they stand.
+/// The BVHs of a scene in render space: one of its static geometry, one of each object, and one over the instances.
 struct SceneBvh {
     WideBvh static_geometry;
     std::vector<WideBvh> objects;
@@ -26,7 +25,7 @@ SceneBvh build_scene_bvh(const RenderSpaceScene& scene);
 /// would enter twice as many nodes of it as when it was built.
 void refit_instances(SceneBvh& bvh, const RenderSpaceScene& scene);
 
-/// The leaves over the objects, whose hierarchies are to be read at the places given.
+/// The leaves over the objects, whose hierarchies are to be read from the addresses given.
 std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const RenderSpaceScene& scene,
                                        const std::vector<WideBvhView>& objects);
 

@@ -46,14 +46,14 @@ struct WideBvhView {
     const BvhTriangle* triangles;
 };
 
-/// A place where an object stands, with the object's own hierarchy.
+/// The transform of an instance, with its object's own hierarchy.
 struct alignas(16) BvhInstance {
     InverseAffine<float> object_from_render;
     WideBvhView object;
     std::uint32_t index;  ///< in the scene's list
 };
 
-/// Static geometry's triangles, and a hierarchy over objects: its slots hold these in the stead of triangles.
+/// Static geometry's triangles, and a hierarchy over objects: its slots hold instances instead of triangles.
 struct SceneBvhView {
     WideBvhView static_geometry;
     const WideNode* nodes;

@@ -20,7 +20,7 @@ struct Film {
     bool operator==(const Film&) const = default;
 };
 
-/// Where the camera stands: the middle of its film, and its axes, in the scene (metres, right-handed, y up).
+/// Where the camera is: the middle of its film, and its axes, in the scene (metres, right-handed, y up).
 struct Pose {
     Vec3d position_m = {0, 0, 0};
     Vec3d look_at_m = {0, 0, -1};
@@ -147,7 +147,7 @@ inline ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     return thick;
 }
 
-/// Throws InputError where an ideal model has no place for the lens.
+/// Throws InputError where an ideal model cannot take the place of the lens.
 inline void validate_ideal(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const std::string which = "the ideal camera models have no place for lens \"" + lens.name + "\": its ";

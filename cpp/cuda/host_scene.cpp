@@ -9,7 +9,7 @@ namespace realcam {
 void HostScene::place(const Assembly& assembly, const Camera& camera) {
     const SceneChange change = scene_change(placed_.get(), assembly, camera);
     if (change == SceneChange::none) return;
-    const bool moves = change == SceneChange::places;
+    const bool moves = change == SceneChange::transforms;
     std::unique_ptr<RenderSpaceScene> placed = std::exchange(placed_, nullptr);
     if (moves) {
         placed->move(assembly);

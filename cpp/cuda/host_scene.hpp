@@ -12,8 +12,8 @@ public:
     /// Once for each GPU, before the first scene.
     void add(DeviceRenderer& renderer) { renderers_.push_back(&renderer); }
 
-    /// Copies what has changed: nothing, where objects stand, or everything; the latter also for a camera that is too
-    /// far from the place of the last. Throws DeviceError; the next call begins anew then.
+    /// Copies what has changed: nothing, the transforms of instances, or everything; the latter also for a camera that
+    /// is too far from the place of the last. Throws DeviceError; the next call begins anew then.
     void place(const Assembly& assembly, const Camera& camera);
 
     Vec3d origin_m() const { return placed_->origin_m(); }

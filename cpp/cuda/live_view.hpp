@@ -27,7 +27,7 @@ struct DevicePicture {
 };
 
 /// A scene before a camera that changes with every frame, on one GPU. Only what changed is copied there: the camera, or
-/// where objects stand. Samples are collected for as long as both stay the same. Not for two threads at once, but
+/// instance transforms. Samples are collected for as long as both stay the same. Not for two threads at once, but
 /// for cancel.
 class LiveView {
 public:
@@ -42,7 +42,7 @@ public:
     /// seed or number of bounces begins a new picture; exposure time, ISO and tone curve only develop it anew.
     std::shared_ptr<const LiveFrame> shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve);
 
-    /// The scene of the frames to come. Of one that has the same objects in other places only the places are copied.
+    /// The scene of the frames to come. Of one in which only transforms differ, only these are copied.
     /// Throws InputError.
     void show(Assembly scene);
 

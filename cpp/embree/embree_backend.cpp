@@ -93,7 +93,7 @@ private:
         const SceneChange change = scene_change(scene_ ? &scene_->placed() : nullptr, scene, camera);
         if (change == SceneChange::none) return;
         std::unique_ptr<EmbreeScene> last = std::exchange(scene_, nullptr);  // what fails is not kept
-        if (change == SceneChange::places) {
+        if (change == SceneChange::transforms) {
             last->move(scene);
             scene_ = std::move(last);
         } else {

@@ -7,8 +7,8 @@
 
 namespace realcam {
 
-/// A placed scene with its Embree BVHs: one for static geometry and, where objects stand on it, one for each of them
-/// and one over them all.
+/// A scene in render space with its Embree BVHs: one for static geometry and, where there are instances, one for each
+/// object and one over them all.
 class EmbreeScene {
 public:
     /// Throws DeviceError (out of memory, for one).

@@ -11,10 +11,10 @@ namespace realcam::io {
 /// Checks everything that a renderer relies on: sizes of lists, indices, finite numbers, no negative light or
 /// reflectance. Throws SceneFileError if there is no triangle or if `file`, for the message, is given, and InputError
 /// otherwise; the message names the element, counted from 0. `may_be_empty`: of what has no triangle but emitters, or
-/// of a scene on which objects stand.
+/// of a scene that consists of instances.
 void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false);
 
-/// The same of static geometry, of the objects, and of their places.
+/// The same of static geometry, of the objects, and of their transforms.
 void validate(const Assembly& scene, const std::string& file = {});
 
 /// Whether coordinates in metres are finite, and near enough to be rendered.

@@ -11,8 +11,8 @@
 
 namespace realcam::io {
 
-/// What of a file stands as objects instead of being a part of static geometry: nodes that the caller names, with all
-/// below them, and meshes that stand in so many places that their triangles are worth sharing.
+/// What of a file becomes instances instead of a part of static geometry: nodes that the caller names, with all
+/// below them, and meshes with so many copies that their triangles are worth sharing.
 class SceneObjects {
 public:
     /// All arguments have to outlive it. Throws SceneFileError for a name that no node has.

@@ -11,7 +11,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the user says of the camera's place; the rest is chosen.
+/// What the user says of the camera's position; the rest is chosen.
 struct ViewRequest {
     std::optional<Vec3d> position_m, look_at_m;
     Vec3d up = {0, 1, 0};

@@ -7,14 +7,14 @@ namespace REALCAM_NAMESPACE {
 /// What a backend has to do for the next picture.
 enum class SceneChange {
     none,
-    places,  ///< RenderSpaceScene::move serves
-    all,     ///< another scene, or a camera too far from the place of the last
+    transforms,  ///< RenderSpaceScene::move serves
+    all,     ///< another scene, or a camera too far from the position of the last
 };
 
 /// `last`: null where there was none.
 inline SceneChange scene_change(const RenderSpaceScene* last, const Assembly& scene, const Camera& camera) {
     if (!last || !lies_near(camera, last->origin_m()) || !last->can_move_to(scene)) return SceneChange::all;
-    return same_transforms(last->assembly(), scene) ? SceneChange::none : SceneChange::places;
+    return same_transforms(last->assembly(), scene) ? SceneChange::none : SceneChange::transforms;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -12,7 +12,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A place where an object stands: triangles and point lights of another scene, whose suns and environment stay behind.
+/// An instance of an object: the triangles and point lights of another scene, without its suns and environment.
 struct Instance {
     static constexpr std::ptrdiff_t kNoWhole = -1;
 
@@ -23,8 +23,8 @@ struct Instance {
     std::ptrdiff_t part_of = kNoWhole;
 };
 
-/// A scene as static geometry, and objects that stand in it, as often as one likes. A value: copies share what is
-/// large. Backends know the last one again by these pointers, and keep all that they made of it where only places
+/// A scene as static geometry and instances of objects. A value: copies share what is
+/// large. Backends know the last one again by these pointers, and keep all that they made of it where only transforms
 /// differ.
 struct Assembly {
     std::shared_ptr<const Scene> static_geometry;  ///< with the lights; may have no triangles where there are instances
@@ -47,7 +47,7 @@ struct Assembly {
     }
 };
 
-/// Whether two assemblies are made of the same parts, of which some may stand elsewhere.
+/// Whether two assemblies are made of the same parts, of which some may have other transforms.
 inline bool same_parts(const Assembly& a, const Assembly& b) {
     if (a.static_geometry != b.static_geometry || a.instances.size() != b.instances.size()) return false;
     for (std::size_t i = 0; i < a.instances.size(); ++i)
@@ -67,7 +67,7 @@ inline std::string label(const Assembly& assembly, std::size_t instance) {
     return "instance " + std::to_string(instance) + (name.empty() ? "" : " (\"" + name + "\")");
 }
 
-/// Why an object cannot stand so; empty where it can.
+/// Why a map is no transform for an instance; empty where it is one.
 inline std::string transform_error(const Affine<double>& map) {
     // Far inside of what float can do, and beyond what anybody has seen.
     constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
@@ -83,7 +83,7 @@ inline std::string transform_error(const Affine<double>& map) {
     return "";
 }
 
-/// Throws InputError where there is nothing to be seen, or where an object cannot stand.
+/// Throws InputError where there is nothing to be seen, or where a transform is none.
 inline void validate(const Assembly& assembly) {
     if (!assembly.static_geometry || assembly.triangle_count() == 0)
         throw InputError("the scene is empty; at least one triangle is wanted");

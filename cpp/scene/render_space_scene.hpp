@@ -14,7 +14,7 @@ namespace REALCAM_NAMESPACE {
 
 /// A scene as kernels read it, relative to an origin near the camera, so that a scene far from its own origin loses
 /// nothing. Objects are placed in frames of their own, which kernels reach through the instances; but one that is
-/// large, and near the camera, is placed as static geometry is, once for each place where it stands. Owns the memory of
+/// large, and near the camera, is prepared as static geometry is, once for each instance of it. Owns the memory of
 /// its view.
 class RenderSpaceScene {
 public:
@@ -61,14 +61,15 @@ public:
         return true;
     }
 
-    /// Objects to other places, as can_move_to allows. Their triangles stay what they are, in their own frames.
+    /// Gives instances other transforms, as can_move_to allows. Their triangles stay what they are, in their own
+    /// frames.
     void move(const Assembly& assembly) {
         assembly_ = assembly;
         update_instances();
     }
 
     SceneView view() const {
-        SceneView view{static_geometry_.view(), places(), nullptr, nullptr, 0, 0, false, {}};
+        SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, false, {}};
         const Scene& scene = *assembly_.static_geometry;
         const Environment& environment = scene.environment;
         view.objects = object_views_.data();
@@ -85,7 +86,7 @@ public:
         return view;
     }
 
-    InstancesView places() const {
+    InstancesView instances_view() const {
         InstancesView view{};
         view.instances = instances_.data();
         view.points = points_.data();
@@ -123,7 +124,7 @@ private:
     /// So many doublings make no difference to a frame.
     static constexpr double kAlike = 10;
 
-    /// About the middle, in units of about a metre as it stands there: traversal takes triangles of less than 1e-9 of
+    /// About the middle, in units of about a metre as it is instanced: traversal takes triangles of less than 1e-9 of
     /// the unit for points.
     static Affine<double> own_frame(const BoundingBox& box, const Affine<double>& map) {
         Affine<double> frame;

@@ -84,7 +84,7 @@ struct MeshView {
     std::int32_t triangle_count, vertex_count, material_count, texture_count;
 };
 
-/// One of the places where an object stands.
+/// An instance of an object.
 struct InstanceView {
     Affine<float> render_from_object;
     InverseAffine<float> object_from_render;
@@ -93,7 +93,7 @@ struct InstanceView {
     std::uint32_t object;
 };
 
-/// What depends on where objects stand: they themselves, and the lights that may move with them.
+/// What depends on instance transforms: the instances, and the lights that may move with them.
 struct InstancesView {
     const InstanceView* instances;
     const PointLight* points;
