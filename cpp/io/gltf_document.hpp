@@ -17,7 +17,9 @@ public:
     const std::string& path() const { return path_; }
     const Json& root() const { return root_; }
     /// The second chunk of a .glb; empty where there is none.
-    std::string_view binary_chunk() const { return std::string_view(file_).substr(binary_begin_, binary_size_); }
+    std::string_view binary_chunk() const {
+        return binary_size_ > 0 ? std::string_view(file_).substr(binary_begin_, binary_size_) : "";
+    }
 
     /// Throws SceneFileError "PATH: message".
     [[noreturn]] void fail(const std::string& message) const;

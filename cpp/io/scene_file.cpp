@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <climits>
 #include <cmath>
 #include <filesystem>
 #include <new>
@@ -13,6 +14,7 @@
 #include "gltf_file.hpp"
 #include "obj_file.hpp"
 #include "ply_file.hpp"
+#include "printable.hpp"
 #include "regular_file.hpp"
 #include "scene_checks.hpp"
 #include "scene_geometry.hpp"
@@ -30,6 +32,13 @@ std::string suffix_of(const std::string& path) {
     if (suffix == ".obj" || suffix == ".gltf" || suffix == ".glb" || suffix == ".ply") return suffix;
     throw SceneFileError(path + ": a scene file ends in .glb, .gltf, .obj or .ply" +
                          (suffix.empty() ? "" : ", not in " + suffix));
+}
+
+/// Throws for a file that is none, that is empty, or that is larger than memory, which all formats then need.
+void check_file(const std::string& path) {
+    const std::uint64_t size = RegularFile(path).size();
+    if (size == 0) throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
+    if (const std::string why = too_much_memory(size); !why.empty()) throw SceneFileError(path + ": holds " + why);
 }
 
 void append(std::vector<std::string>& warnings, std::vector<std::string> more) {
@@ -93,8 +102,10 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
 
 Assembly read_any(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
     Checkpoint checkpoint(options.keep_going);
+    // The system knows no longer ones, and no message has to repeat them.
+    if (path.size() > PATH_MAX) throw SceneFileError(in_quotes(path) + ": no such file");
     const std::string suffix = suffix_of(path);
-    if (RegularFile(path).size() == 0) throw SceneFileError(path + ": is empty; a scene with triangles is wanted");
+    check_file(path);
     if (suffix == ".ply") {
         if (!options.objects.empty()) throw InputError(path + ": a .ply file has no nodes that could be objects");
         return read_ply_scene(path, options.scale, read_image, checkpoint);

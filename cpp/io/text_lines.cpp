@@ -7,6 +7,8 @@ namespace realcam::io {
 namespace {
 
 constexpr std::size_t kPiece = 1 << 20;
+/// A polygon of tens of millions of corners, and not a file that has no lines.
+constexpr std::size_t kLongestLine = std::size_t{1} << 28;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 bool is_blank(char c) {
@@ -26,6 +28,11 @@ bool TextLines::read_more() {
     checkpoint_.pass(n / 64);
     end_ += n;
     return n > 0;
+}
+
+void TextLines::check_length(std::size_t length) const {
+    if (length <= kLongestLine) return;
+    throw SceneFileError(path_ + ": line " + std::to_string(count_ + 1) + ": is longer than 268435456 bytes");
 }
 
 bool TextLines::next_physical(std::string_view& line) {
@@ -50,6 +57,7 @@ bool TextLines::next_physical(std::string_view& line) {
                                  ": holds a null character; a text is wanted");
         if (at == end_) {
             searched = at - begin_;
+            check_length(searched);
             if (read_more()) continue;
             if (begin_ == end_) return false;
             at = end_;
@@ -69,6 +77,7 @@ bool TextLines::next(std::string_view& line) {
     joined_.clear();
     while (line.ends_with('\\')) {
         joined_.append(line.substr(0, line.size() - 1)).append(" ");
+        check_length(joined_.size());
         line = {};
         if (!next_physical(line)) break;
     }

@@ -16,7 +16,7 @@ public:
     TextLines(const std::string& path, Checkpoint& checkpoint) : path_(path), checkpoint_(checkpoint), file_(path) {}
 
     /// The next line, without its end, which lasts until the next call. False at the end of the file. Throws
-    /// SceneFileError where the file is no text, because it holds a null character.
+    /// SceneFileError where the file is no text: it holds a null character, or a line has no end.
     bool next(std::string_view& line);
     /// Of the line that next() gave, from 1; of its first where several are joined.
     std::size_t number() const { return number_; }
@@ -24,6 +24,7 @@ public:
 private:
     bool next_physical(std::string_view& line);
     bool read_more();
+    void check_length(std::size_t length) const;
 
     std::string path_;
     Checkpoint& checkpoint_;

@@ -55,7 +55,10 @@ public:
     }
 
     double as_number(const toml::node& node, const std::string& what) const {
-        const double value = node.is_number() ? node.value_or(0.0) : std::nan("");
+        // value_or gives nothing for a whole number that no double holds exactly.
+        const double value = node.is_integer()  ? static_cast<double>(node.as_integer()->get())
+                             : node.is_number() ? node.value_or(0.0)
+                                                : std::nan("");
         if (!std::isfinite(value)) fail(what + " must be a finite number", &node);
         return value;
     }

@@ -141,7 +141,7 @@ public:
 
     bool clip(std::vector<PolygonTriangle>& triangles, Checkpoint& checkpoint) {
         std::size_t left = points_.size(), work = 0, since_last = 0;
-        const std::size_t most_work = 1000 * left + 1000000;
+        const std::size_t most_work = 400 * left + 20000;
         std::uint32_t at = 0;
         while (left > 3 && work < most_work) {
             const std::size_t before = work++;

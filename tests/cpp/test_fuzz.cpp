@@ -47,6 +47,31 @@ TEST_CASE("a mutated lens file is a lens or a LensFileError") {
           std::to_string(fuzz::findings().files) + " files", "core", "float64", broken, 0, "files"});
 }
 
+TEST_CASE("a mutated file of any kind is what it should be, or an error") {
+    struct Kind {
+        const char* name;
+        fuzz::Target target;
+    };
+    const Kind kinds[] = {
+        {"OBJ", fuzz::fuzz_obj},         {"MTL", fuzz::fuzz_mtl}, {"glTF", fuzz::fuzz_gltf},
+        {"GLB", fuzz::fuzz_glb},         {"PLY", fuzz::fuzz_ply},
+#if defined(REALCAM_FUZZ_SHOT_FILES)
+        {"shot", fuzz::fuzz_shot_file},
+#endif
+#if defined(REALCAM_FUZZ_PICTURES)
+        {"picture", fuzz::fuzz_picture},
+#endif
+    };
+    for (const Kind& kind : kinds) {
+        CAPTURE(kind.name);
+        const double broken = run(kind.target, &Findings::files, 500);
+        CHECK(fuzz::findings().files_read > 5);  // it is not all refused at the door
+        hold({"Scenes",
+              std::string("mutated files that end in anything but what they should be or an error: ") + kind.name,
+              std::to_string(fuzz::findings().files) + " files", "core", "float64", broken, 0, "files"});
+    }
+}
+
 TEST_CASE("a camera with absurd dials is refused or its rays are finite") {
     const double broken = run(fuzz::fuzz_camera, &Findings::pupil_samples, 100000);
     CHECK(fuzz::findings().cameras_made > 0);

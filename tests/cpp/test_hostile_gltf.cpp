@@ -222,6 +222,26 @@ TEST_CASE("glTF: pictures and buffers that cannot be had") {
     CHECK(has(error(R"("byteLength":42,"uri":"data:;base64,A")"), "its data: address is no base64"));
 }
 
+TEST_CASE("GLB: chunks without bytes, and of more than there are") {
+    const Gltf gltf;
+    const auto word = [](std::size_t value) {
+        const auto v = static_cast<std::uint32_t>(value);
+        return std::string(reinterpret_cast<const char*>(&v), 4);
+    };
+    const auto error = [&](const std::string& json, std::size_t json_size, std::size_t binary_size) {
+        return error_of(gltf.folder.write("t.glb", "glTF" + word(2) + word(28 + json.size()) + word(json_size) +
+                                                       "JSON" + json + word(binary_size) + std::string("BIN\0", 4)));
+    };
+    const std::string inside = Tiny().text();
+    CHECK(error(inside, inside.size(), 0) == "no error");
+    CHECK(has(error(inside, inside.size(), 1), "is cut short"));
+    CHECK(has(error(inside, 4000000000, 0), "is cut short"));
+    std::string without = inside;
+    const std::size_t from = without.find(",\"uri\""), to = without.find("}]", from);
+    without.erase(from, to - from);
+    CHECK(has(error(without, without.size(), 0), "buffer 0 cannot be read: it has no bytes"));
+}
+
 TEST_CASE("glTF: what is too far away is said to be") {
     const Gltf gltf;
     Tiny tiny;
