@@ -29,7 +29,6 @@ public:
         channels = png_get_channels(png_, info_);
         bytes_per_value_ = png_get_bit_depth(png_, info_) == 16 ? 2 : 1;
     }
-    ~PngPicture() override { png_destroy_read_struct(&png_, &info_, nullptr); }
 
     void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {
         read_as(count, stride, pixels, keep_going, [](int code, int most) {
@@ -119,8 +118,14 @@ private:
 
     std::span<const std::uint8_t> bytes_;
     std::ifstream file_;
-    png_structp png_ = nullptr;
-    png_infop info_ = nullptr;
+    /// What libpng allocates: freed where the constructor throws, too.
+    struct Handles {
+        png_structp png = nullptr;
+        png_infop info = nullptr;
+        ~Handles() { png_destroy_read_struct(&png, &info, nullptr); }
+    } handles_;
+    png_structp& png_ = handles_.png;
+    png_infop& info_ = handles_.info;
     int passes_ = 1, bytes_per_value_ = 1;
     std::jmp_buf after_error_;
     char error_[100] = "";
