@@ -24,11 +24,15 @@ std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples, co
         if (pupil->ndim() != 2 || pupil->shape(1) != 2 || pupil->shape(0) == 0)
             throw InputError("pupil must be an array of shape (N, 2), with N of 1 or more");
         std::vector<PupilPoint> points;
-        for (py::ssize_t i = 0; i < pupil->shape(0); ++i) {
-            const double x = pupil->at(i, 0), y = pupil->at(i, 1);
-            if (!(std::hypot(x, y) < 10)) throw InputError("places in the pupil are shares of the stop's radius");
-            points.push_back({x, y, 1});
-        }
+        const auto count = static_cast<std::size_t>(pupil->shape(0));
+        points.reserve(count);
+        RayLoop{heed_signals}.in_order(count, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const double x = pupil->data()[2 * i], y = pupil->data()[2 * i + 1];
+                if (!(std::hypot(x, y) < 10)) throw InputError("places in the pupil are shares of the stop's radius");
+                points.push_back({x, y, 1});
+            }
+        });
         return points;
     }
     if (!(samples >= 1 && samples <= 2048)) throw InputError("samples must lie between 1 and 2048");
