@@ -61,4 +61,11 @@ class DeviceError : public Error {
     using Error::Error;
 };
 
+/// The system has no more threads to give, or no memory for their stacks.
+class NoThread : public DeviceError {
+public:
+    NoThread()
+        : DeviceError("the system starts no thread; more memory (ulimit -v) or threads (ulimit -u) are wanted") {}
+};
+
 }  // namespace realcam

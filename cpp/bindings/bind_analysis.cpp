@@ -84,7 +84,7 @@ AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std
     const double reach = stop_reach(lens);
     std::vector<AimedRay> rays;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         parallel_ray_loop(heed_signals).append_all(rays, pattern.size(), [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) rays[i] = aimer({reach * pattern[i].x, reach * pattern[i].y});
         });
@@ -122,7 +122,7 @@ PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::op
         throw InputError("unknown exit_pupil \"" + exit_pupil + "\"; real or paraxial is wanted");
     if (remove && *remove != "tilt" && *remove != "focus")
         throw InputError("cannot remove \"" + *remove + "\"; tilt, focus or None is wanted");
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     const RayLoop loop = parallel_ray_loop(heed_signals);
     return {wavefront_of(lens, wavelength, field_rays(lens, wavelength, field, std::move(points), loop), distance,
                          reference == "chief" ? SphereCentre::chief : SphereCentre::centroid,
@@ -148,7 +148,7 @@ Spot make_spot(const LensSystem& lens, double field_deg, std::optional<double> o
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const double distance = film_distance_from(lens, film_distance_mm);
     std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     const RayLoop loop = parallel_ray_loop(heed_signals);
     const FieldPoint field = field_from(field_deg, object_distance_m);
     return spot_of(field_rays(lens, wavelength, field, std::move(points), loop), distance, loop);

@@ -79,14 +79,14 @@ void bind_bench(py::module_& m) {
     m.def(
         "_lens_ray_rates",
         [](const LensSystem& lens, double seconds) {
-            const py::gil_scoped_release release;
+            const Unlocked unlocked;
             return lens_ray_rates(lens, seconds);
         },
         "lens"_a, "seconds"_a);
     m.def(
         "_gpu_lens_ray_rates",
         [](const Camera& camera, const std::string& device) {
-            const py::gil_scoped_release release;
+            const Unlocked unlocked;
             const LensRayRates rates = lens_ray_rates(gpu_for_bench(device), camera, fast_pupil_tracer());
             return std::map<std::string, double>{
                 {"traced", rates.traced}, {"generated", rates.generated}, {"passed", rates.passed}};
@@ -95,7 +95,7 @@ void bind_bench(py::module_& m) {
     m.def(
         "_gpu_hit_rates",
         [](const Assembly& scene, const Camera& camera, const std::string& device) {
-            const py::gil_scoped_release release;
+            const Unlocked unlocked;
             const HitRates rates = hit_rates(gpu_for_bench(device), scene, camera, fast_pupil_tracer());
             return std::map<std::string, double>{{"build_seconds", rates.build_seconds},
                                                  {"upload_seconds", rates.upload_seconds},

@@ -162,7 +162,7 @@ void bind_camera(py::module_& m) {
     m.def(
         "pupil_setup",
         [](const LensSystem& lens, double film_radius_mm, bool on_one_core) {
-            const py::gil_scoped_release release;
+            const Unlocked unlocked;
             PupilTracer tracer = fast_pupil_tracer();
             if (on_one_core) tracer.for_each = PupilTracer().for_each;
             return Pupil(lens, film_radius_mm, std::move(tracer)).image_radius();

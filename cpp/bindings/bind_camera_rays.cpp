@@ -47,7 +47,7 @@ std::shared_ptr<const CameraSetup> setup_of(const Camera& camera) {
 
 CameraRaysResult rays_on_gpu(const RayOrder& order, RayRange range) {
     const CameraRayArrays rays = [&] {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         return generate_ray_arrays(*order.gpu, *setup_of(order.camera), order.spp, order.seed, range);
     }();
     return {py::cast(rays.origins_m), py::cast(rays.directions), py::cast(rays.weights), py::cast(rays.pixels)};
@@ -64,7 +64,7 @@ CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
     int* of = pixels.mutable_data();
     for (std::int64_t done = 0; done < count; done += kBetweenSignals) {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         const RayRange part = {range.first + done, std::min(kBetweenSignals, count - done)};
         generate_camera_rays(*setup_of(order.camera), order.spp, order.seed, part, origins + 3 * done, ways + 3 * done,
                              shares + done);

@@ -33,7 +33,7 @@ std::string device_of(const SharedDeviceArray& array) {
 py::array numpy_of(const SharedDeviceArray& array) {
     py::array copy(dtype_of(array), array.shape());
     void* const to = copy.mutable_data();
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     array.download(to);
     return copy;
 }

@@ -1,5 +1,9 @@
 #include "../error.hpp"
 
+#include <new>
+#include <stdexcept>
+#include <string>
+
 #include "../render/backend.hpp"
 #include "bindings.hpp"
 
@@ -73,6 +77,14 @@ void bind_errors(py::module_& m) {
             raise<Cancelled>(e);
         } catch (const Error& e) {
             raise<Error>(e);
+        } catch (const std::bad_alloc&) {
+            PyErr_SetString(PyExc_MemoryError, "out of memory");
+        } catch (const py::builtin_exception&) {
+            throw;  // pybind11's own
+        } catch (const std::runtime_error& e) {
+            // TBB's words where it cannot start a thread.
+            if (!std::string(e.what()).starts_with("pthread_create has failed")) throw;
+            raise<DeviceError>(NoThread());
         }
     });
 }

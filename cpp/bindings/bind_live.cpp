@@ -25,14 +25,14 @@ std::unique_ptr<PythonLiveView> make_live_view(const Assembly& scene, const std:
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     const std::optional<int> gpu = gpu_for_rays(device);
     if (!gpu) throw DeviceError("a live view needs a GPU; device=\"cuda\" is wanted, and rc.render for the CPU");
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     return std::make_unique<PythonLiveView>(std::make_unique<LiveView>(*gpu, scene, fast_pupil_tracer()),
                                             static_cast<std::uint32_t>(seed), max_bounces);
 }
 
 FramePointer shoot(PythonLiveView& live, const Camera& camera, int spp, const std::string& tone) {
     const ToneCurve curve = tone_curve_from(tone);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     return live.view->shoot(camera, {spp, live.seed, live.max_bounces, 0}, curve);
 }
 
@@ -40,7 +40,7 @@ FramePointer shoot(PythonLiveView& live, const Camera& camera, int spp, const st
 py::array_t<std::uint8_t> codes_of(const FramePointer& frame) {
     const std::uint8_t* codes = nullptr;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         codes = frame->codes();
     }
     const py::capsule owner(new FramePointer(frame), [](void* p) { delete static_cast<FramePointer*>(p); });
@@ -83,7 +83,7 @@ void bind_live(py::module_& m) {
             "picture",
             [](const PythonLiveView& live) {
                 const DevicePicture picture = [&] {
-                    const py::gil_scoped_release release;
+                    const Unlocked unlocked;
                     return live.view->picture();
                 }();
                 return py::make_tuple(picture.exposure, picture.depth);
@@ -93,7 +93,7 @@ void bind_live(py::module_& m) {
             "in lux seconds and depth (H, W) in metres, as Image has them. Waits for the frames under way.\n"
             "Raises InputError before the first frame, and Cancelled where another thread stops them meanwhile.")
         .def(
-            "cancel", [](PythonLiveView& live) { live.view->cancel(); }, py::call_guard<py::gil_scoped_release>(),
+            "cancel", [](PythonLiveView& live) { live.view->cancel(); }, py::call_guard<Unlocked>(),
             "Gives up all frames under way within some milliseconds, from any thread: their codes raise Cancelled, "
             "and\n"
             "the next frame begins a new picture.");

@@ -16,7 +16,7 @@ using namespace py::literals;
 namespace {
 
 using Colour = std::array<float, 3>;
-using Which = std::variant<py::ssize_t, std::string>;
+using Which = std::variant<py::ssize_t, py::str>;
 
 Vec3f rgb(const Colour& c) {
     return {c[0], c[1], c[2]};
@@ -90,7 +90,8 @@ void check(const PythonMaterial& material) {
 py::dict materials_of(const Assembly& scene) {
     py::dict materials;
     const std::vector<std::string> names = material_names(*scene.static_geometry);
-    for (std::size_t i = 0; i < names.size(); ++i) materials[decoded(names[i])] = material_of(scene.static_geometry, i);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        materials[text_from(names[i])] = material_of(scene.static_geometry, i);
     return materials;
 }
 
@@ -99,10 +100,10 @@ std::size_t find_material(const Assembly& scene, const Which& which) {
     std::string all;
     for (const std::string& name : names)
         if (all.size() < 200) all += (all.empty() ? "\"" : ", \"") + name + '"';
-    if (const auto* name = std::get_if<std::string>(&which)) {
+    if (const auto* name = std::get_if<py::str>(&which)) {
         for (std::size_t i = 0; i < names.size(); ++i)
-            if (decoded(names[i]).cast<std::string>() == *name) return i;
-        throw InputError("there is no material \"" + shortened(*name) + "\"; the scene has " + all);
+            if (text_from(names[i]).equal(*name)) return i;
+        throw InputError("there is no material " + py::repr(*name).cast<std::string>() + "; the scene has " + all);
     }
     const auto number = std::get<py::ssize_t>(which);
     if (number >= 0 && static_cast<std::size_t>(number) < names.size()) return static_cast<std::size_t>(number);
@@ -150,8 +151,8 @@ void bind_material(py::module_& m) {
         .def_property_readonly("shininess", [](const PythonMaterial& p) { return p.values.shininess; })
         .def_property_readonly("emission", colour_of(&Material::emission))
         .def_property_readonly("texture", &texture_array, "(H, W, 4) uint8, read-only; None: none.")
-        .def_property_readonly("name", [](const PythonMaterial& p) { return decoded(p.name); })
-        .def("__repr__", [](const PythonMaterial& p) { return decoded(text_of(p)); });
+        .def_property_readonly("name", [](const PythonMaterial& p) { return text_from(p.name); })
+        .def("__repr__", [](const PythonMaterial& p) { return text_from(text_of(p)); });
 }
 
 void bind_scene_materials(py::class_<Assembly>& scene) {

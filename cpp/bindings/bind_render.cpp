@@ -1,6 +1,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -45,6 +46,7 @@ ToneCurve tone_curve_from(const std::string& name) {
 }
 
 bool heed_signals() {
+    stop_at_exit();
     const py::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     return true;
@@ -83,7 +85,7 @@ py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std
     const Progress report = progress_of(progress);
     Image image;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         const RenderTurn turn;
         image = backend.render(scene, camera, settings, report);
     }
@@ -97,8 +99,13 @@ py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso,
     py::array_t<std::uint8_t> codes(std::vector<py::ssize_t>(exposure.shape(), exposure.shape() + exposure.ndim()));
     const float* from = exposure.data();
     std::uint8_t* to = codes.mutable_data();
-    for (py::ssize_t i = 0; i < exposure.size(); ++i)
-        to[i] = srgb_code(apply_tone_curve(curve, sensor_value(static_cast<double>(from[i]), iso)));
+    constexpr py::ssize_t kBetweenSignals = 1 << 20;  // some ten milliseconds
+    const Unlocked unlocked;
+    for (py::ssize_t done = 0; done < exposure.size(); done += kBetweenSignals) {
+        heed_signals();
+        for (py::ssize_t i = done; i < std::min(done + kBetweenSignals, exposure.size()); ++i)
+            to[i] = srgb_code(apply_tone_curve(curve, sensor_value(static_cast<double>(from[i]), iso)));
+    }
     return codes;
 }
 

@@ -30,16 +30,15 @@ Vec3d vector_of(const Triple& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// Lets Python handle its signals, so that Ctrl-C ends what takes long. Called without the interpreter's lock.
+/// So that Ctrl-C ends what takes long.
 bool check_signals() {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    heed_signals();
     return true;
 }
 
 Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
     const std::string name = path_from(path);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     return io::read_scene(name, {scale, objects, check_signals}, picture_readers().texture);
 }
 

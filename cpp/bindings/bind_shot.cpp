@@ -20,7 +20,7 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
     if (!request.exposure_time_s) {
         Backend& backend = backend_for(device);
         const Progress report = progress_of(progress);
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         const RenderTurn turn;
         meter(shot, request, backend, report);
     }

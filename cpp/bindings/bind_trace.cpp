@@ -62,7 +62,7 @@ TraceResult trace_host_arrays(const LensSystem& lens, const Array& origins, cons
     const TracedRays out{to.mutable_data(), towards.mutable_data(), path.mutable_data(), status.mutable_data(),
                          surface.mutable_data()};
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         if (gpu)
             trace_rays_on_gpu(*gpu, lens, options.way, options.wavelength_nm, options.precision, options.surface_count,
                               count, origins.data(), directions.data(), out);
@@ -95,7 +95,7 @@ TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origi
     ForeignNumbers from = origins.numbers, along = directions.numbers;
     from.ordinal = along.ordinal = gpu_of(origins, directions, device);
     const TracedArrays traced = [&] {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         return trace_arrays(lens, options.way, options.wavelength_nm, options.precision, options.surface_count,
                             origins.count, from, along);
     }();

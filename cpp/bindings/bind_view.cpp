@@ -34,7 +34,7 @@ Camera metered(Camera camera, const Assembly& scene, const std::string& device, 
                const py::object& progress) {
     Backend& backend = backend_for(device);
     const Progress report = progress_of(progress);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     const RenderTurn turn;
     camera.exposure_time_s = metered_exposure_time(backend, scene, camera, {.max_bounces = max_bounces}, report);
     return camera;

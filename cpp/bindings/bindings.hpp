@@ -10,6 +10,7 @@
 #include "../optics/lens_system.hpp"
 #include "../optics/object_point.hpp"
 #include "../render/backend.hpp"
+#include "unlocked.hpp"
 
 namespace realcam::bindings {
 
@@ -63,13 +64,6 @@ inline std::string path_from(const py::object& path) {
 inline py::str text_from(const std::string& text) {
     return py::reinterpret_steal<py::str>(
         PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size())));
-}
-
-/// A text of a file, which need not be UTF-8.
-inline py::str decoded(const std::string& text) {
-    PyObject* result = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace");
-    if (!result) throw py::error_already_set();
-    return py::reinterpret_steal<py::str>(result);
 }
 
 /// A medium as users write it: an index, (n_d, V_d), the name of a glass of the catalogue, a Glass; None is air.

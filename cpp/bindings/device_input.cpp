@@ -4,6 +4,7 @@
 #include "../error.hpp"
 #include "device_array.hpp"
 #include "dlpack.hpp"
+#include "unlocked.hpp"
 
 namespace realcam::bindings {
 
@@ -91,7 +92,7 @@ DeviceInput from_interface(const py::object& array, const py::dict& interface, c
     const std::optional<int> ordinal = gpu_of_address(input.numbers.data);
     if (!ordinal) throw InputError(name + " says that it lies on a GPU, and its address is in no GPU's memory");
     input.numbers.ordinal = *ordinal;
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     if (ready.wait) wait_for_gpu(*ordinal, ready.stream);
     return input;
 }
@@ -140,7 +141,7 @@ DeviceInput from_dlpack(const py::object& array, int ordinal, const std::string&
     }
     if (!tensor) throw InputError(name + " lies on a GPU, and its __dlpack__ gives no capsule of version 0 or 1");
     DeviceInput input = input_of(layout_of(*tensor, name), ordinal, name, capsule);
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     wait_for_gpu(ordinal, std::nullopt);
     return input;
 }
@@ -156,7 +157,7 @@ std::optional<DeviceInput> device_input(const py::object& array, const char* nam
             input_of({own.shape(), std::nullopt, own.type(), reinterpret_cast<std::uintptr_t>(own.data())},
                      own.ordinal(), name, array);
         // Whoever shares it may be writing to it.
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         wait_for_gpu(own.ordinal(), std::nullopt);
         return input;
     }

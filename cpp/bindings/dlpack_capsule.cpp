@@ -1,5 +1,6 @@
 #include "device_array.hpp"
 #include "dlpack.hpp"
+#include "unlocked.hpp"
 
 namespace realcam::bindings {
 
@@ -65,7 +66,7 @@ py::capsule capsule_of(std::unique_ptr<Exported<Managed>> exported, const char* 
 
 std::shared_ptr<void> host_copy(const SharedDeviceArray& array) {
     const std::shared_ptr<void> memory(::operator new(array.bytes()), [](void* p) { ::operator delete(p); });
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     array.download(memory.get());
     return memory;
 }

@@ -22,4 +22,5 @@ PYBIND11_MODULE(_core, m) {
     bind_live(m);
     bind_bench(m);
     finish_module(m);
+    watch_exit_and_fork();
 }

@@ -1,7 +1,9 @@
 #pragma once
+#include <chrono>
 #include <mutex>
 
 #include "../error.hpp"
+#include "bindings.hpp"
 
 namespace realcam::bindings {
 
@@ -12,7 +14,8 @@ class RenderTurn {
 public:
     RenderTurn() : lock_(mutex(), std::defer_lock) {
         if (taken_here()) throw InputError("a picture cannot be taken from the progress function of another one");
-        lock_.lock();
+        while (!lock_.try_lock_for(std::chrono::milliseconds(50))) heed_signals();
+        stop_at_exit();
         taken_here() = true;
     }
     ~RenderTurn() { taken_here() = false; }
@@ -20,15 +23,15 @@ public:
     RenderTurn& operator=(const RenderTurn&) = delete;
 
 private:
-    static std::mutex& mutex() {
-        static std::mutex one;
+    static std::timed_mutex& mutex() {
+        static std::timed_mutex one;
         return one;
     }
     static bool& taken_here() {
         thread_local bool taken = false;
         return taken;
     }
-    std::unique_lock<std::mutex> lock_;
+    std::unique_lock<std::timed_mutex> lock_;
 };
 
 }  // namespace realcam::bindings

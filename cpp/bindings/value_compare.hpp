@@ -72,6 +72,8 @@ bool equal(const T& a, const T& b) {
         return equal(a.parts(), b.parts());
     else if constexpr (is_range<T>)
         return equal_ranges(a, b);
+    else if constexpr (is_optional<T>)
+        return a.has_value() == b.has_value() && (!a || equal(*a, *b));
     else if constexpr (is_shared<T>)
         return a == b || (a && b && equal(*a, *b));
     else if constexpr (is_optional<T>)

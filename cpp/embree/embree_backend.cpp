@@ -21,7 +21,7 @@ namespace realcam {
 namespace {
 
 constexpr int kTileSide = 32;
-/// Samples per pixel after which a tile is left and the next begins: bounds the time until a stop takes effect.
+/// Samples per pixel after which a tile is left and the next begins, so that the share done grows everywhere.
 constexpr std::uint32_t kSamplesPerVisit = 256;
 
 /// The film while it is exposed.
@@ -47,11 +47,15 @@ struct ExposingFilm {
     }
 };
 
+DeviceError rtc_error(RTCError code) {
+    const std::string text = "Embree could not be started: ";
+    return DeviceError(text + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(code)));
+}
+
 class EmbreeBackend final : public Backend {
 public:
     EmbreeBackend() : device_(rtcNewDevice(nullptr)) {
-        if (!device_)
-            throw DeviceError("Embree could not be started (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+        if (!device_) throw rtc_error(rtcGetDeviceError(nullptr));
         kernels();
     }
     ~EmbreeBackend() override {
@@ -71,24 +75,37 @@ public:
         const auto start = std::chrono::steady_clock::now();
         validate(settings);
         validate(scene);
+        stop_ = false;
+        std::atomic<std::int64_t> done{0};
+        const double total = static_cast<double>(settings.spp) * camera.film.width * camera.film.height;
+        Image image;
+        run_with_progress([&] { image = take(scene, camera, settings, done); },
+                          [&] { return static_cast<double>(done) / total; }, progress, stop_);
+        if (stop_) throw Cancelled();
+        image.stats.device = name();
+        image.stats.seconds = seconds_since(start);
+        return image;
+    }
+
+private:
+    Image take(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+               std::atomic<std::int64_t>& done) {
+        const auto start = std::chrono::steady_clock::now();
         tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
         const auto setup = arena.execute([&] { return last_setup_.make(camera, fast_pupil_tracer()); });
         arena.execute([&] { place(scene, camera); });
         const SceneView scene_view = scene_->placed().view();
         const CameraView camera_view = setup->view(scene_->placed().origin_m());
-
         ExposingFilm film(camera.film.width, camera.film.height);
         RenderStats stats;
         stats.setup_seconds = seconds_since(start);
-        expose(arena, scene_view, camera_view, settings, progress, film, stats);
+        arena.execute([&] { expose(scene_view, camera_view, settings, done, film, stats); });
+        if (stop_) return {};
         Image image = film.develop(settings.spp, camera.exposure_time_s);
-        stats.device = name();
-        stats.seconds = seconds_since(start);
         image.stats = stats;
         return image;
     }
 
-private:
     void place(const Assembly& scene, const Camera& camera) {
         const SceneChange change = scene_change(scene_ ? &scene_->placed() : nullptr, scene, camera);
         if (change == SceneChange::none) return;
@@ -98,18 +115,16 @@ private:
             scene_ = std::move(last);
         } else {
             last.reset();  // before the next takes as much memory
-            scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m);
+            scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m, stop_);
         }
     }
 
-    void expose(tbb::task_arena& arena, const SceneView& scene_view, const CameraView& camera_view,
-                const RenderSettings& settings, const Progress& progress, ExposingFilm& film, RenderStats& stats) {
+    void expose(const SceneView& scene_view, const CameraView& camera_view, const RenderSettings& settings,
+                std::atomic<std::int64_t>& done, ExposingFilm& film, RenderStats& stats) {
         const int columns = (film.width + kTileSide - 1) / kTileSide, rows = (film.height + kTileSide - 1) / kTileSide;
-        std::atomic<bool> stop{false};
-        std::atomic<std::int64_t> done{0};
         std::mutex stats_mutex;
         const auto visit = [&](int index, std::uint32_t first, std::uint32_t count) {
-            if (stop) return;
+            if (stop_) return;
             realcam_tile tile{};
             tile.scene_view = &scene_view;
             tile.camera_view = &camera_view;
@@ -122,6 +137,8 @@ private:
             tile.sample_count = count;
             tile.seed = settings.seed;
             tile.max_bounces = settings.max_bounces;
+            tile.stopped = [](const void* stop) -> int { return *static_cast<const std::atomic<bool>*>(stop); };
+            tile.stop = &stop_;
             std::vector<PixelSum> sums(static_cast<std::size_t>(tile.width * tile.height));
             tile.sums = sums.data();
             kernels().render_tile(&tile);
@@ -140,19 +157,14 @@ private:
             stats.scene_rays += tile.scene_rays;
         };
         const auto all = static_cast<std::uint32_t>(settings.spp);
-        const auto work = [&] {
-            arena.execute([&] {
-                for (std::uint32_t first = 0; first < all && !stop; first += kSamplesPerVisit)
-                    tbb::parallel_for(0, columns * rows,
-                                      [&](int tile) { visit(tile, first, std::min(kSamplesPerVisit, all - first)); });
-            });
-        };
-        const double total = static_cast<double>(all) * film.width * film.height;
-        run_with_progress(work, [&] { return static_cast<double>(done) / total; }, progress, stop);
-        if (stop) throw Cancelled();
+        for (std::uint32_t first = 0; first < all && !stop_; first += kSamplesPerVisit)
+            tbb::parallel_for(0, columns * rows,
+                              [&](int tile) { visit(tile, first, std::min(kSamplesPerVisit, all - first)); });
     }
 
     RTCDevice device_;
+    std::atomic<bool> stop_{
+        false};  ///< of the picture under way; the scene's hierarchies look at it while they are built
     std::unique_ptr<EmbreeScene> scene_;
     LastSetup last_setup_;
 };

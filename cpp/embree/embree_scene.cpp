@@ -8,6 +8,7 @@ namespace realcam {
 
 void EmbreeScene::check() const {
     const RTCError code = rtcGetDeviceError(device_);
+    if (stop_ || code == RTC_ERROR_CANCELLED) throw Cancelled();
     if (code == RTC_ERROR_NONE) return;
     if (code == RTC_ERROR_OUT_OF_MEMORY) throw DeviceError("Embree ran out of memory while it built the scene's BVH");
     throw DeviceError("Embree could not build the scene's BVH (error " + std::to_string(code) + ")");
@@ -21,12 +22,19 @@ EmbreeScene::OwnScene EmbreeScene::new_scene() const {
     return scene;
 }
 
+void EmbreeScene::commit(const OwnScene& scene) const {
+    const auto goes_on = [](void* stop, double) { return !*static_cast<const std::atomic<bool>*>(stop); };
+    rtcSetSceneProgressMonitorFunction(scene.get(), goes_on, const_cast<std::atomic<bool>*>(&stop_));
+    rtcCommitScene(scene.get());
+    check();
+}
+
 EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) const {
     OwnScene scene = new_scene();
     const auto& positions = mesh.positions();
     const auto& triangles = mesh.triangles();
     if (triangles.empty()) {
-        rtcCommitScene(scene.get());
+        commit(scene);
         return scene;
     }
     const OwnGeometry geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
@@ -39,14 +47,15 @@ EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) const {
         for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].vertices, 3, corners + 3 * i);
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene.get(), geometry.get());
-        rtcCommitScene(scene.get());
+        commit(scene);
     }
     check();
     return scene;
 }
 
-EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m)
-    : device_(device), placed_(assembly, origin_m) {
+EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, const std::atomic<bool>& stop)
+    : device_(device), stop_(stop), placed_(assembly, origin_m) {
+    check();
     meshes_.push_back(build(placed_.static_geometry()));
     for (const auto& object : placed_.objects()) meshes_.push_back(build(*object));
     const auto& instances = placed_.instances();
@@ -75,8 +84,7 @@ void EmbreeScene::add_instances() {
         rtcSetGeometryTransform(instances_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &map);
         rtcCommitGeometry(instances_[i].get());
     }
-    rtcCommitScene(all_.get());
-    check();
+    commit(all_);
 }
 
 void EmbreeScene::move(const Assembly& assembly) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -11,8 +12,8 @@ namespace realcam {
 /// object and one over them all.
 class EmbreeScene {
 public:
-    /// Throws DeviceError (out of memory, for one).
-    EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m);
+    /// Throws DeviceError (out of memory, for one), and Cancelled where `stop` becomes true meanwhile, or in move.
+    EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, const std::atomic<bool>& stop);
 
     const RenderSpaceScene& placed() const { return placed_; }
     RTCScene handle() const { return all_ ? all_.get() : meshes_.front().get(); }
@@ -34,9 +35,11 @@ private:
     /// the last.
     OwnGeometry attach(const OwnScene& mesh, unsigned number) const;
     void add_instances();
+    void commit(const OwnScene& scene) const;
     void check() const;
 
     RTCDevice device_;
+    const std::atomic<bool>& stop_;
     RenderSpaceScene placed_;
     std::vector<OwnScene> meshes_;  ///< static geometry, then the objects
     OwnScene all_;  ///< null where there is only static geometry

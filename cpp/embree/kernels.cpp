@@ -61,7 +61,7 @@ void render_tile(realcam_tile* tile) {
     const int pixels = order.count();
     int pixel = 0;
     std::uint32_t sample = 0;
-    while (pixel < pixels) {
+    while (pixel < pixels && !tile->stopped(tile->stop)) {
         int lanes = 0;
         while (lanes < kLanes && pixel < pixels) {
             int x, y;

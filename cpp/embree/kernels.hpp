@@ -14,6 +14,8 @@ struct realcam_tile {
     int x, y, width, height;  // pixels
     std::uint32_t first_sample, sample_count, seed;
     int max_bounces;
+    int (*stopped)(const void* stop);  // asked before each block of samples; what is left then is left out
+    const void* stop;
     void* sums;               // PixelSum of the tile, row by row; added to
     double lens_seconds, scene_seconds, other_seconds;
     std::uint64_t sampled_rays, passed_rays, scene_rays;

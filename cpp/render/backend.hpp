@@ -10,6 +10,8 @@
 
 namespace REALCAM_NAMESPACE {
 
+inline constexpr int kMaxThreads = 4096;  ///< more than machines have cores; TBB falls over what is far beyond
+
 struct RenderSettings {
     int spp = 64;  ///< samples per pixel
     std::uint32_t seed = 0;
@@ -56,7 +58,8 @@ inline void validate(const RenderSettings& settings) {
     if (settings.spp < 1 || settings.spp > (1 << 24)) throw InputError("spp must lie between 1 and 16777216");
     if (settings.max_bounces < 0 || settings.max_bounces > 64)
         throw InputError("max_bounces must lie between 0 and 64");
-    if (settings.threads < 0) throw InputError("threads must be 0 (all) or a positive number");
+    if (settings.threads < 0 || settings.threads > kMaxThreads)
+        throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
 }
 
 }  // namespace REALCAM_NAMESPACE

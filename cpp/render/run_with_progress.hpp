@@ -3,11 +3,26 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include "backend.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+namespace run_with_progress_detail {
+
+template <class Work>
+std::thread started(Work&& work) {
+    try {
+        return std::thread(std::forward<Work>(work));
+    } catch (const std::system_error&) {
+        throw NoThread();
+    }
+}
+
+}  // namespace run_with_progress_detail
 
 /// Runs `work` on a thread of its own, so that the caller's thread is free to report and to stop it. `stop`: an
 /// std::atomic<bool>, or what takes `true` and is read in the same way.
@@ -21,7 +36,7 @@ void run_with_progress(Work&& work, Share&& share, const Progress& progress, Sto
     std::condition_variable finished;
     bool over = false;
     std::exception_ptr failure;
-    std::thread worker([&] {
+    std::thread worker = run_with_progress_detail::started([&] {
         try {
             work();
         } catch (...) {

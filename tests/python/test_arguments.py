@@ -133,7 +133,12 @@ def docstrings() -> Iterator[tuple[str, str]]:
         for name, thing in vars(owner).items():
             text = inspect.getdoc(thing.fget if isinstance(thing, property) else getattr(owner, name))
             inherited = name == "__init__" and text == inspect.getdoc(object.__init__)
-            if text and not inherited and (name == "__init__" or not name.startswith("__")):
+            if (
+                text
+                and not inherited
+                and not inspect.ismodule(thing)
+                and (name == "__init__" or not name.startswith("__"))
+            ):
                 yield f"{owner.__name__}.{name}", text
 
 
