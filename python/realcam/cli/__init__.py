@@ -1,4 +1,4 @@
-"""The commands that are Python; the others are those of the C++ executable (see realcam_command)."""
+"""The commands that are Python. The package realcam_command hands the others to the C++ executable."""
 
 from __future__ import annotations
 
