@@ -85,8 +85,8 @@ for wanted in "${steps[@]}"; do
                 options=(--tool "$tool" --target-processes all --error-exitcode 9)
                 [[ $tool == memcheck ]] && options+=(--report-api-errors no)
                 selected=("${sanitized[@]}")
-                # It runs kernels one after the other, so that a stop never overtakes the frame of minutes it is for.
-                [[ $tool == initcheck ]] && selected+=(-k "not test_cancel")
+                # These run kernels one after the other, so that a stop cannot overtake the frame of minutes it is for.
+                [[ $tool == memcheck ]] || selected+=(-k "not test_cancel")
                 step "$tool" compute-sanitizer "${options[@]}" "$python" -m pytest -q -p no:faulthandler -m "not slow" \
                     "${selected[@]}"
             done
