@@ -254,7 +254,7 @@ std::vector<std::string> lens_names() {
 std::string_view bundled_lens_text(const std::string& name) {
     for (const BundledFile& file : bundled_lens_files())
         if (file.name == name) return file.text;
-    throw LensFileError("unknown lens \"" + name + '"' + did_you_mean(name, lens_names()) +
+    throw LensFileError("unknown lens " + in_quotes(name) + did_you_mean(name, lens_names()) +
                         "; a bundled lens (`realcam lens list` names them) or the path of a .toml file is wanted");
 }
 
@@ -262,7 +262,7 @@ LensSystem parse_lens(std::string_view text, const std::string& file) {
     try {
         return lens_from_table(toml::parse(text, file), file);
     } catch (const toml::parse_error& error) {
-        throw LensFileError("not valid TOML: " + std::string(error.description()), file,
+        throw LensFileError("not valid TOML: " + printable(error.description()), file,
                             static_cast<int>(error.source().begin.line));
     }
 }

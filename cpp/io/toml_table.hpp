@@ -10,6 +10,7 @@
 
 #include "../error.hpp"
 #include "nearest_names.hpp"
+#include "printable.hpp"
 
 namespace realcam::io {
 
@@ -40,7 +41,7 @@ public:
             bool known = false;
             for (std::string_view allowed : keys) known |= key.str() == allowed;
             if (!known)
-                fail("unknown key \"" + std::string(key.str()) + '"' +
+                fail("unknown key " + in_quotes(key.str()) +
                          did_you_mean(key.str(), std::vector<std::string>(keys.begin(), keys.end())),
                      &node);
         }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../error.hpp"
+#include "../io/printable.hpp"
 #include "../io/readable_file.hpp"
 #include "../io/toml_table.hpp"
 #include "names.hpp"
@@ -162,7 +163,7 @@ ShotRequest parse_shot(std::string_view text, const std::string& path) {
         const toml::table table = toml::parse(text, path);
         return ShotReader(table, path).read();
     } catch (const toml::parse_error& error) {
-        fail_at("not valid TOML: " + std::string(error.description()), path,
+        fail_at("not valid TOML: " + io::printable(error.description()), path,
                 static_cast<int>(error.source().begin.line), 0);
     }
 }

@@ -230,6 +230,9 @@ TEST_CASE("text that is not TOML is named with file and line") {
     check_complaint(with_line(11, "[[surface]"), "probe.toml:11", "not valid TOML");
     check_complaint(with_line(8, "material = 1.5\nmaterial = 1.6"), "probe.toml:9", "not valid TOML");
     check_complaint(with_line(7, "thickness_mm\u00e9 = 4.0"), "probe.toml:7", "not valid TOML");
+    check_complaint(with_line(9, "allow_crossing = f"), "probe.toml:9", "not valid TOML");
+    CHECK(!contains(complaint(with_line(9, "allow_crossing = f")), "\n"));
+    CHECK(complaint(with_line(9, std::string(100000, 'x') + " = 1")).size() < 300);
     check_complaint(std::string("\x7f\x45LF\x02\x01\0\0\xff\xfe", 10), "probe.toml:1", "not valid TOML");
 }
 
