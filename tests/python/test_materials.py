@@ -63,7 +63,7 @@ def test_a_material_is_replaced_by_name_and_by_number() -> None:
 
 def test_a_material_that_is_not_there_is_named() -> None:
     scene = wall([WOOD, GLOSS])
-    with pytest.raises(rc.InputError, match='there is no material .wod.; the scene has "wood", "material 1"'):
+    with pytest.raises(rc.InputError, match=r'there is no material .wod.; the scene has "wood", "material 1"'):
         scene.with_material("wod", GLOSS)
     with pytest.raises(rc.InputError, match="there is no material 2; the scene has 2"):
         scene.with_material(2, GLOSS)
