@@ -30,16 +30,10 @@ Vec3d vector_of(const Triple& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// So that Ctrl-C ends what takes long.
-bool check_signals() {
-    heed_signals();
-    return true;
-}
-
 Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
     const std::string name = path_from(path);
     const Unlocked unlocked;
-    return io::read_scene(name, {scale, objects, check_signals}, picture_readers().texture);
+    return io::read_scene(name, {scale, objects, heed_signals}, picture_readers().texture);
 }
 
 template <class Change>

@@ -204,3 +204,10 @@ def test_one_file_changes_the_current_gpu(path: Path) -> None:
 def test_only_platform_asks_for_the_compiler(path: Path) -> None:
     if name_of(path) != "platform.hpp":
         assert "__CUDACC__" not in code_of(path)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_one_file_lets_go_of_pythons_lock(path: Path) -> None:
+    # It counts the work under way, for which Python's end has to wait: bindings take Unlocked.
+    if name_of(path).startswith("bindings/") and not name_of(path).startswith("bindings/unlocked."):
+        assert "gil_scoped_release" not in code_of(path)
