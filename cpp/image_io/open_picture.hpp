@@ -18,6 +18,7 @@ public:
     int channels = 0;  ///< of those that are read: grey, grey and alpha, RGB, or RGB and alpha
     bool is_linear = false;  ///< floating-point numbers, and not codes for a screen
     bool has_associated_alpha = false;  ///< colours are multiplied by alpha
+    std::size_t encoded_size = 0;       ///< bytes of the file
 
     std::size_t pixel_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 

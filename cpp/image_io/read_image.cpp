@@ -16,12 +16,18 @@ constexpr std::size_t kMostTexturePixels = std::size_t{1} << 28;
 /// 16384 x 8192, the largest environments that are sold.
 constexpr std::size_t kMostEnvironmentPixels = std::size_t{1} << 27;
 
+/// More than any of the formats makes of one byte: deflate makes at most 1032 bytes of one, of 8 pixels each where they
+/// have one bit, and OpenEXR's PIZ some 17 000 pixels. Broken files would be decoded for seconds before their data end.
+constexpr std::size_t kMostPixelsPerByte = 20000;
+
 /// Throws Error where the pixels are more than anybody needs, or than there is memory for.
 void check_size(const OpenPicture& picture, std::size_t most_pixels, std::size_t bytes_per_pixel) {
     const std::string size =
         "has " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels";
     if (picture.pixel_count() > most_pixels)
         throw Error(size + "; at most " + std::to_string(most_pixels >> 20) + " million are read");
+    if (picture.pixel_count() / kMostPixelsPerByte > picture.encoded_size)
+        throw Error(size + ", and " + std::to_string(picture.encoded_size) + " bytes cannot hold so many");
     if (picture.pixel_count() * bytes_per_pixel > io::free_memory())
         throw Error(size + ", more than the free memory holds");
 }

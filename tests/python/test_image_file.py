@@ -336,16 +336,28 @@ def test_alpha_is_not_multiplied_into_a_texture(tmp_path: Path, kind: str) -> No
     np.testing.assert_allclose(textured(tmp_path, f"card.{suffix}"), expected, rtol=0.012)
 
 
-def test_a_picture_with_more_pixels_than_memory_is_refused(tmp_path: Path) -> None:
-    """A PNG of 40000 x 40000 says so in 33 bytes."""
-
+def write_png(path: Path, size: int, bits: int, colour_type: int, rows: bytes) -> None:
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    header = struct.pack(">IIBBBBB", 40000, 40000, 8, 2, 0, 0, 0)
-    bomb = (
-        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"\0" * 100)) + chunk(b"IEND", b"")
-    )
-    (tmp_path / "bomb.png").write_bytes(bomb)
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, bits, colour_type, 0, 0, 0))
+    data = chunk(b"IDAT", zlib.compress(rows, 9))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + header + data + chunk(b"IEND", b""))
+
+
+def test_a_picture_that_claims_too_many_pixels_is_refused(tmp_path: Path) -> None:
+    """A PNG says in 33 bytes that it has 40000 x 40000."""
+    path = tmp_path / "bomb.png"
+    write_png(path, 40000, 8, 2, b"\0" * 100)
     with pytest.raises(rc.ImageFileError, match="40000 x 40000 pixels; at most 128 million"):
-        rc.read_environment(tmp_path / "bomb.png")
+        rc.read_environment(path)
+    # As many as are allowed, and more than its bytes could be made into.
+    write_png(path, 11000, 8, 2, b"\0" * 100)
+    with pytest.raises(rc.ImageFileError, match="11000 x 11000 pixels, and [0-9]+ bytes cannot hold so many"):
+        rc.read_environment(path)
+
+
+def test_a_large_picture_of_one_colour_is_no_broken_one(tmp_path: Path) -> None:
+    """What compresses best: 1 bit a pixel, all the same."""
+    write_png(tmp_path / "white.png", 4096, 1, 0, (b"\0" + b"\xff" * 512) * 4096)
+    assert (rc.read_environment(tmp_path / "white.png") == 1).all()
