@@ -353,7 +353,7 @@ def test_a_picture_that_claims_too_many_pixels_is_refused(tmp_path: Path) -> Non
         rc.read_environment(path)
     # As many as are allowed, and more than its bytes could be made into.
     write_png(path, 11000, 8, 2, b"\0" * 100)
-    with pytest.raises(rc.ImageFileError, match="11000 x 11000 pixels, and [0-9]+ bytes cannot hold so many"):
+    with pytest.raises(rc.ImageFileError, match=r"11000 x 11000 pixels, and [0-9]+ bytes cannot hold so many"):
         rc.read_environment(path)
 
 
