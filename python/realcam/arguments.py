@@ -20,6 +20,7 @@ SPELLINGS = (
     (r"typing\.SupportsFloat \| typing\.SupportsIndex", "float"),
     (r"typing\.SupportsInt \| typing\.SupportsIndex", "int"),
     (r"(?:typing\.Annotated\[)?numpy\.typing\.ArrayLike, numpy\.\w+\]", "ArrayLike"),
+    (r"numpy\.ndarray\[numpy\.\w+\]", "ArrayLike"),
     (r"numpy\.typing\.NDArray\[numpy\.(\w+)\]", r"NDArray[\1]"),
     (r"realcam\._core\.|collections\.abc\.|typing_extensions\.", ""),
     (r"\(arg0: ", "(self: "),
@@ -46,6 +47,8 @@ def complaint(doc: str, arguments: tuple[Any, ...], named: dict[str, Any]) -> st
     if problem:
         return problem
     bound = inspect.Signature(list(parameters)).bind(*arguments, **named).arguments
+    if function.name == "__init__":
+        del bound["self"]  # it has no value yet that could be written
     annotations = {p.name: p.annotation for p in parameters}
     for check in (_misfit, _out_of_range):
         for what, value in bound.items():
@@ -134,7 +137,11 @@ def _misfit(annotation: ast.expr | None, value: Any) -> str | None:
 def _misfit_of_items(annotation: ast.Subscript, value: Any) -> str | None:
     outer = ast.unparse(annotation.value)
     items = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
-    if outer == "Mapping":
+    if outer in ("Optional", "Union"):  # as pybind11 before version 3 writes them
+        options = [*items, ast.Constant(None)] if outer == "Optional" else items
+        wanted = [_misfit(option, value) for option in options]
+        return None if None in wanted else " or ".join(map(str, wanted))
+    if outer in ("Mapping", "dict"):
         return None if isinstance(value, Mapping) and all(_all_fit(items, pair) for pair in value.items()) else "a dict"
     if outer == "tuple":
         words = SCALARS[ast.unparse(items[0])][0].split(" ", 1)[-1]

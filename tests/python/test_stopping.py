@@ -25,7 +25,7 @@ import realcam as rc
 def room():
     corners = np.array([(x, y, z) for x in (-2, 2) for y in (-2, 2) for z in (-2, 2)], float)
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = [triangle for a, b, c, d in sides for triangle in ((a, b, c), (a, c, d))]
+    faces = [triangle for a, b, c, d in sides for triangle in ((a, c, b), (a, d, c))]
     white = rc.Material(diffuse=(0.98, 0.98, 0.98), emission=(1, 1, 1))
     return rc.Scene.from_arrays(corners, faces, materials=[white])
 
