@@ -12,6 +12,10 @@ if(TARGET realcam_embree AND TARGET realcam_io)
   if(REALCAM_SANITIZE)
     set_source_files_properties(${PROJECT_SOURCE_DIR}/cpp/io/lens_file.cpp TARGET_DIRECTORY realcam_lens_io
       PROPERTIES COMPILE_OPTIONS -fno-sanitize=unreachable)
+    if(TARGET realcam_shot)
+      set_source_files_properties(${PROJECT_SOURCE_DIR}/cpp/shot/shot_file.cpp TARGET_DIRECTORY realcam_shot
+        PROPERTIES COMPILE_OPTIONS -fno-sanitize=unreachable)
+    endif()
   endif()
 
   add_library(realcam_fuzz_targets OBJECT ${fuzz_sources})

@@ -42,6 +42,7 @@ public:
         shot.scene = path("scene");
         if (shot.scene.empty()) table_.fail("scene is missing: the file to photograph");
         shot.scale = table_.number("scale").value_or(shot.scale);
+        if (!(shot.scale > 0)) table_.fail("\"scale\" must be a positive number of metres", table_.find("scale"));
         read_light(shot);
         read_camera(shot);
         read_settings(shot.settings);

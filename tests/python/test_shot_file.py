@@ -86,6 +86,7 @@ def test_focus_and_stop(tmp_path: Path) -> None:
             r':3: "focus_m" must be a number of metres, inf',
         ),
         ("format = 1\nscene = 'quad.obj'\nfocus_m = nan", r':3: "focus_m" must be'),
+        ("format = 1\nscene = 'quad.obj'\nscale = 0", r':3: "scale" must be a positive number'),
         ("format = 1\nscene = 'quad.obj'\nmodel = 'real'", r':3: "model" must be full, thick, thin or pinhole'),
         ("format = 1\nscene = 'quad.obj'\nresolution = [1.5, 2]", r':3: "resolution" must be made of whole numbers'),
         ("format = 1\nscene = 'quad.obj'\nresolution = [1]", r':3: "resolution" must be an array of 2 numbers'),
