@@ -111,16 +111,16 @@ def grid_scene(side: int) -> rc.Scene:
 
 
 def test_the_hierarchy_is_left_unfinished() -> None:
-    """Of 3 million triangles it takes a second; a stop after 50 ms must not wait for the end of it."""
+    """The first answer of the progress function, long before all triangles are in it, ends the work."""
     camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2)), position=(0, 3, 3))
     scene = grid_scene(1225)
-    start = time.monotonic()
+    told: list[float] = []
     with pytest.raises(rc.Cancelled):
-        rc.render(scene, camera, spp=1, device="cpu", progress=lambda done: False)
-    stopped = time.monotonic() - start
+        rc.render(scene, camera, spp=1, device="cpu", progress=lambda done: bool(told.append(done)))
+    assert len(told) == 1
+    assert told[0] < 0.5
     image = rc.render(scene, camera, spp=1, device="cpu")  # and the next picture builds it anew
     assert image.pixels.any()
-    assert stopped < 0.7 * image.stats.setup_seconds
     assert rc.render(scene, camera, spp=1, device="cpu") == image
 
 
