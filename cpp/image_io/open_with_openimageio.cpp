@@ -33,6 +33,10 @@ public:
             throw Error(kBroken + reason(input_->geterror()));
         const ImageSpec& found = input_->spec();
         if (found.depth > 1 || found.deep) return;  // no picture of flat pixels
+        // OpenImageIO decodes all of them, whichever are asked for: a broken file may claim more than memory holds.
+        constexpr int kMostChannels = 64;
+        if (found.nchannels > kMostChannels)
+            throw Error("has " + std::to_string(found.nchannels) + " channels; at most 64 are read");
         width = found.width;
         height = found.height;
         channels = std::min(found.nchannels, 4);

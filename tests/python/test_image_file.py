@@ -361,3 +361,9 @@ def test_a_large_picture_of_one_colour_is_no_broken_one(tmp_path: Path) -> None:
     """What compresses best: 1 bit a pixel, all the same."""
     write_png(tmp_path / "white.png", 4096, 1, 0, (b"\0" + b"\xff" * 512) * 4096)
     assert (rc.read_environment(tmp_path / "white.png") == 1).all()
+
+
+def test_a_picture_of_very_many_channels_is_refused(tmp_path: Path) -> None:
+    write(tmp_path / "many.exr", np.zeros((2, 2, 65), np.float32))
+    with pytest.raises(rc.ImageFileError, match="has 65 channels; at most 64"):
+        rc.read_environment(tmp_path / "many.exr")
