@@ -8,6 +8,8 @@
 #include "../camera/default_film.hpp"
 #include "../camera/picture_angle.hpp"
 #include "../embree/embree_backend.hpp"
+#include "../io/image_metadata.hpp"
+#include "../shot/names.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
@@ -27,11 +29,8 @@ std::tuple<double, double, double> triple_of(Vec3d v) {
     return {v.x, v.y, v.z};
 }
 
-constexpr const char* kModelNames[] = {"pinhole", "thin", "thick", "full"};
-
 CameraModel model_from(const std::string& name) {
-    for (int i = 0; i < 4; ++i)
-        if (name == kModelNames[i]) return static_cast<CameraModel>(i);
+    if (const auto model = shot::model_named(name)) return *model;
     throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, thick or full is wanted");
 }
 
@@ -96,7 +95,7 @@ std::string text_of(const Film& film) {
 std::string text_of(const Camera& camera) {
     const std::string name = camera.lens.name.empty() ? "a lens" : shortened(camera.lens.name);
     const std::string model =
-        camera.model == CameraModel::full_lens ? "" : std::string(", ") + kModelNames[static_cast<int>(camera.model)];
+        camera.model == CameraModel::full_lens ? "" : std::string(", ") + io::name_of(camera.model);
     return "<realcam.Camera with " + name + " f/" +
            digits(first_order(camera.lens, camera.lens.wavelength_nm).f_number) + model + " at " +
            point_text(camera.pose.position_m) + ", looks at " + point_text(camera.pose.look_at_m) + ", " +
@@ -157,7 +156,7 @@ void bind_camera(py::module_& m) {
         .def_property_readonly("up", [](const Camera& c) { return triple_of(c.pose.up); })
         .def_readonly("exposure_time_s", &Camera::exposure_time_s)
         .def_readonly("iso", &Camera::iso)
-        .def_property_readonly("model", [](const Camera& c) { return kModelNames[static_cast<int>(c.model)]; })
+        .def_property_readonly("model", [](const Camera& c) { return io::name_of(c.model); })
         .def("__repr__", [](const Camera& c) { return text_of(c); });
     m.def(
         "pupil_setup",

@@ -11,6 +11,7 @@
 #include "../camera/develop.hpp"
 #include "../devices/devices.hpp"
 #include "../render/backend.hpp"
+#include "../shot/names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "render_turn.hpp"
@@ -40,8 +41,7 @@ Backend& backend_for(const std::string& device) {
 }
 
 ToneCurve tone_curve_from(const std::string& name) {
-    if (name == "film") return ToneCurve::film;
-    if (name == "linear") return ToneCurve::linear;
+    if (const auto tone = shot::tone_named(name)) return *tone;
     throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
 }
 
