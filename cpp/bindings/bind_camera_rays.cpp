@@ -63,7 +63,7 @@ CameraRaysResult rays_on_host(const RayOrder& order, RayRange range) {
     float *ways = directions.mutable_data(), *shares = weights.mutable_data();
     int* of = pixels.mutable_data();
     for (std::int64_t done = 0; done < count; done += kBetweenSignals) {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        heed_signals();
         const Unlocked unlocked;
         const RayRange part = {range.first + done, std::min(kBetweenSignals, count - done)};
         generate_camera_rays(*setup_of(order.camera), order.spp, order.seed, part, origins + 3 * done, ways + 3 * done,
