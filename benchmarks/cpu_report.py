@@ -72,7 +72,8 @@ def markdown(record: dict, plot: str) -> str:
         "",
         *same_work_table(record),
         "",
-        "Error over time: the same scene through the thin lens; Mitsuba with its multijitter sampler.",
+        "Error over time: the same scene through the thin lens; each of Mitsuba's integrators with its best sampler "
+        "(multijitter; ldsampler for one emitter sample).",
         "",
         *error_tables(record),
         "",
