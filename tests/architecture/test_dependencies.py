@@ -19,7 +19,7 @@ MAY_INCLUDE = {
     "camera": {"math", "optics"},
     "render": {"math", "optics", "scene", "camera"},
     "bvh": {"math", "scene"},
-    "embree": {*CORE},
+    "embree": {*CORE, "bvh"},
     "cuda": {*CORE, "bvh"},
     "devices": {*CORE, *BACKENDS},
     "io": {*CORE},
@@ -30,9 +30,6 @@ MAY_INCLUDE = {
     "picture_bindings": {*CORE, "io", "image_io"},
     "app": {*CORE, *BACKENDS, "devices", "io", "shot", "image_io"},
 }
-
-# Which Embree it is stays in one place.
-MAY_INCLUDE_TOO = {"bvh/binary_tree.cpp": {"embree/embree_api.hpp"}}
 
 # Headers of the core that own memory or raise errors, and so stay on the host. The others run on every
 # device, and include none of these.
@@ -167,10 +164,7 @@ def test_every_folder_has_a_rule() -> None:
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)
 def test_includes_follow_the_rules(path: Path) -> None:
     allowed = {"", folder_of(path)} | MAY_INCLUDE[folder_of(path)]
-    too = MAY_INCLUDE_TOO.get(name_of(path), set())
-    wrong = [
-        name_of(other) for other in included_by(path) if folder_of(other) not in allowed and name_of(other) not in too
-    ]
+    wrong = [name_of(other) for other in included_by(path) if folder_of(other) not in allowed]
     assert not wrong, f"{name_of(path)} may include {sorted(allowed - {''})} only"
 
 
@@ -191,6 +185,12 @@ def test_device_code_neither_allocates_nor_throws(path: Path) -> None:
     assert not match, f"{name_of(path)} is not host-only, and uses {match.group()}"
     wrong = [name_of(other) for other in included_by(path) if name_of(other) in HOST_ONLY]
     assert not wrong, f"{name_of(path)} is not host-only, and includes headers that are"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_one_folder_knows_embree(path: Path) -> None:
+    if folder_of(path) != "embree":
+        assert not re.search(NOT_IN_CORE["Embree"], code_of(path))
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)
