@@ -4,7 +4,7 @@
 #include <array>
 #include <variant>
 
-#include "../io/scene_checks.hpp"
+#include "../scene/scene_checks.hpp"
 #include "material.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
@@ -115,7 +115,7 @@ Assembly with_material(const Assembly& scene, const Which& which, const PythonMa
     const std::size_t index = find_material(scene, which);
     const Assembly changed_scene =
         with_static_geometry(scene, [&](Scene& changed) { set_material(changed, index, material); });
-    io::validate(*changed_scene.static_geometry, {}, !changed_scene.instances.empty());
+    validate(*changed_scene.static_geometry, {}, !changed_scene.instances.empty());
     return changed_scene;
 }
 

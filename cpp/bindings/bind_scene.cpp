@@ -5,9 +5,9 @@
 #include <optional>
 #include <tuple>
 
-#include "../io/scene_checks.hpp"
 #include "../io/scene_file.hpp"
 #include "../scene/bounding_box.hpp"
+#include "../scene/scene_checks.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"
 #include "scene_from_arrays.hpp"
@@ -39,7 +39,7 @@ Assembly load(const py::object& path, double scale, const std::vector<std::strin
 template <class Change>
 Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
     const Assembly changed = with_static_geometry(scene, change);
-    io::validate(*changed.static_geometry, {}, !changed.instances.empty());
+    validate(*changed.static_geometry, {}, !changed.instances.empty());
     return changed;
 }
 
@@ -91,7 +91,7 @@ void bind_scene(py::module_& m) {
         "Triangles, materials and lights, and instances of other scenes, any number of each;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
         "those of static geometry; objects bring their own along.");
-    def_value(scene_class, [](const Assembly& scene) { io::validate(scene); });
+    def_value(scene_class, [](const Assembly& scene) { SceneChecks().check(scene); });
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},

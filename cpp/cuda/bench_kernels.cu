@@ -4,6 +4,7 @@
 #include "../bvh/traverse_scene.hpp"
 #include "../camera/generate_rays.hpp"
 #include "../render/seconds_since.hpp"
+#include "../scene/scene_checks.hpp"
 #include "../scene/shade.hpp"
 #include "bench_kernels.hpp"
 #include "current_device.hpp"
@@ -168,6 +169,7 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
 }
 
 HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer) {
+    SceneChecks().check(scene);
     const CurrentDevice current(ordinal);
     CudaStream stream;
     HitRates rates{};

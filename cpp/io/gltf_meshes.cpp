@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "../error.hpp"
+#include "../scene/scene_checks.hpp"
 #include "regular_file.hpp"
-#include "scene_checks.hpp"
 
 namespace realcam::io {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "../error.hpp"
+#include "../scene/scene_checks.hpp"
 #include "printable.hpp"
-#include "scene_checks.hpp"
 #include "text_lines.hpp"
 #include "text_number.hpp"
 

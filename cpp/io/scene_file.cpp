@@ -11,12 +11,12 @@
 
 #include "../error.hpp"
 #include "../scene/instance_names.hpp"
+#include "../scene/scene_checks.hpp"
 #include "gltf_file.hpp"
 #include "obj_file.hpp"
 #include "ply_file.hpp"
 #include "printable.hpp"
 #include "regular_file.hpp"
-#include "scene_checks.hpp"
 #include "scene_geometry.hpp"
 #include "scene_lights.hpp"
 #include "scene_materials.hpp"
@@ -123,7 +123,7 @@ Assembly read_scene(const std::string& path, const SceneFileOptions& options, co
     }
     try {
         Assembly scene = read_any(path, options, read_image);
-        validate(scene, path);
+        SceneChecks().check(scene, path);
         return scene;
     } catch (const FileError& error) {
         throw SceneFileError(path + ": " + error.reason);

@@ -153,7 +153,7 @@ private:
 }  // namespace
 
 void check_environment(Vec3f v) {
-    constexpr float kBrightest = 1e20f;  // as io::validate has it for scenes
+    constexpr float kBrightest = 1e20f;  // as scene_checks.hpp has it
     const auto good = [](float c) { return c >= 0 && c <= kBrightest; };
     if (!good(v.x) || !good(v.y) || !good(v.z))
         throw InputError("an environment's radiance must lie between 0 and 1e20 cd/m^2");

@@ -96,6 +96,7 @@ HOST_ONLY = {
     "scene/render_space_scene.hpp",
     "scene/scene.hpp",
     "scene/scene_arrays.hpp",
+    "scene/scene_checks.hpp",
     "scene/split_triangles.hpp",
 }
 

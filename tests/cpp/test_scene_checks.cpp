@@ -1,8 +1,10 @@
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "../../cpp/error.hpp"
-#include "../../cpp/io/scene_checks.hpp"
+#include "../../cpp/scene/scene_checks.hpp"
+#include "bare_scene.hpp"
 #include "doctest/doctest.h"
 
 using namespace realcam;
@@ -20,14 +22,14 @@ TEST_CASE("validate: a scene from arrays") {
     good.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     good.triangles = {{{0, 1, 2}, 0}};
     good.materials = {Material{}};
-    CHECK_NOTHROW(io::validate(good));
-    CHECK_THROWS_AS(io::validate(Scene{}), SceneFileError);
+    CHECK_NOTHROW(validate(good));
+    CHECK_THROWS_AS(validate(Scene{}), SceneFileError);
 
     const auto message = [&](auto change) {
         Scene scene = good;
         change(scene);
         try {
-            io::validate(scene);
+            validate(scene);
         } catch (const InputError& error) {
             return std::string(error.what());
         }
@@ -62,6 +64,51 @@ TEST_CASE("validate: a scene from arrays") {
 
     Scene thin = good;
     thin.triangles.push_back({{0, 1, 1}, 0});
-    CHECK(io::drop_degenerate_triangles(thin) == 1);
+    CHECK(drop_degenerate_triangles(thin) == 1);
     CHECK(thin.triangles.size() == 1);
+}
+
+TEST_CASE("SceneChecks: what was checked with the last scene is not checked again") {
+    // Behind the backs of the assemblies, which hold them as const: nobody else can tell what was looked at.
+    const auto floor = std::make_shared<Scene>(test::bare_scene()), chair = std::make_shared<Scene>(test::bare_scene());
+    Assembly room(floor);
+    room.instances.push_back({chair, {}, "chair"});
+    SceneChecks checks;
+    CHECK_NOTHROW(checks.check(room));
+    floor->triangles[0].vertices[1] = 7;
+    chair->positions_m[2].x = std::numeric_limits<double>::infinity();
+
+    CHECK_NOTHROW(checks.check(room));
+    room.instances[0].scene_from_object.origin = {1, 2, 3};
+    CHECK_NOTHROW(checks.check(room));
+    room.instances.push_back(room.instances[0]);
+    CHECK_NOTHROW(checks.check(room));
+    CHECK_THROWS_WITH_AS(SceneChecks().check(room), "scene: triangle 0: vertex 7 does not exist; there are 3",
+                         InputError);
+
+    // A transform is looked at whenever it is another one, and a part that was not there.
+    Assembly flat = room;
+    flat.instances[1].scene_from_object.x = {0, 0, 0};
+    CHECK_THROWS_WITH_AS(
+        checks.check(flat),
+        "instance 1 (\"chair\"): a transform must keep three directions; this one makes the object flat", InputError);
+    Assembly other = room;
+    other.instances.push_back({std::make_shared<Scene>(*chair), {}, "table"});
+    CHECK_THROWS_WITH_AS(checks.check(other), "scene: vertex 2: coordinates must be finite numbers of at most 1e12 m",
+                         InputError);
+    other.instances.back().object = nullptr;
+    CHECK_THROWS_WITH_AS(checks.check(other), "instance 2 (\"table\") has no object", InputError);
+    CHECK_THROWS_WITH_AS(checks.check(Assembly()), "the scene is empty; at least one triangle is wanted", InputError);
+    CHECK_NOTHROW(checks.check(room));
+}
+
+TEST_CASE("SceneChecks: an object without a triangle is not a scene") {
+    Scene lamp;
+    lamp.points = {{{0, 0, 0}, {1, 1, 1}}};
+    const auto shared = std::make_shared<const Scene>(lamp);
+    Assembly room(test::bare_scene());
+    room.instances.push_back({shared, {}, "lamp"});
+    SceneChecks checks;
+    CHECK_NOTHROW(checks.check(room));
+    CHECK_THROWS_AS(checks.check(Assembly(shared)), SceneFileError);
 }

@@ -1,38 +1,66 @@
-#include "scene_checks.hpp"
+#pragma once
+// Whether a scene makes sense, whoever built it.
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "../error.hpp"
+#include "assembly.hpp"
 
-namespace realcam::io {
-namespace {
+namespace REALCAM_NAMESPACE {
+
+namespace scene_checks_detail {
 
 // Cubes of it, which traversal and planes need, are still far from the largest float.
-constexpr double farthest_m = 1e12;
+inline constexpr double farthest_m = 1e12;
 // Beyond all that emits light, the sun as a point light included; what a distance or a lobe makes of it is still a
 // float.
-constexpr float brightest = 1e20f, most_intense = 1e30f;
+inline constexpr float brightest = 1e20f, most_intense = 1e30f;
 
-bool finite(Vec3f v) {
+inline bool finite(Vec3f v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
-bool is_reflectance(Vec3f v) {
+inline bool is_reflectance(Vec3f v) {
     return finite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0;
 }
-bool is_light(Vec3f v, float most) {
+inline bool is_light(Vec3f v, float most) {
     return is_reflectance(v) && v.x <= most && v.y <= most && v.z <= most;
 }
+
+}  // namespace scene_checks_detail
+
+/// Whether coordinates in metres are finite, and near enough to be rendered.
+inline bool is_finite(Vec3d p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+inline bool in_reach(Vec3d p_m) {
+    constexpr double farthest_m = scene_checks_detail::farthest_m;
+    return std::abs(p_m.x) <= farthest_m && std::abs(p_m.y) <= farthest_m && std::abs(p_m.z) <= farthest_m;
+}
+
+/// What messages say of coordinates, as the file gives them, that are not in reach.
+inline std::string why_out_of_reach(Vec3d p) {
+    std::ostringstream text;
+    text << "coordinates must be finite numbers" << (is_finite(p) ? " of at most 1e12 m" : "") << ", not (" << p.x
+         << ", " << p.y << ", " << p.z << ')';
+    return text.str();
+}
+
+namespace scene_checks_detail {
+
 class Checker {
 public:
     Checker(const Scene& scene, const std::string& file) : scene_(scene), file_(file) {}
 
     void check(bool may_be_empty) const {
-        if (scene_.triangles.empty() && !may_be_empty) {
+        if (scene_.triangles.empty() && !may_be_empty)
             throw SceneFileError((file_.empty() ? "the scene" : file_ + ":") + std::string(" holds no triangles"));
-        }
         check_vertices();
         check_triangles();
         check_materials();
@@ -152,41 +180,56 @@ private:
     const std::string& file_;
 };
 
-}  // namespace
+}  // namespace scene_checks_detail
 
-void validate(const Scene& scene, const std::string& file, bool may_be_empty) {
-    Checker(scene, file).check(may_be_empty);
+/// Checks everything that a renderer relies on: sizes of lists, indices, finite numbers, no negative light or
+/// reflectance. Throws SceneFileError if there is no triangle or if `file`, for the message, is given, and InputError
+/// otherwise; the message names the element, counted from 0. `may_be_empty`: of what has no triangle but emitters, or
+/// of a scene that consists of instances.
+inline void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false) {
+    scene_checks_detail::Checker(scene, file).check(may_be_empty);
 }
 
-void validate(const Assembly& scene, const std::string& file) {
-    validate(*scene.static_geometry, file, !scene.instances.empty());
-    std::set<const Scene*> objects;
-    for (const Instance& instance : scene.instances)
-        if (objects.insert(instance.object.get()).second) validate(*instance.object, file, true);
-    try {
-        realcam::validate(scene);
-    } catch (const InputError& error) {
-        if (file.empty()) throw;
-        throw SceneFileError(file + ": " + error.what());
+/// Checks scenes that come one after the other: static geometry, objects and transforms, and of each scene only what
+/// was no part of the last one. Keeps the last one in memory.
+class SceneChecks {
+public:
+    /// Throws as validate(Scene), and InputError for what is wrong with an instance.
+    void check(const Assembly& scene, const std::string& file = {}) {
+        try {
+            if (!scene.static_geometry) throw InputError("the scene is empty; at least one triangle is wanted");
+            if (!same_parts(last_, scene)) {
+                check_parts(scene, file);
+                validate(scene);
+            } else if (!same_transforms(last_, scene)) {
+                validate_transforms(scene);
+            }
+        } catch (const InputError& error) {
+            if (file.empty()) throw;
+            throw SceneFileError(file + ": " + error.what());
+        }
+        last_ = scene;
     }
-}
 
-bool is_finite(Vec3d p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
+private:
+    void check_parts(const Assembly& scene, const std::string& file) const {
+        std::set<const Scene*> good{last_.static_geometry.get()};
+        for (const Instance& instance : last_.instances) good.insert(instance.object.get());
+        // What served as an object may be too little for a whole scene: no triangle.
+        if (good.insert(scene.static_geometry.get()).second || scene.instances.empty())
+            validate(*scene.static_geometry, file, !scene.instances.empty());
+        for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+            const Scene* const object = scene.instances[i].object.get();
+            if (!object) throw InputError(label(scene, i) + " has no object");
+            if (good.insert(object).second) validate(*object, file, true);
+        }
+    }
 
-bool in_reach(Vec3d p) {
-    return std::abs(p.x) <= farthest_m && std::abs(p.y) <= farthest_m && std::abs(p.z) <= farthest_m;
-}
+    Assembly last_;
+};
 
-std::string why_out_of_reach(Vec3d p) {
-    std::ostringstream text;
-    text << "coordinates must be finite numbers" << (is_finite(p) ? " of at most 1e12 m" : "") << ", not (" << p.x
-         << ", " << p.y << ", " << p.z << ')';
-    return text.str();
-}
-
-bool is_degenerate(const Scene& scene, const Triangle& triangle) {
+/// No area to speak of: less than (1 nm)^2, or thinner than 1e-12 of its length. Its indices have to be in range.
+inline bool is_degenerate(const Scene& scene, const Triangle& triangle) {
     const Vec3d a = scene.positions_m[triangle.vertices[0]], b = scene.positions_m[triangle.vertices[1]],
                 c = scene.positions_m[triangle.vertices[2]];
     const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
@@ -195,8 +238,9 @@ bool is_degenerate(const Scene& scene, const Triangle& triangle) {
     return !(twice_area > 2e-18) || !(twice_area > 1e-12 * longest);
 }
 
-std::size_t drop_degenerate_triangles(Scene& scene) {
+/// Returns how many triangles it dropped.
+inline std::size_t drop_degenerate_triangles(Scene& scene) {
     return std::erase_if(scene.triangles, [&](const Triangle& t) { return is_degenerate(scene, t); });
 }
 
-}  // namespace realcam::io
+}  // namespace REALCAM_NAMESPACE
