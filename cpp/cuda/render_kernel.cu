@@ -98,6 +98,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     for (double& e : sum.irradiance) e = sum_of_neighbours(e, tiles.lanes);
     sum.depth = sum_of_neighbours(sum.depth, tiles.lanes);
     sum.hits = sum_of_neighbours(sum.hits, tiles.lanes);
+    sum.samples = sum_of_neighbours(sum.samples, tiles.lanes);
     if (inside && lane % tiles.lanes == 0) job.sums[static_cast<std::int64_t>(row) * job.camera.width + column] += sum;
 
     sampled = sum_of_neighbours(sampled, kWarpSize);
@@ -111,22 +112,24 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     if (inside) clock.report(job.counts);
 }
 
-__global__ void develop(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                        float* exposure, float* depth) {
+__global__ void develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure,
+                        float* depth) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, samples);
+    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s);
     depth[i] = sums[i].mean_depth();
 }
 
-__global__ void develop_codes(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                              double iso, ToneCurve curve, std::uint8_t* codes) {
+__global__ void develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
+                              ToneCurve curve, std::uint8_t* codes) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) {
-        const double exposure = static_cast<double>(sums[i].exposure(c, exposure_time_s, samples));
-        codes[3 * i + c] = srgb_code(apply_tone_curve(curve, sensor_value(exposure, iso)));
-    }
+    for (int c = 0; c < 3; ++c) codes[3 * i + c] = sums[i].code(c, exposure_time_s, iso, curve);
+}
+
+__global__ void count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts) {
+    const std::int64_t i = thread_index();
+    if (i < pixels) counts[i] = static_cast<std::int64_t>(sums[i].samples);
 }
 
 __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels) {
@@ -158,17 +161,21 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     check_cuda(cudaGetLastError(), "starting to render");
 }
 
-void launch_develop(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                    float* exposure, float* depth, cudaStream_t stream) {
-    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, samples, exposure_time_s, exposure, depth);
+void launch_develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure, float* depth,
+                    cudaStream_t stream) {
+    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, exposure_time_s, exposure, depth);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 
-void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                          double iso, ToneCurve curve, std::uint8_t* codes, cudaStream_t stream) {
-    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, samples, exposure_time_s, iso, curve,
-                                                                 codes);
+void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
+                          ToneCurve curve, std::uint8_t* codes, cudaStream_t stream) {
+    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, exposure_time_s, iso, curve, codes);
     check_cuda(cudaGetLastError(), "starting to develop");
+}
+
+void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts, cudaStream_t stream) {
+    count<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, counts);
+    check_cuda(cudaGetLastError(), "starting to count samples");
 }
 
 void launch_merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels, cudaStream_t stream) {

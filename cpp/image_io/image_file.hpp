@@ -10,7 +10,7 @@
 #include "../io/image_metadata.hpp"
 #include "../io/scene_file.hpp"
 #include "../keep_going.hpp"
-#include "../render/backend.hpp"
+#include "../render/image.hpp"
 
 namespace realcam::image_io {
 

@@ -203,6 +203,8 @@ public:
                 validate(scene);
             } else if (!same_transforms(last_, scene)) {
                 validate_transforms(scene);
+            } else {
+                return;
             }
         } catch (const InputError& error) {
             if (file.empty()) throw;

@@ -58,9 +58,9 @@ Shot set_up(const ShotRequest& request, Camera camera, Assembly scene) {
     return shot;
 }
 
-void meter(Shot& shot, const ShotRequest& request, Backend& backend, const Progress& progress) {
+void meter(Shot& shot, const ShotRequest& request, Session& session, const Progress& progress) {
     if (request.exposure_time_s) return;
-    shot.camera.exposure_time_s = metered_exposure_time(backend, shot.scene, shot.camera, request.settings, progress);
+    shot.camera.exposure_time_s = metered_exposure_time(session, shot.scene, shot.camera, request.settings, progress);
     shot.is_metered = true;
 }
 

@@ -66,6 +66,27 @@ LONG_CALLS = {
         rc.render(room(), camera, spp=1, device="cpu")
         """,
     "metering": 'while True: camera.metered(room(), device="cpu", max_bounces=64)',
+    "a session": 'rc.Session(room(), camera, device="cpu", max_bounces=64).add(256)',
+    "a session in another thread": """
+        session = rc.Session(room(), camera, device="cpu")
+        threading.Thread(target=lambda: session.add(4096), daemon=True).start()
+        time.sleep(0.3)
+        session.image()
+        """,
+    "a frame": """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        live.shoot(camera, spp=256).codes
+        """,
+    "a frame that waits for another": """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        for _ in range(2):
+            live.shoot(camera, spp=256)
+        """,
+    "the picture of frames": """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        live.shoot(camera, spp=256)
+        live.picture()
+        """,
 }
 
 
@@ -135,6 +156,8 @@ def test_progress_is_told_while_the_scene_is_made_ready() -> None:
 
 AT_WORK = {
     "render": 'rc.render(room(), camera, spp=64, device="cpu")',
+    "session": 'rc.Session(room(), camera, device="cpu").add(64)',
+    "live": "live.shoot(camera, spp=64).codes",
     "generate_rays": "camera.generate_rays(spp=20)",
     "trace": "camera.lens.trace(np.full((3_000_000, 3), (0.0, 0.0, 80.0)), np.full((3_000_000, 3), (0.0, 0.0, -1.0)))",
     "wavefront": "camera.lens.wavefront(5, samples=512)",
@@ -145,6 +168,7 @@ AT_WORK = {
 @pytest.mark.parametrize("what", AT_WORK)
 def test_python_ends_cleanly_while_a_daemon_thread_works(what: str) -> None:
     code = f"""
+        live = rc.LiveView(room(), device="cpu")
         def work():
             while True:
                 {AT_WORK[what]}
@@ -158,6 +182,46 @@ def test_python_ends_cleanly_while_a_daemon_thread_works(what: str) -> None:
         assert process.returncode == 0, errors
         assert "terminate" not in errors
         assert time.monotonic() - start < 6  # a second of import and sleep, and the end of what is under way
+
+
+@pytest.mark.parametrize("kept", ["live", "frame"])
+def test_python_ends_cleanly_with_a_frame_under_way(kept: str) -> None:
+    """Which would take minutes, and of which only the view or only the frame is held by somebody, in a cycle."""
+    code = f"""
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        frame = live.shoot(camera, spp=1 << 20)
+        cycle = [{kept}]
+        cycle.append(cycle)
+        del live, frame
+        time.sleep(0.3)
+        """
+    process = child(code)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    assert not errors
+
+
+def test_a_process_forked_amid_a_frame_says_why_it_does_not_work() -> None:
+    code = """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        frame = live.shoot(camera, spp=1 << 20)
+        child = os.fork()
+        if child == 0:
+            for work in (lambda: frame.codes, lambda: live.shoot(camera), lambda: live.cancel()):
+                try:
+                    work()
+                except rc.InputError as error:
+                    print(error, flush=True)
+            del live, work  # which waits for nobody
+            os._exit(0)
+        print(os.waitpid(child, 0)[1], flush=True)
+        live.cancel()
+        """
+    out, errors = child(code).communicate(timeout=30)
+    lines = out.splitlines()
+    assert len(lines) == 4, (out, errors)
+    assert all(line.startswith("this process was forked while") for line in lines[:3])
+    assert lines[3] == "0"
 
 
 FORK = """
