@@ -84,8 +84,8 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         block.row[0] = job.first_row + row;
         block.used[0] = 1;
         block.stream[0] = pixel_stream(block.row[0] * job.camera.width + column, job.seed);
-        for (std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes); s < job.sample_count;
-             s += static_cast<std::uint32_t>(tiles.lanes)) {
+        std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes);
+        for (; s < job.sample_count; s += static_cast<std::uint32_t>(tiles.lanes)) {
             if (*job.stop) break;
             block.sample[0] = job.first_sample + s;
             render_samples<lens_kind>(job.scene, job.camera, job.max_bounces, block, scene, clock, results);
@@ -93,6 +93,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
         }
+        sum.samples = s / static_cast<std::uint32_t>(tiles.lanes);  // counted in the loop it would be spilled
         clock.enter(RenderStage::other);
     }
     for (double& e : sum.irradiance) e = sum_of_neighbours(e, tiles.lanes);
