@@ -15,8 +15,8 @@
 namespace realcam::image_io {
 
 /// An io::ImageReader: the file `path`, or, where `path` is empty, the bytes of one. Alpha is not multiplied in, and
-/// where the file has it multiplied in it is taken out. Pictures of floating-point numbers are taken as linear, and
-/// clipped at 1. Nothing where it cannot be decoded. Throws Cancelled.
+/// where the file has it multiplied in it is taken out. Of floating-point numbers, negative ones and NaN become 0, and
+/// infinite ones the largest that a half float holds. Nothing where it cannot be decoded. Throws Cancelled.
 std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
                                            const KeepGoing& keep_going = {});
 

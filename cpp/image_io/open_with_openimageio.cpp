@@ -41,6 +41,7 @@ public:
         height = found.height;
         channels = std::min(found.nchannels, 4);
         is_linear = found.format.is_floating_point();
+        is_wide = found.format.size() > 1;
         // OpenEXR multiplies colours by alpha, whatever a reader wishes.
         has_associated_alpha = format == "openexr" && found.alpha_channel == 3;
     }

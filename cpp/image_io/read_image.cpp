@@ -4,7 +4,6 @@
 
 #include "../error.hpp"
 #include "../io/free_memory.hpp"
-#include "../scene/texture.hpp"
 #include "image_file.hpp"
 #include "open_picture.hpp"
 
@@ -44,30 +43,36 @@ float usable_light(float v) {
     return v > 0 ? std::min(v, 65504.0f) : 0.0f;
 }
 
-double unit(float v) {
-    return v > 0 ? std::min(static_cast<double>(v), 1.0) : 0.0;
+float usable_fraction(float v) {
+    return v > 0 ? std::min(v, 1.0f) : 0.0f;
+}
+
+std::vector<std::uint8_t> decode_codes(OpenPicture& picture, const KeepGoing& keep_going) {
+    std::vector<std::uint8_t> rgba(4 * picture.pixel_count());
+    picture.read(picture.channels, 4, rgba.data(), keep_going);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) spread_grey<std::uint8_t>(picture.channels, 255, &rgba[i]);
+    return rgba;
+}
+
+std::vector<float> decode_floats(OpenPicture& picture, const KeepGoing& keep_going) {
+    std::vector<float> pixels(4 * picture.pixel_count());
+    picture.read(picture.channels, 4, pixels.data(), keep_going);
+    for (std::size_t i = 0; i < pixels.size(); i += 4) {
+        float* rgba = &pixels[i];
+        spread_grey(picture.channels, 1.0f, rgba);
+        const float scale = picture.has_associated_alpha && rgba[3] > 0 ? 1 / rgba[3] : 1.0f;
+        for (int c = 0; c < 3; ++c) rgba[c] = usable_light(scale * rgba[c]);
+        rgba[3] = usable_fraction(rgba[3]);
+    }
+    return pixels;
 }
 
 io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
-    const int channels = picture.channels;
-    check_size(picture, kMostTexturePixels, picture.is_linear ? 20 : 4);
-    io::DecodedImage image{picture.width, picture.height, {}};
-    image.rgba.resize(4 * picture.pixel_count());
-    if (!picture.is_linear) {
-        picture.read(channels, 4, image.rgba.data(), keep_going);
-        for (std::size_t i = 0; i < image.rgba.size(); i += 4) spread_grey<std::uint8_t>(channels, 255, &image.rgba[i]);
-        return image;
-    }
-    std::vector<float> pixels(image.rgba.size());
-    picture.read(channels, 4, pixels.data(), keep_going);
-    for (std::size_t i = 0; i < pixels.size(); i += 4) {
-        float* rgba = &pixels[i];
-        spread_grey(channels, 1.0f, rgba);
-        const float scale = picture.has_associated_alpha && rgba[3] > 0 ? 1 / rgba[3] : 1.0f;
-        for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] = srgb_code(unit(scale * rgba[c]));
-        image.rgba[i + 3] = static_cast<std::uint8_t>(std::lround(255 * unit(rgba[3])));
-    }
-    return image;
+    // Floats become the 8 bits of a Texture beside them.
+    constexpr std::size_t of_codes = 4, of_floats = 4 * sizeof(float) + of_codes;
+    check_size(picture, kMostTexturePixels, picture.is_wide ? of_floats : of_codes);
+    if (!picture.is_wide) return {picture.width, picture.height, decode_codes(picture, keep_going)};
+    return {picture.width, picture.height, decode_floats(picture, keep_going), picture.is_linear};
 }
 
 Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going) {

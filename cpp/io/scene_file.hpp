@@ -10,14 +10,9 @@
 
 #include "../keep_going.hpp"
 #include "../scene/assembly.hpp"
+#include "decoded_image.hpp"
 
 namespace realcam::io {
-
-/// 8-bit sRGB with alpha, row 0 at the top, rows without padding: rgba.size() == 4 * width * height.
-struct DecodedImage {
-    int width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
-};
 
 /// Decodes one picture: from the file `path`, or, where `path` is empty, from the bytes of a PNG or JPEG that the
 /// scene file carries inside. Returns nothing if it cannot; the scene then gets a stand-in and a warning.

@@ -83,7 +83,7 @@ private:
         const Vec3f base = unit_range(material_.diffuse);
         Vec3f metal = base;
         if (colour_map_ && metallic > 0) {
-            if (const auto mean = textures_.mean_colour(colour_map_.picture)) metal = *mean * base;
+            if (const auto mean = textures_.mean_colour(colour_map_.picture)) metal = unit_range(*mean) * base;
         }
         constexpr float dielectric = 0.04f;
         const float plain = dielectric * (1 - metallic);

@@ -1,7 +1,8 @@
 #include "scene_textures.hpp"
 
-#include <array>
-#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "file_beside.hpp"
 #include "printable.hpp"
@@ -9,37 +10,16 @@
 namespace realcam::io {
 namespace {
 
-bool is_whole(const DecodedImage& image) {
-    return image.width > 0 && image.height > 0 &&
-           image.rgba.size() ==
-               std::size_t{4} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-}
-
 DecodedImage checker() {
     constexpr int size = 32, square = 4;
-    DecodedImage image{size, size, {}};
+    std::vector<std::uint8_t> rgba;
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const std::uint8_t on = (x / square + y / square) % 2 ? 0 : 255;
-            image.rgba.insert(image.rgba.end(), {on, 0, on, 255});
+            rgba.insert(rgba.end(), {on, 0, on, 255});
         }
     }
-    return image;
-}
-
-Vec3f mean_of(const DecodedImage& image, bool is_colour, Checkpoint& checkpoint) {
-    std::array<double, 256> value{};
-    for (int i = 0; i < 256; ++i) {
-        const double v = i / 255.0;
-        const double linear = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-        value[static_cast<std::size_t>(i)] = is_colour ? linear : v;
-    }
-    Vec3d sum = {0, 0, 0};
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-        checkpoint.pass();
-        sum += Vec3d{value[image.rgba[i]], value[image.rgba[i + 1]], value[image.rgba[i + 2]]};
-    }
-    return static_cast<Vec3f>((4.0 / static_cast<double>(image.rgba.size())) * sum);
+    return {size, size, std::move(rgba)};
 }
 
 /// As warnings name it: one line, and not the megabyte that a file may give for a name.
@@ -80,16 +60,17 @@ SceneTextures::Found SceneTextures::find(std::int32_t picture) {
         scene_.warnings.back() += "; a checker in magenta and black stands in";
         image = checker();
     }
-    scene_.textures.push_back({printable(file_.pictures[static_cast<std::size_t>(picture)].name), image->width,
-                               image->height, std::move(image->rgba)});
+    const int width = image->width, height = image->height;
+    scene_.textures.push_back(
+        {printable(file_.pictures[static_cast<std::size_t>(picture)].name), width, height, srgb8(std::move(*image))});
     return found_[picture] = found;
 }
 
-std::optional<Vec3f> SceneTextures::mean(std::int32_t picture, bool is_colour) {
-    const auto key = std::make_pair(picture, is_colour);
+std::optional<Vec3f> SceneTextures::mean(std::int32_t picture, TextureUse use) {
+    const auto key = std::make_pair(picture, use);
     if (const auto known = means_.find(key); known != means_.end()) return known->second;
     const std::optional<DecodedImage> image = decode(picture);
-    return means_[key] = image ? std::optional(mean_of(*image, is_colour, checkpoint_)) : std::nullopt;
+    return means_[key] = image ? std::optional(mean_of(*image, use, checkpoint_)) : std::nullopt;
 }
 
 }  // namespace realcam::io

@@ -1,7 +1,6 @@
 #pragma once
 #include <map>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "../scene/scene.hpp"
@@ -25,21 +24,21 @@ public:
     /// a checker in magenta and black, with a warning.
     Found find(std::int32_t picture);
 
-    /// Mean of a picture of numbers, each 0..1, such as a roughness map; nothing, and a warning, if it cannot be had.
-    std::optional<Vec3f> mean_value(std::int32_t picture) { return mean(picture, false); }
+    /// Mean of a picture of numbers, such as a roughness map; nothing, and a warning, if it cannot be had.
+    std::optional<Vec3f> mean_value(std::int32_t picture) { return mean(picture, TextureUse::data); }
     /// Mean colour of a picture, linear; nothing, and a warning, if it cannot be had.
-    std::optional<Vec3f> mean_colour(std::int32_t picture) { return mean(picture, true); }
+    std::optional<Vec3f> mean_colour(std::int32_t picture) { return mean(picture, TextureUse::colour); }
 
 private:
     std::optional<DecodedImage> decode(std::int32_t picture);
-    std::optional<Vec3f> mean(std::int32_t picture, bool is_colour);
+    std::optional<Vec3f> mean(std::int32_t picture, TextureUse use);
 
     Scene& scene_;
     const FileScene& file_;
     const ImageReader& read_image_;
     Checkpoint& checkpoint_;
     std::map<std::int32_t, Found> found_;
-    std::map<std::pair<std::int32_t, bool>, std::optional<Vec3f>> means_;
+    std::map<std::pair<std::int32_t, TextureUse>, std::optional<Vec3f>> means_;
 };
 
 }  // namespace realcam::io

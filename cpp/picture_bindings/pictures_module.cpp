@@ -7,6 +7,8 @@
 
 #include <cstring>
 #include <string>
+#include <type_traits>
+#include <variant>
 
 #include "../image_io/image_file.hpp"
 
@@ -32,9 +34,13 @@ py::object read_texture(const std::string& path, const py::buffer& encoded) {
             path, {static_cast<const std::uint8_t*>(bytes.ptr), static_cast<std::size_t>(bytes.size)}, no_signal);
     }
     if (!image) return py::none();
-    py::array_t<std::uint8_t> pixels({image->height, image->width, 4});
-    std::memcpy(pixels.mutable_data(), image->rgba.data(), image->rgba.size());
-    return pixels;
+    const py::array pixels = std::visit(
+        [&](const auto& rgba) -> py::array {
+            using Value = typename std::decay_t<decltype(rgba)>::value_type;
+            return py::array_t<Value>({image->height, image->width, 4}, rgba.data());
+        },
+        image->rgba);
+    return py::make_tuple(pixels, image->is_linear);
 }
 
 py::array_t<float> read_environment(const std::string& path) {

@@ -16,7 +16,8 @@ void add_texture(Scene& scene, const std::string& path, const PictureReaders& re
     if (!image) throw InputError(path + ": cannot be read as a texture");
     if (scene.uvs.empty()) throw InputError(path + ": the scene has no texture coordinates to lay a texture by");
     const auto index = static_cast<std::int32_t>(scene.textures.size());
-    scene.textures.push_back({path, image->width, image->height, std::move(image->rgba)});
+    const int width = image->width, height = image->height;
+    scene.textures.push_back({path, width, height, io::srgb8(std::move(*image))});
     for (Material& material : scene.materials) material.diffuse_texture = index;
 }
 
