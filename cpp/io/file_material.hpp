@@ -1,24 +1,14 @@
 #pragma once
 // Materials as scene files describe them. What a renderer makes of them is decided in scene_materials.cpp alone.
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "../math/vec3.hpp"
-#include "texture_transform.hpp"
+#include "file_texture.hpp"
 
 namespace realcam::io {
-
-/// A picture for a property of a material.
-struct FileTexture {
-    std::int32_t picture = -1;  ///< number in FileScene::pictures; -1: none
-    std::uint32_t uv_set = 0;   ///< of a glTF mesh
-    TextureTransform transform;
-
-    explicit operator bool() const { return picture >= 0; }
-};
 
 /// Members have the names of the format.
 struct MtlMaterial {
@@ -49,7 +39,7 @@ struct FileMaterial {
     std::string name;
     std::variant<std::monostate, MtlMaterial, GltfMaterial> content;
 
-    /// The one that colours the surface, and so the one whose coordinates meshes need.
+    /// The one that colours the surface.
     FileTexture colour_texture() const {
         if (const auto* mtl = std::get_if<MtlMaterial>(&content)) return mtl->map_Kd;
         const auto* gltf = std::get_if<GltfMaterial>(&content);

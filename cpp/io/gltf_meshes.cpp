@@ -54,7 +54,6 @@ std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& 
 void GltfMeshes::add_primitive(const Primitive& primitive) {
     FileMesh mesh;
     mesh.label = primitive.label;
-    mesh.uv_transform = scene_.materials[primitive.material].colour_texture().transform;
     mesh.vertices = vertices_of(primitive);
     mesh.triangles = read_triangles(primitive, scene_.vertices[mesh.vertices].positions.size());
     check_memory(mesh);

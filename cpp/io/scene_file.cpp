@@ -62,7 +62,7 @@ Scene read_ply_scene(const std::string& path, double scale, const ImageReader& r
     file.pictures.push_back({read_ply(scene, path, scale, checkpoint), false, {}});
     if (!file.pictures[0].name.empty() && !scene.uvs.empty()) {
         SceneTextures textures(scene, file, read_image, checkpoint);
-        scene.materials[0] = {{1, 1, 1}, {0, 0, 0}, 0, {0, 0, 0}, textures.find(0).index};
+        scene.materials[0] = {{1, 1, 1}, {0, 0, 0}, 0, {0, 0, 0}, textures.find({0, 0, {}}).reference.texture};
     }
     return scene;
 }

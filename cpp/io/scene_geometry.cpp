@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "../error.hpp"
@@ -79,9 +80,39 @@ private:
     void add_mesh(const FileMesh& mesh, const Affine<double>& transform) {
         const FileVertices& vertices = vertices_of(mesh);
         if (new_numbers_.size() < vertices.positions.size()) new_numbers_.resize(vertices.positions.size(), kUnset);
+        bool is_textured = false;
+        for (std::span<const Triangle> rest = mesh.triangles; !rest.empty();) {
+            const std::span<const Triangle> piece = with_one_texture_transform(rest);
+            is_textured |= add_triangles(mesh, piece, transform);
+            rest = rest.subspan(piece.size());
+        }
+        if (is_textured && vertices.uvs.empty()) ++uncovered_;
+        if (vertices.has_colours && !mesh.triangles.empty()) ++coloured_;
+    }
+
+    /// As long as materials refer to textures without a transform, that of the colour is applied to the vertices.
+    TextureTransform baked_transform(const Triangle& triangle) const {
+        return file_.materials[triangle.material].colour_texture().transform;
+    }
+
+    /// The triangles at the beginning that may share vertices, because their texture coordinates move alike.
+    std::span<const Triangle> with_one_texture_transform(std::span<const Triangle> triangles) const {
+        const TextureTransform common = baked_transform(triangles[0]);
+        std::uint32_t material = triangles[0].material;
+        for (std::size_t t = 1; t < triangles.size(); ++t) {
+            if (triangles[t].material == material) continue;
+            material = triangles[t].material;
+            if (baked_transform(triangles[t]) != common) return triangles.first(t);
+        }
+        return triangles;
+    }
+
+    /// Returns whether any of them has a texture.
+    bool add_triangles(const FileMesh& mesh, std::span<const Triangle> triangles, const Affine<double>& transform) {
         const bool mirrored = transform.determinant() < 0;
         bool is_textured = false;
-        for (const Triangle& from : mesh.triangles) {
+        uv_transform_ = baked_transform(triangles[0]);
+        for (const Triangle& from : triangles) {
             part_.checkpoint.pass();
             Triangle t{{0, 0, 0}, from.material};
             for (int i = 0; i < 3; ++i) t.vertices[i] = vertex(mesh, from.vertices[i], transform);
@@ -94,10 +125,9 @@ private:
             is_textured |= bool(file_.materials[from.material].colour_texture());
         }
         // The next use of these vertices has another transform.
-        for (const Triangle& t : mesh.triangles)
+        for (const Triangle& t : triangles)
             for (const std::uint32_t v : t.vertices) new_numbers_[v] = kUnset;
-        if (is_textured && vertices.uvs.empty()) ++uncovered_;
-        if (vertices.has_colours && !mesh.triangles.empty()) ++coloured_;
+        return is_textured;
     }
 
     /// Number in scene_ of a vertex of the mesh at work, which is added when it is first used.
@@ -113,7 +143,7 @@ private:
         scene_.positions_m.push_back(p);
         if (any_normals_)
             scene_.normals.push_back(from.normals.empty() ? Vec3f{0, 0, 0} : normal(from.normals[number], transform));
-        if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number], mesh.uv_transform));
+        if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number]));
         return known;
     }
 
@@ -127,8 +157,8 @@ private:
         return size > 0 && std::isfinite(size) ? static_cast<Vec3f>((1 / size) * n) : Vec3f{0, 0, 0};
     }
 
-    Vec2f uv(Vec2f given, const TextureTransform& move) {
-        const Vec2f moved = move(given.x, given.y);
+    Vec2f uv(Vec2f given) {
+        const Vec2f moved = uv_transform_(given.x, given.y);
         if (std::isfinite(moved.x) && std::isfinite(moved.y)) return moved;
         ++bad_uvs_;
         return {0, 0};
@@ -142,6 +172,7 @@ private:
     bool any_normals_ = false, any_uvs_ = false;
     std::vector<bool> smooth_;
     std::vector<std::uint32_t> new_numbers_;  // in scene_, of the vertices of the mesh at work
+    TextureTransform uv_transform_;           // of the triangles at work
     std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0, coloured_ = 0;
 };
 

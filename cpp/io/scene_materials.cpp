@@ -59,9 +59,9 @@ private:
     void set_colour(Vec3f factor, const FileTexture& texture) {
         material_.diffuse = factor;
         if (!texture) return;
-        const SceneTextures::Found found = textures_.find(texture.picture);
-        material_.diffuse_texture = found.index;
-        if (found.stand_in)
+        const SceneTextures::Found found = textures_.find(texture);
+        material_.diffuse_texture = found.reference.texture;
+        if (found.is_stand_in)
             material_.diffuse = {1, 1, 1};  // it has to be seen
         else
             colour_map_ = texture;

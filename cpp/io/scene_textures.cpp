@@ -52,10 +52,15 @@ std::optional<DecodedImage> SceneTextures::decode(std::int32_t number) {
     return std::nullopt;
 }
 
-SceneTextures::Found SceneTextures::find(std::int32_t picture) {
-    if (const auto known = found_.find(picture); known != found_.end()) return known->second;
+SceneTextures::Found SceneTextures::find(const FileTexture& texture) {
+    const Added added = add(texture.picture);
+    return {texture.transform.of(added.texture), added.is_stand_in};
+}
+
+SceneTextures::Added SceneTextures::add(std::int32_t picture) {
+    if (const auto known = added_.find(picture); known != added_.end()) return known->second;
     std::optional<DecodedImage> image = decode(picture);
-    const Found found{static_cast<std::int32_t>(scene_.textures.size()), !image};
+    const Added added{static_cast<std::int32_t>(scene_.textures.size()), !image};
     if (!image) {
         scene_.warnings.back() += "; a checker in magenta and black stands in";
         image = checker();
@@ -63,7 +68,7 @@ SceneTextures::Found SceneTextures::find(std::int32_t picture) {
     const int width = image->width, height = image->height;
     scene_.textures.push_back(
         {printable(file_.pictures[static_cast<std::size_t>(picture)].name), width, height, srgb8(std::move(*image))});
-    return found_[picture] = found;
+    return added_[picture] = added;
 }
 
 std::optional<Vec3f> SceneTextures::mean(std::int32_t picture, TextureUse use) {

@@ -17,12 +17,12 @@ public:
     SceneTextures(Scene& scene, const FileScene& file, const ImageReader& read_image, Checkpoint& checkpoint);
 
     struct Found {
-        std::int32_t index;
-        bool stand_in;
+        TextureReference reference;
+        bool is_stand_in;
     };
-    /// Number in scene.textures of one of the file's pictures, added if it is new. A picture that cannot be had becomes
-    /// a checker in magenta and black, with a warning.
-    Found find(std::int32_t picture);
+    /// A picture of the file's as a texture in scene.textures, added if it is new. One that cannot be had becomes a
+    /// checker in magenta and black, with a warning.
+    Found find(const FileTexture& texture);
 
     /// Mean of a picture of numbers, such as a roughness map; nothing, and a warning, if it cannot be had.
     std::optional<Vec3f> mean_value(std::int32_t picture) { return mean(picture, TextureUse::data); }
@@ -31,13 +31,18 @@ public:
 
 private:
     std::optional<DecodedImage> decode(std::int32_t picture);
+    struct Added {
+        std::int32_t texture;  // in scene_.textures
+        bool is_stand_in;
+    };
+    Added add(std::int32_t picture);
     std::optional<Vec3f> mean(std::int32_t picture, TextureUse use);
 
     Scene& scene_;
     const FileScene& file_;
     const ImageReader& read_image_;
     Checkpoint& checkpoint_;
-    std::map<std::int32_t, Found> found_;
+    std::map<std::int32_t, Added> added_;
     std::map<std::pair<std::int32_t, TextureUse>, std::optional<Vec3f>> means_;
 };
 
