@@ -7,16 +7,9 @@
 
 #include "../math/vec3.hpp"
 #include "file_texture.hpp"
+#include "mtl_material.hpp"
 
 namespace realcam::io {
-
-/// Members have the names of the format.
-struct MtlMaterial {
-    Vec3f Kd = {0.6f, 0.6f, 0.6f};  // the format names no default; many viewers have this one
-    Vec3f Ks = {0, 0, 0}, Ke = {0, 0, 0};
-    float Ns = 0, d = 1;
-    FileTexture map_Kd, map_Ke;
-};
 
 /// KHR_materials_pbrSpecularGlossiness.
 struct GltfSpecularGlossiness {

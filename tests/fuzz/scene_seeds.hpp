@@ -21,7 +21,11 @@ inline std::string mtl_seed() {
     return "newmtl x\nKd 0.5 0.5 0.5\nKs 0.2 0.2 0.2\nKa 1 1 1\nNs 50\nmap_Kd -s 1 1 1 -o 0.5 -clamp on "
            "seed.png\nnewmtl y\n"
            "Ke 1 2 3\nmap_Ke seed.png\nd 0.5\nTr 0.25\nillum 2\nNi 1.5\nnewmtl z\nKd 1 0 0\nmap_Ks -s 1 1 1 seed.png\n"
-           "map_Bump -bm 0.3 seed.png\nTf 1 1 1\nd -halo 0.5\nbump other.png\nnorm seed.png\nKd spectral file.rfl 1\n";
+           "map_Bump -bm 0.3 seed.png\nTf 1 1 1\nd -halo 0.5\nbump other.png\nnorm seed.png\nKd spectral file.rfl 1\n"
+           "newmtl w\nillum 7\nPr 0.5\nPm 1\nPc 0.5\nPcr 0.1\nmap_Pr seed.png\nmap_Pm -mm 0 1 seed.png\n"
+           "map_d -imfchan r -texres 64 seed.png\nmap_Ns -t 1 1 1 seed.png\nPs 0.5\naniso 1\nrefl -type sphere "
+           "seed.png\n"
+           "disp seed.png\nTr 0.5\n";
 }
 
 inline std::string ply_ascii_seed() {
