@@ -47,6 +47,8 @@ struct FilePicture {
 struct FileLight {
     std::string type;  ///< of KHR_lights_punctual: point, directional, spot, or what else the file says
     Vec3d strength;    ///< colour times intensity: cd, or lux for "directional"
+    /// Of a spot, in radians from its axis: where it begins to fade, and where it ends. 0 <= inner <= outer <= pi / 2.
+    double inner_cone_angle = 0, outer_cone_angle = 0.785398163397448;
 };
 
 struct FileScene {

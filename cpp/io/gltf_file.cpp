@@ -3,9 +3,12 @@
 #include <optional>
 
 #include "../error.hpp"
+#include "gltf_extensions.hpp"
+#include "gltf_lights.hpp"
 #include "gltf_materials.hpp"
 #include "gltf_meshes.hpp"
 #include "gltf_nodes.hpp"
+#include "gltf_pictures.hpp"
 
 namespace realcam::io {
 namespace {
@@ -43,7 +46,9 @@ FileScene read_gltf(const std::string& path, Checkpoint& checkpoint) {
     FileScene scene;
     scene.path = path;
     read_gltf_lights(scene, document);
+    list_pictures(scene, document);
     read_gltf_materials(scene, document);
+    warn_of_extensions(scene, document);
     const std::vector<std::size_t> numbers = lay_out_nodes(scene, document, checkpoint);
     add_meshes(scene, document, accessors, numbers, checkpoint);
     fetch_pictures(scene, document, buffers);

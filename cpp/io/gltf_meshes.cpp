@@ -73,7 +73,7 @@ void GltfMeshes::check_memory(const FileMesh& mesh) {
 
 std::uint32_t GltfMeshes::vertices_of(const Primitive& primitive) {
     const Json& attributes = primitive.json["attributes"];
-    const std::uint32_t set = scene_.materials[primitive.material].colour_texture().uv_set;
+    const std::uint32_t set = scene_.materials[primitive.material].uv_set();
     const Json& uvs = attributes["TEXCOORD_" + std::to_string(set)];
     constexpr std::size_t none = static_cast<std::size_t>(-1);
     const Attributes key{attributes["POSITION"].index(none), attributes["NORMAL"].index(none), uvs.index(none)};

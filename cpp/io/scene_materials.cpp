@@ -53,7 +53,7 @@ private:
             set_metallic_roughness(from);
         }
         set_emission(from.emissive_strength * from.emissive_factor, from.emissive_texture);
-        if (alpha < 1 && from.alpha_mode != "OPAQUE") warn("is transparent; it is shown opaque");
+        if (alpha < 1 && from.alpha_mode != AlphaMode::opaque) warn("is transparent; it is shown opaque");
     }
 
     void set_colour(Vec3f factor, const FileTexture& texture) {
