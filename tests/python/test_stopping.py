@@ -12,6 +12,7 @@ import textwrap
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -158,6 +159,43 @@ def test_python_ends_cleanly_while_a_daemon_thread_works(what: str) -> None:
         assert process.returncode == 0, errors
         assert "terminate" not in errors
         assert time.monotonic() - start < 6  # a second of import and sleep, and the end of what is under way
+
+
+PICTURES = {
+    "write": 'image.save("b.png")',
+    "read": 'rc.read_environment("a.exr")',
+    "read a shot's": 'rc.Shot.load("shot.toml")',
+}
+SHOT = f"""
+format = 1
+scene = {str(Path(__file__).resolve().parents[2] / "scenes" / "demo.glb")!r}
+lens = "tessar-50mm"
+environment = "a.exr"
+exposure_time_s = 0.01
+"""
+
+
+@pytest.mark.pictures
+@pytest.mark.parametrize("what", PICTURES)
+def test_python_ends_cleanly_while_a_daemon_thread_is_at_a_picture(what: str, tmp_path: Path) -> None:
+    (tmp_path / "shot.toml").write_text(SHOT)
+    code = f"""
+        os.chdir({str(tmp_path)!r})
+        image = rc.render(room(), camera.replace(film=rc.Film(36, 24, (1500, 1000))), spp=1, device="cpu")
+        image.save("a.exr")
+        once = threading.Event()
+        def work():
+            while True:
+                {PICTURES[what]}
+                once.set()
+        threading.Thread(target=work, daemon=True).start()
+        assert once.wait(30)
+        time.sleep(0.3)
+        """
+    process = child(code)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    assert "terminate" not in errors
 
 
 FORK = """
