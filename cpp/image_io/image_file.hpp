@@ -21,8 +21,8 @@ std::optional<io::DecodedImage> read_image(const std::string& path, std::span<co
                                            const KeepGoing& keep_going = {});
 
 /// A latitude-longitude picture (row 0 up, the middle column towards -z) as light from infinity. Floating-point values
-/// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Negative values and NaN become 0, infinite
-/// ones the largest that a half float holds. Throws ImageFileError and Cancelled.
+/// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Throws ImageFileError, also where a value is
+/// none from 0 to 1e20, and Cancelled.
 Environment read_environment(const std::string& path, const KeepGoing& keep_going = {});
 
 /// An exposed picture in somebody else's memory.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "../error.hpp"
@@ -86,10 +87,27 @@ Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going
     picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->x, keep_going);
     const auto light = [&](float v) {
         // 16 bits keep more than srgb_to_linear's 8-bit codes.
-        return linear ? usable_light(v) : v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+        return linear ? v : v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
     };
     for (Vec3f& p : environment.pixels) p = {light(p.x), light(grey ? p.x : p.y), light(grey ? p.x : p.z)};
     return environment;
+}
+
+/// Throws ImageFileError where a pixel holds what no scene may: it would be darkened, or brightened, unnoticed.
+void check_light(const Environment& environment, const std::string& path) {
+    constexpr float kBrightest = 1e20f;  // as io::validate has it for scenes
+    const auto is_light = [](float v) { return v >= 0 && v <= kBrightest; };
+    const auto is_wrong = [&](const auto& p) { return !is_light(p.x) || !is_light(p.y) || !is_light(p.z); };
+    const auto& pixels = environment.pixels;
+    const auto first = std::find_if(pixels.begin(), pixels.end(), is_wrong);
+    if (first == pixels.end()) return;
+    char values[64];
+    std::snprintf(values, sizeof values, "(%.4g, %.4g, %.4g)", double(first->x), double(first->y), double(first->z));
+    const auto place = first - pixels.begin();
+    throw ImageFileError(path + ": " + std::to_string(std::count_if(first, pixels.end(), is_wrong)) +
+                         " pixels are no light, the first in row " + std::to_string(place / environment.width) +
+                         ", column " + std::to_string(place % environment.width) + ": " + values +
+                         "; numbers from 0 to 1e20 cd/m^2 are wanted");
 }
 
 }  // namespace
@@ -106,13 +124,16 @@ std::optional<io::DecodedImage> read_image(const std::string& path, std::span<co
 }
 
 Environment read_environment(const std::string& path, const KeepGoing& keep_going) {
+    Environment environment;
     try {
-        return decode_environment(*open_picture(path, {}), keep_going);
+        environment = decode_environment(*open_picture(path, {}), keep_going);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
         throw ImageFileError(path + ": " + error.what() + "; a latitude-longitude picture was wanted");
     }
+    check_light(environment, path);
+    return environment;
 }
 
 }  // namespace realcam::image_io

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
     """A latitude-longitude picture as (H, W, 3) float32, linear, row 0 up: what Scene.with_environment takes.
 
-    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Raises ImageFileError.
+    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Raises ImageFileError, also where
+    a value is none from 0 to 1e20.
     """
     pixels: np.ndarray = _pictures().read_environment(os.fsencode(path))
     return pixels

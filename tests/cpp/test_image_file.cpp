@@ -286,15 +286,24 @@ TEST_CASE("Textures of more than 8 bits keep what their files hold") {
 TEST_CASE("Environments are linear light") {
     const Folder folder;
     const float infinite = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    const Environment sky = read_environment(write_floats(folder / "sky.exr", {0.5f, 2000, 0, infinite, nan, -1}));
+    const Environment sky = read_environment(write_floats(folder / "sky.exr", {0.5f, 2000, 0, 1e20f, 65505, 0}));
     REQUIRE(sky.width == 2);
     REQUIRE(sky.height == 1);
     REQUIRE(sky.pixels.size() == 2);
     CHECK(sky.pixels[0].x == 0.5f);
     CHECK(sky.pixels[0].y == 2000.0f);
-    CHECK(sky.pixels[1].x == 65504.0f);
-    CHECK(sky.pixels[1].y == 0.0f);
+    CHECK(sky.pixels[1].x == 1e20f);
+    CHECK(sky.pixels[1].y == 65505.0f);
     CHECK(sky.pixels[1].z == 0.0f);
+
+    for (const float wrong : {infinite, nan, -1.0f, 1.01e20f}) {
+        const std::string path = write_floats(folder / "wrong.exr", {1, 1, 1, 0, wrong, 0, wrong, 0, 0});
+        INFO(wrong);
+        CHECK_THROWS_WITH_AS(read_environment(path),
+                             doctest::Contains("wrong.exr: 2 pixels are no light, the first in "
+                                               "row 0, column 1: (0, "),
+                             ImageFileError);
+    }
 
     const Environment painted = read_environment(write_rgba(folder / "sky.png"));
     CHECK(painted.pixels[0].x == doctest::Approx(1.0));
