@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -174,12 +175,19 @@ private:
     std::int32_t picture_of(const Json& texture) {
         const Json& source = root_["textures"][texture.index(root_["textures"].size())]["source"];
         const std::size_t images = root_["images"].size(), number = source.index(images);
-        if (number < images) return static_cast<std::int32_t>(number);
+        if (number < images) return first_alike(number);
         if (missing_ < 0) {
             missing_ = static_cast<std::int32_t>(scene_.pictures.size());
             scene_.pictures.push_back({"without a picture", true, {}});
         }
         return missing_;
+    }
+
+    /// Images inside the file that share their bytes are one, which is decoded once.
+    std::int32_t first_alike(std::size_t image) {
+        const auto number = static_cast<std::int32_t>(image);
+        const Json& view = root_["images"][image]["bufferView"];
+        return view.is_number() ? first_of_view_.emplace(view.number(0), number).first->second : number;
     }
 
     void note_unmodelled(const GltfMaterial& material) {
@@ -191,6 +199,7 @@ private:
     FileScene& scene_;
     const Json& root_;
     std::int32_t missing_ = -1;
+    std::map<double, std::int32_t> first_of_view_;
     std::size_t out_of_range_ = 0, bad_transforms_ = 0;
     std::string bad_alpha_mode_;  // the first, in quotes
     bool has_occlusion_ = false, has_second_set_ = false;

@@ -4,8 +4,10 @@
 #include <utility>
 #include <vector>
 
+#include "../error.hpp"
 #include "file_beside.hpp"
 #include "printable.hpp"
+#include "regular_file.hpp"
 
 namespace realcam::io {
 namespace {
@@ -68,7 +70,20 @@ SceneTextures::Added SceneTextures::add(std::int32_t picture) {
     const int width = image->width, height = image->height;
     scene_.textures.push_back(
         {printable(file_.pictures[static_cast<std::size_t>(picture)].name), width, height, srgb8(std::move(*image))});
+    check_memory(scene_.textures.back().rgba.size());
     return added_[picture] = added;
+}
+
+/// A dozen pictures of 33 kB may each be decoded to a gigabyte. A render holds them once more, in its copy of the
+/// scene.
+void SceneTextures::check_memory(std::size_t added) {
+    constexpr std::size_t kAlwaysThere = std::size_t{1} << 24;
+    bytes_ += added;
+    if (bytes_ - checked_bytes_ < kAlwaysThere) return;
+    checked_bytes_ = bytes_;
+    if (const std::string why = too_much_memory(bytes_); !why.empty())
+        throw SceneFileError(file_.path + ": its first " + std::to_string(scene_.textures.size()) +
+                             " textures are in memory, and a render needs as much again, " + why);
 }
 
 std::optional<Vec3f> SceneTextures::mean(std::int32_t picture, TextureUse use) {

@@ -21,7 +21,8 @@ public:
         bool is_stand_in;
     };
     /// A picture of the file's as a texture in scene.textures, added if it is new. One that cannot be had becomes a
-    /// checker in magenta and black, with a warning.
+    /// checker in magenta and black, with a warning. Throws SceneFileError where all together need more memory than is
+    /// free.
     Found find(const FileTexture& texture);
 
     /// Mean of a picture of numbers, such as a roughness map; nothing, and a warning, if it cannot be had.
@@ -36,6 +37,7 @@ private:
         bool is_stand_in;
     };
     Added add(std::int32_t picture);
+    void check_memory(std::size_t added);
     std::optional<Vec3f> mean(std::int32_t picture, TextureUse use);
 
     Scene& scene_;
@@ -43,6 +45,7 @@ private:
     const ImageReader& read_image_;
     Checkpoint& checkpoint_;
     std::map<std::int32_t, Added> added_;
+    std::size_t bytes_ = 0, checked_bytes_ = 0;  // of scene_.textures
     std::map<std::pair<std::int32_t, TextureUse>, std::optional<Vec3f>> means_;
 };
 
