@@ -5,11 +5,20 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ._core import ImageFileError
+from ._core import ImageFileError, InputError
+
+
+def system_name(path: str | os.PathLike[str]) -> bytes:
+    """A path as the system spells it. Raises InputError where the system would take its beginning for the whole."""
+    name = os.fsencode(path)
+    if b"\0" in name:
+        raise InputError("a file name cannot hold a null character")
+    return name
 
 
 def check_folder(path: str | os.PathLike[str]) -> None:
-    """Raises ImageFileError where no file of this name can be made."""
+    """Raises ImageFileError where no file of this name can be made, and InputError where it is no name."""
+    system_name(path)
     folder = Path(path).parent
     if not folder.is_dir():
         raise ImageFileError(f"{os.fspath(path)}: the folder {folder} does not exist")

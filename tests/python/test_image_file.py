@@ -318,6 +318,15 @@ def test_a_picture_cut_short_is_refused(tmp_path: Path, capfd: pytest.CaptureFix
     assert captured.out == captured.err == ""
 
 
+def test_a_name_with_a_null_character_is_none(image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The system would take its beginning."""
+    monkeypatch.chdir(tmp_path)
+    for use in (image.save, rc.read_environment, scenes.sky(1.0).with_environment):
+        with pytest.raises(rc.InputError, match="a file name cannot hold a null character"):
+            use("a.png\0b.png")
+    assert list(tmp_path.iterdir()) == []
+
+
 def textured(folder: Path, name: str) -> np.ndarray:
     """What the texture of a scene file is, seen by a camera: the mean radiance over pi of a white light."""
     (folder / "card.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
