@@ -265,3 +265,25 @@ def test_no_thread_to_be_had_is_told() -> None:
     told = "the system starts no thread; more memory (ulimit -v) or threads (ulimit -u) are wanted"
     assert answers[0] == told
     assert set(answers) <= {told, "out of memory", "rendered"}
+
+
+def children_of(process: int) -> list[str]:
+    return Path(f"/proc/{process}/task/{process}/children").read_text().split()
+
+
+@pytest.mark.pictures
+def test_the_demo_takes_its_render_along_when_it_is_terminated(tmp_path: Path) -> None:
+    """And leaves no empty folder."""
+    command = [sys.executable, "-m", "realcam", "demo", "-o", str(tmp_path / "a" / "b"), "--spp", str(2**24)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        end = time.monotonic() + 30
+        while not (children := children_of(process.pid)) and time.monotonic() < end:
+            time.sleep(0.05)
+        assert children
+        time.sleep(0.5)
+        process.terminate()
+        _, errors = process.communicate(timeout=30)
+        assert process.returncode == 128 + signal.SIGTERM, errors
+        assert b"Traceback" not in errors
+    assert not Path(f"/proc/{children[0]}").exists()
+    assert list(tmp_path.iterdir()) == []
