@@ -79,7 +79,7 @@ double GltfMeshes::bytes_of_own(std::size_t mesh, bool is_skinned) {
     if (!is_new) return known->second;
     const Json &accessors = document_.root()["accessors"], &primitives = document_.root()["meshes"][mesh]["primitives"];
     const auto count_of = [&](const Json& accessor) {
-        return accessors[accessor.index(accessors.size())]["count"].number(0);
+        return static_cast<double>(accessors[accessor.index(accessors.size())]["count"].index(0));
     };
     for (std::size_t p = 0; p < primitives.size(); ++p) {
         checkpoint_.pass();

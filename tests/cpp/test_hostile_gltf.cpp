@@ -279,6 +279,11 @@ TEST_CASE("glTF: copies of a mesh that need more than memory are refused before 
     replace(R"("byteLength":6}])", R"("byteLength":6},{"buffer":1,"byteLength":900000}])");
     replace(R"(AAABAAIA"}])", R"(AAABAAIA"},{"byteLength":900000,"uri":"i.bin"}])");
     CHECK(has(gltf.error(text), "its meshes, of which nodes with skins or weights have their own, need "));
+    for (const char* count : {"-1e999", "1e999"}) {  // no number of anything
+        std::string wrong = text;
+        wrong.replace(wrong.find("\"count\":900000"), 14, std::string("\"count\":") + count);
+        CHECK(has(gltf.error(wrong), "holds no triangles"));
+    }
     const auto at = text.find(nodes);
     const auto first_end = nodes.find('\n') - 1;
     text.replace(at, nodes.size(), nodes.substr(0, first_end));
