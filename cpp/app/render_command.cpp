@@ -8,6 +8,7 @@
 #include "../devices/devices.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/free_memory.hpp"
+#include "../render/take_picture.hpp"
 #include "../shot/shot.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
@@ -34,8 +35,8 @@ auto with_memory_for(const std::string& what, Work&& work) {
 }
 
 void check_memory(const Film& film) {
-    /// Of the CPU backend while it turns its sums into a picture: 40 for the sums, 16 for the picture.
-    constexpr double kBytesPerPixel = 56;
+    /// Of the CPU's session while it turns its sums into a picture: 48 for the sums, 16 for the picture.
+    constexpr double kBytesPerPixel = 64;
     const double wanted = kBytesPerPixel * film.width * film.height;
     const auto free = static_cast<double>(io::free_memory());
     if (wanted > free)
@@ -57,14 +58,14 @@ public:
                     {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
         Camera camera = camera_of(request);
         check_memory(camera.film);
-        const auto backend = make_backend(words_.device);  // first, because reading a scene may take long
+        const auto session = make_session(words_.device);  // first, because reading a scene may take long
         shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
         if (shot.has_daylight)
             say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
                 "cd/m^2");
         // Until here nothing is on disk, and a signal may simply end the program.
         const Interrupt interrupt;
-        const Image image = expose(*backend, shot, request);
+        const Image image = expose(*session, shot, request);
         write(image, shot, request);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         std::fputs(summary(shot, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
@@ -88,7 +89,7 @@ private:
         return scene;
     }
 
-    static Image expose(Backend& backend, shot::Shot& shot, const shot::ShotRequest& request) {
+    static Image expose(Session& session, shot::Shot& shot, const shot::ShotRequest& request) {
         // A progress callback that draws, and stops on a signal.
         const auto drawing_on = [](ProgressBar& bar) {
             return [&bar](double done) {
@@ -99,11 +100,13 @@ private:
         const Film& film = shot.camera.film;
         try {
             ProgressBar metering("metering ");
-            meter(shot, request, backend, drawing_on(metering));
+            meter(shot, request, session, drawing_on(metering));
             ProgressBar rendering("rendering");
             return with_memory_for(
                 "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
-                [&] { return backend.render(shot.scene, shot.camera, request.settings, drawing_on(rendering)); });
+                [&] {
+                    return take_picture(session, shot.scene, shot.camera, request.settings, drawing_on(rendering));
+                });
         } catch (const Cancelled&) {
             throw Interrupted{Interrupt::signal(), ""};
         }

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "../render/backend.hpp"
+#include "../render/image.hpp"
 #include "../shot/shot.hpp"
 
 namespace realcam::app {

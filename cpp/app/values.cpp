@@ -126,7 +126,9 @@ std::string distance_text(double metres) {
 std::string exposure_text(double seconds) {
     const double inverse = 1 / seconds;
     if (inverse < 2.5) return short_number(seconds) + " s";
-    return "1/" + (inverse < 10 ? short_number(inverse, 2) : std::to_string(std::llround(inverse))) + " s";
+    constexpr double kMostInFull = 1e6;  // no shutter is faster
+    const bool in_full = inverse >= 10 && inverse <= kMostInFull;
+    return "1/" + (in_full ? std::to_string(std::llround(inverse)) : short_number(inverse, 2)) + " s";
 }
 
 }  // namespace realcam::app

@@ -2,12 +2,23 @@
 #include <pybind11/numpy.h>
 
 #include <cstddef>
+#include <cstring>
+#include <utility>
+#include <vector>
 
 namespace realcam::bindings {
 
 /// What a caller gives as an array, in C order; a copy where it is another type.
 template <class T>
 using InputArray = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// A copy of numbers in C order.
+template <class T>
+pybind11::array_t<T> copy_of(const std::vector<T>& values, std::vector<pybind11::ssize_t> shape) {
+    pybind11::array_t<T> array(std::move(shape));
+    std::memcpy(array.mutable_data(), values.data(), values.size() * sizeof(T));
+    return array;
+}
 
 /// An array of shape (n,) of f(i).
 template <class T = double, class F>

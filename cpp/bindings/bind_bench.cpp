@@ -7,7 +7,7 @@
 
 #include "../cuda/bench_kernels.hpp"
 #include "../devices/devices.hpp"
-#include "../embree/embree_backend.hpp"
+#include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/kernels.hpp"
 #include "../math/random.hpp"
 #include "bindings.hpp"

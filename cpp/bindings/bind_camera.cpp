@@ -7,7 +7,7 @@
 
 #include "../camera/default_film.hpp"
 #include "../camera/picture_angle.hpp"
-#include "../embree/embree_backend.hpp"
+#include "../embree/fast_pupil_tracer.hpp"
 #include "../io/image_metadata.hpp"
 #include "../shot/names.hpp"
 #include "bindings.hpp"

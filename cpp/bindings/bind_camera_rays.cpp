@@ -7,7 +7,7 @@
 #include "../camera/last_setup.hpp"
 #include "../cuda/ray_arrays.hpp"
 #include "../devices/devices.hpp"
-#include "../embree/embree_backend.hpp"
+#include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"

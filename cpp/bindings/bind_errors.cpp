@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "../render/backend.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <mutex>
 
 #include "../camera/develop.hpp"
 #include "../devices/devices.hpp"
-#include "../render/backend.hpp"
+#include "../render/take_picture.hpp"
 #include "../shot/names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -25,24 +24,29 @@ using namespace py::literals;
 namespace {
 
 /// One for each device name that was asked for, kept for the next picture. Never torn down under running threads.
-std::map<std::string, std::unique_ptr<Backend>>& backends() {
-    static auto* map = new std::map<std::string, std::unique_ptr<Backend>>;
+std::map<std::string, std::unique_ptr<Session>>& sessions() {
+    static auto* map = new std::map<std::string, std::unique_ptr<Session>>;
     return *map;
 }
 
 }  // namespace
 
-Backend& backend_for(const std::string& device) {
+Session& session_for(const std::string& device) {
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
-    std::unique_ptr<Backend>& backend = backends()[device];
-    if (!backend) backend = make_backend(device);
-    return *backend;
+    std::unique_ptr<Session>& session = sessions()[device];
+    if (!session) session = make_session(device);
+    return *session;
 }
 
 ToneCurve tone_curve_from(const std::string& name) {
     if (const auto tone = shot::tone_named(name)) return *tone;
     throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
+}
+
+std::uint32_t seed_from(std::int64_t seed) {
+    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
+    return static_cast<std::uint32_t>(seed);
 }
 
 bool heed_signals() {
@@ -71,23 +75,16 @@ Progress progress_of(const py::object& callback) {
 
 namespace {
 
-py::array_t<float> copy_of(const std::vector<float>& values, std::vector<py::ssize_t> shape) {
-    py::array_t<float> array(std::move(shape));
-    std::memcpy(array.mutable_data(), values.data(), values.size() * sizeof(float));
-    return array;
-}
-
 py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::string& device, std::int64_t seed,
                  int max_bounces, int threads, const py::object& progress) {
-    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
-    Backend& backend = backend_for(device);
-    const RenderSettings settings{spp, static_cast<std::uint32_t>(seed), max_bounces, threads};
+    const RenderSettings settings{spp, seed_from(seed), max_bounces, threads};
+    Session& session = session_for(device);
     const Progress report = progress_of(progress);
     Image image;
     {
         const Unlocked unlocked;
         const RenderTurn turn;
-        image = backend.render(scene, camera, settings, report);
+        image = take_picture(session, scene, camera, settings, report);
     }
     return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}),
                           copy_of(image.depth, {image.height, image.width}), image.stats);

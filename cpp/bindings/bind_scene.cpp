@@ -5,9 +5,9 @@
 #include <optional>
 #include <tuple>
 
-#include "../io/scene_checks.hpp"
 #include "../io/scene_file.hpp"
 #include "../scene/bounding_box.hpp"
+#include "../scene/scene_checks.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"
 #include "scene_from_arrays.hpp"
@@ -23,7 +23,7 @@ namespace {
 using Colour = std::array<float, 3>;
 using Triple = std::array<double, 3>;
 
-Vec3f rgb(const Colour& c) {
+Color rgb(const Colour& c) {
     return {c[0], c[1], c[2]};
 }
 Vec3d vector_of(const Triple& v) {
@@ -39,7 +39,7 @@ Assembly load(const py::object& path, double scale, const std::vector<std::strin
 template <class Change>
 Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
     const Assembly changed = with_static_geometry(scene, change);
-    io::validate(*changed.static_geometry, {}, !changed.instances.empty());
+    validate(*changed.static_geometry, {}, !changed.instances.empty());
     return changed;
 }
 
@@ -60,7 +60,7 @@ Environment environment_from(const py::object& radiance) {
         try {
             const bool several = py::isinstance<py::sequence>(radiance) || py::isinstance<py::array>(radiance);
             const float value = several ? 0.0f : radiance.cast<float>();
-            environment.constant = several ? rgb(radiance.cast<Colour>()) : Vec3f{value, value, value};
+            environment.constant = several ? rgb(radiance.cast<Colour>()) : grey(value);
         } catch (const py::cast_error&) {
             throw InputError(
                 "an environment must be a number, (r, g, b), an image of shape (H, W, 3), or the path of one");
@@ -91,7 +91,7 @@ void bind_scene(py::module_& m) {
         "Triangles, materials and lights, and instances of other scenes, any number of each;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
         "those of static geometry; objects bring their own along.");
-    def_value(scene_class, [](const Assembly& scene) { io::validate(scene); });
+    def_value(scene_class, [](const Assembly& scene) { SceneChecks().check(scene); });
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},

@@ -18,11 +18,11 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
     Camera camera = shot::camera_of(request);
     shot::Shot shot = shot::set_up(request, std::move(camera), shot::scene_of(request, picture_readers()));
     if (!request.exposure_time_s) {
-        Backend& backend = backend_for(device);
+        Session& session = session_for(device);
         const Progress report = progress_of(progress);
         const Unlocked unlocked;
         const RenderTurn turn;
-        meter(shot, request, backend, report);
+        meter(shot, request, session, report);
     }
     const RenderSettings& settings = request.settings;
     return py::make_tuple(shot.scene, shot.camera, settings.spp, settings.seed, settings.max_bounces,

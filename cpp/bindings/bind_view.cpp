@@ -32,11 +32,11 @@ Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>&
 
 Camera metered(Camera camera, const Assembly& scene, const std::string& device, int max_bounces,
                const py::object& progress) {
-    Backend& backend = backend_for(device);
+    Session& session = session_for(device);
     const Progress report = progress_of(progress);
     const Unlocked unlocked;
     const RenderTurn turn;
-    camera.exposure_time_s = metered_exposure_time(backend, scene, camera, {.max_bounces = max_bounces}, report);
+    camera.exposure_time_s = metered_exposure_time(session, scene, camera, {.max_bounces = max_bounces}, report);
     return camera;
 }
 

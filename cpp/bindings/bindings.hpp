@@ -5,12 +5,18 @@
 #include <optional>
 #include <string>
 
+#include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
 #include "../io/lens_file.hpp"
 #include "../optics/lens_system.hpp"
 #include "../optics/object_point.hpp"
-#include "../render/backend.hpp"
+#include "../render/progress.hpp"
+#include "../scene/assembly.hpp"
 #include "unlocked.hpp"
+
+namespace realcam {
+class Session;
+}
 
 namespace realcam::bindings {
 
@@ -33,16 +39,20 @@ void bind_render(py::module_& m);
 void bind_view(py::module_& m);
 void bind_shot(py::module_& m);
 void bind_live(py::module_& m);
+void bind_session(py::module_& m);
 void bind_bench(py::module_& m);
 
 /// What all functions and classes of the module have in common; the last of all.
 void finish_module(py::module_& m);
 
-/// The backend of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
-Backend& backend_for(const std::string& device);
+/// The session on the device of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
+Session& session_for(const std::string& device);
 
 /// "film" or "linear". Throws InputError.
 ToneCurve tone_curve_from(const std::string& name);
+
+/// Throws InputError for what does not fit 32 bits.
+std::uint32_t seed_from(std::int64_t seed);
 
 /// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without
 /// the interpreter's lock. The callback must outlive the result.

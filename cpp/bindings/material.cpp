@@ -22,15 +22,17 @@ void drop_unused_textures(Scene& scene) {
     std::vector<Texture> all = std::move(scene.textures);
     std::vector<std::int32_t> places(all.size(), -1);
     scene.textures.clear();
-    for (Material& material : scene.materials) {
-        if (material.diffuse_texture < 0) continue;
-        const auto from = static_cast<std::size_t>(material.diffuse_texture);
-        if (places[from] < 0) {
-            places[from] = static_cast<std::int32_t>(scene.textures.size());
-            scene.textures.push_back(std::move(all[from]));
+    for (Material& material : scene.materials)
+        for (const auto member : kMaterialTextures) {
+            std::int32_t& number = (material.*member).texture;
+            if (number < 0) continue;
+            const auto from = static_cast<std::size_t>(number);
+            if (places[from] < 0) {
+                places[from] = static_cast<std::int32_t>(scene.textures.size());
+                scene.textures.push_back(std::move(all[from]));
+            }
+            number = places[from];
         }
-        material.diffuse_texture = places[from];
-    }
 }
 
 /// (H, W, C), of bytes.
@@ -69,10 +71,13 @@ std::vector<std::string> material_names(const Scene& scene) {
 PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index) {
     PythonMaterial material{
         index < scene->material_names.size() ? scene->material_names[index] : "", scene->materials[index], {}};
-    if (material.values.diffuse_texture >= 0)
-        material.texture = std::shared_ptr<const Texture>(
-            scene, &scene->textures[static_cast<std::size_t>(material.values.diffuse_texture)]);
-    material.values.diffuse_texture = -1;
+    for (std::size_t i = 0; i < kMaterialTextures.size(); ++i) {
+        std::int32_t& number = (material.values.*kMaterialTextures[i]).texture;
+        if (number >= 0)
+            material.textures[i] =
+                std::shared_ptr<const Texture>(scene, &scene->textures[static_cast<std::size_t>(number)]);
+        number = -1;
+    }
     return material;
 }
 
@@ -81,11 +86,13 @@ void set_material(Scene& scene, std::size_t index, const PythonMaterial& materia
     scene.material_names.resize(scene.materials.size());
     if (scene.material_names[index].empty()) scene.material_names[index] = material.name;
     scene.materials[index] = material.values;
-    if (material.texture) scene.materials[index].diffuse_texture = place_of(scene.textures, *material.texture);
+    for (std::size_t i = 0; i < kMaterialTextures.size(); ++i)
+        if (material.textures[i])
+            (scene.materials[index].*kMaterialTextures[i]).texture = place_of(scene.textures, *material.textures[i]);
     drop_unused_textures(scene);
 }
 
-std::shared_ptr<const Texture> texture_from(const py::object& object) {
+std::shared_ptr<const Texture> texture_from(const py::object& object, TextureEncoding encoding) {
     constexpr const char* kShapes = "a texture must be an array of shape (H, W), (H, W, 3) or (H, W, 4)";
     const py::array pixels = py::array::ensure(object);
     if (!pixels) {
@@ -96,6 +103,7 @@ std::shared_ptr<const Texture> texture_from(const py::object& object) {
     if ((channels != 1 && channels != 3 && channels != 4) || pixels.size() == 0) throw InputError(kShapes);
     const InputArray<std::uint8_t> codes = codes_from(pixels);
     auto texture = std::make_shared<Texture>();
+    texture->encoding = encoding;
     texture->width = static_cast<std::int32_t>(pixels.shape(1));
     texture->height = static_cast<std::int32_t>(pixels.shape(0));
     texture->rgba.reserve(static_cast<std::size_t>(4 * codes.size() / channels));

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,11 +9,12 @@
 
 namespace realcam::bindings {
 
-/// A material by itself, as Python has it: with the name that it bears in its file, and its texture.
+/// A material by itself, as Python has it: with the name that it bears in its file, and its textures.
 struct PythonMaterial {
     std::string name;  ///< empty: none
-    Material values;   ///< without the number of a texture
-    std::shared_ptr<const Texture> texture;
+    Material values;   ///< without the numbers of textures
+    /// In the order of kMaterialTextures; null: none.
+    std::array<std::shared_ptr<const Texture>, kMaterialTextures.size()> textures;
 };
 
 /// Names by which the materials of a scene are found, all of them different: those of its file, "material 3" for one
@@ -26,6 +28,6 @@ void set_material(Scene& scene, std::size_t index, const PythonMaterial& materia
 
 /// Pixels as users have them: (H, W) or (H, W, 1) grey, (H, W, 3) or (H, W, 4), as codes 0 to 255 or shares 0 to 1 of
 /// them. Throws InputError for all else.
-std::shared_ptr<const Texture> texture_from(const py::object& pixels);
+std::shared_ptr<const Texture> texture_from(const py::object& pixels, TextureEncoding encoding);
 
 }  // namespace realcam::bindings

@@ -78,6 +78,25 @@ auto members(T& x) {
     }
 }
 
+namespace members_detail {
+
+template <class M>
+auto of_material(M& m) {
+    static_assert(count<Material>() == 23, "name what was added");
+    return std::tie(m.model, m.diffuse, m.specular, m.emission, m.diffuse_texture, m.specular_texture,
+                    m.emission_texture, m.ior, m.transmission, m.filter, m.absorption, m.is_thin, m.shininess, m.mirror,
+                    m.fresnel, m.metallic, m.roughness, m.specular_weight, m.clearcoat, m.clearcoat_roughness,
+                    m.metallic_roughness_texture, m.normal_texture, m.normal_scale);
+}
+
+}  // namespace members_detail
+
+inline auto members(const Material& m) {
+    return members_detail::of_material(m);
+}
+inline auto members(Material& m) {
+    return members_detail::of_material(m);
+}
 inline auto members(const Assembly& x) {
     return std::tie(x.static_geometry, x.instances);
 }

@@ -20,6 +20,7 @@ PYBIND11_MODULE(_core, m) {
     bind_view(m);
     bind_shot(m);
     bind_live(m);
+    bind_session(m);
     bind_bench(m);
     finish_module(m);
     watch_exit_and_fork();

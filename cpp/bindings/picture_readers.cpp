@@ -1,6 +1,8 @@
 #include "picture_readers.hpp"
 
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -17,15 +19,21 @@ py::module_ pictures() {
     }
 }
 
+template <class Value>
+io::DecodedImage image_of(const py::array& array, bool is_linear) {
+    const auto pixels = array.cast<InputArray<Value>>();
+    return {static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)),
+            std::vector<Value>(pixels.data(), pixels.data() + pixels.size()), is_linear};
+}
+
 std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<const std::uint8_t> bytes) {
     const py::gil_scoped_acquire acquire;
     const auto encoded = py::memoryview::from_memory(bytes.data(), static_cast<py::ssize_t>(bytes.size()));
     const py::object result = pictures().attr("read_texture")(py::bytes(path), encoded);
     if (result.is_none()) return std::nullopt;
-    const auto pixels = result.cast<InputArray<std::uint8_t>>();
-    return io::DecodedImage{static_cast<int>(pixels.shape(1)),
-                            static_cast<int>(pixels.shape(0)),
-                            {pixels.data(), pixels.data() + pixels.size()}};
+    const auto [pixels, is_linear] = result.cast<std::pair<py::array, bool>>();
+    if (py::isinstance<py::array_t<float>>(pixels)) return image_of<float>(pixels, is_linear);
+    return image_of<std::uint8_t>(pixels, is_linear);
 }
 
 Environment read_environment(const std::string& path) {
@@ -34,7 +42,7 @@ Environment read_environment(const std::string& path) {
     environment.height = static_cast<std::int32_t>(pixels.shape(0));
     environment.width = static_cast<std::int32_t>(pixels.shape(1));
     environment.pixels.resize(static_cast<std::size_t>(pixels.size()) / 3);
-    std::memcpy(environment.pixels.data(), pixels.data(), environment.pixels.size() * sizeof(Vec3f));
+    std::memcpy(environment.pixels.data(), pixels.data(), environment.pixels.size() * sizeof(Color));
     return environment;
 }
 

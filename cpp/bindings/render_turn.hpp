@@ -7,9 +7,9 @@
 
 namespace realcam::bindings {
 
-/// Held while a backend works for Python: it keeps one scene, so that pictures are taken one after the other, whichever
-/// threads ask. Taken without the interpreter's lock. Throws InputError where this thread holds it already, which only
-/// a progress function that takes a picture can bring about.
+/// Held while a session of session_for works for Python: it takes one picture, so that they come one after the other,
+/// whichever threads ask. Taken without the interpreter's lock. Throws InputError where this thread holds it already,
+/// which only a progress function that takes a picture can bring about.
 class RenderTurn {
 public:
     RenderTurn() : lock_(mutex(), std::defer_lock) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "../io/scene_checks.hpp"
+#include "../scene/scene_checks.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {
@@ -69,8 +69,8 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
                 index(triangle_materials->at(i), static_cast<std::int64_t>(scene.materials.size()), "material", i);
         scene.triangles.push_back(triangle);
     }
-    io::validate(scene);
-    const std::size_t dropped = io::drop_degenerate_triangles(scene);
+    validate(scene);
+    const std::size_t dropped = drop_degenerate_triangles(scene);
     if (scene.triangles.empty()) throw InputError("all of the scene's triangles are without area");
     if (dropped > 0) scene.warnings.push_back(std::to_string(dropped) + " triangle(s) without area dropped");
     return scene;

@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <string>
 
+#include "../math/color.hpp"
+
 namespace realcam::bindings {
 
 // Words for __repr__, which fits a line.
@@ -23,6 +25,10 @@ template <class Vec>
 std::string point_text(const Vec& v) {
     const auto number = [](auto x) { return digits(static_cast<double>(x)); };
     return '(' + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ')';
+}
+
+inline std::string color_text(Color c) {
+    return point_text(Vec3f{c.r, c.g, c.b});
 }
 
 /// A name as far as it has room, on one line.

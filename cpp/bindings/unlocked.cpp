@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include "../error.hpp"
 
@@ -18,10 +19,16 @@ namespace {
 std::atomic<int> under_way{0};
 std::atomic<bool> ends{false}, lost_threads{false};
 
+std::vector<void (*)()>& others() {
+    static auto* const list = new std::vector<void (*)()>;
+    return *list;
+}
+
 void wait_for_all_work() {
     using namespace std::chrono_literals;
     ends = true;
     const py::gil_scoped_release release;
+    for (void (*const stop)() : others()) stop();
     // Work looks up 20 times a second. A user's progress function that does not return must not keep Python for ever.
     for (auto waited = 0ms; under_way > 0 && waited < 10s; waited += 5ms) std::this_thread::sleep_for(5ms);
 }
@@ -41,8 +48,16 @@ WorkUnderWay::~WorkUnderWay() {
     --under_way;
 }
 
+bool has_lost_threads() {
+    return lost_threads;
+}
+
 void stop_at_exit() {
     if (ends) throw Cancelled();
+}
+
+void stop_too_at_exit(void (*stop)()) {
+    others().push_back(stop);
 }
 
 void watch_exit_and_fork() {

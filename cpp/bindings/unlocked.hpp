@@ -22,8 +22,14 @@ class Unlocked {
     pybind11::gil_scoped_release release_;
 };
 
+/// In a process that was forked amid such work: what waits for its threads would wait for ever.
+bool has_lost_threads();
+
 /// Throws Cancelled while Python ends.
 void stop_at_exit();
+
+/// Python's end calls this as well, without the interpreter's lock: it stops what goes on without a call.
+void stop_too_at_exit(void (*stop)());
 
 /// Makes Python's end stop all work and wait for it; forked processes look whether they can work.
 void watch_exit_and_fork();

@@ -30,7 +30,9 @@ REALCAM_INLINE std::uint32_t pixel_stream(std::int32_t pixel, std::uint32_t seed
 /// Dimension pairs of the random sequence.
 namespace dimension {
 inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
-}
+/// For the end of long paths, far behind those of the last bounce.
+inline constexpr std::uint32_t roulette = 0x10000;
+}  // namespace dimension
 
 /// Rays in scene axes, metres, relative to the origin of the placed scene.
 template <int N>

@@ -4,7 +4,9 @@
 #include "../bvh/traverse_scene.hpp"
 #include "../camera/generate_rays.hpp"
 #include "../render/seconds_since.hpp"
-#include "../scene/shade.hpp"
+#include "../scene/light_sample.hpp"
+#include "../scene/scene_checks.hpp"
+#include "../scene/surface_point.hpp"
 #include "bench_kernels.hpp"
 #include "current_device.hpp"
 #include "device_scene.hpp"
@@ -96,12 +98,11 @@ __global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh
     const BenchRay ray = rays[i];
     const Hit hit = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway);
     if (hit.triangle == kNoTriangle) return;
-    const SurfacePoint point = surface_point(scene, hit, ray.origin, ray.direction);
+    const SurfacePoint point = surface_point<MaterialSet::plain>(scene, hit, ray.origin, ray.direction);
     const Vec2f u = sample_2d(pixel_stream(i, 1), 0, 7);
     Vec3f direction = sample_cosine(point.geometric_normal, u);
     if (uniform) {
-        const float z = 1.0f - 2.0f * u.x, r = std::sqrt(1.0f - z * z), azimuth = 6.2831853f * u.y;
-        direction = {r * std::cos(azimuth), r * std::sin(azimuth), z};
+        direction = sample_sphere(u);
         if (dot(direction, point.geometric_normal) < 0) direction = -direction;
     }
     rays[i] = {point.position + point.self_offset * point.geometric_normal, direction};
@@ -168,6 +169,7 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
 }
 
 HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer) {
+    SceneChecks().check(scene);
     const CurrentDevice current(ordinal);
     CudaStream stream;
     HitRates rates{};

@@ -84,12 +84,12 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
 
 void DeviceRenderer::rehearse() {
     for (const bool timed : {false, true}) launch({0, 0, 0, 0}, {}, sums_.data(), timed);
-    launch_develop(sums_.data(), 0, 1, 1, exposure_.data(), depth_.data(), stream_);
+    launch_develop(sums_.data(), 0, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
 void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, bool timed) {
-    launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.max_bounces,
+    launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.path(),
                    settings.seed, part.first_sample, part.sample_count, part.first_row, part.row_count},
                   timed, stream_);
 }
@@ -135,11 +135,10 @@ void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     launch(part, settings, sums_.data(), false);
 }
 
-void DeviceRenderer::develop_codes(std::int64_t samples, double exposure_time_s, double iso, ToneCurve curve,
-                                   std::uint8_t* codes) {
+void DeviceRenderer::develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {
     const CurrentDevice current(ordinal_);
     codes_.resize(3 * sums_.size());
-    launch_develop_codes(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, iso, curve,
+    launch_develop_codes(sums_.data(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, iso, curve,
                          codes_.data(), stream_);
     codes_.download(codes, stream_);
 }
@@ -155,29 +154,56 @@ void DeviceRenderer::merge_film(const DeviceRenderer& other) {
     launch_merge(sums_.data(), others_.data(), static_cast<std::int64_t>(sums_.size()), stream_);
 }
 
-void DeviceRenderer::develop_here(std::int64_t samples, double exposure_time_s, float* exposure, float* depth) {
+void DeviceRenderer::upload_film(const PixelSum* from, std::int64_t pixels) {
     const CurrentDevice current(ordinal_);
-    launch_develop(sums_.data(), static_cast<std::int64_t>(sums_.size()), samples, exposure_time_s, exposure, depth,
-                   stream_);
+    sums_.upload(from, static_cast<std::size_t>(pixels), stream_);
 }
 
-void DeviceRenderer::develop(std::int64_t samples, double exposure_time_s, float* exposure, float* depth) {
+void DeviceRenderer::download_film(PixelSum* to) {
+    const CurrentDevice current(ordinal_);
+    sums_.download(to, stream_);
+    stream_.wait("copying the film from it");
+}
+
+void DeviceRenderer::develop_here(double exposure_time_s, float* exposure, float* depth) {
+    const CurrentDevice current(ordinal_);
+    launch_develop(sums_.data(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, exposure, depth, stream_);
+}
+
+void DeviceRenderer::develop(double exposure_time_s, float* exposure, float* depth) {
     const CurrentDevice current(ordinal_);
     exposure_.resize(3 * sums_.size());
     depth_.resize(sums_.size());
-    develop_here(samples, exposure_time_s, exposure_.data(), depth_.data());
+    develop_here(exposure_time_s, exposure_.data(), depth_.data());
     exposure_.download(exposure, stream_);
     depth_.download(depth, stream_);
     stream_.wait("copying the picture from it");
 }
 
-RenderCounts DeviceRenderer::take_counts() {
+void DeviceRenderer::count_samples(std::int64_t* counts) {
+    const CurrentDevice current(ordinal_);
+    DeviceArray<std::int64_t> here(sums_.size());
+    launch_count(sums_.data(), static_cast<std::int64_t>(sums_.size()), here.data(), stream_);
+    here.download(counts, stream_);
+    stream_.wait("counting samples");
+}
+
+RenderCounts DeviceRenderer::counts() {
     const CurrentDevice current(ordinal_);
     RenderCounts counts{};
     counts_.download(&counts, stream_);
     stream_.wait("rendering");
-    counts_.clear(stream_);
     return counts;
+}
+
+void DeviceRenderer::clear_counts() {
+    const CurrentDevice current(ordinal_);
+    counts_.clear(stream_);
+}
+
+void DeviceRenderer::wait() const {
+    const CurrentDevice current(ordinal_);
+    stream_.wait("rendering");
 }
 
 }  // namespace realcam

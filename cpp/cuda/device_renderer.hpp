@@ -2,7 +2,7 @@
 #include <atomic>
 #include <string>
 
-#include "../render/backend.hpp"
+#include "../render/render_settings.hpp"
 #include "device_scene.hpp"
 #include "render_kernel.hpp"
 #include "stop_flag.hpp"
@@ -22,8 +22,8 @@ public:
     explicit DeviceRenderer(int ordinal);
 
     int ordinal() const { return ordinal_; }
-    /// Which any thread may raise: what exposes ends within the time of a sample, and what is on the film is then worth
-    /// nothing.
+    /// Which any thread may raise: what exposes ends within the time of a sample, and the pixels may then differ in
+    /// their number of samples.
     StopFlag& stop_flag() { return stop_; }
 
     /// Copies a scene, what changes in it as objects move, or a camera. The host's copies may go afterwards.
@@ -45,7 +45,7 @@ public:
     void add(const FilmPart& part, const RenderSettings& settings);
 
     /// Starts to develop the film as 8-bit sRGB, 3 per pixel, into memory of the host that it can write to.
-    void develop_codes(std::int64_t samples, double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
+    void develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
 
     /// In which all of this runs.
     cudaStream_t stream() const { return stream_; }
@@ -53,14 +53,25 @@ public:
     /// Adds what another GPU has collected of the same pixels.
     void merge_film(const DeviceRenderer& other);
 
+    /// Copies the sums of so many pixels to the film, or those of the whole film to the host.
+    void upload_film(const PixelSum* from, std::int64_t pixels);
+    void download_film(PixelSum* to);
+
     /// Starts to develop the film as exposure and depth into memory of this GPU, 3 and 1 numbers per pixel.
-    void develop_here(std::int64_t samples, double exposure_time_s, float* exposure, float* depth);
+    void develop_here(double exposure_time_s, float* exposure, float* depth);
 
-    /// Exposure and depth of the film's pixels after `samples` samples, into the host's memory.
-    void develop(std::int64_t samples, double exposure_time_s, float* exposure, float* depth);
+    /// Exposure and depth of the film's pixels, into the host's memory.
+    void develop(double exposure_time_s, float* exposure, float* depth);
 
-    /// Since the last call.
-    RenderCounts take_counts();
+    /// The number of samples of each pixel, into the host's memory.
+    void count_samples(std::int64_t* counts);
+
+    /// What was counted since clear_counts, which does not wait for it.
+    RenderCounts counts();
+    void clear_counts();
+
+    /// For all that was started.
+    void wait() const;
 
 private:
     /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.

@@ -2,12 +2,10 @@
 
 #include <utility>
 
-#include "../render/scene_change.hpp"
-
 namespace realcam {
 
 void HostScene::place(const Assembly& assembly, const Camera& camera) {
-    const SceneChange change = scene_change(placed_.get(), assembly, camera);
+    const SceneChange change = change_to(assembly, camera);
     if (change == SceneChange::none) return;
     const bool moves = change == SceneChange::transforms;
     std::unique_ptr<RenderSpaceScene> placed = std::exchange(placed_, nullptr);

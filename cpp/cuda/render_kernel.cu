@@ -62,7 +62,7 @@ __device__ T sum_of_neighbours(T value, int lanes) {
     return value;
 }
 
-template <LensKind lens_kind, bool instanced, class Clock>
+template <LensKind lens_kind, MaterialSet set, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
     const WarpTiles tiles(lanes_per_pixel);
@@ -79,25 +79,27 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     Clock clock;
     if (inside) {
         SampleBlock<1> block;
-        SampleResults<1> results;
+        PathResults<1> results;
         block.column[0] = column;
         block.row[0] = job.first_row + row;
         block.used[0] = 1;
         block.stream[0] = pixel_stream(block.row[0] * job.camera.width + column, job.seed);
-        for (std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes); s < job.sample_count;
-             s += static_cast<std::uint32_t>(tiles.lanes)) {
+        std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes);
+        for (; s < job.sample_count; s += static_cast<std::uint32_t>(tiles.lanes)) {
             if (*job.stop) break;
             block.sample[0] = job.first_sample + s;
-            render_samples<lens_kind>(job.scene, job.camera, job.max_bounces, block, scene, clock, results);
+            render_samples<lens_kind, set>(job.scene, job.camera, job.path, block, scene, clock, results);
             sum.add(results, 0);
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
         }
+        sum.samples = s / static_cast<std::uint32_t>(tiles.lanes);  // counted in the loop it would be spilled
         clock.enter(RenderStage::other);
     }
     for (double& e : sum.irradiance) e = sum_of_neighbours(e, tiles.lanes);
     sum.depth = sum_of_neighbours(sum.depth, tiles.lanes);
     sum.hits = sum_of_neighbours(sum.hits, tiles.lanes);
+    sum.samples = sum_of_neighbours(sum.samples, tiles.lanes);
     if (inside && lane % tiles.lanes == 0) job.sums[static_cast<std::int64_t>(row) * job.camera.width + column] += sum;
 
     sampled = sum_of_neighbours(sampled, kWarpSize);
@@ -111,22 +113,24 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     if (inside) clock.report(job.counts);
 }
 
-__global__ void develop(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                        float* exposure, float* depth) {
+__global__ void develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure,
+                        float* depth) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, samples);
+    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s);
     depth[i] = sums[i].mean_depth();
 }
 
-__global__ void develop_codes(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                              double iso, ToneCurve curve, std::uint8_t* codes) {
+__global__ void develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
+                              ToneCurve curve, std::uint8_t* codes) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) {
-        const double exposure = static_cast<double>(sums[i].exposure(c, exposure_time_s, samples));
-        codes[3 * i + c] = srgb_code(apply_tone_curve(curve, sensor_value(exposure, iso)));
-    }
+    for (int c = 0; c < 3; ++c) codes[3 * i + c] = sums[i].code(c, exposure_time_s, iso, curve);
+}
+
+__global__ void count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts) {
+    const std::int64_t i = thread_index();
+    if (i < pixels) counts[i] = static_cast<std::int64_t>(sums[i].samples);
 }
 
 __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels) {
@@ -134,17 +138,26 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
     if (i < pixels) sums[i] += other[i];
 }
 
-template <LensKind lens_kind>
-auto kernel_for(bool instanced, bool timed) {
-    if (instanced) return timed ? render<lens_kind, true, StageClock> : render<lens_kind, true, NoClock>;
-    return timed ? render<lens_kind, false, StageClock> : render<lens_kind, false, NoClock>;
+using RenderKernel = void (*)(RenderJob, int);
+
+template <LensKind lens_kind, MaterialSet set>
+RenderKernel kernel_for(bool instanced, bool timed) {
+    if (instanced) return timed ? render<lens_kind, set, true, StageClock> : render<lens_kind, set, true, NoClock>;
+    return timed ? render<lens_kind, set, false, StageClock> : render<lens_kind, set, false, NoClock>;
+}
+
+template <MaterialSet set>
+RenderKernel kernel_for(LensKind lens_kind, bool instanced, bool timed) {
+    return lens_kind == LensKind::plain ? kernel_for<LensKind::plain, set>(instanced, timed)
+                                        : kernel_for<LensKind::any, set>(instanced, timed);
 }
 
 }  // namespace
 
 void check_render_code() {
     cudaFuncAttributes attributes{};
-    check_cuda(cudaFuncGetAttributes(&attributes, render<LensKind::any, true, NoClock>), "loading its code");
+    check_cuda(cudaFuncGetAttributes(&attributes, render<LensKind::any, MaterialSet::any, true, NoClock>),
+               "loading its code");
 }
 
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
@@ -152,23 +165,28 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const bool instanced = job.scene.instance_count > 0;
-    const auto kernel = job.camera.lens.kind == LensKind::plain ? kernel_for<LensKind::plain>(instanced, timed)
-                                                                : kernel_for<LensKind::any>(instanced, timed);
+    const RenderKernel kernel = job.scene.material_set == MaterialSet::plain
+                                    ? kernel_for<MaterialSet::plain>(job.camera.lens.kind, instanced, timed)
+                                    : kernel_for<MaterialSet::any>(job.camera.lens.kind, instanced, timed);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }
 
-void launch_develop(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                    float* exposure, float* depth, cudaStream_t stream) {
-    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, samples, exposure_time_s, exposure, depth);
+void launch_develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure, float* depth,
+                    cudaStream_t stream) {
+    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, exposure_time_s, exposure, depth);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 
-void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                          double iso, ToneCurve curve, std::uint8_t* codes, cudaStream_t stream) {
-    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, samples, exposure_time_s, iso, curve,
-                                                                 codes);
+void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
+                          ToneCurve curve, std::uint8_t* codes, cudaStream_t stream) {
+    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, exposure_time_s, iso, curve, codes);
     check_cuda(cudaGetLastError(), "starting to develop");
+}
+
+void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts, cudaStream_t stream) {
+    count<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, counts);
+    check_cuda(cudaGetLastError(), "starting to count samples");
 }
 
 void launch_merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels, cudaStream_t stream) {

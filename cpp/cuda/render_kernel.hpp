@@ -23,8 +23,8 @@ struct RenderJob {
     CameraView camera;
     PixelSum* sums;  ///< of the rows of the job's band, row by row; added to
     RenderCounts* counts;
-    const volatile int* stop;  ///< not 0: no thread begins another sample, and the sums are worth nothing
-    int max_bounces;
+    const volatile int* stop;  ///< not 0: no thread begins another sample
+    PathSettings path;
     std::uint32_t seed, first_sample, sample_count;
     int first_row, row_count;  ///< of the picture
 };
@@ -36,12 +36,15 @@ void check_render_code();
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream);
 
 /// Sums as exposure (3 per pixel, lux seconds) and depth (metres).
-void launch_develop(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                    float* exposure, float* depth, cudaStream_t stream);
+void launch_develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure, float* depth,
+                    cudaStream_t stream);
 
 /// The same as 8-bit sRGB (3 per pixel).
-void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, std::int64_t samples, double exposure_time_s,
-                          double iso, ToneCurve curve, std::uint8_t* codes, cudaStream_t stream);
+void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
+                          ToneCurve curve, std::uint8_t* codes, cudaStream_t stream);
+
+/// The number of samples of each pixel.
+void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts, cudaStream_t stream);
 
 /// sums += other, for each of `pixels`.
 void launch_merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels, cudaStream_t stream);

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include "../cuda/cuda_backend.hpp"
 #include "../cuda/cuda_devices.hpp"
-#include "../embree/embree_backend.hpp"
+#include "../cuda/cuda_session.hpp"
+#include "../embree/embree_session.hpp"
+#include "../embree/fast_pupil_tracer.hpp"
 #include "../error.hpp"
 
 namespace realcam {
@@ -42,42 +43,53 @@ std::vector<Device> gpus() {
     return list;
 }
 
-std::unique_ptr<Backend> make_gpu_backend(std::vector<int> ordinals) {
+std::unique_ptr<Session> make_gpu_session(std::vector<int> ordinals) {
     if (ordinals.empty())
         for (const CudaDevice& gpu : cuda_devices()) ordinals.push_back(gpu.ordinal);
-    return make_cuda_backend(ordinals, fast_pupil_tracer());
+    return make_cuda_session(ordinals, fast_pupil_tracer());
+}
+
+/// The ordinal of the only GPU of a device. `what_happens`: there, for the error.
+int one_gpu(const std::string& device, const std::string& what_happens) {
+    if (device != "cuda" && !device.starts_with("cuda:")) fail_unknown(device);
+    const std::vector<int> ordinals = ordinals_of(device);
+    if (ordinals.size() > 1) throw InputError(what_happens + " on one GPU; device=\"cuda:0\", say, is wanted");
+    return cuda_device(ordinals.empty() ? 0 : ordinals.front()).ordinal;
 }
 
 /// A GPU that is no use to this build is passed over.
-std::unique_ptr<Backend> make_best_backend() {
+std::unique_ptr<Session> make_best_session() {
     try {
-        if (!cuda_devices().empty()) return make_gpu_backend({0});
+        if (!cuda_devices().empty()) return make_gpu_session({0});
     } catch (const UnsupportedGpu&) {
     }
-    return make_embree_backend();
+    return make_embree_session();
 }
 
 }  // namespace
 
 std::vector<Device> devices() {
     std::vector<Device> list = gpus();
-    list.insert(list.begin(), {"cpu", make_embree_backend()->name()});
+    list.insert(list.begin(), {"cpu", make_embree_session()->name()});
     return list;
 }
 
-std::unique_ptr<Backend> make_backend(const std::string& device) {
-    if (device == "cpu") return make_embree_backend();
-    if (device == "auto") return make_best_backend();
-    if (device == "cuda" || device.starts_with("cuda:")) return make_gpu_backend(ordinals_of(device));
+std::unique_ptr<Session> make_session(const std::string& device) {
+    if (device == "cpu") return make_embree_session();
+    if (device == "auto") return make_best_session();
+    if (device == "cuda" || device.starts_with("cuda:")) return make_gpu_session(ordinals_of(device));
     fail_unknown(device);
+}
+
+std::unique_ptr<Session> make_live_session(const std::string& device) {
+    if (device == "cpu") return make_embree_session();
+    if (device == "auto") return make_best_session();
+    return make_gpu_session({one_gpu(device, "frames are taken")});
 }
 
 std::optional<int> gpu_for_rays(const std::string& device) {
     if (device == "cpu" || (device == "auto" && cuda_devices().empty())) return std::nullopt;
-    if (device != "auto" && device != "cuda" && !device.starts_with("cuda:")) fail_unknown(device);
-    const std::vector<int> ordinals = device == "auto" ? std::vector<int>() : ordinals_of(device);
-    if (ordinals.size() > 1) throw InputError("rays are traced on one GPU; device=\"cuda:0\", say, is wanted");
-    return cuda_device(ordinals.empty() ? 0 : ordinals.front()).ordinal;
+    return one_gpu(device == "auto" ? "cuda" : device, "rays are traced");
 }
 
 }  // namespace realcam

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "../render/backend.hpp"
+#include "../render/session.hpp"
 
 namespace realcam {
 
-/// What pictures can be taken with, by the name that make_backend takes.
+/// What pictures can be taken with, by the name that make_session takes.
 struct Device {
     std::string name;         ///< cpu, cuda:0, cuda:1, ...
     std::string description;  ///< for people
@@ -20,10 +20,13 @@ std::vector<Device> devices();
 /// "auto": the first GPU if there is one that this build has code for, else the CPU. "cpu". "cuda": all GPUs. "cuda:1",
 /// "cuda:0,1": those. Throws InputError for another name, and DeviceError where the device is not there or does not
 /// work.
-std::unique_ptr<Backend> make_backend(const std::string& device);
+std::unique_ptr<Session> make_session(const std::string& device);
+
+/// The same on one device, for frames: "auto" and "cuda" are the first GPU.
+std::unique_ptr<Session> make_live_session(const std::string& device);
 
 /// The one GPU that rays alone are traced on, by its ordinal; none for the CPU. "cuda" is the first; for the rest, and
-/// for errors, see make_backend.
+/// for errors, see make_session.
 std::optional<int> gpu_for_rays(const std::string& device);
 
 }  // namespace realcam

@@ -2,11 +2,10 @@
 #if !defined(REALCAM_HAS_CUDA)
 
 #include "../cuda/bench_kernels.hpp"
-#include "../cuda/cuda_backend.hpp"
 #include "../cuda/cuda_devices.hpp"
 #include "../cuda/cuda_rays.hpp"
+#include "../cuda/cuda_session.hpp"
 #include "../cuda/foreign_memory.hpp"
-#include "../cuda/live_view.hpp"
 #include "../cuda/ray_arrays.hpp"
 #include "../error.hpp"
 
@@ -28,7 +27,7 @@ std::string why_no_cuda_device() {
 CudaDevice cuda_device(int) {
     fail();
 }
-std::unique_ptr<Backend> make_cuda_backend(const std::vector<int>&, PupilTracer) {
+std::unique_ptr<Session> make_cuda_session(const std::vector<int>&, PupilTracer) {
     fail();
 }
 void trace_rays_on_gpu(int, const LensSystem&, LightDirection, double, Precision, int, std::int64_t, const double*,
@@ -55,23 +54,6 @@ SharedDeviceArray SharedDeviceArray::duplicate() const {
     fail();
 }
 
-class LiveView::Work {};
-LiveView::LiveView(int, Assembly, PupilTracer) {
-    fail();
-}
-LiveView::~LiveView() = default;
-std::shared_ptr<const LiveFrame> LiveView::shoot(const Camera&, const RenderSettings&, ToneCurve) {
-    fail();
-}
-DevicePicture LiveView::picture() const {
-    fail();
-}
-void LiveView::show(Assembly) {
-    fail();
-}
-void LiveView::cancel() {
-    fail();
-}
 LensRayRates lens_ray_rates(int, const Camera&, PupilTracer) {
     fail();
 }

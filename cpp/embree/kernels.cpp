@@ -47,12 +47,14 @@ struct PixelOrder {
     }
 };
 
-void render_tile(realcam_tile* tile) {
+template <MaterialSet set>
+void render_tile_of(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
+    const PathSettings settings = *static_cast<const PathSettings*>(tile->path_settings);
     const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
     const PixelOrder order{tile->width, tile->height};
     SampleBlock<kLanes> block;
-    SampleResults<kLanes> results;
+    PathResults<kLanes> results;
     PixelSum* target[kLanes];
     auto* const sums = static_cast<PixelSum*>(tile->sums);
     StageClock clock;
@@ -92,7 +94,7 @@ void render_tile(realcam_tile* tile) {
             block.stream[k] = block.sample[k] = 0;
         }
         scene.order = RayOrder::coherent;
-        render_samples(view, camera, tile->max_bounces, block, scene, clock, results);
+        render_samples<LensKind::any, set>(view, camera, settings, block, scene, clock, results);
         for (int k = 0; k < lanes; ++k) {
             target[k]->add(results, k);
             tile->sampled_rays += static_cast<std::uint64_t>(results.sampled[k]);
@@ -104,6 +106,13 @@ void render_tile(realcam_tile* tile) {
     tile->scene_seconds += clock.seconds[static_cast<int>(RenderStage::scene)];
     tile->other_seconds += clock.seconds[static_cast<int>(RenderStage::other)];
     tile->scene_rays += scene.rays_traced;
+}
+
+void render_tile(realcam_tile* tile) {
+    if (static_cast<const SceneView*>(tile->scene_view)->material_set == MaterialSet::plain)
+        render_tile_of<MaterialSet::plain>(tile);
+    else
+        render_tile_of<MaterialSet::any>(tile);
 }
 
 void generate_all(const void* request) {

@@ -13,7 +13,7 @@ struct realcam_tile {
     void* embree_scene;       // RTCScene
     int x, y, width, height;  // pixels
     std::uint32_t first_sample, sample_count, seed;
-    int max_bounces;
+    const void* path_settings;  // PathSettings
     int (*stopped)(const void* stop);  // asked before each block of samples; what is left then is left out
     const void* stop;
     void* sums;               // PixelSum of the tile, row by row; added to

@@ -10,19 +10,19 @@
 #include "../io/image_metadata.hpp"
 #include "../io/scene_file.hpp"
 #include "../keep_going.hpp"
-#include "../render/backend.hpp"
+#include "../render/image.hpp"
 
 namespace realcam::image_io {
 
 /// An io::ImageReader: the file `path`, or, where `path` is empty, the bytes of one. Alpha is not multiplied in, and
-/// where the file has it multiplied in it is taken out. Pictures of floating-point numbers are taken as linear, and
-/// clipped at 1. Nothing where it cannot be decoded. Throws Cancelled.
+/// where the file has it multiplied in it is taken out. Of floating-point numbers, negative ones and NaN become 0, and
+/// infinite ones the largest that a half float holds. Nothing where it cannot be decoded. Throws Cancelled.
 std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
                                            const KeepGoing& keep_going = {});
 
 /// A latitude-longitude picture (row 0 up, the middle column towards -z) as light from infinity. Floating-point values
-/// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Negative values and NaN become 0, infinite
-/// ones the largest that a half float holds. Throws ImageFileError and Cancelled.
+/// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Throws ImageFileError, also where a value is
+/// none from 0 to 1e20, and Cancelled.
 Environment read_environment(const std::string& path, const KeepGoing& keep_going = {});
 
 /// An exposed picture in somebody else's memory.

@@ -17,6 +17,7 @@ public:
     int width = 0, height = 0;
     int channels = 0;  ///< of those that are read: grey, grey and alpha, RGB, or RGB and alpha
     bool is_linear = false;  ///< floating-point numbers, and not codes for a screen
+    bool is_wide = false;    ///< more than 8 bits a value
     bool has_associated_alpha = false;  ///< colours are multiplied by alpha
     std::size_t encoded_size = 0;       ///< bytes of the file
 

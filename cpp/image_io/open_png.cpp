@@ -28,6 +28,7 @@ public:
         height = static_cast<int>(png_get_image_height(png_, info_));
         channels = png_get_channels(png_, info_);
         bytes_per_value_ = png_get_bit_depth(png_, info_) == 16 ? 2 : 1;
+        is_wide = bytes_per_value_ == 2;
     }
 
     void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {

@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "open_picture.hpp"
 
@@ -41,6 +42,7 @@ public:
         height = found.height;
         channels = std::min(found.nchannels, 4);
         is_linear = found.format.is_floating_point();
+        is_wide = found.format.size() > 1;
         // OpenEXR multiplies colours by alpha, whatever a reader wishes.
         has_associated_alpha = format == "openexr" && found.alpha_channel == 3;
     }
@@ -60,7 +62,8 @@ private:
         const auto type = OIIO::BaseTypeFromC<Value>::value;
         const ImageSpec& s = input_->spec();
         const auto require = [&](bool good) {
-            if (!good) throw Error(kBroken + reason(input_->geterror()));
+            const std::string said = input_->geterror();
+            if (!good || tells_of_a_cut(said)) throw Error(kBroken + reason(said));
         };
         if (s.tile_width > 0) return require(input_->read_image(0, 0, 0, count, type, pixels, step));
         for (int y = 0; y < s.height; y += kRows) {
@@ -70,6 +73,13 @@ private:
             require(input_->read_scanlines(0, 0, s.y + y, s.y + std::min(y + kRows, s.height), s.z, 0, count, type,
                                            pixels + offset, step));
         }
+    }
+
+    /// Reading goes on behind the end of a TIFF's or JPEG's data, with rows of grey or nothing, and only says so. Of a
+    /// JPEG it says as well what does no harm, such as a few bytes too many.
+    bool tells_of_a_cut(const std::string& said) const {
+        if (std::strcmp(input_->format_name(), "jpeg") != 0) return !said.empty();
+        return said.find("Premature end") != std::string::npos;
     }
 
     std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives the input

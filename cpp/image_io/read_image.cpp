@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "../error.hpp"
 #include "../io/free_memory.hpp"
-#include "../scene/texture.hpp"
 #include "image_file.hpp"
 #include "open_picture.hpp"
 
@@ -44,47 +44,70 @@ float usable_light(float v) {
     return v > 0 ? std::min(v, 65504.0f) : 0.0f;
 }
 
-double unit(float v) {
-    return v > 0 ? std::min(static_cast<double>(v), 1.0) : 0.0;
+float usable_fraction(float v) {
+    return v > 0 ? std::min(v, 1.0f) : 0.0f;
+}
+
+std::vector<std::uint8_t> decode_codes(OpenPicture& picture, const KeepGoing& keep_going) {
+    std::vector<std::uint8_t> rgba(4 * picture.pixel_count());
+    picture.read(picture.channels, 4, rgba.data(), keep_going);
+    for (std::size_t i = 0; i < rgba.size(); i += 4) spread_grey<std::uint8_t>(picture.channels, 255, &rgba[i]);
+    return rgba;
+}
+
+std::vector<float> decode_floats(OpenPicture& picture, const KeepGoing& keep_going) {
+    std::vector<float> pixels(4 * picture.pixel_count());
+    picture.read(picture.channels, 4, pixels.data(), keep_going);
+    for (std::size_t i = 0; i < pixels.size(); i += 4) {
+        float* rgba = &pixels[i];
+        spread_grey(picture.channels, 1.0f, rgba);
+        const float scale = picture.has_associated_alpha && rgba[3] > 0 ? 1 / rgba[3] : 1.0f;
+        for (int c = 0; c < 3; ++c) rgba[c] = usable_light(scale * rgba[c]);
+        rgba[3] = usable_fraction(rgba[3]);
+    }
+    return pixels;
 }
 
 io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
-    const int channels = picture.channels;
-    check_size(picture, kMostTexturePixels, picture.is_linear ? 20 : 4);
-    io::DecodedImage image{picture.width, picture.height, {}};
-    image.rgba.resize(4 * picture.pixel_count());
-    if (!picture.is_linear) {
-        picture.read(channels, 4, image.rgba.data(), keep_going);
-        for (std::size_t i = 0; i < image.rgba.size(); i += 4) spread_grey<std::uint8_t>(channels, 255, &image.rgba[i]);
-        return image;
-    }
-    std::vector<float> pixels(image.rgba.size());
-    picture.read(channels, 4, pixels.data(), keep_going);
-    for (std::size_t i = 0; i < pixels.size(); i += 4) {
-        float* rgba = &pixels[i];
-        spread_grey(channels, 1.0f, rgba);
-        const float scale = picture.has_associated_alpha && rgba[3] > 0 ? 1 / rgba[3] : 1.0f;
-        for (std::size_t c = 0; c < 3; ++c) image.rgba[i + c] = srgb_code(unit(scale * rgba[c]));
-        image.rgba[i + 3] = static_cast<std::uint8_t>(std::lround(255 * unit(rgba[3])));
-    }
-    return image;
+    // Floats become the 8 bits of a Texture beside them.
+    constexpr std::size_t of_codes = 4, of_floats = 4 * sizeof(float) + of_codes;
+    check_size(picture, kMostTexturePixels, picture.is_wide ? of_floats : of_codes);
+    if (!picture.is_wide) return {picture.width, picture.height, decode_codes(picture, keep_going)};
+    return {picture.width, picture.height, decode_floats(picture, keep_going), picture.is_linear};
 }
 
 Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going) {
     const bool linear = picture.is_linear, grey = picture.channels < 3;
-    check_size(picture, kMostEnvironmentPixels, sizeof(Vec3f));
+    check_size(picture, kMostEnvironmentPixels, sizeof(Color));
     Environment environment;
     environment.width = picture.width;
     environment.height = picture.height;
     environment.pixels.resize(picture.pixel_count());
-    static_assert(sizeof(Vec3f) == 3 * sizeof(float));
-    picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->x, keep_going);
+    static_assert(sizeof(Color) == 3 * sizeof(float));
+    picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->r, keep_going);
     const auto light = [&](float v) {
         // 16 bits keep more than srgb_to_linear's 8-bit codes.
-        return linear ? usable_light(v) : v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+        return linear ? v : v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
     };
-    for (Vec3f& p : environment.pixels) p = {light(p.x), light(grey ? p.x : p.y), light(grey ? p.x : p.z)};
+    for (Color& p : environment.pixels) p = {light(p.r), light(grey ? p.r : p.g), light(grey ? p.r : p.b)};
     return environment;
+}
+
+/// Throws ImageFileError where a pixel holds what no scene may: it would be darkened, or brightened, unnoticed.
+void check_light(const Environment& environment, const std::string& path) {
+    constexpr float kBrightest = 1e20f;  // as io::validate has it for scenes
+    const auto is_light = [](float v) { return v >= 0 && v <= kBrightest; };
+    const auto is_wrong = [&](const auto& p) { return !is_light(p.r) || !is_light(p.g) || !is_light(p.b); };
+    const auto& pixels = environment.pixels;
+    const auto first = std::find_if(pixels.begin(), pixels.end(), is_wrong);
+    if (first == pixels.end()) return;
+    char values[64];
+    std::snprintf(values, sizeof values, "(%.4g, %.4g, %.4g)", double(first->r), double(first->g), double(first->b));
+    const auto place = first - pixels.begin();
+    throw ImageFileError(path + ": " + std::to_string(std::count_if(first, pixels.end(), is_wrong)) +
+                         " pixels are no light, the first in row " + std::to_string(place / environment.width) +
+                         ", column " + std::to_string(place % environment.width) + ": " + values +
+                         "; numbers from 0 to 1e20 cd/m^2 are wanted");
 }
 
 }  // namespace
@@ -101,13 +124,16 @@ std::optional<io::DecodedImage> read_image(const std::string& path, std::span<co
 }
 
 Environment read_environment(const std::string& path, const KeepGoing& keep_going) {
+    Environment environment;
     try {
-        return decode_environment(*open_picture(path, {}), keep_going);
+        environment = decode_environment(*open_picture(path, {}), keep_going);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
         throw ImageFileError(path + ": " + error.what() + "; a latitude-longitude picture was wanted");
     }
+    check_light(environment, path);
+    return environment;
 }
 
 }  // namespace realcam::image_io

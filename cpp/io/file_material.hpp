@@ -2,59 +2,33 @@
 // Materials as scene files describe them. What a renderer makes of them is decided in scene_materials.cpp alone.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
-#include "../math/vec3.hpp"
-#include "texture_transform.hpp"
+#include "gltf_material.hpp"
+#include "mtl_material.hpp"
 
 namespace realcam::io {
-
-/// A picture for a property of a material.
-struct FileTexture {
-    std::int32_t picture = -1;  ///< number in FileScene::pictures; -1: none
-    std::uint32_t uv_set = 0;   ///< of a glTF mesh
-    TextureTransform transform;
-
-    explicit operator bool() const { return picture >= 0; }
-};
-
-/// Members have the names of the format.
-struct MtlMaterial {
-    Vec3f Kd = {0.6f, 0.6f, 0.6f};  // the format names no default; many viewers have this one
-    Vec3f Ks = {0, 0, 0}, Ke = {0, 0, 0};
-    float Ns = 0, d = 1;
-    FileTexture map_Kd, map_Ke;
-};
-
-/// KHR_materials_pbrSpecularGlossiness.
-struct GltfSpecularGlossiness {
-    Vec3f diffuse_factor = {1, 1, 1}, specular_factor = {1, 1, 1};
-    float glossiness_factor = 1, alpha = 1;
-    FileTexture diffuse_texture;
-};
-
-struct GltfMaterial {
-    Vec3f base_color_factor = {1, 1, 1};
-    float alpha = 1, metallic_factor = 1, roughness_factor = 1, emissive_strength = 1;
-    Vec3f emissive_factor = {0, 0, 0};
-    FileTexture base_color_texture, metallic_roughness_texture, emissive_texture;
-    std::string alpha_mode = "OPAQUE";
-    std::optional<GltfSpecularGlossiness> specular_glossiness;
-};
 
 /// Nothing inside: what a mesh without a material has.
 struct FileMaterial {
     std::string name;
     std::variant<std::monostate, MtlMaterial, GltfMaterial> content;
 
-    /// The one that colours the surface, and so the one whose coordinates meshes need.
+    /// The one that colours the surface.
     FileTexture colour_texture() const {
         if (const auto* mtl = std::get_if<MtlMaterial>(&content)) return mtl->map_Kd;
         const auto* gltf = std::get_if<GltfMaterial>(&content);
-        if (!gltf) return {};
-        return gltf->specular_glossiness ? gltf->specular_glossiness->diffuse_texture : gltf->base_color_texture;
+        return gltf ? gltf->colour_texture() : FileTexture{};
+    }
+
+    /// Of the texture coordinates of a glTF mesh the set that its vertices get: that of the first texture. Textures of
+    /// another set have none.
+    std::uint32_t uv_set() const {
+        const auto* gltf = std::get_if<GltfMaterial>(&content);
+        const std::vector<FileTexture> textures = gltf ? gltf->textures() : std::vector<FileTexture>();
+        return textures.empty() ? 0 : textures.front().uv_set;
     }
 };
 

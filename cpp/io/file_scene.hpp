@@ -16,7 +16,7 @@ namespace realcam::io {
 struct FileVertices {
     std::vector<Vec3d> positions;
     std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): none
-    std::vector<Vec2f> uvs;      ///< empty, or one per position; v upwards
+    std::vector<Vec2f> uvs;      ///< empty, or one per position, as the file has them but for v, which is upwards
     bool has_colours = false;
 };
 
@@ -24,7 +24,6 @@ struct FileMesh {
     std::string label;  ///< for messages
     std::uint32_t vertices = 0;  ///< number in FileScene::vertices
     std::vector<Triangle> triangles;  ///< indices in range; material: number in FileScene::materials
-    TextureTransform uv_transform;
 };
 
 constexpr std::uint32_t kNoParent = 0xffffffffu;
@@ -48,6 +47,8 @@ struct FilePicture {
 struct FileLight {
     std::string type;  ///< of KHR_lights_punctual: point, directional, spot, or what else the file says
     Vec3d strength;    ///< colour times intensity: cd, or lux for "directional"
+    /// Of a spot, in radians from its axis: where it begins to fade, and where it ends. 0 <= inner <= outer <= pi / 2.
+    double inner_cone_angle = 0, outer_cone_angle = 0.785398163397448;
 };
 
 struct FileScene {

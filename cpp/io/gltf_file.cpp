@@ -3,18 +3,35 @@
 #include <optional>
 
 #include "../error.hpp"
+#include "gltf_extensions.hpp"
+#include "gltf_lights.hpp"
 #include "gltf_materials.hpp"
 #include "gltf_meshes.hpp"
 #include "gltf_nodes.hpp"
+#include "gltf_pictures.hpp"
 
 namespace realcam::io {
 namespace {
+
+/// A file of a megabyte may let twenty thousand nodes move a mesh each in its own way.
+void check_own_meshes(const FileScene& scene, const GltfDocument& document, GltfMeshes& meshes,
+                      const std::vector<std::size_t>& numbers) {
+    double bytes = 0;
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        const Json& node = document.root()["nodes"][numbers[i]];
+        const std::size_t count = document.root()["meshes"].size(), mesh = node["mesh"].index(count);
+        const bool is_skinned = !node["skin"].is_null();
+        if (mesh < count && (is_skinned || !node["weights"].is_null())) bytes += meshes.bytes_of_own(mesh, is_skinned);
+    }
+    meshes.check_promise(bytes);
+}
 
 /// A skin of a node whose transform has no inverse is left out, and counted.
 void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                 const std::vector<std::size_t>& numbers, Checkpoint& checkpoint) {
     const GltfSkins skins(document, accessors, scene, numbers, checkpoint);
     GltfMeshes meshes(document, accessors, scene, checkpoint);
+    check_own_meshes(scene, document, meshes, numbers);
     std::size_t left_out = 0;
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         const Json& node = document.root()["nodes"][numbers[i]];
@@ -43,7 +60,9 @@ FileScene read_gltf(const std::string& path, Checkpoint& checkpoint) {
     FileScene scene;
     scene.path = path;
     read_gltf_lights(scene, document);
+    list_pictures(scene, document);
     read_gltf_materials(scene, document);
+    warn_of_extensions(scene, document);
     const std::vector<std::size_t> numbers = lay_out_nodes(scene, document, checkpoint);
     add_meshes(scene, document, accessors, numbers, checkpoint);
     fetch_pictures(scene, document, buffers);

@@ -1,18 +1,21 @@
 #include "gltf_meshes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "../error.hpp"
+#include "../scene/scene_checks.hpp"
 #include "regular_file.hpp"
-#include "scene_checks.hpp"
 
 namespace realcam::io {
 namespace {
 
 enum Mode : std::size_t { kFirstOfTriangles = 4, kTriangles = 4, kStrip = 5, kFan = 6 };
+
+constexpr std::size_t kBytesPerVertex = sizeof(Vec3d) + sizeof(Vec3f) + sizeof(Vec2f);
 
 template <class T>
 std::vector<Vec3<T>> vectors_of(const std::vector<float>& numbers) {
@@ -54,7 +57,6 @@ std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& 
 void GltfMeshes::add_primitive(const Primitive& primitive) {
     FileMesh mesh;
     mesh.label = primitive.label;
-    mesh.uv_transform = scene_.materials[primitive.material].colour_texture().transform;
     mesh.vertices = vertices_of(primitive);
     mesh.triangles = read_triangles(primitive, scene_.vertices[mesh.vertices].positions.size());
     check_memory(mesh);
@@ -63,18 +65,46 @@ void GltfMeshes::add_primitive(const Primitive& primitive) {
 
 /// A file of a megabyte may let a thousand meshes repeat its million vertices.
 void GltfMeshes::check_memory(const FileMesh& mesh) {
-    constexpr std::size_t kPerVertex = sizeof(Vec3d) + sizeof(Vec3f) + sizeof(Vec2f);
     bytes_ += mesh.triangles.size() * sizeof(Triangle);
-    if (mesh.vertices + 1 == scene_.vertices.size()) bytes_ += scene_.vertices.back().positions.size() * kPerVertex;
+    if (mesh.vertices + 1 == scene_.vertices.size())
+        bytes_ += scene_.vertices.back().positions.size() * kBytesPerVertex;
     if (bytes_ < next_check_) return;
     if (const std::string why = too_much_memory(bytes_ - next_check_ / 2); !why.empty())
         document_.fail("its meshes need " + why);
     next_check_ = 2 * bytes_;
 }
 
+double GltfMeshes::bytes_of_own(std::size_t mesh, bool is_skinned) {
+    const auto [known, is_new] = own_bytes_.try_emplace({mesh, is_skinned}, 0.0);
+    if (!is_new) return known->second;
+    const Json &accessors = document_.root()["accessors"], &primitives = document_.root()["meshes"][mesh]["primitives"];
+    const auto count_of = [&](const Json& accessor) {
+        return static_cast<double>(accessors[accessor.index(accessors.size())]["count"].index(0));
+    };
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+        checkpoint_.pass();
+        const Json& primitive = primitives[p];
+        const double vertices = count_of(primitive["attributes"]["POSITION"]);
+        const double corners = primitive["indices"].is_null() ? vertices : count_of(primitive["indices"]);
+        const std::size_t mode = primitive["mode"].index(kTriangles);
+        const double triangles = mode < kFirstOfTriangles ? 0 : mode == kTriangles ? corners / 3 : corners;
+        // Here, and flattened in the scene.
+        known->second += 2 * sizeof(Triangle) * triangles;
+        if (is_skinned || !primitive["targets"].is_null()) known->second += kBytesPerVertex * vertices;
+    }
+    return known->second;
+}
+
+void GltfMeshes::check_promise(double bytes) const {
+    constexpr double kAlwaysThere = 1 << 28, kMost = 1e18;
+    if (bytes < kAlwaysThere) return;
+    if (const std::string why = too_much_memory(static_cast<std::uint64_t>(std::min(bytes, kMost))); !why.empty())
+        document_.fail("its meshes, of which nodes with skins or weights have their own, need " + why);
+}
+
 std::uint32_t GltfMeshes::vertices_of(const Primitive& primitive) {
     const Json& attributes = primitive.json["attributes"];
-    const std::uint32_t set = scene_.materials[primitive.material].colour_texture().uv_set;
+    const std::uint32_t set = scene_.materials[primitive.material].uv_set();
     const Json& uvs = attributes["TEXCOORD_" + std::to_string(set)];
     constexpr std::size_t none = static_cast<std::size_t>(-1);
     const Attributes key{attributes["POSITION"].index(none), attributes["NORMAL"].index(none), uvs.index(none)};

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "file_scene.hpp"
@@ -24,6 +25,11 @@ public:
     /// `weights`: of the mesh's morph targets where the node has some of its own. `joints`: where it has a skin. A mesh
     /// without either is added once. Throws SceneFileError.
     Range add(std::size_t mesh, const Json& weights, const std::optional<JointMaps>& joints);
+
+    /// Bytes that a node with a skin or weights of its own needs for its copy of a mesh, as the file promises them.
+    double bytes_of_own(std::size_t mesh, bool is_skinned);
+    /// Throws SceneFileError where such copies need more memory than is free.
+    void check_promise(double bytes) const;
 
 private:
     struct Primitive {
@@ -52,6 +58,7 @@ private:
     FileScene& scene_;
     Checkpoint& checkpoint_;
     std::map<std::size_t, Range> added_;
+    std::map<std::pair<std::size_t, bool>, double> own_bytes_;
     std::map<Attributes, std::uint32_t> shared_vertices_;
     std::optional<std::uint32_t> default_material_;
     std::size_t bytes_ = 0, next_check_ = std::size_t{1} << 28;  // of what has been added

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../camera/camera.hpp"
-#include "../render/backend.hpp"
+#include "../render/render_settings.hpp"
 
 namespace realcam::io {
 

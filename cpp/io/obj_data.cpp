@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "../error.hpp"
+#include "../scene/scene_checks.hpp"
 #include "printable.hpp"
-#include "scene_checks.hpp"
 #include "text_lines.hpp"
 #include "text_number.hpp"
 
@@ -41,6 +41,11 @@ struct Referred {
     std::size_t farthest_line = 0;
 };
 
+/// Names keep theirs: "Material #25" is what 3ds Max calls materials.
+std::string_view without_comment(std::string_view numbers) {
+    return trimmed(numbers.substr(0, numbers.find('#')));
+}
+
 class ObjParser {
 public:
     ObjParser(const std::string& path, double scale, Checkpoint& checkpoint)
@@ -68,13 +73,13 @@ private:
     void parse_statement(std::string_view rest) {
         const std::string_view keyword = take_word(rest);
         if (keyword == "v")
-            parse_position(rest);
+            parse_position(without_comment(rest));
         else if (keyword == "vt")
-            parse_uv(rest);
+            parse_uv(without_comment(rest));
         else if (keyword == "vn")
-            parse_normal(rest);
+            parse_normal(without_comment(rest));
         else if (keyword == "f" || keyword == "fo")
-            parse_face(rest);
+            parse_face(without_comment(rest));
         else if (keyword == "o" || keyword == "g")
             group_ = groups_.number(printable(rest));
         else if (keyword == "usemtl")

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "../error.hpp"
+#include "../scene/scene_checks.hpp"
 #include "ply_data.hpp"
 #include "printable.hpp"
-#include "scene_checks.hpp"
 #include "scene_cleanup.hpp"
 
 namespace realcam::io {

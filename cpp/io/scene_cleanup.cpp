@@ -1,7 +1,7 @@
 #include "scene_cleanup.hpp"
 
 #include "../error.hpp"
-#include "scene_checks.hpp"
+#include "../scene/scene_checks.hpp"
 #include "scene_normals.hpp"
 #include "vertex_welding.hpp"
 

@@ -11,12 +11,12 @@
 
 #include "../error.hpp"
 #include "../scene/instance_names.hpp"
+#include "../scene/scene_checks.hpp"
 #include "gltf_file.hpp"
 #include "obj_file.hpp"
 #include "ply_file.hpp"
 #include "printable.hpp"
 #include "regular_file.hpp"
-#include "scene_checks.hpp"
 #include "scene_geometry.hpp"
 #include "scene_lights.hpp"
 #include "scene_materials.hpp"
@@ -62,7 +62,8 @@ Scene read_ply_scene(const std::string& path, double scale, const ImageReader& r
     file.pictures.push_back({read_ply(scene, path, scale, checkpoint), false, {}});
     if (!file.pictures[0].name.empty() && !scene.uvs.empty()) {
         SceneTextures textures(scene, file, read_image, checkpoint);
-        scene.materials[0] = {{1, 1, 1}, {0, 0, 0}, 0, {0, 0, 0}, textures.find(0).index};
+        scene.materials[0].diffuse = {1, 1, 1};
+        scene.materials[0].diffuse_texture = textures.find({0, 0, {}}, TextureUse::colour).reference;
     }
     return scene;
 }
@@ -72,7 +73,7 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     Scene static_geometry, materials;
     for (const std::string& warning : file.warnings) static_geometry.warnings.push_back(file.path + ": " + warning);
     SceneTextures textures(materials, file, read_image, checkpoint);
-    make_materials(materials, file, textures);
+    make_materials(materials, file, options.scale, textures);
     append(static_geometry.warnings, std::move(materials.warnings));
 
     SceneObjects objects(file, options.scale, options.objects, checkpoint);
@@ -123,7 +124,7 @@ Assembly read_scene(const std::string& path, const SceneFileOptions& options, co
     }
     try {
         Assembly scene = read_any(path, options, read_image);
-        validate(scene, path);
+        SceneChecks().check(scene, path);
         return scene;
     } catch (const FileError& error) {
         throw SceneFileError(path + ": " + error.reason);

@@ -10,14 +10,9 @@
 
 #include "../keep_going.hpp"
 #include "../scene/assembly.hpp"
+#include "decoded_image.hpp"
 
 namespace realcam::io {
-
-/// 8-bit sRGB with alpha, row 0 at the top, rows without padding: rgba.size() == 4 * width * height.
-struct DecodedImage {
-    int width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
-};
 
 /// Decodes one picture: from the file `path`, or, where `path` is empty, from the bytes of a PNG or JPEG that the
 /// scene file carries inside. Returns nothing if it cannot; the scene then gets a stand-in and a warning.
@@ -46,10 +41,10 @@ struct SceneFileOptions {
 /// format demands; OBJ and PLY say nothing, and get smooth normals where faces share vertices and meet at less than 45
 /// degrees.
 ///
-/// Materials: MTL's Kd, map_Kd, Ks, Ns (Phong exponent) and Ke (radiance, cd/m^2) are taken as they are. glTF's
-/// metallic-roughness model becomes a diffuse and a Phong lobe (see scene_materials.cpp), with their sum at most 1;
-/// emissiveFactor times KHR_materials_emissive_strength is radiance in cd/m^2. Of metallic-roughness and emissive
-/// maps the average is used.
+/// Materials: MTL's Kd, map_Kd (with its -s and -o), Ks, Ns (Phong exponent) and Ke (radiance, cd/m^2) are taken as
+/// they are. glTF's metallic-roughness model becomes a diffuse and a Phong lobe (see scene_materials.cpp), with their
+/// sum at most 1; emissiveFactor times KHR_materials_emissive_strength is radiance in cd/m^2. Of metallic-roughness and
+/// emissive maps the average is used.
 ///
 /// Lights: KHR_lights_punctual, candela and lux; a spot light shines in all directions. Cameras are ignored.
 ///

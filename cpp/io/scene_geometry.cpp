@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "../error.hpp"
+#include "../scene/scene_checks.hpp"
 #include "regular_file.hpp"
-#include "scene_checks.hpp"
 #include "scene_cleanup.hpp"
 
 namespace realcam::io {
@@ -79,6 +80,12 @@ private:
     void add_mesh(const FileMesh& mesh, const Affine<double>& transform) {
         const FileVertices& vertices = vertices_of(mesh);
         if (new_numbers_.size() < vertices.positions.size()) new_numbers_.resize(vertices.positions.size(), kUnset);
+        if (add_triangles(mesh, transform) && vertices.uvs.empty()) ++uncovered_;
+        if (vertices.has_colours && !mesh.triangles.empty()) ++coloured_;
+    }
+
+    /// Returns whether any of them has a texture.
+    bool add_triangles(const FileMesh& mesh, const Affine<double>& transform) {
         const bool mirrored = transform.determinant() < 0;
         bool is_textured = false;
         for (const Triangle& from : mesh.triangles) {
@@ -96,8 +103,7 @@ private:
         // The next use of these vertices has another transform.
         for (const Triangle& t : mesh.triangles)
             for (const std::uint32_t v : t.vertices) new_numbers_[v] = kUnset;
-        if (is_textured && vertices.uvs.empty()) ++uncovered_;
-        if (vertices.has_colours && !mesh.triangles.empty()) ++coloured_;
+        return is_textured;
     }
 
     /// Number in scene_ of a vertex of the mesh at work, which is added when it is first used.
@@ -113,7 +119,7 @@ private:
         scene_.positions_m.push_back(p);
         if (any_normals_)
             scene_.normals.push_back(from.normals.empty() ? Vec3f{0, 0, 0} : normal(from.normals[number], transform));
-        if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number], mesh.uv_transform));
+        if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number]));
         return known;
     }
 
@@ -127,9 +133,8 @@ private:
         return size > 0 && std::isfinite(size) ? static_cast<Vec3f>((1 / size) * n) : Vec3f{0, 0, 0};
     }
 
-    Vec2f uv(Vec2f given, const TextureTransform& move) {
-        const Vec2f moved = move(given.x, given.y);
-        if (std::isfinite(moved.x) && std::isfinite(moved.y)) return moved;
+    Vec2f uv(Vec2f given) {
+        if (std::isfinite(given.x) && std::isfinite(given.y)) return given;
         ++bad_uvs_;
         return {0, 0};
     }

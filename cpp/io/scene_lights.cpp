@@ -7,18 +7,21 @@
 namespace realcam::io {
 namespace {
 
+Color color_of(Vec3d v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
 // A light emits along -z of its node, from its origin. The extension's `range` is no physics, and left out.
 void add_light(Scene& scene, const FileLight& light, const Affine<double>& transform, const std::string& label,
                double scale) {
     if (light.type == "directional") {
         const Vec3d d = -transform.z;
-        if (length(d) > 0)
-            scene.suns.push_back({static_cast<Vec3f>(normalized(d)), static_cast<Vec3f>(light.strength)});
+        if (length(d) > 0) scene.suns.push_back({static_cast<Vec3f>(normalized(d)), color_of(light.strength)});
         return;
     }
     if (light.type == "spot") scene.warnings.push_back(label + " is a spot; it emits in all directions here");
     if (light.type == "point" || light.type == "spot") {
-        scene.points.push_back({scale * transform.origin, static_cast<Vec3f>(light.strength)});
+        scene.points.push_back({scale * transform.origin, color_of(light.strength)});
     } else {
         scene.warnings.push_back(label + ": point, directional or spot is wanted, not " + in_quotes(light.type));
     }

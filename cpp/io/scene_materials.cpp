@@ -1,6 +1,7 @@
 #include "scene_materials.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,20 +11,18 @@
 namespace realcam::io {
 namespace {
 
-float unit_range(float v) {
-    return std::clamp(v, 0.0f, 1.0f);
+Color color_of(Vec3f v) {
+    return {v.x, v.y, v.z};
 }
-Vec3f unit_range(Vec3f v) {
-    return {unit_range(v.x), unit_range(v.y), unit_range(v.z)};
-}
-bool emits(Vec3f e) {
-    return e.x > 0 || e.y > 0 || e.z > 0;
+Color unit_range(Vec3f v) {
+    return {std::clamp(v.x, 0.0f, 1.0f), std::clamp(v.y, 0.0f, 1.0f), std::clamp(v.z, 0.0f, 1.0f)};
 }
 
 class MaterialMaker {
 public:
-    MaterialMaker(Scene& scene, SceneTextures& textures, std::string label)
-        : scene_(scene), textures_(textures), label_(std::move(label)) {}
+    /// `scale`: metres for a unit of the file.
+    MaterialMaker(Scene& scene, SceneTextures& textures, std::string label, double scale)
+        : scene_(scene), textures_(textures), label_(std::move(label)), scale_(scale) {}
 
     Material make(const FileMaterial& from) {
         if (const auto* mtl = std::get_if<MtlMaterial>(&from.content)) from_mtl(*mtl);
@@ -35,97 +34,184 @@ private:
     void warn(const std::string& text) { scene_.warnings.push_back(label_ + " " + text); }
 
     void from_mtl(const MtlMaterial& from) {
-        set_colour(from.Kd, from.map_Kd);
-        material_.specular = from.Ks;
-        material_.shininess = from.Ns;
-        set_emission(from.Ke, from.map_Ke);
-        if (from.d < 1) warn("is transparent; it is shown opaque");
+        set_color(from.Kd, from.map_Kd);
+        set_emission(color_of(from.Ke), from.map_Ke);
+        set_normal_map(from.norm, 1);
+        if (from.bump) warn("has a bump map of heights, which is not modelled; a normal map (norm) is");
+        if (from.map_d) warn("is opaque where its map_d says otherwise: that map is not modelled");
+        if (from.Pr || from.Pm) {
+            set_mtl_metallic_roughness(from);
+        } else {
+            set_illumination_model(from);
+        }
+    }
+
+    void set_mtl_metallic_roughness(const MtlMaterial& from) {
+        material_.model = MaterialModel::metallic_roughness;
+        material_.specular = {1, 1, 1};
+        material_.roughness = from.Pr.value_or(1);
+        material_.metallic = from.Pm.value_or(0);
+        material_.clearcoat = from.Pc;
+        material_.clearcoat_roughness = from.Pcr;
+        material_.ior = from.Ni.value_or(1.5f);
+        if (from.map_Pr || from.map_Pm)
+            warn("has maps of roughness or metallic, which are modelled in glTF files only");
+        set_transmission(1 - from.d, from);
+    }
+
+    // The format's table of illumination models. In 3 to 9 highlights are what mirrors show of the lights, so that
+    // there is no lobe for them beside the mirror.
+    void set_illumination_model(const MtlMaterial& from) {
+        const float passing = 1 - from.d;
+        switch (from.illum) {
+            case 0:
+                warn("has a constant colour (illum 0), which is not modelled; it is lit as others are");
+                [[fallthrough]];
+            case 1: set_transmission(passing, from); break;
+            case 3:
+            case 8: set_mirror(from, FresnelTerm::none), set_transmission(passing, from); break;
+            case 5: set_mirror(from, FresnelTerm::physical), set_transmission(passing, from); break;
+            case 4:
+            case 9: set_mirror(from, FresnelTerm::physical), set_transmission(passing, from); break;
+            case 6: set_mirror(from, FresnelTerm::none), set_refraction(passing, from); break;
+            case 7: set_mirror(from, FresnelTerm::physical), set_refraction(passing, from); break;
+            case 10: warn("only receives shadows (illum 10), which is not modelled; it is shown"); break;
+            default:
+                material_.specular = color_of(from.Ks);
+                set_specular_map(from.map_Ks);
+                material_.shininess = from.Ns;
+                if (from.map_Ns) warn("has a map of Ns, which is not modelled");
+                set_transmission(passing, from);
+        }
+    }
+
+    void set_mirror(const MtlMaterial& from, FresnelTerm fresnel) {
+        material_.mirror = color_of(from.Ks);
+        material_.fresnel = fresnel;
+        if (from.map_Ks) warn("has a map of Ks, which is modelled for highlights only");
+    }
+
+    /// Light goes through without being bent, as through a hole or a film.
+    void set_transmission(float share, const MtlMaterial& from) {
+        if (!(share > 0)) return;
+        material_.transmission = share;
+        material_.filter = unit_range(from.Tf);
+        material_.is_thin = 1;
+        if (material_.model == MaterialModel::phong) material_.ior = 1;
+    }
+
+    void set_refraction(float share, const MtlMaterial& from) {
+        material_.transmission = share > 0 ? share : 1;
+        material_.filter = unit_range(from.Tf);
+        material_.ior = from.Ni.value_or(1.5f);
     }
 
     void from_gltf(const GltfMaterial& from) {
+        material_.model = MaterialModel::metallic_roughness;
+        material_.specular = {1, 1, 1};
         float alpha = from.alpha;
         if (const auto& older = from.specular_glossiness) {
-            set_colour(older->diffuse_factor, older->diffuse_texture);
+            set_color(older->diffuse_factor, older->diffuse_texture);
             set_specular_glossiness(*older);
             alpha = older->alpha;
         } else {
-            set_colour(from.base_color_factor, from.base_color_texture);
+            set_color(from.base_color_factor, from.base_color_texture);
             set_metallic_roughness(from);
         }
-        set_emission(from.emissive_strength * from.emissive_factor, from.emissive_texture);
-        if (alpha < 1 && from.alpha_mode != "OPAQUE") warn("is transparent; it is shown opaque");
+        set_normal_map(from.normal_texture, from.normal_scale);
+        set_emission(from.emissive_strength * color_of(from.emissive_factor), from.emissive_texture);
+        set_clearcoat(from.clearcoat);
+        if (from.alpha_mode == AlphaMode::blend && alpha < 1) warn("is transparent (alpha); it is shown opaque");
+        if (from.alpha_mode == AlphaMode::mask) warn("has holes (alphaMode MASK); it is shown whole");
+        if (from.unlit) warn("is unlit, which is not modelled; it is lit as others are");
     }
 
-    void set_colour(Vec3f factor, const FileTexture& texture) {
-        material_.diffuse = factor;
-        if (!texture) return;
-        const SceneTextures::Found found = textures_.find(texture.picture);
-        material_.diffuse_texture = found.index;
-        if (found.stand_in)
-            material_.diffuse = {1, 1, 1};  // it has to be seen
-        else
-            colour_map_ = texture;
-    }
-
-    // The glTF model, with its Fresnel term at normal incidence and a Phong lobe in place of GGX:
-    //     specular = 0.04 (1 - metallic) + base metallic,    diffuse = base (1 - metallic) (1 - 0.04).
-    // For base <= 1 the sum is at most 1. A Material has one number for the whole surface where glTF may have a map:
-    // maps of metallic and roughness count by their mean, and so does a base-colour texture in the metal's highlight.
     void set_metallic_roughness(const GltfMaterial& from) {
-        float metallic = from.metallic_factor, roughness = from.roughness_factor;
+        material_.metallic = from.metallic_factor;
+        material_.roughness = from.roughness_factor;
         if (from.metallic_roughness_texture) {
-            if (const auto mean = textures_.mean_value(from.metallic_roughness_texture.picture)) {
-                roughness *= mean->y;
-                metallic *= mean->z;
-            }
+            const SceneTextures::Found found = textures_.find(from.metallic_roughness_texture, TextureUse::data);
+            if (!found.is_stand_in) material_.metallic_roughness_texture = found.reference;
         }
-        metallic = unit_range(metallic);
-        const Vec3f base = unit_range(material_.diffuse);
-        Vec3f metal = base;
-        if (colour_map_ && metallic > 0) {
-            if (const auto mean = textures_.mean_colour(colour_map_.picture)) metal = *mean * base;
-        }
-        constexpr float dielectric = 0.04f;
-        const float plain = dielectric * (1 - metallic);
-        material_.specular = Vec3f{plain, plain, plain} + metallic * metal;
-        material_.diffuse = ((1 - metallic) * (1 - dielectric)) * base;
-        material_.shininess = phong_exponent(roughness);
+        material_.ior = from.ior;
+        material_.specular = color_of(from.specular.color_factor);
+        material_.specular_weight = from.specular.factor;
+        set_specular_map(from.specular.color_texture);
+        if (from.specular.texture) warn("has a map of its specular factor, which is not modelled");
+        set_gltf_transmission(from);
     }
 
-    // Diffuse is weakened by the strongest channel of specular.
+    void set_gltf_transmission(const GltfMaterial& from) {
+        if (!(from.transmission.factor > 0)) return;
+        material_.transmission = from.transmission.factor;
+        if (from.transmission.texture) warn("has a map of its transmission, which is not modelled");
+        material_.is_thin = from.volume.thickness_factor > 0 ? 0 : 1;
+        // KHR_materials_volume: what is left of white light after attenuationDistance.
+        const double distance_m = static_cast<double>(from.volume.attenuation_distance) * scale_;
+        const auto absorption = [&](float left) {
+            const double sigma = -std::log(std::max(static_cast<double>(left), 1e-10)) / distance_m;
+            return static_cast<float>(std::clamp(sigma, 0.0, 1e30));
+        };
+        const Vec3f left = from.volume.attenuation_color;
+        if (std::isfinite(distance_m) && !material_.is_thin)
+            material_.absorption = {absorption(left.x), absorption(left.y), absorption(left.z)};
+    }
+
+    void set_clearcoat(const GltfClearcoat& from) {
+        material_.clearcoat = from.factor;
+        material_.clearcoat_roughness = from.roughness_factor;
+        if (from.factor > 0 && (from.texture || from.roughness_texture || from.normal_texture))
+            warn("has maps of its clear coat, which are not modelled");
+    }
+
+    // Reflectances at normal incidence in place of an index: an index of 0 has that of 1, which `specular` weakens.
     void set_specular_glossiness(const GltfSpecularGlossiness& from) {
-        const Vec3f specular = unit_range(from.specular_factor);
-        const float rest = 1 - std::max({specular.x, specular.y, specular.z});
-        material_.diffuse = rest * unit_range(material_.diffuse);
-        material_.specular = specular;
-        material_.shininess = phong_exponent(1 - unit_range(from.glossiness_factor));
+        material_.metallic = 0;
+        material_.roughness = 1 - from.glossiness_factor;
+        material_.ior = 0;
+        material_.specular = unit_range(from.specular_factor);
+        if (from.specular_glossiness_texture) warn("has a map of specular and glossiness, which is not modelled");
     }
 
-    void set_emission(Vec3f emission, const FileTexture& map) {
+    void set_color(Vec3f factor, const FileTexture& texture) {
+        material_.diffuse = color_of(factor);
+        if (!texture) return;
+        const SceneTextures::Found found = textures_.find(texture, TextureUse::colour);
+        material_.diffuse_texture = found.reference;
+        if (found.is_stand_in) material_.diffuse = {1, 1, 1};  // it has to be seen
+    }
+
+    void set_specular_map(const FileTexture& map) {
+        if (!map) return;
+        const SceneTextures::Found found = textures_.find(map, TextureUse::colour);
+        if (!found.is_stand_in) material_.specular_texture = found.reference;
+    }
+
+    void set_normal_map(const FileTexture& map, float scale) {
+        if (!map) return;
+        const SceneTextures::Found found = textures_.find(map, TextureUse::data);
+        if (found.is_stand_in) return;
+        material_.normal_texture = found.reference;
+        material_.normal_scale = scale;
+    }
+
+    void set_emission(Color emission, const FileTexture& map) {
         material_.emission = emission;
-        if (!map || !emits(emission)) return;
-        if (const auto mean = textures_.mean_colour(map.picture)) material_.emission = emission * *mean;
-        warn("emits by the mean of its emissive map");
+        if (!map || is_black(emission)) return;
+        const SceneTextures::Found found = textures_.find(map, TextureUse::colour);
+        if (!found.is_stand_in) material_.emission_texture = found.reference;
     }
 
     Scene& scene_;
     SceneTextures& textures_;
     std::string label_;
-    FileTexture colour_map_;  // unless it is a stand-in
+    double scale_;
     Material material_;
 };
 
 }  // namespace
 
-// A Phong lobe of exponent n is as wide as a Blinn-Phong lobe of 4 n, and that one as a microfacet lobe with
-// alpha^2 = 2 / (4 n + 2); glTF has alpha = roughness^2.
-float phong_exponent(float roughness) {
-    const float alpha = std::max(unit_range(roughness), 0.01f) * unit_range(roughness);
-    const float alpha_squared = std::max(alpha * alpha, 1e-8f);
-    return std::clamp((2.0f / alpha_squared - 2.0f) / 4.0f, 0.0f, 20000.0f);
-}
-
-void make_materials(Scene& scene, const FileScene& file, SceneTextures& textures) {
+void make_materials(Scene& scene, const FileScene& file, double scale, SceneTextures& textures) {
     std::vector<bool> is_used(file.materials.size(), false);
     for (const FileMesh& mesh : file.meshes)
         for (const Triangle& triangle : mesh.triangles) is_used[triangle.material] = true;
@@ -137,7 +223,7 @@ void make_materials(Scene& scene, const FileScene& file, SceneTextures& textures
         scene.material_names[i] = printable(name);
         const std::string label =
             file.path + ": material " + std::to_string(i) + (name.empty() ? "" : ' ' + in_quotes(name));
-        scene.materials[i] = MaterialMaker(scene, textures, label).make(file.materials[i]);
+        scene.materials[i] = MaterialMaker(scene, textures, label, scale).make(file.materials[i]);
     }
 }
 

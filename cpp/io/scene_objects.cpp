@@ -109,12 +109,16 @@ std::vector<Instance> SceneObjects::finish(const Scene& materials) {
     return instances;
 }
 
+void forget_textures(Material& material) {
+    for (const auto member : kMaterialTextures) material.*member = {};
+}
+
 void keep_all_materials(Scene& scene, Scene from) {
     scene.materials = std::move(from.materials);
     scene.material_names = std::move(from.material_names);
     scene.textures = std::move(from.textures);
     if (scene.uvs.empty())
-        for (Material& material : scene.materials) material.diffuse_texture = -1;
+        for (Material& material : scene.materials) forget_textures(material);
 }
 
 void keep_used_materials(Scene& scene, const Scene& from) {
@@ -132,12 +136,15 @@ void keep_used_materials(Scene& scene, const Scene& from) {
         triangle.material = material->second;
     }
     for (Material& material : used) {
-        if (scene.uvs.empty()) material.diffuse_texture = -1;
-        if (material.diffuse_texture < 0) continue;
-        const auto [texture, is_new] =
-            textures.try_emplace(material.diffuse_texture, static_cast<std::int32_t>(scene.textures.size()));
-        if (is_new) scene.textures.push_back(from.textures[static_cast<std::size_t>(material.diffuse_texture)]);
-        material.diffuse_texture = texture->second;
+        if (scene.uvs.empty()) forget_textures(material);
+        for (const auto member : kMaterialTextures) {
+            std::int32_t& number = (material.*member).texture;
+            if (number < 0) continue;
+            const auto [texture, is_new] =
+                textures.try_emplace(number, static_cast<std::int32_t>(scene.textures.size()));
+            if (is_new) scene.textures.push_back(from.textures[static_cast<std::size_t>(number)]);
+            number = texture->second;
+        }
     }
     scene.materials = std::move(used);
 }

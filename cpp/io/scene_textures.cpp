@@ -1,45 +1,27 @@
 #include "scene_textures.hpp"
 
-#include <array>
-#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "../error.hpp"
 #include "file_beside.hpp"
 #include "printable.hpp"
+#include "regular_file.hpp"
 
 namespace realcam::io {
 namespace {
 
-bool is_whole(const DecodedImage& image) {
-    return image.width > 0 && image.height > 0 &&
-           image.rgba.size() ==
-               std::size_t{4} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-}
-
 DecodedImage checker() {
     constexpr int size = 32, square = 4;
-    DecodedImage image{size, size, {}};
+    std::vector<std::uint8_t> rgba;
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
             const std::uint8_t on = (x / square + y / square) % 2 ? 0 : 255;
-            image.rgba.insert(image.rgba.end(), {on, 0, on, 255});
+            rgba.insert(rgba.end(), {on, 0, on, 255});
         }
     }
-    return image;
-}
-
-Vec3f mean_of(const DecodedImage& image, bool is_colour, Checkpoint& checkpoint) {
-    std::array<double, 256> value{};
-    for (int i = 0; i < 256; ++i) {
-        const double v = i / 255.0;
-        const double linear = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-        value[static_cast<std::size_t>(i)] = is_colour ? linear : v;
-    }
-    Vec3d sum = {0, 0, 0};
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-        checkpoint.pass();
-        sum += Vec3d{value[image.rgba[i]], value[image.rgba[i + 1]], value[image.rgba[i + 2]]};
-    }
-    return static_cast<Vec3f>((4.0 / static_cast<double>(image.rgba.size())) * sum);
+    return {size, size, std::move(rgba)};
 }
 
 /// As warnings name it: one line, and not the megabyte that a file may give for a name.
@@ -72,24 +54,37 @@ std::optional<DecodedImage> SceneTextures::decode(std::int32_t number) {
     return std::nullopt;
 }
 
-SceneTextures::Found SceneTextures::find(std::int32_t picture) {
-    if (const auto known = found_.find(picture); known != found_.end()) return known->second;
+SceneTextures::Found SceneTextures::find(const FileTexture& texture, TextureUse use) {
+    const Added added = add(texture.picture, use);
+    return {texture.transform.of(added.texture), added.is_stand_in};
+}
+
+SceneTextures::Added SceneTextures::add(std::int32_t picture, TextureUse use) {
+    const auto key = std::make_pair(picture, use);
+    if (const auto known = added_.find(key); known != added_.end()) return known->second;
     std::optional<DecodedImage> image = decode(picture);
-    const Found found{static_cast<std::int32_t>(scene_.textures.size()), !image};
+    const Added added{static_cast<std::int32_t>(scene_.textures.size()), !image};
     if (!image) {
         scene_.warnings.back() += "; a checker in magenta and black stands in";
         image = checker();
     }
-    scene_.textures.push_back({printable(file_.pictures[static_cast<std::size_t>(picture)].name), image->width,
-                               image->height, std::move(image->rgba)});
-    return found_[picture] = found;
+    scene_.textures.push_back(
+        texture_of(std::move(*image), use, printable(file_.pictures[static_cast<std::size_t>(picture)].name)));
+    const Texture& texture = scene_.textures.back();
+    check_memory(texture.rgba.size() + sizeof(float) * texture.linear_rgba.size());
+    return added_[key] = added;
 }
 
-std::optional<Vec3f> SceneTextures::mean(std::int32_t picture, bool is_colour) {
-    const auto key = std::make_pair(picture, is_colour);
-    if (const auto known = means_.find(key); known != means_.end()) return known->second;
-    const std::optional<DecodedImage> image = decode(picture);
-    return means_[key] = image ? std::optional(mean_of(*image, is_colour, checkpoint_)) : std::nullopt;
+/// A dozen pictures of 33 kB may each be decoded to a gigabyte. A render holds them once more, in its copy of the
+/// scene.
+void SceneTextures::check_memory(std::size_t added) {
+    constexpr std::size_t kAlwaysThere = std::size_t{1} << 24;
+    bytes_ += added;
+    if (bytes_ - checked_bytes_ < kAlwaysThere) return;
+    checked_bytes_ = bytes_;
+    if (const std::string why = too_much_memory(bytes_); !why.empty())
+        throw SceneFileError(file_.path + ": its first " + std::to_string(scene_.textures.size()) +
+                             " textures are in memory, and a render needs as much again, " + why);
 }
 
 }  // namespace realcam::io

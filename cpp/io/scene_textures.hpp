@@ -1,7 +1,6 @@
 #pragma once
 #include <map>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "../scene/scene.hpp"
@@ -18,28 +17,29 @@ public:
     SceneTextures(Scene& scene, const FileScene& file, const ImageReader& read_image, Checkpoint& checkpoint);
 
     struct Found {
-        std::int32_t index;
-        bool stand_in;
+        TextureReference reference;
+        bool is_stand_in;
     };
-    /// Number in scene.textures of one of the file's pictures, added if it is new. A picture that cannot be had becomes
-    /// a checker in magenta and black, with a warning.
-    Found find(std::int32_t picture);
-
-    /// Mean of a picture of numbers, each 0..1, such as a roughness map; nothing, and a warning, if it cannot be had.
-    std::optional<Vec3f> mean_value(std::int32_t picture) { return mean(picture, false); }
-    /// Mean colour of a picture, linear; nothing, and a warning, if it cannot be had.
-    std::optional<Vec3f> mean_colour(std::int32_t picture) { return mean(picture, true); }
+    /// A picture of the file's as a texture in scene.textures, added if it is new. One that cannot be had becomes a
+    /// checker in magenta and black, with a warning. Throws SceneFileError where all together need more memory than is
+    /// free.
+    Found find(const FileTexture& texture, TextureUse use);
 
 private:
     std::optional<DecodedImage> decode(std::int32_t picture);
-    std::optional<Vec3f> mean(std::int32_t picture, bool is_colour);
+    struct Added {
+        std::int32_t texture;  // in scene_.textures
+        bool is_stand_in;
+    };
+    Added add(std::int32_t picture, TextureUse use);
+    void check_memory(std::size_t added);
 
     Scene& scene_;
     const FileScene& file_;
     const ImageReader& read_image_;
     Checkpoint& checkpoint_;
-    std::map<std::int32_t, Found> found_;
-    std::map<std::pair<std::int32_t, bool>, std::optional<Vec3f>> means_;
+    std::map<std::pair<std::int32_t, TextureUse>, Added> added_;
+    std::size_t bytes_ = 0, checked_bytes_ = 0;  // of scene_.textures
 };
 
 }  // namespace realcam::io

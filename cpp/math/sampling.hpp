@@ -27,6 +27,16 @@ REALCAM_INLINE void tangent_frame(Vec3f n, Vec3f& s, Vec3f& t) {
     t = {b, sign + n.y * n.y * a, -n.y};
 }
 
+/// Per steradian.
+inline constexpr float kSpherePdf = 0.07957747155f;
+
+/// Any direction alike.
+REALCAM_INLINE Vec3f sample_sphere(Vec2f u) {
+    const float z = 1.0f - 2.0f * u.x, radius = sqrt_or_zero(1.0f - z * z);
+    const Vec2f azimuth = cos_sin_of_turn(u.y);
+    return {radius * azimuth.x, radius * azimuth.y, z};
+}
+
 /// Direction about n with density cosine / pi.
 REALCAM_INLINE Vec3f sample_cosine(Vec3f n, Vec2f u) {
     Vec3f s, t;

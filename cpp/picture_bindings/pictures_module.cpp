@@ -7,7 +7,10 @@
 
 #include <cstring>
 #include <string>
+#include <type_traits>
+#include <variant>
 
+#include "../bindings/unlocked.hpp"
 #include "../image_io/image_file.hpp"
 
 namespace realcam {
@@ -16,8 +19,11 @@ namespace {
 namespace py = pybind11;
 using namespace py::literals;
 
-/// Hears Ctrl-C. Called without the interpreter's lock.
+using bindings::Unlocked;
+
+/// Hears Ctrl-C, and the end of Python. Called without the interpreter's lock.
 bool no_signal() {
+    bindings::stop_at_exit();
     const py::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     return true;
@@ -27,20 +33,24 @@ py::object read_texture(const std::string& path, const py::buffer& encoded) {
     const py::buffer_info bytes = encoded.request();
     std::optional<io::DecodedImage> image;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         image = image_io::read_image(
             path, {static_cast<const std::uint8_t*>(bytes.ptr), static_cast<std::size_t>(bytes.size)}, no_signal);
     }
     if (!image) return py::none();
-    py::array_t<std::uint8_t> pixels({image->height, image->width, 4});
-    std::memcpy(pixels.mutable_data(), image->rgba.data(), image->rgba.size());
-    return pixels;
+    const py::array pixels = std::visit(
+        [&](const auto& rgba) -> py::array {
+            using Value = typename std::decay_t<decltype(rgba)>::value_type;
+            return py::array_t<Value>({image->height, image->width, 4}, rgba.data());
+        },
+        image->rgba);
+    return py::make_tuple(pixels, image->is_linear);
 }
 
 py::array_t<float> read_environment(const std::string& path) {
     Environment environment;
     {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         environment = image_io::read_environment(path, no_signal);
     }
     py::array_t<float> pixels({environment.height, environment.width, 3});
@@ -57,7 +67,7 @@ void write_picture(const std::string& path, const FloatArray& exposure, const Fl
         throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
     const image_io::PictureView picture{static_cast<int>(depth.shape(1)), static_cast<int>(depth.shape(0)),
                                         exposure.data(), depth.data()};
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     image_io::write_image(picture, path, io::metadata_of(camera, {spp, seed, 0, 0}),
                           film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
 }
@@ -73,4 +83,5 @@ PYBIND11_MODULE(_pictures, m) {
     m.def("write_picture", &write_picture, "path"_a, "exposure"_a, "depth"_a, "camera"_a, "spp"_a, "seed"_a,
           "film_tone"_a);
     m.def("check_image_path", &image_io::check_image_path, "path"_a);
+    bindings::watch_exit_and_fork();  // of this extension's own work: each counts for itself
 }

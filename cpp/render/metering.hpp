@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "backend.hpp"
+#include "take_picture.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -29,8 +29,8 @@ inline double metered_exposure(const Image& image) {
 }
 
 /// Exposure time with which the camera's picture lands on middle grey on average (10 lx s / ISO), from a quick picture
-/// of at most 96 pixels each way. Throws InputError where no light reaches the film, and what Backend::render throws.
-inline double metered_exposure_time(Backend& backend, const Assembly& scene, Camera camera, RenderSettings settings,
+/// of at most 96 pixels each way. Throws InputError where no light reaches the film, and what take_picture throws.
+inline double metered_exposure_time(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
                                     const Progress& progress) {
     constexpr double kLongSide = 96;
     Film& film = camera.film;
@@ -39,7 +39,7 @@ inline double metered_exposure_time(Backend& backend, const Assembly& scene, Cam
     film.height = std::max(1, static_cast<int>(film.height * scale));
     camera.exposure_time_s = 1;
     settings.spp = 16;
-    const double per_second = metered_exposure(backend.render(scene, camera, settings, progress));
+    const double per_second = metered_exposure(take_picture(session, scene, camera, settings, progress));
     if (!(per_second > 0) || !std::isfinite(per_second))
         throw InputError("no light reaches the film, so that no exposure can be metered; an exposure time is wanted");
     return 10 / (camera.iso * per_second);

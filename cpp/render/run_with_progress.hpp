@@ -7,7 +7,9 @@
 #include <thread>
 #include <utility>
 
-#include "backend.hpp"
+#include "../error.hpp"
+#include "../keep_going.hpp"
+#include "progress.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -24,11 +26,11 @@ std::thread started(Work&& work) {
 
 }  // namespace run_with_progress_detail
 
-/// Runs `work` on a thread of its own, so that the caller's thread is free to report and to stop it. `stop`: an
-/// std::atomic<bool>, or what takes `true` and is read in the same way.
-template <class Work, class Share, class Stop>
-void run_with_progress(Work&& work, Share&& share, const Progress& progress, Stop& stop) {
-    if (!progress) {
+/// Runs `work` on a thread of its own, so that the caller's thread is free to be asked whether to go on, and to stop
+/// it. `stop`: an std::atomic<bool>, or what takes `true` and is read in the same way.
+template <class Work, class Stop>
+void run_heeding(Work&& work, const KeepGoing& keep_going, Stop& stop) {
+    if (!keep_going) {
         work();
         return;
     }
@@ -51,7 +53,7 @@ void run_with_progress(Work&& work, Share&& share, const Progress& progress, Sto
     while (!finished.wait_for(lock, std::chrono::milliseconds(50), [&] { return over; })) {
         lock.unlock();
         try {
-            if (!stop && !progress(share())) stop = true;
+            if (!stop && !keep_going()) stop = true;
         } catch (...) {
             callers_failure = std::current_exception();
             stop = true;
@@ -62,7 +64,13 @@ void run_with_progress(Work&& work, Share&& share, const Progress& progress, Sto
     worker.join();
     if (callers_failure) std::rethrow_exception(callers_failure);
     if (failure) std::rethrow_exception(failure);
-    if (!stop) progress(1.0);
+}
+
+/// The same for work of which a share is done, from 0 to 1. The end is told, too.
+template <class Work, class Share, class Stop>
+void run_with_progress(Work&& work, Share&& share, const Progress& progress, Stop& stop) {
+    run_heeding(work, progress ? KeepGoing([&] { return progress(share()); }) : KeepGoing(), stop);
+    if (progress && !stop) progress(1.0);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -61,8 +61,8 @@ private:
             if (!wanted(own)) continue;
             const Vec3d a = placed(scene.positions_m[t.vertices[0]]), b = placed(scene.positions_m[t.vertices[1]]),
                         c = placed(scene.positions_m[t.vertices[2]]);
-            const Vec3f e = scene.materials.empty() ? Vec3f{0, 0, 0} : scene.materials[t.material].emission;
-            Piece piece{{a, a}, 0.5 * cross(b - a, c - a), e.x > 0 || e.y > 0 || e.z > 0};
+            const bool emits = !scene.materials.empty() && scene.materials[t.material].emits();
+            Piece piece{{a, a}, 0.5 * cross(b - a, c - a), emits};
             piece.box.add(b);
             piece.box.add(c);
             f(own, piece);

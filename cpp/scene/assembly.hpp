@@ -83,17 +83,23 @@ inline std::string transform_error(const Affine<double>& map) {
     return "";
 }
 
-/// Throws InputError where there is nothing to be seen, or where a transform is none.
+/// Throws InputError where a transform is none.
+inline void validate_transforms(const Assembly& assembly) {
+    for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
+        const std::string why = transform_error(assembly.instances[i].scene_from_object);
+        if (!why.empty()) throw InputError(label(assembly, i) + ": " + why);
+    }
+}
+
+/// Throws InputError where there is nothing to be seen, or where a transform is none. What the parts hold is for
+/// SceneChecks.
 inline void validate(const Assembly& assembly) {
     if (!assembly.static_geometry || assembly.triangle_count() == 0)
         throw InputError("the scene is empty; at least one triangle is wanted");
     constexpr std::size_t kMostInstances = std::size_t{1} << 28;
     if (assembly.instances.size() > kMostInstances)
         throw InputError("a scene holds at most " + std::to_string(kMostInstances) + " instances");
-    for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-        const std::string why = transform_error(assembly.instances[i].scene_from_object);
-        if (!why.empty()) throw InputError(label(assembly, i) + ": " + why);
-    }
+    validate_transforms(assembly);
 }
 
 /// With a copy of static geometry that `change` has changed.

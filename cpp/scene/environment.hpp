@@ -20,11 +20,11 @@ REALCAM_INLINE EnvironmentPixel environment_pixel(const EnvironmentView& environ
             select(column < environment.width, column, environment.width - 1)};
 }
 
-REALCAM_INLINE Vec3f pixel_radiance(const EnvironmentView& environment, EnvironmentPixel pixel) {
+REALCAM_INLINE Color pixel_radiance(const EnvironmentView& environment, EnvironmentPixel pixel) {
     return environment.pixels[static_cast<std::int64_t>(pixel.row) * environment.width + pixel.column];
 }
 
-REALCAM_INLINE Vec3f environment_radiance(const EnvironmentView& environment, Vec3f direction) {
+REALCAM_INLINE Color environment_radiance(const EnvironmentView& environment, Vec3f direction) {
     if (!environment.pixels) return environment.constant;
     return pixel_radiance(environment, environment_pixel(environment, direction));
 }
@@ -41,7 +41,7 @@ REALCAM_INLINE float pixel_pdf(const EnvironmentView& environment, float probabi
 }
 
 /// Density of sample_environment_image, per steradian.
-REALCAM_INLINE float environment_pdf(const EnvironmentView& environment, Vec3f direction) {
+REALCAM_INLINE float environment_image_pdf(const EnvironmentView& environment, Vec3f direction) {
     const EnvironmentPixel pixel = environment_pixel(environment, direction);
     const float* row = environment.marginal_cdf + pixel.row;
     const float* column = conditional_cdf_of(environment, pixel.row) + pixel.column;
@@ -63,7 +63,22 @@ REALCAM_INLINE LightSample sample_environment_image(const EnvironmentView& envir
     return {{sine * std::sin(azimuth), std::cos(polar), -sine * std::cos(azimuth)},
             kFarAway,
             1.0f,
-            (1.0f / pdf) * pixel_radiance(environment, {row.index, column.index})};
+            (1.0f / pdf) * pixel_radiance(environment, {row.index, column.index}),
+            pdf};
+}
+
+/// Density of sample_environment, per steradian.
+REALCAM_INLINE float environment_pdf(const EnvironmentView& environment, Vec3f normal, Vec3f direction) {
+    if (environment.pixels) return environment_image_pdf(environment, direction);
+    return dot(normal, normal) > 0.0f ? cosine_pdf(normal, direction) : kSpherePdf;
+}
+
+/// An image is sampled by its light, a constant environment by the cosine at the receiver.
+REALCAM_INLINE LightSample sample_environment(const EnvironmentView& environment, Vec3f normal, Vec2f u) {
+    if (environment.pixels) return sample_environment_image(environment, u);
+    const Vec3f direction = dot(normal, normal) > 0.0f ? sample_cosine(normal, u) : sample_sphere(u);
+    const float pdf = environment_pdf(environment, normal, direction);
+    return {direction, kFarAway, 1.0f, (pdf > 0.0f ? 1.0f / pdf : 0.0f) * environment.constant, pdf};
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,87 +1,170 @@
 #pragma once
 #include "environment.hpp"
+#include "light_tree.hpp"
 #include "surface_point.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// Density of sample_area_light per steradian, of a point on a light at this distance and with this cosine between its
-/// normal and the way to it.
-REALCAM_INLINE float area_light_pdf(const AreaLight& light, float distance_squared, float cosine) {
-    return light.density * distance_squared / cosine;
+/// Density per steradian of a point on an area light, drawn evenly over it, at this distance and with this cosine
+/// between its normal and the way to it.
+REALCAM_INLINE float area_light_pdf(float area, float distance_squared, float cosine) {
+    return distance_squared / (area * cosine);
 }
 
-REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, Vec3f position, Vec2f u) {
-    const CdfChoice choice = choose_from_cdf(scene.area_cdf, scene.area_count, u.x);
-    const AreaLight& light = scene.areas[choice.index];
-    const float root = std::sqrt(choice.fresh);
-    const Vec3f on_light = light.corner + (root * (1.0f - u.y)) * light.edge_u + (root * u.y) * light.edge_v;
+/// What an area light sends from the point with these barycentric coordinates.
+template <MaterialSet set>
+REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& light, float along_u, float along_v) {
+    if constexpr (set == MaterialSet::plain) return light.radiance;
+    const MeshView& mesh = light.instance == kNoInstance ? static_cast<const MeshView&>(scene)
+                                                         : scene.objects[scene.instances[light.instance].object];
+    const Triangle& triangle = mesh.triangles[light.triangle];
+    const TextureReference& map = mesh.materials[triangle.material].emission_texture;
+    if (map.texture < 0) return light.radiance;
+    const Hit place = {0.0f, light.triangle, along_u, along_v, light.instance};
+    return light.radiance * texture_color(mesh, map, surface_uv(mesh, triangle, place).at);
+}
+
+/// A point on an area light, drawn evenly.
+template <MaterialSet set>
+REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
+    const float root = std::sqrt(u.x), along_u = root * (1.0f - u.y), along_v = root * u.y;
+    const Vec3f on_light = light.corner + along_u * light.edge_u + along_v * light.edge_v;
     const Vec3f to_light = on_light - position;
     const float squared = dot(to_light, to_light);
     const float distance = std::sqrt(squared);
     const Vec3f direction = (1.0f / distance) * to_light;
     const float cosine = -dot(direction, light.normal);
     // Also where the point lies on the light, and the direction has no value.
-    if (!(cosine > 0.0f)) return {light.normal, distance, 1.0f, {0, 0, 0}};
+    if (!(cosine > 0.0f)) return {light.normal, distance, 1.0f, {0, 0, 0}, kDelta};
     const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);
-    return {direction, distance, reach, (1.0f / area_light_pdf(light, squared, cosine)) * light.radiance};
+    const float pdf = area_light_pdf(light.area, squared, cosine);
+    return {direction, distance, reach, (1.0f / pdf) * emitted_radiance<set>(scene, light, along_u, along_v), pdf};
 }
 
-REALCAM_INLINE LightSample sample_point_light(const SceneView& scene, Vec3f position, int index) {
-    const Vec3f light = scene.points[index].position, to_light = light - position;
+REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f position) {
+    const Vec3f to_light = light.position - position;
     const float squared = dot(to_light, to_light), distance = std::sqrt(squared);
-    if (!(squared > 1e-30f)) return {{0, 1, 0}, distance, 1.0f, {0, 0, 0}};
-    const float inverse = 1.0f / distance, reach = 1.0f - kMarginShare * (largest_coordinate(light) * inverse + 1.0f);
-    return {inverse * to_light, distance, reach, (1.0f / squared) * scene.points[index].intensity};
+    if (!(squared > 1e-30f)) return {{0, 1, 0}, distance, 1.0f, {0, 0, 0}, kDelta};
+    const float inverse = 1.0f / distance,
+                reach = 1.0f - kMarginShare * (largest_coordinate(light.position) * inverse + 1.0f);
+    return {inverse * to_light, distance, reach, (1.0f / squared) * light.intensity, kDelta};
 }
 
-/// Kinds of light, of which one is chosen with equal probability: every point light and every sun, all area lights
-/// together, the environment.
-REALCAM_INLINE int light_kinds(const SceneView& scene) {
-    return scene.point_count + scene.sun_count + (scene.area_count > 0) + scene.has_environment;
-}
+/// Probabilities of the kinds of light at a receiver: about the illuminance that each can bring there if nothing stands
+/// in between, and for one half alike, because much may stand in between.
+class LightKinds {
+public:
+    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver) : scene_(scene), receiver_(receiver) {
+        const int count = has_local() + scene.sun_count + scene.has_environment;
+        const auto kinds = static_cast<float>(count);
+        local_ = environment_ = scale_ = 0.0f;
+        even_ = 1.0f;
+        if (count < 2) return;
+        local_ = has_local() ? light_importance(scene.light_nodes[0], receiver) : 0.0f;
+        environment_ = scene.has_environment ? 3.141592654f * scene.environment.mean_luminance : 0.0f;
+        float sum = local_ + environment_;
+        for (int i = 0; i < scene.sun_count; ++i) sum += sun(i);
+        // No estimate, or one that float cannot hold: all alike.
+        const bool is_useful = sum > 0.0f && sum < 1e30f;
+        even_ = kinds > 0.0f ? (is_useful ? kEven : 1.0f) / kinds : 0.0f;
+        scale_ = is_useful ? (1.0f - kEven) / sum : 0.0f;
+    }
 
-/// A kind of light, in the order of light_kinds.
-struct LightChoice {
-    int kind;
-    float pdf;
-    float fresh;  ///< a random number made of what the choice left over
+    REALCAM_INLINE bool has_local() const { return scene_.light_node_count > 0; }
+    /// Of point and area lights, together.
+    REALCAM_INLINE float local_probability() const { return has_local() ? scaled(local_) : 0.0f; }
+    REALCAM_INLINE float environment_probability() const {
+        return scene_.has_environment ? scaled(environment_) : 0.0f;
+    }
+    REALCAM_INLINE float sun_probability(int i) const { return scaled(sun(i)); }
+
+private:
+    static constexpr float kEven = 0.5f;
+
+    REALCAM_INLINE float sun(int i) const {
+        const Vec3f n = receiver_.normal;
+        const float cosine = dot(n, n) > 0.0f ? -dot(n, scene_.suns[i].direction) : 1.0f;
+        return cosine > 0.0f ? cosine * luminance(scene_.suns[i].illuminance) : 0.0f;
+    }
+    REALCAM_INLINE float scaled(float importance) const { return scale_ > 0.0f ? even_ + scale_ * importance : even_; }
+
+    const SceneView& scene_;
+    LightReceiver receiver_;
+    float local_, environment_, even_, scale_;
 };
 
-REALCAM_INLINE LightChoice choose_light(int kinds, float u) {
-    const float scaled = u * static_cast<float>(kinds);
-    int kind = static_cast<int>(scaled);
-    kind = select(kind < kinds, kind, kinds - 1);
-    const float fresh = scaled - static_cast<float>(kind);
-    return {kind, 1.0f / static_cast<float>(kinds), select(fresh < 1.0f, fresh, 0x1.fffffep-1f)};
+/// Density per steradian of sample_light in a direction in which the environment is seen.
+REALCAM_INLINE float environment_light_pdf(const SceneView& scene, LightReceiver receiver, Vec3f direction) {
+    return LightKinds(scene, receiver).environment_probability() *
+           environment_pdf(scene.environment, receiver.normal, direction);
 }
 
-/// Chooses one kind of light with equal probability (light_kinds), and of area lights a triangle and of an environment
-/// image a pixel by their tables (light_tables.hpp). A constant environment is sampled by the cosine at the point.
-REALCAM_INLINE LightSample sample_light(const SceneView& scene, const SurfacePoint& point, Vec2f u) {
-    const int kinds = light_kinds(scene);
-    if (kinds == 0) return {{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}};
-    const LightChoice choice = choose_light(kinds, u.x);
-    int kind = choice.kind;
-    u.x = choice.fresh;
-    LightSample sample;
-    if (kind < scene.point_count) {
-        sample = sample_point_light(scene, point.position, kind);
-    } else if ((kind -= scene.point_count) < scene.sun_count) {
-        sample = {-scene.suns[kind].direction, kFarAway, 1.0f, scene.suns[kind].illuminance};
-    } else if ((kind -= scene.sun_count) == 0 && scene.area_count > 0) {
-        sample = sample_area_light(scene, point.position, u);
-    } else if (scene.environment.pixels) {
-        sample = sample_environment_image(scene.environment, u);
-    } else {
-        const Vec3f direction = sample_cosine(point.normal, u);
-        const float pdf = cosine_pdf(point.normal, direction);
-        sample = {direction, kFarAway, 1.0f, (pdf > 0.0f ? 1.0f / pdf : 0.0f) * scene.environment.constant};
+/// Likewise in a direction in which an area light is met, at this distance and with this cosine at it.
+REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, LightReceiver receiver, std::int32_t area_light,
+                                       float distance, float cosine) {
+    return LightKinds(scene, receiver).local_probability() *
+           light_probability(scene, receiver, scene.point_count + area_light) *
+           area_light_pdf(scene.areas[area_light].area, distance * distance, cosine);
+}
+
+/// The area light that a hit on an emitting triangle is on.
+REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
+    const bool is_static = hit.instance == kNoInstance;
+    const MeshView& mesh =
+        is_static ? static_cast<const MeshView&>(scene) : scene.objects[scene.instances[hit.instance].object];
+    std::int32_t first = 0, last = mesh.emitter_count;
+    while (first + 1 < last) {
+        const std::int32_t middle = (first + last) / 2;
+        (mesh.emitters[middle] <= hit.triangle ? first : last) = middle;
     }
+    return first + (is_static ? 0 : scene.instances[hit.instance].first_area);
+}
+
+/// Chooses one light, and a place on it. One pair of numbers does both, so that what is even over a pixel's samples is
+/// even over each light. `seed` as in choose_light.
+template <MaterialSet set>
+REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
+    const LightKinds kinds(scene, receiver);
+    LightSample sample{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
+    float probability = kinds.local_probability();
+    const auto rescale = [&] {
+        const float fresh = u.x / probability;
+        u.x = fresh < 0x1.fffffep-1f ? fresh : 0x1.fffffep-1f;
+    };
+    if (u.x < probability) {
+        rescale();
+        const LightChoice chosen = choose_light(scene, receiver, u.x, seed);
+        u.x = chosen.fresh;
+        probability *= chosen.probability;
+        const std::int32_t area = chosen.light - scene.point_count;
+        sample = area < 0 ? sample_point_light(scene.points[chosen.light], receiver.position)
+                          : sample_area_light<set>(scene, scene.areas[area], receiver.position, u);
+    } else {
+        u.x -= probability;
+        probability = kinds.environment_probability();
+        if (u.x < probability) {
+            rescale();
+            sample = sample_environment(scene.environment, receiver.normal, u);
+        } else {
+            for (int i = 0; i < scene.sun_count; ++i) {
+                u.x -= probability;
+                probability = kinds.sun_probability(i);
+                // The last one also where roundings have left nothing to it.
+                if (u.x < probability || i + 1 == scene.sun_count) {
+                    sample.direction = -scene.suns[i].direction;
+                    sample.irradiance = scene.suns[i].illuminance;
+                    break;
+                }
+            }
+        }
+    }
+    if (!(probability > 0.0f)) return sample;
     // One over the squared distance has no bound. Lights end at 1e30; what a narrow lobe and the film's sums make of
     // this is still finite.
     const auto bounded = [](float v) { return v < 1e28f ? v : 1e28f; };
-    const Vec3f all = (1.0f / choice.pdf) * sample.irradiance;
-    sample.irradiance = {bounded(all.x), bounded(all.y), bounded(all.z)};
+    const Color all = (1.0f / probability) * sample.irradiance;
+    sample.irradiance = {bounded(all.r), bounded(all.g), bounded(all.b)};
+    sample.pdf *= probability;
     return sample;
 }
 

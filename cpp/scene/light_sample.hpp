@@ -1,16 +1,24 @@
 #pragma once
+#include "scattering.hpp"
 #include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 inline constexpr float kFarAway = 3.0e38f;
 
-/// One light direction at a point: divided by the density, but without the reflectance and the cosine at the point.
+/// Where light is wanted.
+struct LightReceiver {
+    Vec3f position;
+    Vec3f normal;  ///< of the surface, on the side that light can reach; zero: light may come from all sides
+};
+
+/// A direction from which light may come to a receiver.
 struct LightSample {
-    Vec3f direction;   ///< unit, towards the light
-    float distance;    ///< to the light; kFarAway for sun and environment
-    float reach;       ///< share of the distance at which a shadow ray ends, so as not to meet the light itself
-    Vec3f irradiance;  ///< arriving at a right angle, over the density; 0: nothing arrives
+    Vec3f direction;  ///< unit, towards the light
+    float distance;   ///< to the light; kFarAway for sun and environment
+    float reach;      ///< share of the distance at which a shadow ray ends, so as not to meet the light itself
+    Color irradiance; ///< arriving at a right angle, over the density; black: nothing arrives
+    float pdf;        ///< of the direction, per steradian; kDelta for points and suns, which no scattered ray meets
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -7,16 +7,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// By which probabilities one is chosen of the triangles that emit light, and of the pixels of an environment. (Between
-// the kinds of light sample_light chooses with equal probability.) Most by their power; a share without regard to it,
+// By which probabilities the pixels of an environment are chosen. Most by their power; a share without regard to it,
 // because a light that is 1e8 times dimmer than another is all the light there is where the other does not reach.
 
 inline constexpr double kEvenShare = 0.125;  ///< its price: where power is the best choice, 1/7 more variance
-
-inline double luminance(Vec3f rgb) {
-    const Vec3d c = static_cast<Vec3d>(rgb);
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
 
 /// Appends weights as count + 1 cumulative probabilities in steps of 2^-24 (see math/cdf.hpp). Whatever has weight
 /// keeps at least one step, as long as there are enough. All alike where there is no weight at all.
@@ -48,50 +42,42 @@ inline std::vector<double> mixed(std::vector<double> weights, const std::vector<
     return weights;
 }
 
-/// Chooses triangles by their power and, for the even share, every emitting material alike and its triangles by area.
-/// Sets the densities. `areas` and `materials`: of the lights; there are `material_count` materials.
-inline std::vector<float> area_light_cdf(std::vector<AreaLight>& lights, const std::vector<double>& areas,
-                                         const std::vector<std::uint32_t>& materials, std::size_t material_count) {
-    std::vector<float> cdf;
-    if (lights.empty()) return cdf;
-    std::vector<double> power, even, of_material(material_count, 0.0);
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        power.push_back(luminance(lights[i].radiance) * areas[i]);
-        of_material[materials[i]] += areas[i];
-    }
-    for (std::size_t i = 0; i < lights.size(); ++i) even.push_back(areas[i] / of_material[materials[i]]);
-    append_cdf(mixed(power, even), cdf);
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        lights[i].density = static_cast<float>(static_cast<double>(cdf[i + 1] - cdf[i]) / areas[i]);
-    return cdf;
-}
-
 struct EnvironmentTables {
-    std::vector<float> marginal_cdf, conditional_cdf;
+    std::vector<float> marginal_cdf, conditional_cdf;  ///< empty for a constant environment
+    float mean_luminance = 0;                          ///< over all directions
 };
 
-/// Chooses the pixels of an image by their light and, for the even share, by their solid angle where they have any.
+/// For choosing the pixels of an image by their light and, for the even share, by their solid angle where they have
+/// any.
 inline EnvironmentTables environment_tables(const Environment& e) {
     EnvironmentTables tables;
+    if (e.pixels.empty()) {
+        tables.mean_luminance = luminance(e.constant);
+        return tables;
+    }
     const auto width = static_cast<std::size_t>(e.width), height = static_cast<std::size_t>(e.height);
     std::vector<double> light, solid_angle;
     for (std::size_t row = 0; row < height; ++row) {
         const double sine =
             std::sin(3.141592653589793 * (static_cast<double>(row) + 0.5) / static_cast<double>(height));
         for (std::size_t column = 0; column < width; ++column) {
-            light.push_back(sine * luminance(e.pixels[row * width + column]));
+            light.push_back(sine * static_cast<double>(luminance(e.pixels[row * width + column])));
             solid_angle.push_back(light.back() > 0 ? sine : 0.0);
         }
     }
+    double sum = 0;
+    for (double l : light) sum += l;
+    // A row of pixels fills 2 pi sine pi / height of the 4 pi.
+    tables.mean_luminance = static_cast<float>(sum * 1.5707963267948966 / static_cast<double>(width * height));
     const std::vector<double> weights = mixed(light, solid_angle);
     std::vector<double> rows;
     for (std::size_t row = 0; row < height; ++row) {
         const auto first = weights.begin() + static_cast<std::ptrdiff_t>(row * width);
         const std::vector<double> pixels(first, first + static_cast<std::ptrdiff_t>(width));
         append_cdf(pixels, tables.conditional_cdf);
-        double sum = 0;
-        for (double w : pixels) sum += w;
-        rows.push_back(sum);
+        double row_sum = 0;
+        for (double w : pixels) row_sum += w;
+        rows.push_back(row_sum);
     }
     append_cdf(rows, tables.marginal_cdf);
     return tables;

@@ -20,11 +20,14 @@ public:
         positions_.reserve(split_.position_count());
         for (std::size_t i = 0; i < split_.position_count(); ++i)
             positions_.push_back(static_cast<Vec3f>(split_.position(i)));
-        for (const Texture& t : scene.textures) textures_.push_back({t.rgba.data(), t.width, t.height});
+        for (const Texture& t : scene.textures)
+            textures_.push_back({t.rgba.empty() ? nullptr : t.rgba.data(),
+                                 t.linear_rgba.empty() ? nullptr : t.linear_rgba.data(), t.width, t.height,
+                                 t.encoding});
         add_normals();
         add_planes();
         for (std::uint32_t i = 0; i < triangles().size(); ++i)
-            if (luminance(scene.materials[triangles()[i].material].emission) > 0) emitters_.push_back(i);
+            if (scene.materials[triangles()[i].material].emits()) emitters_.push_back(i);
     }
 
     MeshView view() const {
@@ -37,6 +40,8 @@ public:
         view.uvs = split_.uvs().empty() ? nullptr : split_.uvs().data();
         view.materials = scene_.materials.data();
         view.textures = textures_.data();
+        view.emitters = emitters_.data();
+        view.emitter_count = static_cast<std::int32_t>(emitters_.size());
         view.triangle_count = static_cast<std::int32_t>(triangles().size());
         view.vertex_count = static_cast<std::int32_t>(positions_.size());
         view.material_count = static_cast<std::int32_t>(scene_.materials.size());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bounding_box.hpp"
+#include "build_light_tree.hpp"
 #include "render_space_mesh.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -43,7 +44,8 @@ public:
         }
         for (const auto& object : objects_) object_views_.push_back(object->view());
         const Environment& environment = assembly_.static_geometry->environment;
-        if (!environment.pixels.empty()) environment_ = environment_tables(environment);
+        environment_ = environment_tables(environment);
+        find_material_set();
         update_instances();
     }
 
@@ -69,7 +71,7 @@ public:
     }
 
     SceneView view() const {
-        SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, false, {}};
+        SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, material_set_, false, {}};
         const Scene& scene = *assembly_.static_geometry;
         const Environment& environment = scene.environment;
         view.objects = object_views_.data();
@@ -82,7 +84,8 @@ public:
                             environment_.marginal_cdf.data(),
                             environment_.conditional_cdf.data(),
                             environment.width,
-                            environment.height};
+                            environment.height,
+                            environment_.mean_luminance};
         return view;
     }
 
@@ -91,7 +94,10 @@ public:
         view.instances = instances_.data();
         view.points = points_.data();
         view.areas = areas_.data();
-        view.area_cdf = area_cdf_.empty() ? nullptr : area_cdf_.data();
+        const bool has_lights = !light_tree_.nodes().empty();
+        view.light_nodes = has_lights ? light_tree_.nodes().data() : nullptr;
+        view.light_trails = has_lights ? light_tree_.trails().data() : nullptr;
+        view.light_node_count = static_cast<std::int32_t>(light_tree_.nodes().size());
         view.instance_count = static_cast<std::int32_t>(instances_.size());
         view.point_count = static_cast<std::int32_t>(points_.size());
         view.area_count = static_cast<std::int32_t>(areas_.size());
@@ -153,14 +159,13 @@ private:
         instances_.clear();
         points_.clear();
         areas_.clear();
-        AreaLights lights;
-        add_lights(static_geometry_, {}, nullptr, lights);
+        add_lights(static_geometry_, {}, nullptr);
         for (std::size_t i = 0; i < assembly_.instances.size(); ++i) {
             const Affine<double> exact = render_from_object(i);
             instances_.push_back(instance_view(exact, i));
-            add_lights(*objects_[object_of_[i]], exact, &instances_.back(), lights);
+            add_lights(*objects_[object_of_[i]], exact, &instances_.back());
         }
-        area_cdf_ = area_light_cdf(areas_, lights.areas, lights.materials, lights.material_count);
+        light_tree_ = LightTree(points_, areas_);
     }
 
     InstanceView instance_view(const Affine<double>& exact, std::size_t i) const {
@@ -175,29 +180,31 @@ private:
         if (!is_static(i) && !boxes_[i].empty())
             reach = kMarginShare * static_cast<float>(length(assembly_.instances[i].scene_from_object.direction(
                                        boxes_[i].high - boxes_[i].low)));
-        return {map, static_cast<InverseAffine<float>>(inverse), margin, reach, object_of_[i]};
+        return {map,           static_cast<InverseAffine<float>>(inverse), margin, reach,
+                object_of_[i], static_cast<std::int32_t>(areas_.size())};
     }
 
-    /// What the choice among area lights has to know of each.
-    struct AreaLights {
-        std::vector<double> areas;
-        std::vector<std::uint32_t> materials;
-        std::size_t material_count = 0;
-    };
+    void find_material_set() {
+        const auto has_others = [](const Scene& scene) {
+            return std::any_of(scene.materials.begin(), scene.materials.end(),
+                               [](const Material& m) { return !m.is_plain(); });
+        };
+        bool others = has_others(*assembly_.static_geometry);
+        for (const Instance& instance : assembly_.instances) others = others || has_others(*instance.object);
+        material_set_ = others ? MaterialSet::any : MaterialSet::plain;
+    }
 
     /// The emitters of a mesh where a map from its frame puts them. `instance`: none of static geometry.
-    void add_lights(const RenderSpaceMesh& mesh, const Affine<double>& map, const InstanceView* instance,
-                    AreaLights& lights) {
+    void add_lights(const RenderSpaceMesh& mesh, const Affine<double>& map, const InstanceView* instance) {
         const Scene& scene = mesh.scene();
         for (const ScenePointLight& p : scene.points)
             points_.push_back({static_cast<Vec3f>(map.point(mesh.frame().point(p.position_m))), p.intensity});
         const InverseAffine<double> inverse = map.inverse();
+        const std::uint32_t number = instance ? static_cast<std::uint32_t>(instances_.size() - 1) : kNoInstance;
         for (const std::uint32_t emitter : mesh.emitters()) {
             const Triangle& t = mesh.triangles()[emitter];
             const RenderSpaceMesh::Edges edges = mesh.edges(t);
             const Vec3d u = map.direction(edges.u), v = map.direction(edges.v);
-            const double area = 0.5 * length(cross(u, v));
-            if (!(area > 0)) continue;
             const TrianglePlane& plane = mesh.planes()[emitter];
             const Vec3d normal = inverse.normal_of(static_cast<Vec3d>(plane.normal));
             const Vec3f corner = static_cast<Vec3f>(map.point(edges.corner));
@@ -205,12 +212,9 @@ private:
                                                             static_cast<float>(1 / length(normal)), corner)
                                           : plane.margin;
             areas_.push_back({corner, static_cast<Vec3f>(u), static_cast<Vec3f>(v),
-                              static_cast<Vec3f>(normalized(normal)), scene.materials[t.material].emission, 0.0f,
-                              margin});
-            lights.areas.push_back(area);
-            lights.materials.push_back(static_cast<std::uint32_t>(lights.material_count) + t.material);
+                              static_cast<Vec3f>(normalized(normal)), scene.materials[t.material].emission,
+                              static_cast<float>(0.5 * length(cross(u, v))), margin, emitter, number});
         }
-        lights.material_count += scene.materials.size();
     }
 
     Assembly assembly_;
@@ -224,7 +228,8 @@ private:
     std::vector<InstanceView> instances_;
     std::vector<PointLight> points_;
     std::vector<AreaLight> areas_;
-    std::vector<float> area_cdf_;
+    LightTree light_tree_;
+    MaterialSet material_set_ = MaterialSet::plain;
     EnvironmentTables environment_;
 };
 

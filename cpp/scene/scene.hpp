@@ -10,21 +10,23 @@ namespace REALCAM_NAMESPACE {
 struct Texture {
     std::string name;  ///< file, for messages
     std::int32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
+    std::vector<std::uint8_t> rgba;  ///< empty: floats
+    std::vector<float> linear_rgba;  ///< four for each texel
+    TextureEncoding encoding = TextureEncoding::srgb;  ///< of the codes
 };
 
 /// A point light in scene coordinates, metres.
 struct ScenePointLight {
     Vec3d position_m;
-    Vec3f intensity;  ///< cd
+    Color intensity;  ///< cd
 };
 
 struct Environment {
-    Vec3f constant = {0, 0, 0};  ///< cd/m^2
+    Color constant = {0, 0, 0};  ///< cd/m^2
     std::int32_t width = 0, height = 0;
-    std::vector<Vec3f> pixels;  ///< empty: constant
+    std::vector<Color> pixels;  ///< empty: constant
 
-    bool emits() const { return !pixels.empty() || constant.x > 0 || constant.y > 0 || constant.z > 0; }
+    bool emits() const { return !pixels.empty() || !is_black(constant); }
 };
 
 /// A scene as the user gave it: one list of triangles in metres, double precision, right-handed, y up.
@@ -47,10 +49,8 @@ struct Scene {
     /// A light that is somewhere: a point light or an emissive triangle.
     bool has_local_light() const {
         if (!points.empty()) return true;
-        for (const Triangle& t : triangles) {
-            const Vec3f e = materials[t.material].emission;
-            if (e.x > 0 || e.y > 0 || e.z > 0) return true;
-        }
+        for (const Triangle& t : triangles)
+            if (materials[t.material].emits()) return true;
         return false;
     }
 };

@@ -21,7 +21,11 @@ template <class Copy>
 MeshView with_copied_arrays(MeshView view, Copy&& copy) {
     using scene_arrays_detail::replace;
     std::vector<TextureView> textures(view.textures, view.textures + view.texture_count);
-    for (TextureView& texture : textures) replace(texture.rgba, std::int64_t{4} * texture.width * texture.height, copy);
+    for (TextureView& texture : textures) {
+        const std::int64_t texels = std::int64_t{texture.width} * texture.height;
+        replace(texture.rgba, 4 * texels, copy);
+        replace(texture.linear_rgba, 4 * texels, copy);
+    }
     view.textures = textures.data();
     replace(view.textures, view.texture_count, copy);
     replace(view.triangles, view.triangle_count, copy);
@@ -30,6 +34,7 @@ MeshView with_copied_arrays(MeshView view, Copy&& copy) {
     replace(view.normals, view.vertex_count, copy);
     replace(view.uvs, view.vertex_count, copy);
     replace(view.materials, view.material_count, copy);
+    replace(view.emitters, view.emitter_count, copy);
     return view;
 }
 
@@ -59,7 +64,8 @@ InstancesView with_copied_arrays(InstancesView view, Copy&& copy) {
     replace(view.instances, view.instance_count, copy);
     replace(view.points, view.point_count, copy);
     replace(view.areas, view.area_count, copy);
-    replace(view.area_cdf, view.area_count + 1, copy);
+    replace(view.light_nodes, view.light_node_count, copy);
+    replace(view.light_trails, view.point_count + view.area_count, copy);
     return view;
 }
 

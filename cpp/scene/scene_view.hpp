@@ -2,20 +2,13 @@
 #include <cstdint>
 
 #include "../math/affine.hpp"
+#include "material.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 // What kernels see of a scene: plain data and pointers. Positions are float and relative to an origin near the camera
 // (RenderSpaceScene); light is photometric and per colour channel (linear Rec. 709): radiance in cd/m^2, intensity in
 // cd, illuminance in lux.
-
-struct Material {
-    Vec3f diffuse = {0.5f, 0.5f, 0.5f};   ///< reflectance; times the texture where there is one
-    Vec3f specular = {0, 0, 0};           ///< reflectance of the Phong lobe
-    float shininess = 0;                  ///< Phong exponent (MTL Ns)
-    Vec3f emission = {0, 0, 0};           ///< radiance, on the side of the geometric normal
-    std::int32_t diffuse_texture = -1;    ///< index, or -1
-};
 
 struct Triangle {
     std::uint32_t vertices[3];
@@ -35,39 +28,59 @@ struct TrianglePlane {
 /// size.
 inline constexpr float kMarginShare = 1.5e-6f;
 
-/// 8-bit sRGB, row 0 at the top, texture coordinate v upwards, repeated outside 0..1.
+/// How the numbers of a texture become light.
+enum class TextureEncoding : std::int32_t { srgb, linear };
+
+/// Row 0 at the top, texture coordinate v upwards, repeated outside 0..1. Either 8-bit codes or floats.
 struct TextureView {
-    const std::uint8_t* rgba;
+    const std::uint8_t* rgba;  ///< null: floats
+    const float* linear_rgba;
     std::int32_t width, height;
+    TextureEncoding encoding;  ///< of the codes
 };
 
 struct PointLight {
     Vec3f position;
-    Vec3f intensity;
+    Color intensity;
 };
 
 /// A light at infinity: parallel rays.
 struct SunLight {
     Vec3f direction;    ///< of travel, unit
-    Vec3f illuminance;  ///< on a plane that it meets at a right angle
+    Color illuminance;  ///< on a plane that it meets at a right angle
 };
 
 /// A triangle that emits light.
 struct AreaLight {
     Vec3f corner, edge_u, edge_v;
     Vec3f normal;  ///< unit; light leaves on this side
-    Vec3f radiance;
-    float density;  ///< of points chosen on all area lights, per square metre of this one
-    float margin;   ///< see TrianglePlane
+    Color radiance;
+    float area;      ///< square metres
+    float margin;    ///< see TrianglePlane
+    std::uint32_t triangle, instance;  ///< where a ray meets it (see Hit)
 };
 
 /// Light from infinity all around: constant, or a latitude-longitude image (row 0 up, +y; the middle column -z).
 struct EnvironmentView {
-    Vec3f constant;
-    const Vec3f* pixels;          ///< null: constant
+    Color constant;
+    const Color* pixels;          ///< null: constant
     const float* marginal_cdf;    ///< height + 1 values, for importance sampling (math/cdf.hpp)
     const float* conditional_cdf; ///< height rows of width + 1 values
     std::int32_t width, height;
+    float mean_luminance;  ///< over all directions
+};
+
+/// Part of a tree over all point and area lights, from which one is chosen by what it may contribute to a point
+/// (Conty Estevez and Kulla 2018). The first child of a node follows it.
+struct alignas(16) LightNode {
+    Vec3f low, high;            ///< bounds of the lights
+    Vec3f axis;                 ///< middle of the normals of area lights
+    float cos_spread;           ///< of the angle about it in which all normals lie; -1: all directions
+    float intensity;            ///< luminous, along the normal, of all of them, cd
+    std::int32_t second_child;  ///< below 0: a leaf, of the light -1 - second_child
+    std::int32_t is_isotropic;  ///< not 0: light leaves in all directions alike
+    std::int32_t partner;  ///< of a leaf: a second light in the same plane, such as a rectangle's other half; or -1
+    float first_share;  ///< probability of the first of the two
 };
 
 // Every array of the following is also named in scene_arrays.hpp.
@@ -78,10 +91,11 @@ struct MeshView {
     const TrianglePlane* planes;  ///< one for each triangle
     const Vec3f* positions;
     const Vec3f* normals;  ///< per vertex, zero where the triangle is flat; null: all flat
-    const Vec2f* uvs;      ///< per vertex; null: none
+    const Vec2f* uvs;  ///< per vertex; null: none
     const Material* materials;
     const TextureView* textures;
-    std::int32_t triangle_count, vertex_count, material_count, texture_count;
+    const std::uint32_t* emitters;  ///< the triangles that emit light, in rising order
+    std::int32_t triangle_count, vertex_count, material_count, texture_count, emitter_count;
 };
 
 /// An instance of an object.
@@ -91,15 +105,18 @@ struct InstanceView {
     Vec3f margin;  ///< how far off along the object's axes a point may be for each unit of its placed coordinates
     float reach_margin;  ///< and, in the placed scene, for what the object's own coordinates leave, at most
     std::uint32_t object;
+    std::int32_t first_area;  ///< area light of the object's first emitter
 };
 
 /// What depends on instance transforms: the instances, and the lights that may move with them.
 struct InstancesView {
     const InstanceView* instances;
     const PointLight* points;
-    const AreaLight* areas;
-    const float* area_cdf;  ///< area_count + 1 values; null: no area light
-    std::int32_t instance_count, point_count, area_count;
+    const AreaLight* areas;  ///< those of static geometry first, in the order of its emitters
+    const LightNode* light_nodes;  ///< null: no point and no area light
+    const std::uint64_t* light_trails;  ///< of the point lights, then of the area lights: the turns from the root to
+                                        ///< it, 1 for a second child, the first turn in the lowest bit
+    std::int32_t instance_count, point_count, area_count, light_node_count;
 };
 
 /// Static geometry's triangles, objects in frames of their own, and lights.
@@ -107,6 +124,7 @@ struct SceneView : MeshView, InstancesView {
     const MeshView* objects;
     const SunLight* suns;
     std::int32_t object_count, sun_count;
+    MaterialSet material_set;
     bool has_environment;
     EnvironmentView environment;
 };

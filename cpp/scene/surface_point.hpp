@@ -33,10 +33,13 @@ struct SurfacePoint {
     Vec3f position;
     Vec3f geometric_normal;
     Vec3f normal;  ///< interpolated
-    Vec3f diffuse, specular;
-    float shininess;
-    Vec3f emission;     ///< radiance towards the ray's origin
+    const Material* material;
+    Color diffuse;      ///< the material's, times its texture
+    Color emission;     ///< radiance towards the ray's origin
     float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
+    bool is_front;      ///< the ray came from the side of the triangle's normal
+    Color specular;  ///< this and what follows: where materials are not plain
+    float metallic, roughness;
 };
 
 REALCAM_INLINE float largest_coordinate(Vec3f p) {
@@ -59,6 +62,58 @@ REALCAM_INLINE Vec3f hit_position(const MeshView& mesh, const TrianglePlane& pla
     return p + (plane.height - dot(p, plane.normal)) * plane.normal;
 }
 
+/// The texture coordinates of a hit, and how they grow over its triangle.
+struct SurfaceUv {
+    Vec2f at, along_u, along_v;  ///< along_...: from the first corner to the second and the third
+};
+
+REALCAM_INLINE SurfaceUv surface_uv(const MeshView& mesh, const Triangle& triangle, Hit hit) {
+    if (!mesh.uvs) return {{0, 0}, {0, 0}, {0, 0}};
+    const Vec2f a = mesh.uvs[triangle.vertices[0]], b = mesh.uvs[triangle.vertices[1]],
+                c = mesh.uvs[triangle.vertices[2]];
+    const float w = 1.0f - hit.u - hit.v;
+    return {{w * a.x + hit.u * b.x + hit.v * c.x, w * a.y + hit.u * b.y + hit.v * c.y},
+            {b.x - a.x, b.y - a.y},
+            {c.x - a.x, c.y - a.y}};
+}
+
+REALCAM_INLINE Vec2f transformed(const TextureReference& reference, Vec2f uv) {
+    const Vec3f place = {uv.x, uv.y, 1.0f};
+    return {dot(reference.to_u, place), dot(reference.to_v, place)};
+}
+
+/// White where there is no texture.
+REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv) {
+    if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
+    return sample_texture(mesh.textures[reference.texture], transformed(reference, uv));
+}
+
+/// The shading normal that a normal map gives. `normal`: without it.
+REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangle, const Material& material,
+                                   const SurfaceUv& uv, Vec3f normal) {
+    const Color texel = texture_color(mesh, material.normal_texture, uv.at);
+    const Vec3f bump = {material.normal_scale * (2.0f * texel.r - 1.0f),
+                        material.normal_scale * (2.0f * texel.g - 1.0f), 2.0f * texel.b - 1.0f};
+    // The direction in which the texture's u grows (its v: upwards, as glTF's tangent space has it).
+    const Vec3f p = mesh.positions[triangle.vertices[0]], to_second = mesh.positions[triangle.vertices[1]] - p,
+                to_third = mesh.positions[triangle.vertices[2]] - p;
+    const Vec3f along_u = {uv.along_u.x, uv.along_u.y, 0}, along_v = {uv.along_v.x, uv.along_v.y, 0};
+    const TextureReference& map = material.normal_texture;
+    const float u1 = dot(map.to_u, along_u), u2 = dot(map.to_u, along_v), v1 = dot(map.to_v, along_u),
+                v2 = dot(map.to_v, along_v);
+    const float turn = u1 * v2 - u2 * v1;
+    const Vec3f tangent = v2 * to_second - v1 * to_third;
+    const Vec3f along = tangent - dot(tangent, normal) * normal;
+    const float squared = dot(along, along);
+    if (!(squared > 0.0f) || turn == 0.0f) return normal;
+    const Vec3f t = ((turn > 0.0f ? 1.0f : -1.0f) / std::sqrt(squared)) * along;
+    const Vec3f b = (turn > 0.0f ? 1.0f : -1.0f) * cross(normal, t);
+    const Vec3f mapped = bump.x * t + bump.y * b + bump.z * normal;
+    const float size2 = dot(mapped, mapped);
+    return size2 > 0.0f ? (1.0f / std::sqrt(size2)) * mapped : normal;
+}
+
+template <MaterialSet set>
 REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
     const Triangle triangle = mesh.triangles[hit.triangle];
     const TrianglePlane plane = mesh.planes[hit.triangle];
@@ -68,27 +123,35 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
 
     SurfacePoint point;
     point.position = hit_position(mesh, plane, hit, ray_origin, ray_direction);
-    const bool from_front = dot(plane.normal, ray_direction) <= 0;
-    point.geometric_normal = from_front ? plane.normal : -plane.normal;
+    point.is_front = dot(plane.normal, ray_direction) <= 0;
+    point.geometric_normal = point.is_front ? plane.normal : -plane.normal;
     point.normal = point.geometric_normal;
+    const bool is_textured = set == MaterialSet::any || material.diffuse_texture.texture >= 0;
+    const SurfaceUv uv = is_textured ? surface_uv(mesh, triangle, hit) : SurfaceUv{{0, 0}, {0, 0}, {0, 0}};
     if (mesh.normals) {
         const Vec3f n = w * mesh.normals[corner[0]] + hit.u * mesh.normals[corner[1]] + hit.v * mesh.normals[corner[2]];
         const float n2 = dot(n, n);
-        if (n2 > 0) {
-            // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
-            const Vec3f unit = (1.0f / std::sqrt(n2)) * n;
-            point.normal = dot(unit, point.geometric_normal) < 0 ? -unit : unit;
+        if (n2 > 0) point.normal = (1.0f / std::sqrt(n2)) * n;
+    }
+    if constexpr (set == MaterialSet::any) {
+        if (material.normal_texture.texture >= 0 && mesh.uvs) {
+            const Vec3f outer = dot(point.normal, plane.normal) < 0 ? -point.normal : point.normal;
+            point.normal = mapped_normal(mesh, triangle, material, uv, outer);
         }
     }
+    // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
+    if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
+    point.material = &material;
     point.diffuse = material.diffuse;
-    if (material.diffuse_texture >= 0 && mesh.uvs) {
-        const Vec2f ua = mesh.uvs[corner[0]], ub = mesh.uvs[corner[1]], uc = mesh.uvs[corner[2]];
-        const Vec2f uv = {w * ua.x + hit.u * ub.x + hit.v * uc.x, w * ua.y + hit.u * ub.y + hit.v * uc.y};
-        point.diffuse = point.diffuse * sample_texture(mesh.textures[material.diffuse_texture], uv);
+    if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
+    point.emission = point.is_front ? material.emission : Color{0, 0, 0};
+    if constexpr (set == MaterialSet::any) {
+        point.emission *= texture_color(mesh, material.emission_texture, uv.at);
+        const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
+        point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at);
+        point.roughness = material.roughness * rough_metal.g;
+        point.metallic = material.metallic * rough_metal.b;
     }
-    point.specular = material.specular;
-    point.shininess = material.shininess;
-    point.emission = from_front ? material.emission : Vec3f{0, 0, 0};
     point.self_offset = plane.margin;
     return point;
 }
@@ -106,13 +169,14 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
 }
 
 /// Likewise of a whole scene: rays go into the object's frame, with the same distances, and what they find comes back.
+template <MaterialSet set>
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
     if (hit.instance == kNoInstance)
-        return surface_point(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
+        return surface_point<set>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
     const InstanceView& instance = scene.instances[hit.instance];
     const InverseAffine<float>& into = instance.object_from_render;
     SurfacePoint point =
-        surface_point(scene.objects[instance.object], hit, into.point(ray_origin), into.direction(ray_direction));
+        surface_point<set>(scene.objects[instance.object], hit, into.point(ray_origin), into.direction(ray_direction));
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);

@@ -16,8 +16,8 @@ void add_texture(Scene& scene, const std::string& path, const PictureReaders& re
     if (!image) throw InputError(path + ": cannot be read as a texture");
     if (scene.uvs.empty()) throw InputError(path + ": the scene has no texture coordinates to lay a texture by");
     const auto index = static_cast<std::int32_t>(scene.textures.size());
-    scene.textures.push_back({path, image->width, image->height, std::move(image->rgba)});
-    for (Material& material : scene.materials) material.diffuse_texture = index;
+    scene.textures.push_back(io::texture_of(std::move(*image), io::TextureUse::colour, path));
+    for (Material& material : scene.materials) material.diffuse_texture = {index, {1, 0, 0}, {0, 1, 0}};
 }
 
 }  // namespace
@@ -43,7 +43,8 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers) {
         if (!request.environment_file.empty()) changed.environment = readers.environment(request.environment_file);
         if (request.environment_cd_m2) {
             changed.environment = {};
-            changed.environment.constant = *request.environment_cd_m2;
+            const Vec3f rgb = *request.environment_cd_m2;
+            changed.environment.constant = {rgb.x, rgb.y, rgb.z};
         }
     });
 }
@@ -58,9 +59,9 @@ Shot set_up(const ShotRequest& request, Camera camera, Assembly scene) {
     return shot;
 }
 
-void meter(Shot& shot, const ShotRequest& request, Backend& backend, const Progress& progress) {
+void meter(Shot& shot, const ShotRequest& request, Session& session, const Progress& progress) {
     if (request.exposure_time_s) return;
-    shot.camera.exposure_time_s = metered_exposure_time(backend, shot.scene, shot.camera, request.settings, progress);
+    shot.camera.exposure_time_s = metered_exposure_time(session, shot.scene, shot.camera, request.settings, progress);
     shot.is_metered = true;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "../io/scene_file.hpp"
+#include "../render/session.hpp"
 #include "../scene/assembly.hpp"
 #include "shot_request.hpp"
 
@@ -36,6 +37,6 @@ Shot set_up(const ShotRequest& request, Camera camera, Assembly scene);
 
 /// Sets the exposure time, unless the request has one, from a quick picture with the settings of the request (see
 /// metered_exposure_time).
-void meter(Shot& shot, const ShotRequest& request, Backend& backend, const Progress& progress);
+void meter(Shot& shot, const ShotRequest& request, Session& session, const Progress& progress);
 
 }  // namespace realcam::shot

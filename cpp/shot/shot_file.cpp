@@ -68,7 +68,7 @@ private:
     }
 
     void read_camera(ShotRequest& shot) const {
-        if (const std::string lens = table_.text("lens"); !lens.empty())
+        if (const std::string lens = name("lens"); !lens.empty())
             shot.lens = lens.find_first_of("/.") == std::string::npos ? lens : path("lens");
         shot.f_number = table_.number("f_number");
         if (const auto size = table_.numbers("film_mm", 2); !size.empty()) shot.film_mm = {size[0], size[1]};
@@ -119,12 +119,20 @@ private:
 
     /// Relative to the folder of the shot file.
     std::string path(const char* key) const {
-        const std::string text = table_.text(key);
+        const std::string text = name(key);
         if (text.empty()) {
             if (table_.find(key)) table_.fail('"' + std::string(key) + "\" is empty", table_.find(key));
             return text;
         }
         return (folder_ / text).string();
+    }
+
+    /// The system would take what stands before a null character for the name.
+    std::string name(const char* key) const {
+        const std::string text = table_.text(key);
+        if (text.find('\0') != std::string::npos)
+            table_.fail('"' + std::string(key) + "\" holds a null character", table_.find(key));
+        return text;
     }
 
     template <class Named>
@@ -153,7 +161,7 @@ private:
 }  // namespace
 
 void check_environment(Vec3f v) {
-    constexpr float kBrightest = 1e20f;  // as io::validate has it for scenes
+    constexpr float kBrightest = 1e20f;  // as scene_checks.hpp has it
     const auto good = [](float c) { return c >= 0 && c <= kBrightest; };
     if (!good(v.x) || !good(v.y) || !good(v.z))
         throw InputError("an environment's radiance must lie between 0 and 1e20 cd/m^2");

@@ -5,8 +5,8 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
-#include "../render/backend.hpp"
 #include "../render/default_view.hpp"
+#include "../render/render_settings.hpp"
 
 namespace realcam::shot {
 

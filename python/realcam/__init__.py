@@ -47,6 +47,7 @@ from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
 from .render import render
+from .session import Session
 from .shot import Shot
 
 __all__ = [
@@ -78,6 +79,7 @@ __all__ = [
     "Scene",
     "SceneFileError",
     "Seidel",
+    "Session",
     "Shot",
     "Spot",
     "Stop",

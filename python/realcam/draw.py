@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import io
 import os
-import tempfile
 from pathlib import Path
 
 import matplotlib.figure
@@ -26,16 +26,13 @@ def save_cross_section(lens: Lens, path: str | os.PathLike[str], rays: int = 7) 
     target = Path(path)
     if target.suffix.lower() not in (".svg", ".png"):
         raise ImageFileError(f"{target}: unknown suffix; .svg or .png is wanted")
-    files.check_folder(target)
+    files.check_target(target)
     figure = matplotlib.figure.Figure(figsize=(10, 6), layout="constrained")
     draw_cross_section(lens, figure.add_subplot(), rays)
-    handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".", suffix=target.suffix)
-    os.close(handle)
-    try:
-        figure.savefig(temporary, dpi=160)
-        files.publish(temporary, target)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    # In memory, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
+    drawing = io.BytesIO()
+    figure.savefig(drawing, format=target.suffix[1:].lower(), dpi=160)
+    files.write_whole(target, drawing.getvalue())
 
 
 def draw_cross_section(lens: Lens, axes: Axes, rays: int = 7) -> None:

@@ -52,7 +52,8 @@ class Image:
         """Writes .png (developed) or .exr (film exposure R, G, B in lux seconds, and depth as layer Z in metres).
 
         Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises ImageFileError;
-        no half-written file is left.
+        no half-written file is left. An image does not know which files its scene was read from: one of the same name
+        is replaced, as any other.
         """
         image_file.write_image(self, path, tone)
 

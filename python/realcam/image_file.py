@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ._core import ImageFileError, InputError
+from .files import system_name
 
 if TYPE_CHECKING:
     from .image import Image
@@ -17,9 +18,10 @@ if TYPE_CHECKING:
 def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
     """A latitude-longitude picture as (H, W, 3) float32, linear, row 0 up: what Scene.with_environment takes.
 
-    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Raises ImageFileError.
+    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Raises ImageFileError, also where
+    a value is none from 0 to 1e20.
     """
-    pixels: np.ndarray = _pictures().read_environment(os.fsencode(path))
+    pixels: np.ndarray = _pictures().read_environment(system_name(path))
     return pixels
 
 
@@ -28,7 +30,7 @@ def write_image(image: Image, path: str | os.PathLike[str], tone: str) -> None:
     if tone not in ("film", "linear"):
         raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
     _pictures().write_picture(
-        os.fsencode(path), image.pixels, image.depth, image.camera, image.spp, image.seed, tone == "film"
+        system_name(path), image.pixels, image.depth, image.camera, image.spp, image.seed, tone == "film"
     )
 
 

@@ -12,6 +12,16 @@ from .image import Image
 ProgressCallback = Callable[[float], bool | None]
 
 
+def warn_of_no_light(scene: Scene) -> None:
+    """Where the caller's caller stands."""
+    if isinstance(scene, Scene) and not scene.has_light:
+        warnings.warn(
+            "the scene has no light, so that its picture is black; scene.with_daylight(camera), with_environment, "
+            "with_sun or with_point_light brings some",
+            stacklevel=3,
+        )
+
+
 def render(
     scene: Scene,
     camera: Camera,
@@ -31,12 +41,7 @@ def render(
 
     Raises InputError, SceneFileError, DeviceError; Cancelled where progress stopped it; KeyboardInterrupt on Ctrl-C.
     """
-    if isinstance(scene, Scene) and not scene.has_light:
-        warnings.warn(
-            "the scene has no light, so that its picture is black; scene.with_daylight(camera), with_environment, "
-            "with_sun or with_point_light brings some",
-            stacklevel=2,
-        )
+    warn_of_no_light(scene)
 
     def taken(callback: ProgressCallback | None) -> Image:
         pixels, depth, stats = _core._render(scene, camera, spp, device, seed, max_bounces, threads, callback)

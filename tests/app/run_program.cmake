@@ -61,6 +61,7 @@ expect(0 "as thin model.*% of the sampled rays pass" render quad.obj -o c.png ${
 expect(0 "Tessar.*focus 2 m.*36 x 36 mm, 20 x 20 pixels of 1 samples.*1/100 s, ISO 50" render shot.toml -o d.png --iso 50)
 expect(0 "focus 1 m.*exposure[^\n]*metered" render shot.toml -o e.png --position 0,0,1 --look-at 0,0,0 --focus auto
        --exposure-time auto)
+expect(0 "exposure +1/1e\\+37 s" render shot.toml -o e.png --exposure-time 1e-37)
 file(CREATE_LINK linked.png ${WORK}/link.png SYMBOLIC)
 expect(0 "link\\.png" render quad.obj -o link.png ${small})
 set(files quad.obj empty.obj shot.toml wrong.toml a.png a.exr b.png c.png d.png e.png link.png linked.png)

@@ -19,7 +19,7 @@ MAY_INCLUDE = {
     "camera": {"math", "optics"},
     "render": {"math", "optics", "scene", "camera"},
     "bvh": {"math", "scene"},
-    "embree": {*CORE},
+    "embree": {*CORE, "bvh"},
     "cuda": {*CORE, "bvh"},
     "devices": {*CORE, *BACKENDS},
     "io": {*CORE},
@@ -31,8 +31,8 @@ MAY_INCLUDE = {
     "app": {*CORE, *BACKENDS, "devices", "io", "shot", "image_io"},
 }
 
-# Which Embree it is stays in one place.
-MAY_INCLUDE_TOO = {"bvh/binary_tree.cpp": {"embree/embree_api.hpp"}}
+# What both extensions do when Python ends stays in one place.
+MAY_INCLUDE_TOO = {"picture_bindings/pictures_module.cpp": {"bindings/unlocked.hpp"}}
 
 # Headers of the core that own memory or raise errors, and so stay on the host. The others run on every
 # device, and include none of these.
@@ -79,26 +79,35 @@ HOST_ONLY = {
     "optics/wavefront.hpp",
     "optics/trace_path.hpp",
     "render/axis_crossings.hpp",
-    "render/backend.hpp",
     "render/daylight.hpp",
     "render/default_view.hpp",
+    "render/film_sums.hpp",
     "render/gap_finder.hpp",
+    "render/image.hpp",
+    "render/live_frame.hpp",
+    "render/live_view.hpp",
     "render/metering.hpp",
+    "render/progress.hpp",
+    "render/render_settings.hpp",
     "render/rings.hpp",
     "render/room.hpp",
     "render/run_with_progress.hpp",
     "render/scene_change.hpp",
     "render/scene_pieces.hpp",
+    "render/session.hpp",
     "render/surroundings.hpp",
+    "render/take_picture.hpp",
     "render/vast_sheets.hpp",
     "scene/assembly.hpp",
     "scene/bounding_box.hpp",
+    "scene/build_light_tree.hpp",
     "scene/instance_names.hpp",
     "scene/light_tables.hpp",
     "scene/render_space_mesh.hpp",
     "scene/render_space_scene.hpp",
     "scene/scene.hpp",
     "scene/scene_arrays.hpp",
+    "scene/scene_checks.hpp",
     "scene/split_triangles.hpp",
 }
 
@@ -191,6 +200,12 @@ def test_device_code_neither_allocates_nor_throws(path: Path) -> None:
     assert not match, f"{name_of(path)} is not host-only, and uses {match.group()}"
     wrong = [name_of(other) for other in included_by(path) if name_of(other) in HOST_ONLY]
     assert not wrong, f"{name_of(path)} is not host-only, and includes headers that are"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=name_of)
+def test_one_folder_knows_embree(path: Path) -> None:
+    if folder_of(path) != "embree":
+        assert not re.search(NOT_IN_CORE["Embree"], code_of(path))
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/embree/embree_backend.hpp"
+#include "../../cpp/embree/fast_pupil_tracer.hpp"
 #include "../../cpp/embree/lens_rays.hpp"
 #include "pixel_rays.hpp"
 #include "refusal.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/embree/embree_backend.hpp"
+#include "../../cpp/embree/fast_pupil_tracer.hpp"
 #include "../../cpp/optics/pupil.hpp"
 #include "hard_lenses.hpp"
 #include "oracle.hpp"

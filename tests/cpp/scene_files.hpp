@@ -85,7 +85,11 @@ inline bool warns(const Scene& scene, const std::string& part) {
     return false;
 }
 
-inline void check_vec(Vec3f v, double x, double y, double z, double within = 1e-6) {
+inline void check_vec(Vec3f v, double x, double y, double z, double within = 1e-6);
+inline void check_vec(Color c, double r, double g, double b, double within = 1e-6) {
+    check_vec(Vec3f{c.r, c.g, c.b}, r, g, b, within);
+}
+inline void check_vec(Vec3f v, double x, double y, double z, double within) {
     CHECK(double(v.x) == doctest::Approx(x).epsilon(within));
     CHECK(double(v.y) == doctest::Approx(y).epsilon(within));
     CHECK(double(v.z) == doctest::Approx(z).epsilon(within));

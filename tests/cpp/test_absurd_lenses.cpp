@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../../cpp/camera/field_of_view.hpp"
-#include "../../cpp/embree/embree_backend.hpp"
+#include "../../cpp/embree/fast_pupil_tracer.hpp"
 #include "../../cpp/optics/field_rays.hpp"
 #include "measurement.hpp"
 #include "pixel_rays.hpp"

@@ -127,7 +127,6 @@ TEST_CASE("Daylight comes from the upper left behind the camera") {
     CHECK(sun.direction.x > 0);
     CHECK(sun.direction.y < 0);
     CHECK(sun.direction.z < 0);
-    const auto luminance = [](Vec3f c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; };
     CHECK(luminance(sun.illuminance) == doctest::Approx(80e3).epsilon(0.01));
     CHECK(luminance(scene.environment.constant) == doctest::Approx(5000).epsilon(0.01));
 }

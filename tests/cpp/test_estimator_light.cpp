@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "../../cpp/scene/light.hpp"
+#include "../../cpp/scene/plain_bsdf.hpp"
 #include "../../cpp/scene/render_space_scene.hpp"
-#include "../../cpp/scene/shade.hpp"
 #include "chi_square.hpp"
 #include "estimator_mean.hpp"
 
@@ -30,12 +31,19 @@ double over_triangle(Vec3d a, Vec3d b, Vec3d c, F&& f) {
         0.0, 1.0, 12, 1e-7);
 }
 
-SurfacePoint grey_point(Vec3d position, Vec3d normal) {
-    SurfacePoint point{};
-    point.position = static_cast<Vec3f>(position);
-    point.normal = point.geometric_normal = static_cast<Vec3f>(normalized(normal));
-    point.diffuse = {static_cast<float>(M_PI), static_cast<float>(M_PI), static_cast<float>(M_PI)};  // E becomes L
-    return point;
+Color grey_of_pi() {
+    return grey(static_cast<float>(M_PI));
+}
+
+/// Light of a direct light sample, where an irradiance of E becomes a radiance of E.
+double seen(const SceneView& scene, LightReceiver receiver, Vec2f u) {
+    const LightSample light = sample_light<MaterialSet::plain>(scene, receiver, u, 7);
+    const PlainBsdf white{receiver.normal, receiver.normal, receiver.normal, grey_of_pi(), {0, 0, 0}, 0};
+    return static_cast<double>((white.eval(light.direction) * light.irradiance).r);
+}
+
+LightReceiver receiver_at(Vec3d position, Vec3d normal) {
+    return {static_cast<Vec3f>(position), static_cast<Vec3f>(normalized(normal))};
 }
 
 struct Lamp {
@@ -96,12 +104,10 @@ TEST_CASE("direct light of shining triangles is the integral over them") {
         REQUIRE(truth > 0);
         const Scene scene = scene_of(test.lamps);
         const RenderSpaceScene placed(scene, {0, 0, 0});
-        const SurfacePoint point = grey_point(test.position, test.normal);
+        const LightReceiver receiver = receiver_at(test.position, test.normal);
         Mean mean;
         Uniform uniform(static_cast<unsigned>(k) + 1);
-        for (int i = 0; i < kSamples; ++i)
-            mean.add(static_cast<double>(
-                lit_radiance(point, point.normal, sample_light(placed.view(), point, uniform.pair())).x));
+        for (int i = 0; i < kSamples; ++i) mean.add(seen(placed.view(), receiver, uniform.pair()));
         worst.add(mean, truth);
     }
     hold({"Samplers", "direct light of shining triangles: mean against quadrature",
@@ -141,12 +147,10 @@ TEST_CASE("direct light of an environment is the integral over its pixels") {
                                  M_PI * row / kHeight, M_PI * (row + 1) / kHeight, 2 * M_PI * (column / 16.0 - 0.5),
                                  2 * M_PI * ((column + 1) / 16.0 - 0.5), 16);
             const RenderSpaceScene placed(scene, {0, 0, 0});
-            const SurfacePoint point = grey_point({0, 0, 0}, n);
+            const LightReceiver receiver = receiver_at({0, 0, 0}, n);
             Mean mean;
             Uniform uniform(seed++);
-            for (int i = 0; i < kSamples; ++i)
-                mean.add(static_cast<double>(
-                    lit_radiance(point, point.normal, sample_light(placed.view(), point, uniform.pair())).x));
+            for (int i = 0; i < kSamples; ++i) mean.add(seen(placed.view(), receiver, uniform.pair()));
             if (truth > 0) {
                 worst.add(mean, truth);
             } else {
@@ -172,15 +176,11 @@ TEST_CASE("no surface reflects more than it gets, and scattered paths carry what
         for (const double degrees : {0.0, 45.0, 80.0}) {
             CAPTURE(s.shininess);
             CAPTURE(degrees);
-            SurfacePoint point{};
-            point.normal = point.geometric_normal = {0, 1, 0};
-            point.diffuse = {s.diffuse, s.diffuse, s.diffuse};
-            point.specular = {s.specular, s.specular, s.specular};
-            point.shininess = s.shininess;
             const double a = degrees * M_PI / 180;
-            const Vec3f eye = static_cast<Vec3f>(Vec3d{-std::sin(a), std::cos(a), 0});
+            const Vec3f eye = static_cast<Vec3f>(Vec3d{-std::sin(a), std::cos(a), 0}), normal = {0, 1, 0};
+            const PlainBsdf bsdf{normal, normal, eye, grey(s.diffuse), grey(s.specular), s.shininess};
             // About the mirrored direction, in rings of the lobe's width; the horizon cuts through them.
-            const Vec3d axis = normalized(static_cast<Vec3d>(mirrored_at(point.normal, eye)));
+            const Vec3d axis = normalized(static_cast<Vec3d>(mirrored_at(normal, eye)));
             const Vec3d x = normalized(cross(axis, Vec3d{0.3, 0.2, 0.9})), y = cross(axis, x);
             const double width = std::sqrt(2 / (static_cast<double>(s.shininess) + 2));
             double truth = 0, from = 0;
@@ -190,16 +190,14 @@ TEST_CASE("no surface reflects more than it gets, and scattered paths carry what
                     [&](double angle, double turn) {
                         const double r = std::sin(angle);
                         const Vec3d d = (r * std::cos(turn)) * x + (r * std::sin(turn)) * y + std::cos(angle) * axis;
-                        return d.y > 0 ? static_cast<double>(reflectance(point, eye, static_cast<Vec3f>(d)).x) * d.y * r
-                                       : 0.0;
+                        return static_cast<double>(bsdf.eval(static_cast<Vec3f>(d)).r) * r;
                     },
                     from, to, -M_PI, M_PI, 12);
                 from = to;
             }
             Mean mean;
             Uniform uniform(seed++);
-            for (int i = 0; i < kSamples; ++i)
-                mean.add(static_cast<double>(scatter(point, eye, uniform.pair()).factor.x));
+            for (int i = 0; i < kSamples; ++i) mean.add(static_cast<double>(bsdf.sample(uniform.pair(), 0).weight.r));
             worst.add(mean, truth);
             most = std::max(most, truth);
             most_by_mean = std::max(most_by_mean, mean.value() - kErrors * mean.standard_error());

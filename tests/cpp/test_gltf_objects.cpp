@@ -87,10 +87,10 @@ TEST_CASE("glTF: objects keep the materials and pictures that they use") {
     const Scene &ground = *scene.static_geometry, &table = *scene.instances[0].object;
     REQUIRE(ground.materials.size() == 1);
     CHECK(ground.textures.size() == 1);
-    CHECK(ground.materials[0].diffuse_texture == 0);
+    CHECK(ground.materials[0].diffuse_texture.texture == 0);
     REQUIRE(table.materials.size() == 1);  // that of a mesh without any
     CHECK(table.textures.empty());
-    CHECK(table.materials[0].diffuse_texture == -1);
+    CHECK(table.materials[0].diffuse_texture.texture == -1);
 }
 
 TEST_CASE("glTF: a mesh that stands in very many places is shared") {

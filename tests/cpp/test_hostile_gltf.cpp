@@ -1,7 +1,10 @@
 // glTF files that are wrong, or strange and right. Each ends in a scene or in one line that names file and element,
 // soon, and without memory that the file only promises.
 
+#include <sys/resource.h>
+
 #include <cmath>
+#include <fstream>
 #include <string>
 
 #include "hostile_scenes.hpp"
@@ -253,3 +256,86 @@ TEST_CASE("glTF: what is too far away is said to be") {
     tiny.nodes = R"([{"mesh":0,"rotation":[1e300,1e300,0,0],"scale":[1e300,1e300,1]}])";
     CHECK(has(gltf.error(tiny), "coordinates must be finite numbers"));
 }
+
+TEST_CASE("glTF: copies of a mesh that need more than memory are refused before one is made") {
+    const Gltf gltf;
+    Tiny tiny;
+    // 300 000 triangles of three vertices, on 20 000 nodes: 6e9 triangles, 192 GB in the scene's form alone.
+    constexpr int kIndices = 900000, kNodes = 20000;
+    gltf.folder.write("i.bin", std::string(kIndices, '\0'));
+    tiny.indices = R"("bufferView":2,"componentType":5121,"count":900000,"type":"SCALAR")";
+    std::string nodes, roots;
+    for (int i = 0; i < kNodes; ++i) {
+        nodes += (i > 0 ? ",\n" : "") + std::string(R"({"mesh":0,"weights":[0.5]})");
+        roots += (i > 0 ? "," : "") + std::to_string(i);
+    }
+    tiny.nodes = '[' + nodes + ']';
+    tiny.roots = '[' + roots + ']';
+    tiny.primitive += R"(,"targets":[{"POSITION":0}])";
+    std::string text = tiny.text();
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    replace(R"("byteLength":6}])", R"("byteLength":6},{"buffer":1,"byteLength":900000}])");
+    replace(R"(AAABAAIA"}])", R"(AAABAAIA"},{"byteLength":900000,"uri":"i.bin"}])");
+    CHECK(has(gltf.error(text), "its meshes, of which nodes with skins or weights have their own, need "));
+    for (const char* count : {"-1e999", "1e999"}) {  // no number of anything
+        std::string wrong = text;
+        wrong.replace(wrong.find("\"count\":900000"), 14, std::string("\"count\":") + count);
+        CHECK(has(gltf.error(wrong), "holds no triangles"));
+    }
+    const auto at = text.find(nodes);
+    const auto first_end = nodes.find('\n') - 1;
+    text.replace(at, nodes.size(), nodes.substr(0, first_end));
+    text.replace(text.find(roots), roots.size(), "0");
+    CHECK(has(gltf.error(text), "all of its triangles are without area"));
+}
+
+TEST_CASE("glTF: images that share their bytes are decoded once") {
+    const Gltf gltf;
+    Tiny tiny;
+    tiny.primitive += R"(,"material":0)";
+    tiny.more = R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0}}},
+                    {"pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":1}}}],
+                    "textures":[{"source":0},{"source":1}],
+                    "images":[{"bufferView":0,"mimeType":"image/png"},{"bufferView":0,"mimeType":"image/png"}])";
+    std::string text = tiny.text();
+    const std::string one = R"({"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]})";
+    text.replace(text.find(one), one.size(),
+                 R"({"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0},
+                                   {"attributes":{"POSITION":0},"indices":1,"material":1}]})");
+    Reader reader;
+    const Assembly scene = io::read_scene(gltf.folder.write("t.gltf", text), {}, reader.function());
+    CHECK(reader.asked.size() == 1);
+}
+
+#if !defined(__SANITIZE_ADDRESS__)  // which needs all addresses for itself
+TEST_CASE("pictures that need more memory together than there is are refused") {
+    const Folder folder;
+    std::string mtl, obj = "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n";
+    for (const char* name : {"a", "b", "c"}) {
+        mtl += std::string("newmtl ") + name + "\nmap_Kd " + folder.write(std::string(name) + ".png", "") + '\n';
+        obj += std::string("usemtl ") + name + "\nf 1/1 2/1 3/1\n";
+    }
+    folder.write("t.mtl", mtl);
+    const std::string path = folder.write("t.obj", obj);
+    const io::ImageReader large = [](const std::string&, std::span<const std::uint8_t>) {
+        return std::optional(DecodedImage{8192, 4096, std::vector<std::uint8_t>(std::size_t{1} << 27)});
+    };
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit before{};
+    getrlimit(RLIMIT_AS, &before);
+    rlimit small = before;
+    small.rlim_cur = pages * 4096 + (std::size_t{5} << 27);  // room for the three, and not for a second time
+    setrlimit(RLIMIT_AS, &small);
+    std::string message = "no error";
+    try {
+        io::read_scene(path, {}, large);
+    } catch (const SceneFileError& error) {
+        message = error.what();
+    }
+    setrlimit(RLIMIT_AS, &before);
+    CHECK(has(message, "t.obj: its first 3 textures are in memory, and a render needs as much again, 0.4 GB, and "));
+}
+#endif

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../../cpp/camera/last_setup.hpp"
-#include "../../cpp/embree/embree_backend.hpp"
+#include "../../cpp/embree/fast_pupil_tracer.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "pixel_rays.hpp"

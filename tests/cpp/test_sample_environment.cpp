@@ -47,7 +47,7 @@ Bins over_image(const EnvironmentView& e, Sampler&& sampler, unsigned seed) {
     const auto density = [&](double row, double column) {
         const double polar = M_PI * row / e.height, azimuth = 2 * M_PI * (column / e.width - 0.5), r = std::sin(polar);
         const Vec3d d{r * std::sin(azimuth), std::cos(polar), -r * std::cos(azimuth)};
-        return static_cast<double>(environment_pdf(e, static_cast<Vec3f>(d))) * r * (M_PI / e.height) *
+        return static_cast<double>(environment_image_pdf(e, static_cast<Vec3f>(d))) * r * (M_PI / e.height) *
                (2 * M_PI / e.width);
     };
     bins.expect(density, kSamples, 1);
@@ -149,7 +149,7 @@ TEST_CASE("sample_environment_image follows environment_pdf") {
         for (const Vec2f u : extreme_inputs()) {
             const LightSample sample = sample_environment_image(all.view().environment, u);
             CHECK(std::fabs(length(sample.direction) - 1) < 1e-6f);
-            CHECK((sample.irradiance.x >= 0 && std::isfinite(sample.irradiance.x)));
+            CHECK((sample.irradiance.r >= 0 && std::isfinite(sample.irradiance.r)));
         }
     }
 }

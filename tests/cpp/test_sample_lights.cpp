@@ -17,17 +17,17 @@ namespace {
 constexpr int kSamples = 1 << 18;
 
 // A light's points in barycentric coordinates: 4 x 4 parts of the unit square, of which the triangle has the lower left
-// half. The bins of all lights in one list.
+// half.
 struct OnLights {
     std::vector<double> expected, counts;
 
-    explicit OnLights(const SceneView& view) {
-        for (int i = 0; i < view.area_count; ++i) {
-            const AreaLight& light = view.areas[i];
+    OnLights(const SceneView& view, int number) {
+        {
+            const AreaLight& light = view.areas[number];
             const double area = 0.5 * length(cross(static_cast<Vec3d>(light.edge_u), static_cast<Vec3d>(light.edge_v)));
             for (int a = 0; a < 4; ++a)
                 for (int b = 0; b < 4; ++b)
-                    expected.push_back(static_cast<double>(light.density) * 2 * area * kSamples *
+                    expected.push_back(2 * area / static_cast<double>(light.area) * kSamples *
                                        integral([](double, double) { return 1.0; }, a / 4.0, (a + 1) / 4.0, b / 4.0,
                                                 (b + 1) / 4.0, 1) *
                                        (a + b < 3    ? 1.0
@@ -37,14 +37,14 @@ struct OnLights {
         counts.resize(expected.size());
     }
 
-    void add(int index, const AreaLight& light, Vec3d point) {
+    void add(const AreaLight& light, Vec3d point) {
         const Vec3d u = static_cast<Vec3d>(light.edge_u), v = static_cast<Vec3d>(light.edge_v), n = cross(u, v);
         const Vec3d p = point - static_cast<Vec3d>(light.corner);
         const double s = dot(cross(p, v), n) / dot(n, n), t = dot(cross(u, p), n) / dot(n, n);
         // Rounding may take a point over the edge.
         const int a = std::clamp(static_cast<int>(std::floor(4 * s)), 0, 3);
         const int b = std::clamp(static_cast<int>(std::floor(4 * t)), 0, 3 - a);
-        ++counts[static_cast<std::size_t>(16 * index + 4 * a + b)];
+        ++counts[static_cast<std::size_t>(4 * a + b)];
     }
 };
 
@@ -90,29 +90,29 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
         const RenderSpaceScene placed(scene, {0, 0, 0});
         const SceneView view = placed.view();
         REQUIRE(view.area_count == static_cast<int>(group.size()));
-        OnLights bins(view);
         Uniform uniform(seed++);
-        for (int i = 0; i < kSamples; ++i) {
-            const Vec2f u = uniform.pair();
-            // Straight above the origin, so that x and y keep a sliver's width.
-            const Vec3f from{0, 0, 0.5f};
-            const LightSample sample = sample_area_light(view, from, u);
-            const int index = find_in_cdf(view.area_cdf, view.area_count, u.x);
-            const Vec3d point =
-                static_cast<Vec3d>(from) + static_cast<double>(sample.distance) * static_cast<Vec3d>(sample.direction);
-            bins.add(index, view.areas[index], point);
+        for (int k = 0; k < view.area_count; k += std::max(1, view.area_count / 8)) {
+            OnLights bins(view, k);
+            for (int i = 0; i < kSamples; ++i) {
+                // Straight above the origin, so that x and y keep a sliver's width.
+                const Vec3f from{0, 0, 0.5f};
+                const LightSample sample =
+                    sample_area_light<MaterialSet::plain>(view, view.areas[k], from, uniform.pair());
+                bins.add(view.areas[k], static_cast<Vec3d>(from) + static_cast<double>(sample.distance) *
+                                                                       static_cast<Vec3d>(sample.direction));
+            }
+            tests.add(bins.expected, bins.counts);
         }
-        tests.add(bins.expected, bins.counts);
     }
     tests.hold();
 
     const Scene scene = with_lamps({kLamps[0]});
     const RenderSpaceScene placed(scene, {0, 0, 0});
-    OnLights bins(placed.view());
+    OnLights bins(placed.view(), 0);
     Uniform uniform(1);
     for (int i = 0; i < kSamples; ++i) {
         const Vec2f u = uniform.pair();
-        bins.add(0, placed.view().areas[0], {static_cast<double>(u.x * (1 - u.y)), static_cast<double>(u.x * u.y), 0});
+        bins.add(placed.view().areas[0], {static_cast<double>(u.x * (1 - u.y)), static_cast<double>(u.x * u.y), 0});
     }
     ChiSquareTests broken("sample_area_light without the square root");
     broken.add(bins.expected, bins.counts);
@@ -120,56 +120,86 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
 
     const Scene all = with_lamps(kLamps);
     const RenderSpaceScene lamps(all, {0, 0, 0});
-    for (const Vec2f u : extreme_inputs())
-        for (const Vec3f from : {Vec3f{0.2f, 0.2f, 1}, Vec3f{0, 0, 1e-6f}, Vec3f{0, 0, 0}, Vec3f{0.2f, 0.2f, -1}}) {
-            const LightSample sample = sample_area_light(lamps.view(), from, u);
-            CHECK((sample.irradiance.x >= 0 && std::isfinite(sample.irradiance.x)));
-            CHECK(std::fabs(length(sample.direction) - 1) < 1e-6f);
-            CHECK(!(sample.reach > 1));
-            if (from.z <= 0) CHECK(sample.irradiance.x == 0);  // on the lights and behind them
-        }
+    for (int k = 0; k < lamps.view().area_count; ++k)
+        for (const Vec2f u : extreme_inputs())
+            for (const Vec3f from : {Vec3f{0.2f, 0.2f, 1}, Vec3f{0, 0, 1e-6f}, Vec3f{0, 0, 0}, Vec3f{0.2f, 0.2f, -1}}) {
+                const LightSample sample =
+                    sample_area_light<MaterialSet::plain>(lamps.view(), lamps.view().areas[k], from, u);
+                CHECK((sample.irradiance.r >= 0 && std::isfinite(sample.irradiance.r)));
+                CHECK(std::fabs(length(sample.direction) - 1) < 1e-6f);
+                CHECK(!(sample.reach > 1));
+                if (from.z <= 0) CHECK(sample.irradiance.r == 0);  // on the lights and behind them
+            }
 }
 
-TEST_CASE("kinds of light are chosen alike, and what is left of the number is fresh") {
-    ChiSquareTests tests("sample_light: the choice of a kind, and the number left over");
-    unsigned seed = 1;
-    for (const int kinds : {1, 2, 3, 7, 100}) {
-        Bins bins(Bins::even(0, kinds, kinds), Bins::even(0, 1, 8));
-        bins.expect([&](double kind, double) { return choose_light(kinds, static_cast<float>(kind / kinds)).pdf; },
-                    kSamples, 1);
-        Uniform uniform(seed++);
-        for (int i = 0; i < kSamples; ++i) {
-            const LightChoice choice = choose_light(kinds, uniform());
-            bins.add(choice.kind + 0.5, static_cast<double>(choice.fresh));
-        }
-        tests.add(bins);
-        for (const Vec2f u : extreme_inputs()) {
-            const LightChoice choice = choose_light(kinds, u.x);
-            CHECK((choice.kind >= 0 && choice.kind < kinds && choice.fresh >= 0 && choice.fresh < 1));
-        }
+TEST_CASE("a light is chosen from the tree with the probability that is said of it") {
+    ChiSquareTests tests("choose_light: 400 area lights and 100 point lights, by the tree");
+    std::vector<Lamp> many;
+    Uniform place(8);
+    for (int i = 0; i < 400; ++i) {
+        const Vec3d at{4 * static_cast<double>(place()) - 2, 4 * static_cast<double>(place()) - 2,
+                       static_cast<double>(place())};
+        const double size = std::pow(10.0, -3.0 * static_cast<double>(place()));
+        const Vec3d v = i % 3 ? Vec3d{0, size, 0} : Vec3d{0, 0, size};
+        many.push_back({at, at + Vec3d{size, 0, 0}, at + v, i % 2 ? 1.0f : 100.0f});
     }
+    Scene scene = with_lamps(many);
+    for (int i = 0; i < 100; ++i)
+        scene.points.push_back(
+            {{static_cast<double>(place()), 3 * static_cast<double>(place()), 2}, {1e-3f, 1e-3f, 0}});
+    const RenderSpaceScene placed(scene, {0, 0, 0});
+    const SceneView view = placed.view();
+    const int lights = view.point_count + view.area_count;
+    unsigned seed = 1;
+    for (const Vec3f position : {Vec3f{0, 0, 0.5f}, Vec3f{1, -1, -3}, Vec3f{50, 20, 10}})
+        for (const Vec3f normal : {Vec3f{0, 0, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1}, Vec3f{-1, 0, 0}}) {
+            const LightReceiver receiver{position, normal};
+            std::vector<double> expected, counts(static_cast<std::size_t>(lights));
+            for (int i = 0; i < lights; ++i)
+                expected.push_back(kSamples * static_cast<double>(light_probability(view, receiver, i)));
+            Uniform uniform(seed++);
+            for (int i = 0; i < kSamples; ++i) {
+                const LightChoice choice = choose_light(view, receiver, uniform(), static_cast<std::uint32_t>(i));
+                REQUIRE((choice.light >= 0 && choice.light < lights && choice.fresh >= 0 && choice.fresh < 1));
+                CHECK(choice.probability == doctest::Approx(light_probability(view, receiver, choice.light)));
+                ++counts[static_cast<std::size_t>(choice.light)];
+            }
+            tests.add(expected, counts);
+        }
+    tests.hold();
+}
 
-    // sample_light itself, told apart by colour: two points, a sun, a shining triangle, a sky.
+TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which add up to 1") {
+    ChiSquareTests tests("sample_light: the choice of a kind");
+    // Told apart by colour: a point, a shining triangle, two suns, a sky.
     Scene scene = with_lamps({{{0, 2, 0}, {1, 2, 0}, {0, 2, 1}, 1}});
     scene.materials.back().emission = {0, 0, 5};
-    scene.points = {{{0, 1, 0}, {1, 0, 0}}, {{0, 3, 0}, {0, 1, 0}}};
-    scene.suns = {{{0, -1, 0}, {1, 1, 0}}};
+    scene.suns = {{{0, -1, 0}, {1, 1, 0}}, {{0, -0.6f, 0.8f}, {0, 10, 0}}};
     scene.environment.constant = {1, 0, 1};
     const RenderSpaceScene placed(scene, {0, 0, 0});
-    REQUIRE(light_kinds(placed.view()) == 5);
-    SurfacePoint point{};
-    point.normal = point.geometric_normal = {0, 1, 0};
-    std::vector<double> counts(8);
-    Uniform uniform(99);
-    for (int i = 0; i < kSamples; ++i) {
-        const Vec3f e = sample_light(placed.view(), point, uniform.pair()).irradiance;
-        ++counts[static_cast<std::size_t>((e.x > 0) + 2 * (e.y > 0) + 4 * (e.z > 0))];
+    unsigned seed = 1;
+    for (const Vec3f normal : {Vec3f{0, 1, 0}, Vec3f{0, 0, -1}, Vec3f{0, -1, 0}, Vec3f{0, 0, 0}}) {
+        const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
+        const SceneView view = placed.view();
+        const LightKinds kinds(view, receiver);
+        const std::vector<double> share = {
+            static_cast<double>(kinds.local_probability()), static_cast<double>(kinds.environment_probability()),
+            static_cast<double>(kinds.sun_probability(0)), static_cast<double>(kinds.sun_probability(1))};
+        CHECK(share[0] + share[1] + share[2] + share[3] == doctest::Approx(1).epsilon(1e-6));
+        std::vector<double> expected, counts(4);
+        for (const double s : share) expected.push_back(s * kSamples);
+        Uniform uniform(seed++);
+        for (int i = 0; i < kSamples; ++i) {
+            const LightSample s = sample_light<MaterialSet::plain>(view, receiver, uniform.pair(), 1);
+            const bool is_sun = s.pdf == kDelta && s.distance >= kFarAway;
+            ++counts[is_sun ? (s.irradiance.r > 0 ? 2u : 3u) : s.distance >= kFarAway ? 1u : 0u];
+        }
+        tests.add(expected, counts);
     }
-    const double each = kSamples / 5.0;
-    tests.add({0, each, each, each, each, each, 0, 0}, counts);
     tests.hold();
 
     const Scene dark = bare_scene();
     const RenderSpaceScene nothing(dark, {0, 0, 0});
-    CHECK(sample_light(nothing.view(), point, {0.5f, 0.5f}).irradiance.x == 0);
+    CHECK(
+        is_black(sample_light<MaterialSet::plain>(nothing.view(), {{0, 0, 0}, {0, 1, 0}}, {0.5f, 0.5f}, 1).irradiance));
 }

@@ -41,7 +41,7 @@ TEST_CASE("OBJ: materials of the MTL as they are written, and the texture beside
     check_vec(m.specular, .4, .5, .6);
     CHECK(m.shininess == 50.0f);
     check_vec(m.emission, 3, 4, 5);
-    REQUIRE(m.diffuse_texture == 0);
+    REQUIRE(m.diffuse_texture.texture == 0);
     CHECK(scene.textures[0].rgba == reader.pixel);
     CHECK(reader.asked == std::vector<std::string>{"w.png"});
     CHECK(scene.warnings.empty());
@@ -131,7 +131,7 @@ TEST_CASE("PLY: normals, texture coordinates, a texture's name, doubles, big-end
     check_vec(scene.normals[0], 0, 0, 1);
     CHECK(scene.uvs[scene.triangles[0].vertices[0]].y == 0.25f);
     CHECK(reader.asked == std::vector<std::string>{"map.png"});
-    CHECK(scene.materials[0].diffuse_texture == 0);
+    CHECK(scene.materials[0].diffuse_texture.texture == 0);
 
     std::string big = ply("");
     big.replace(big.find("ascii"), 5, "binary_big_endian");
@@ -152,11 +152,11 @@ TEST_CASE("what can be put up with is a warning") {
                                           "f 1/1 2/1 3/1\nf 1/1 1/1 2/1\nf 1/1 2/1 2/1\n"));
     CHECK(warns(scene, "texture gone.png: no such file beside the scene; a checker in magenta and black stands in"));
     CHECK(warns(scene, "2 triangles without area dropped"));
-    CHECK(warns(scene, "\"wood\" is transparent"));
     CHECK(scene.triangles.size() == 1);
     const Material& m = scene.materials[scene.triangles[0].material];
-    REQUIRE(m.diffuse_texture == 0);
-    CHECK(m.diffuse.x == 1.0f);  // black would hide it
+    REQUIRE(m.diffuse_texture.texture == 0);
+    CHECK(m.diffuse.r == 1.0f);  // black would hide it
+    CHECK((m.transmission == 0.5f && m.is_thin && m.ior == 1.0f));
     const std::vector<std::uint8_t>& rgba = scene.textures[0].rgba;
     CHECK(std::vector<std::uint8_t>(rgba.begin(), rgba.begin() + 4) == std::vector<std::uint8_t>{255, 0, 255, 255});
 

@@ -85,8 +85,8 @@ int fuzz_picture(const std::uint8_t* data, std::size_t size) {
     }
     try {
         const Environment light = image_io::read_environment(path);
-        for (const Vec3f& p : light.pixels)
-            if (!(p.x >= 0 && p.x <= 65504 && p.y >= 0 && p.y <= 65504 && p.z >= 0 && p.z <= 65504))
+        for (const Color& p : light.pixels)
+            if (!(p.r >= 0 && p.r <= 1e20f && p.g >= 0 && p.g <= 1e20f && p.b >= 0 && p.b <= 1e20f))
                 return report("an environment has light that is none", "%s", seed.suffix.c_str()), 0;
     } catch (const ImageFileError& error) {
         if (std::strchr(error.what(), '\n')) report("a message of several lines", "%s", error.what());

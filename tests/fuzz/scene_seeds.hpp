@@ -21,7 +21,11 @@ inline std::string mtl_seed() {
     return "newmtl x\nKd 0.5 0.5 0.5\nKs 0.2 0.2 0.2\nKa 1 1 1\nNs 50\nmap_Kd -s 1 1 1 -o 0.5 -clamp on "
            "seed.png\nnewmtl y\n"
            "Ke 1 2 3\nmap_Ke seed.png\nd 0.5\nTr 0.25\nillum 2\nNi 1.5\nnewmtl z\nKd 1 0 0\nmap_Ks -s 1 1 1 seed.png\n"
-           "map_Bump -bm 0.3 seed.png\nTf 1 1 1\nd -halo 0.5\nbump other.png\nnorm seed.png\nKd spectral file.rfl 1\n";
+           "map_Bump -bm 0.3 seed.png\nTf 1 1 1\nd -halo 0.5\nbump other.png\nnorm seed.png\nKd spectral file.rfl 1\n"
+           "newmtl w\nillum 7\nPr 0.5\nPm 1\nPc 0.5\nPcr 0.1\nmap_Pr seed.png\nmap_Pm -mm 0 1 seed.png\n"
+           "map_d -imfchan r -texres 64 seed.png\nmap_Ns -t 1 1 1 seed.png\nPs 0.5\naniso 1\nrefl -type sphere "
+           "seed.png\n"
+           "disp seed.png\nTr 0.5\n";
 }
 
 inline std::string ply_ascii_seed() {
@@ -96,7 +100,7 @@ inline std::string gltf_buffer() {
 
 /// `uri`: of the buffer with what is in front of it (",\"uri\":\"...\""), or nothing for a GLB.
 inline std::string gltf_seed(const std::string& uri) {
-    return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],"extensionsRequired":["KHR_texture_transform"],
+    return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual","KHR_materials_sheen"],"extensionsRequired":["KHR_texture_transform"],
 "scene":0,"scenes":[{"nodes":[0,4,6]}],
 "nodes":[{"name":"root","children":[1,2,3],"translation":[0,1,0],"rotation":[0,0,0.7071,0.7071],"scale":[1,2,-1]},
 {"name":"car","mesh":0},{"name":"car","mesh":1,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,2,1,1],"weights":[0.5]},
@@ -110,15 +114,20 @@ inline std::string gltf_seed(const std::string& uri) {
 "materials":[{"name":"m","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,0.5],"metallicFactor":0.5,"roughnessFactor":0.4,
 "baseColorTexture":{"index":0,"texCoord":0,"extensions":{"KHR_texture_transform":{"offset":[0,1],"rotation":1.5,"scale":[0.5,2]}}},
 "metallicRoughnessTexture":{"index":1}},"emissiveFactor":[1,1,0],"emissiveTexture":{"index":1},"alphaMode":"BLEND","doubleSided":true,
-"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":5}}},
+"normalTexture":{"index":0,"scale":2},"occlusionTexture":{"index":1,"strength":0.5,"texCoord":1},"alphaCutoff":0.25,
+"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":5},"KHR_materials_ior":{"ior":1.33},"KHR_materials_unlit":{},
+"KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":{"index":0}},
+"KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":0.5,"attenuationColor":[0.5,1,1],"thicknessTexture":{"index":0}},
+"KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatRoughnessFactor":0.1,"clearcoatNormalTexture":{"index":0,"scale":1}},
+"KHR_materials_specular":{"specularFactor":0.5,"specularColorFactor":[2,1,1],"specularTexture":{"index":1}},"KHR_materials_sheen":{}}},
 {"pbrMetallicRoughness":{"baseColorTexture":{"index":1,"texCoord":1}}},
 {"extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[1,1,1,1],"specularFactor":[0.1,0.2,0.3],"glossinessFactor":0.5,
-"diffuseTexture":{"index":0}}}}],
+"diffuseTexture":{"index":0},"specularGlossinessTexture":{"index":1}}}}],
 "textures":[{"source":0,"sampler":0},{"source":1}],"samplers":[{}],
 "images":[{"bufferView":8,"mimeType":"image/png"},{"uri":"seed.png"},{"uri":"data:image/png;base64,iVBORw0KGgo="}],
 "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],
 "animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":[{"input":5,"output":0}]}],
-"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0.25],"intensity":40},{"type":"spot","spot":{}},{"type":"directional"}]}},
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0.25],"intensity":40},{"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.5}},{"type":"directional"}]}},
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-1,-1,0],"max":[1,1,0]},
 {"bufferView":0,"byteOffset":48,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"},
 {"bufferView":2,"componentType":5121,"count":4,"type":"VEC4"},{"bufferView":3,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"},

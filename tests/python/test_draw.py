@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 
 import matplotlib.figure
@@ -82,3 +84,55 @@ def test_the_drawing_goes_where_the_user_is(tmp_path: Path, monkeypatch: pytest.
 
 def test_an_image_that_is_lit_in_a_ring_alone_is_drawn(tmp_path: Path) -> None:
     save_cross_section(rc.Lens.load("mirror-telephoto-500mm"), tmp_path / "mirror.svg")
+
+
+def test_a_drawing_follows_links_and_is_no_file_until_it_is_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "link.svg").symlink_to("file.svg")
+    draw = matplotlib.figure.Figure.savefig
+    there: list[str] = []
+
+    def watched(figure: matplotlib.figure.Figure, *to: object, **settings: object) -> None:
+        draw(figure, *to, **settings)
+        there.extend(path.name for path in tmp_path.iterdir())
+
+    monkeypatch.setattr(matplotlib.figure.Figure, "savefig", watched)
+    save_cross_section(GAUSS, tmp_path / "link.svg")
+    assert there == ["link.svg"]
+    assert (tmp_path / "link.svg").is_symlink()
+    assert "<svg" in (tmp_path / "file.svg").read_text()
+    assert {path.name for path in tmp_path.iterdir()} == {"link.svg", "file.svg"}
+
+
+def test_what_cannot_be_written_is_named_as_the_user_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe.svg")
+    long = "x" * 300 + ".svg"
+    for name, why in {
+        "gone/a.svg": "the folder gone does not exist",
+        "pipe.svg": "is a pipe or a device",
+        long: "cannot be written: File name too long",
+        "a\0b.svg": None,
+    }.items():
+        with pytest.raises(rc.InputError if why is None else rc.ImageFileError, match=why and f"^{name}: {why}"):
+            save_cross_section(GAUSS, name)
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", "/temporary")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(rc.ImageFileError, match=r"^a\.svg: cannot be written: No space left on device$"):
+        save_cross_section(GAUSS, "a.svg")
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe.svg"]
+
+
+def test_a_lens_file_is_not_drawn_over(tmp_path: Path) -> None:
+    file = lens_file(tmp_path / "mine.svg")
+    before = file.read_text()
+    (tmp_path / "link.svg").symlink_to(file)
+    for output in (file, tmp_path / "link.svg"):
+        result = CliRunner().invoke(cli.app, ["lens", "draw", str(file), "-o", str(output)])
+        assert isinstance(result.exception, rc.InputError)
+        assert "is the lens file itself" in str(result.exception)
+    assert file.read_text() == before

@@ -302,6 +302,31 @@ def test_what_is_no_environment(tmp_path: Path, capfd: pytest.CaptureFixture[str
     assert captured.out == captured.err == ""
 
 
+def test_a_picture_cut_short_is_refused(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Wherever it ends: OpenImageIO goes on with grey rows where a JPEG or a TIFF has no more data."""
+    codes = np.random.default_rng(3).integers(0, 256, (64, 64, 3)).astype(np.uint8)
+    pictures = {"sequential.jpg": {}, "progressive.jpg": {"jpeg:progressive": 1}, "plain.tif": {"compression": "none"}}
+    for name, wishes in pictures.items():
+        write(tmp_path / name, codes, **wishes)
+        whole = (tmp_path / name).read_bytes()
+        rc.read_environment(tmp_path / name)
+        for share in np.linspace(0.01, 0.99, 30):
+            (tmp_path / f"cut-{name}").write_bytes(whole[: int(share * len(whole))])
+            with pytest.raises(rc.ImageFileError, match=f"cut-{name}: is (broken or incomplete|no picture)"):
+                rc.read_environment(tmp_path / f"cut-{name}")
+    captured = capfd.readouterr()
+    assert captured.out == captured.err == ""
+
+
+def test_a_name_with_a_null_character_is_none(image: rc.Image, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The system would take its beginning."""
+    monkeypatch.chdir(tmp_path)
+    for use in (image.save, rc.read_environment, scenes.sky(1.0).with_environment):
+        with pytest.raises(rc.InputError, match="a file name cannot hold a null character"):
+            use("a.png\0b.png")
+    assert list(tmp_path.iterdir()) == []
+
+
 def textured(folder: Path, name: str) -> np.ndarray:
     """What the texture of a scene file is, seen by a camera: the mean radiance over pi of a white light."""
     (folder / "card.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")

@@ -1,4 +1,4 @@
-"""The live view: frames in flight on a GPU."""
+"""The live view: frames in flight, on a GPU and on the CPU."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from realcam.bench import frame_scene
 HAS_GPU = any(line.startswith("cuda:") for line in rc.devices())
 needs_gpu = pytest.mark.skipif(not HAS_GPU, reason="no GPU on this machine")
 
+on_each = pytest.mark.parametrize("on", ["cpu", pytest.param("cuda:0", marks=[needs_gpu, pytest.mark.gpu])])
+
 LENS = rc.Lens.load("tessar-50mm").focused(4.0)
 
 
@@ -25,9 +27,12 @@ def scene() -> rc.Scene:
     return frame_scene(spheres=5, boxes=5)
 
 
-def test_a_live_view_on_the_cpu_is_refused(scene: rc.Scene) -> None:
-    with pytest.raises(rc.DeviceError, match="GPU"):
-        rc.LiveView(scene, device="cpu")
+def test_devices_of_a_live_view(scene: rc.Scene) -> None:
+    assert rc.LiveView(scene, device="auto").shoot(camera()).samples == 1
+    with pytest.raises(rc.InputError, match=r"no device \"toaster\""):
+        rc.LiveView(scene, device="toaster")
+    with pytest.raises(rc.InputError, match="frames are taken on one GPU"):
+        rc.LiveView(scene, device="cuda:0,1")
 
 
 @pytest.mark.skipif(HAS_GPU, reason="there is a GPU")
@@ -36,27 +41,114 @@ def test_without_a_gpu_the_reason_is_given(scene: rc.Scene) -> None:
         rc.LiveView(scene)
 
 
-@needs_gpu
-@pytest.mark.gpu
-def test_frames_collect_the_samples_of_one_picture(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene, seed=3, max_bounces=1)
+@on_each
+def test_frames_collect_the_samples_of_one_picture(scene: rc.Scene, on: str) -> None:
+    live = rc.LiveView(scene, device=on, seed=3, max_bounces=1)
     frames = [live.shoot(camera(), spp=8) for _ in range(4)]
     assert [frame.samples for frame in frames] == [8, 16, 24, 32]
-    whole = rc.render(scene, camera(), spp=32, seed=3, max_bounces=1, device="cuda")
+    whole = rc.render(scene, camera(), spp=32, seed=3, max_bounces=1, device=on)
     expected = rc._core.develop(whole.pixels, camera().iso)
     # Sums in double in another order: a code may change where a value lies on its border.
     assert np.abs(frames[-1].codes.astype(int) - expected).max() <= 1
     assert not frames[-1].codes.flags.writeable
 
 
-@needs_gpu
-@pytest.mark.gpu
-def test_another_camera_begins_anew_and_another_exposure_does_not(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene)
+@on_each
+def test_another_camera_begins_anew_and_another_exposure_does_not(scene: rc.Scene, on: str) -> None:
+    live = rc.LiveView(scene, device=on)
     live.shoot(camera(), spp=4)
     assert live.shoot(camera(exposure_time_s=0.5), spp=4).samples == 8
     assert live.shoot(camera(x=0.1), spp=4).samples == 4
     assert live.shoot(camera(x=500.0), spp=4).samples == 4  # far away: the scene is placed anew
+
+
+def test_the_picture_on_the_cpu_is_that_of_render(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, device="cpu", seed=3, max_bounces=1)
+    with pytest.raises(rc.InputError, match="no picture yet"):
+        live.picture()
+    for _ in range(2):
+        live.shoot(camera(exposure_time_s=0.25), spp=8)
+    pixels, depth = live.picture()
+    whole = rc.render(scene, camera(exposure_time_s=0.25), spp=16, seed=3, max_bounces=1, device="cpu")
+    assert isinstance(pixels, np.ndarray)
+    assert (pixels.dtype, depth.dtype) == (np.float32, np.float32)
+    np.testing.assert_allclose(pixels, whole.pixels, rtol=1e-6)  # sums in double, of 8 and 8 samples
+    np.testing.assert_allclose(depth, whole.depth, rtol=1e-6)
+    # What the view collects next does not change it.
+    before = pixels.copy()
+    live.shoot(camera(), spp=8).codes  # noqa: B018
+    del live
+    np.testing.assert_array_equal(pixels, before)
+
+
+def test_a_scene_that_is_shown_begins_anew(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, device="cpu")
+    live.shoot(camera(), spp=2)
+    live.show(frame_scene(spheres=2, boxes=2))
+    with pytest.raises(rc.InputError, match="no picture yet"):
+        live.picture()
+    assert live.shoot(camera(), spp=2).samples == 2
+
+
+def test_a_frame_on_the_cpu_is_under_way_while_others_work(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, device="cpu", max_bounces=8)
+    frame = live.shoot(camera(), spp=1 << 20)  # minutes
+    assert not frame.ready
+    assert rc.render(scene, camera(), spp=1, device="cpu").spp == 1
+    live.cancel()
+    assert frame.ready
+    with pytest.raises(rc.Cancelled):
+        frame.codes  # noqa: B018
+    with pytest.raises(rc.InputError, match="no picture yet"):
+        live.picture()
+    assert live.shoot(camera(), spp=1).samples == 1
+
+
+def test_cancel_on_the_cpu_by_many_threads_at_once(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, device="cpu", max_bounces=8)
+    for _ in range(5):
+        frame = live.shoot(camera(), spp=1 << 20)
+        waiting: list[str] = []
+
+        def wait_for(frame: rc.LiveFrame = frame, waiting: list[str] = waiting) -> None:
+            try:
+                live.shoot(camera(x=1.0), spp=1 << 20).codes  # noqa: B018
+            except rc.Cancelled:
+                waiting.append("another frame")
+            try:
+                frame.codes  # noqa: B018
+            except rc.Cancelled:
+                waiting.append("the frame")
+
+        other = threading.Thread(target=wait_for)
+        other.start()
+        time.sleep(0.1)
+        threads = [threading.Thread(target=live.cancel) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        # One that had not been shot by then goes on.
+        while other.is_alive():
+            live.cancel()
+            other.join(0.1)
+        assert waiting == ["another frame", "the frame"]
+        assert live.shoot(camera(), spp=1).codes.any()
+
+
+def test_a_view_may_go_with_a_frame_under_way(scene: rc.Scene) -> None:
+    frame = rc.LiveView(scene, device="cpu", max_bounces=8).shoot(camera(), spp=1 << 20)
+    with pytest.raises(rc.Cancelled):
+        frame.codes  # noqa: B018
+
+
+def test_wrong_frames_are_refused(scene: rc.Scene) -> None:
+    live = rc.LiveView(scene, device="cpu")
+    with pytest.raises(rc.InputError, match="spp"):
+        live.shoot(camera(), spp=0)
+    with pytest.raises(rc.InputError, match="tone curve"):
+        live.shoot(camera(), tone="sepia")
+    assert live.shoot(camera(), spp=2).samples == 2
 
 
 @needs_gpu
@@ -82,12 +174,11 @@ def test_the_picture_on_the_gpu_is_that_of_render(scene: rc.Scene) -> None:
     assert shared.sum().item() == before
 
 
-@needs_gpu
-@pytest.mark.gpu
-def test_an_object_moves_between_frames(scene: rc.Scene) -> None:
+@on_each
+def test_an_object_moves_between_frames(scene: rc.Scene, on: str) -> None:
     ball = frame_scene(spheres=1, boxes=0)
     scene = scene.with_instance(ball, name="ball")
-    live = rc.LiveView(scene)
+    live = rc.LiveView(scene, device=on)
     assert live.shoot(camera(), spp=4).samples == 4
     for x in (0.2, -0.4):
         matrix = np.diag([0.5, 0.5, 0.5, 1.0])
@@ -96,7 +187,7 @@ def test_an_object_moves_between_frames(scene: rc.Scene) -> None:
         live.show(scene)
         frame = live.shoot(camera(), spp=64)
         assert frame.samples == 64
-        expected = rc._core.develop(rc.render(scene, camera(), spp=64, device="cuda").pixels, camera().iso)
+        expected = rc._core.develop(rc.render(scene, camera(), spp=64, device=on).pixels, camera().iso)
         # The hierarchy was refitted here and built there: a hit at an edge may be another, nothing else.
         assert (np.abs(frame.codes.astype(int) - expected) > 1).mean() < 1e-3
     live.show(frame_scene(spheres=2, boxes=2))
@@ -104,10 +195,9 @@ def test_an_object_moves_between_frames(scene: rc.Scene) -> None:
     assert (np.abs(other.astype(int) - expected) > 1).mean() > 0.01
 
 
-@needs_gpu
-@pytest.mark.gpu
-def test_frames_outlive_their_view_and_do_not_share_memory(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene)
+@on_each
+def test_frames_outlive_their_view_and_do_not_share_memory(scene: rc.Scene, on: str) -> None:
+    live = rc.LiveView(scene, device=on)
     codes = [live.shoot(camera(x=0.5 * i), spp=4).codes for i in range(6)]
     copies = [c.copy() for c in codes]
     for i in range(6):

@@ -101,6 +101,9 @@ def test_focus_and_stop(tmp_path: Path) -> None:
         ("format = 1\nscene = 'gone.obj'", r"gone\.obj: no such file"),
         ("format = 1\nscene = 'quad.obj'\nlens = 'gone'", "unknown lens"),
         ("format = 1\nscene = [", "shot.toml:2: not valid TOML"),
+        ('format = 1\nscene = "a\\u0000b"', 'shot.toml:2: "scene" holds a null character'),
+        ('format = 1\nscene = "a"\nlens = "tessar-50mm\\u0000"', 'shot.toml:3: "lens" holds a null character'),
+        ('format = 1\nscene = "a"\nenvironment = "a\\u0000b"', 'shot.toml:3: "environment" holds a null character'),
     ],
 )
 def test_mistakes_name_file_and_line(tmp_path: Path, text: str, message: str) -> None:

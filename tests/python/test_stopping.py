@@ -12,6 +12,7 @@ import textwrap
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -66,6 +67,27 @@ LONG_CALLS = {
         rc.render(room(), camera, spp=1, device="cpu")
         """,
     "metering": 'while True: camera.metered(room(), device="cpu", max_bounces=64)',
+    "a session": 'rc.Session(room(), camera, device="cpu", max_bounces=64).add(256)',
+    "a session in another thread": """
+        session = rc.Session(room(), camera, device="cpu")
+        threading.Thread(target=lambda: session.add(4096), daemon=True).start()
+        time.sleep(0.3)
+        session.image()
+        """,
+    "a frame": """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        live.shoot(camera, spp=256).codes
+        """,
+    "a frame that waits for another": """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        for _ in range(2):
+            live.shoot(camera, spp=256)
+        """,
+    "the picture of frames": """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        live.shoot(camera, spp=256)
+        live.picture()
+        """,
 }
 
 
@@ -135,6 +157,8 @@ def test_progress_is_told_while_the_scene_is_made_ready() -> None:
 
 AT_WORK = {
     "render": 'rc.render(room(), camera, spp=64, device="cpu")',
+    "session": 'rc.Session(room(), camera, device="cpu").add(64)',
+    "live": "live.shoot(camera, spp=64).codes",
     "generate_rays": "camera.generate_rays(spp=20)",
     "trace": "camera.lens.trace(np.full((3_000_000, 3), (0.0, 0.0, 80.0)), np.full((3_000_000, 3), (0.0, 0.0, -1.0)))",
     "wavefront": "camera.lens.wavefront(5, samples=512)",
@@ -145,6 +169,7 @@ AT_WORK = {
 @pytest.mark.parametrize("what", AT_WORK)
 def test_python_ends_cleanly_while_a_daemon_thread_works(what: str) -> None:
     code = f"""
+        live = rc.LiveView(room(), device="cpu")
         def work():
             while True:
                 {AT_WORK[what]}
@@ -158,6 +183,83 @@ def test_python_ends_cleanly_while_a_daemon_thread_works(what: str) -> None:
         assert process.returncode == 0, errors
         assert "terminate" not in errors
         assert time.monotonic() - start < 6  # a second of import and sleep, and the end of what is under way
+
+
+@pytest.mark.parametrize("kept", ["live", "frame"])
+def test_python_ends_cleanly_with_a_frame_under_way(kept: str) -> None:
+    """Which would take minutes, and of which only the view or only the frame is held by somebody, in a cycle."""
+    code = f"""
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        frame = live.shoot(camera, spp=1 << 20)
+        cycle = [{kept}]
+        cycle.append(cycle)
+        del live, frame
+        time.sleep(0.3)
+        """
+    process = child(code)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    assert not errors
+
+
+def test_a_process_forked_amid_a_frame_says_why_it_does_not_work() -> None:
+    code = """
+        live = rc.LiveView(room(), device="cpu", max_bounces=64)
+        frame = live.shoot(camera, spp=1 << 20)
+        child = os.fork()
+        if child == 0:
+            for work in (lambda: frame.codes, lambda: live.shoot(camera), lambda: live.cancel()):
+                try:
+                    work()
+                except rc.InputError as error:
+                    print(error, flush=True)
+            del live, work  # which waits for nobody
+            os._exit(0)
+        print(os.waitpid(child, 0)[1], flush=True)
+        live.cancel()
+        """
+    out, errors = child(code).communicate(timeout=30)
+    lines = out.splitlines()
+    assert len(lines) == 4, (out, errors)
+    assert all(line.startswith("this process was forked while") for line in lines[:3])
+    assert lines[3] == "0"
+
+
+PICTURES = {
+    "write": 'image.save("b.png")',
+    "read": 'rc.read_environment("a.exr")',
+    "read a shot's": 'rc.Shot.load("shot.toml")',
+}
+SHOT = f"""
+format = 1
+scene = {str(Path(__file__).resolve().parents[2] / "scenes" / "demo.glb")!r}
+lens = "tessar-50mm"
+environment = "a.exr"
+exposure_time_s = 0.01
+"""
+
+
+@pytest.mark.pictures
+@pytest.mark.parametrize("what", PICTURES)
+def test_python_ends_cleanly_while_a_daemon_thread_is_at_a_picture(what: str, tmp_path: Path) -> None:
+    (tmp_path / "shot.toml").write_text(SHOT)
+    code = f"""
+        os.chdir({str(tmp_path)!r})
+        image = rc.render(room(), camera.replace(film=rc.Film(36, 24, (1500, 1000))), spp=1, device="cpu")
+        image.save("a.exr")
+        once = threading.Event()
+        def work():
+            while True:
+                {PICTURES[what]}
+                once.set()
+        threading.Thread(target=work, daemon=True).start()
+        assert once.wait(30)
+        time.sleep(0.3)
+        """
+    process = child(code)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    assert "terminate" not in errors
 
 
 FORK = """
@@ -227,3 +329,25 @@ def test_no_thread_to_be_had_is_told() -> None:
     told = "the system starts no thread; more memory (ulimit -v) or threads (ulimit -u) are wanted"
     assert answers[0] == told
     assert set(answers) <= {told, "out of memory", "rendered"}
+
+
+def children_of(process: int) -> list[str]:
+    return Path(f"/proc/{process}/task/{process}/children").read_text().split()
+
+
+@pytest.mark.pictures
+def test_the_demo_takes_its_render_along_when_it_is_terminated(tmp_path: Path) -> None:
+    """And leaves no empty folder."""
+    command = [sys.executable, "-m", "realcam", "demo", "-o", str(tmp_path / "a" / "b"), "--spp", str(2**24)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        end = time.monotonic() + 30
+        while not (children := children_of(process.pid)) and time.monotonic() < end:
+            time.sleep(0.05)
+        assert children
+        time.sleep(0.5)
+        process.terminate()
+        _, errors = process.communicate(timeout=30)
+        assert process.returncode == 128 + signal.SIGTERM, errors
+        assert b"Traceback" not in errors
+    assert not Path(f"/proc/{children[0]}").exists()
+    assert list(tmp_path.iterdir()) == []

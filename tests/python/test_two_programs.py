@@ -46,9 +46,11 @@ def folder(tmp_path: Path) -> Path:
         "sky.exr": rng.random((8, 16, 3), np.float32) * 100,
         "rgba.png": rng.integers(0, 255, (5, 7, 4), np.uint8, endpoint=True),
     }.items():
-        buffer = oiio.ImageBuf(oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], str(pixels.dtype)))
-        buffer.set_pixels(oiio.ROI(), pixels)
-        assert buffer.write(str(tmp_path / name)), buffer.geterror()
+        type_name = {"float32": "float", "uint8": "uint8"}[str(pixels.dtype)]
+        output = oiio.ImageOutput.create(str(tmp_path / name))
+        assert output.open(str(tmp_path / name), oiio.ImageSpec(*pixels.shape[1::-1], pixels.shape[2], type_name))
+        assert output.write_image(pixels), output.geterror()
+        assert output.close()
     return tmp_path
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from contextlib import suppress
@@ -24,7 +25,8 @@ def demo(
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
 
     shot = _scenes_folder() / "demo.toml"
-    is_new = not output.exists()
+    new_folders = [folder for folder in (output, *output.parents) if not folder.exists()]
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # by way of what cleans up
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -35,9 +37,9 @@ def demo(
         # As the demo's camera has it: wide open and focused near.
         save_cross_section(Lens.load("double-gauss-50mm").focused(1.05), output / "lens.png")
     finally:
-        if is_new:
+        for folder in new_folders:
             with suppress(OSError):
-                output.rmdir()  # where nothing was written
+                folder.rmdir()  # where nothing was written
     for name, what in (
         ("demo.png", "the photograph"),
         ("demo.exr", "its film exposure in lux seconds, and depth"),
@@ -51,10 +53,14 @@ def _render(shot: Path, spp: int, *rest: Path | str) -> None:
     """`realcam render`. Whatever goes wrong it has said itself; Ctrl-C reaches it too."""
     words = [word if isinstance(word, str) else f"--output={word}" for word in rest]
     with subprocess.Popen([executable(), "render", shot, "--spp", str(spp), *words]) as program:
-        while True:
-            with suppress(KeyboardInterrupt):
-                code = program.wait()
-                break
+        try:
+            while True:
+                with suppress(KeyboardInterrupt):
+                    code = program.wait()
+                    break
+        finally:
+            if program.poll() is None:
+                program.terminate()
     if code != 0:
         sys.exit(code if code > 0 else 128 - code)
 

@@ -8,6 +8,7 @@ from typing import Annotated, Optional
 
 import typer
 
+from .._core import InputError
 from . import options
 
 app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
@@ -37,5 +38,7 @@ def draw(
     lens = options.lens(name, focus, f_number)
     # By what the user called the lens: the name in a file may be any text.
     target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.svg")
+    if Path(name).is_file() and target.exists() and target.samefile(name):
+        raise InputError(f"{target}: is the lens file itself; the drawing needs another name")
     save_cross_section(lens, target, rays=rays)
     typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")

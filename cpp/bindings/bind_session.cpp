@@ -1,0 +1,95 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+#include "../devices/devices.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// What realcam.Session has of the core.
+class PythonSession {
+public:
+    PythonSession(const Assembly& scene, const Camera& camera, const std::string& device, std::int64_t seed,
+                  int max_bounces, int threads)
+        : settings_{1, seed_from(seed), max_bounces, threads} {
+        {
+            const Unlocked unlocked;
+            session_ = make_session(device);
+        }
+        set(scene, camera);
+    }
+    ~PythonSession() {
+        if (has_lost_threads()) static_cast<void>(session_.release());
+    }
+    PythonSession(const PythonSession&) = delete;
+    PythonSession& operator=(const PythonSession&) = delete;
+
+    void set(const Assembly& scene, const Camera& camera) {
+        {
+            const Unlocked unlocked;
+            session_->set(scene, camera, settings_, heed_signals);
+        }
+        scene_ = scene;
+        camera_ = camera;
+    }
+
+    void add(int spp) {
+        const Assembly scene = scene_;
+        const Camera camera = camera_;
+        const Unlocked unlocked;
+        session_->set(scene, camera, settings_, heed_signals);  // anew, after what failed
+        session_->add(spp, [](double) { return heed_signals(); });
+    }
+
+    py::tuple picture() {
+        const Image image = [&] {
+            const Unlocked unlocked;
+            return session_->picture(heed_signals);
+        }();
+        return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}),
+                              copy_of(image.depth, {image.height, image.width}), image.stats);
+    }
+
+    py::array_t<std::int64_t> samples() {
+        const SampleCounts samples = [&] {
+            const Unlocked unlocked;
+            return session_->sample_counts(heed_signals);
+        }();
+        return copy_of(samples.counts, {samples.height, samples.width});
+    }
+
+    void cancel() { session_->cancel(); }
+
+    const Assembly& scene() const { return scene_; }
+    const Camera& camera() const { return camera_; }
+
+private:
+    RenderSettings settings_;
+    std::unique_ptr<Session> session_;
+    Assembly scene_;  ///< those that were set last, and make a picture
+    Camera camera_;
+};
+
+}  // namespace
+
+void bind_session(py::module_& m) {
+    py::class_<PythonSession>(m, "_Session")
+        .def(py::init<const Assembly&, const Camera&, const std::string&, std::int64_t, int, int>(), "scene"_a,
+             "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a)
+        .def("set", &PythonSession::set, "scene"_a, "camera"_a)
+        .def("add", &PythonSession::add, "spp"_a)
+        .def("picture", &PythonSession::picture)
+        .def("cancel", &PythonSession::cancel, py::call_guard<Unlocked>())
+        .def_property_readonly("samples", &PythonSession::samples)
+        .def_property_readonly("scene", &PythonSession::scene)
+        .def_property_readonly("camera", &PythonSession::camera);
+}
+
+}  // namespace realcam::bindings

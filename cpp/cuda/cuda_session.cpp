@@ -1,0 +1,257 @@
+#include "cuda_session.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <string>
+#include <utility>
+
+#include "../camera/last_setup.hpp"
+#include "../render/film_sums.hpp"
+#include "../render/seconds_since.hpp"
+#include "cuda_devices.hpp"
+#include "device_frame.hpp"
+#include "device_renderer.hpp"
+#include "host_scene.hpp"
+#include "on_device.hpp"
+#include "share_array.hpp"
+
+namespace realcam {
+namespace {
+
+class CudaSession final : public Session, public DevicePictures {
+public:
+    CudaSession(const std::vector<int>& ordinals, PupilTracer tracer) : tracer_(std::move(tracer)) {
+        if (cuda_devices().empty()) throw DeviceError(why_no_cuda_device());
+        for (const int ordinal : ordinals) {
+            name_ += (name_.empty() ? "" : " + ") + cuda_device(ordinal).name;
+            renderers_.push_back(make_on_device<DeviceRenderer>(ordinal, ordinal));
+            scene_.add(*renderers_.back());
+        }
+    }
+    ~CudaSession() override {
+        try {
+            cancel();
+        } catch (const DeviceError&) {
+            // A GPU that is lost has nothing to be stopped.
+        }
+    }
+
+    std::string name() const override { return "GPU (" + name_ + ")"; }
+
+    DevicePicture device_picture(const KeepGoing& keep_going) override {
+        return of_all_collected(keep_going, [&] { return develop_here(); });
+    }
+
+private:
+    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings&, const KeepGoing& keep_going,
+                 OwnStop& stop) override {
+        const std::shared_ptr<const CameraSetup> setup = last_setup_.make(camera, tracer_);
+        const auto place = [&] { scene_.place(scene, camera); };
+        if (scene_.change_to(scene, camera) == SceneChange::all) {
+            run_heeding(place, keep_going, stop);
+            if (stop) throw Cancelled();
+        } else {
+            place();  // which takes less time than a thread to start
+        }
+        const CameraView view = setup->view(scene_.origin_m());
+        for (const auto& renderer : renderers_) renderer->set_camera(view);
+    }
+
+    void clear() override {
+        rows_ = 0;
+        film_ = {};
+        stats_ = {};
+        for (const auto& renderer : renderers_) renderer->clear_counts();
+    }
+
+    void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop& stop) override {
+        if (rows_ == 0) lay_out_film();
+        const auto exposing = std::chrono::steady_clock::now();
+        const std::int64_t columns = width();
+        for (int row = 0; row < height() && !stop; row += rows_) {
+            const int rows = std::min(rows_, height() - row);
+            PixelSum* const kept = fits() ? nullptr : film_.data() + row * columns;
+            if (kept) front().upload_film(kept, rows * columns);
+            expose_band(row, rows, range, stop, done);
+            if (kept) front().download_film(kept);
+        }
+        for (const auto& renderer : renderers_) renderer->wait();
+        stats_.seconds += seconds_since(exposing);
+    }
+
+    std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
+                                     std::shared_ptr<void>) override {
+        if (renderers_.size() > 1) throw InputError("frames are taken on one GPU; device=\"cuda:0\", say, is wanted");
+        const CurrentDevice current(front().ordinal());
+        if (rows_ == 0) {
+            front().clear_film(static_cast<std::int64_t>(width()) * height());
+            rows_ = height();
+        }
+        if (!fits()) throw DeviceError("the film is larger than the GPU's memory");
+        for (const SampleRange& range : ranges)
+            front().add({0, height(), range.first, range.count}, settings_of(range));
+        const std::shared_ptr<DeviceFrame> frame =
+            make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
+        frame->develop(front(), camera(), curve);
+        return frame;
+    }
+
+    Image develop() override {
+        Image image;
+        if (fits()) {
+            image.width = width();
+            image.height = height();
+            const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+            image.exposure.resize(3 * pixels);
+            image.depth.resize(pixels);
+            front().develop(camera().exposure_time_s, image.exposure.data(), image.depth.data());
+        } else {
+            image = developed(film_, width(), height(), camera().exposure_time_s);
+        }
+        collect_counts();
+        image.stats = stats_;
+        image.stats.device = name();
+        return image;
+    }
+
+    std::vector<std::int64_t> count_samples() override {
+        if (!fits()) return samples_of(film_);
+        std::vector<std::int64_t> counts(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+        front().count_samples(counts.data());
+        return counts;
+    }
+
+    std::size_t frames_in_flight() const override { return 3; }
+
+    void raise_stop() noexcept override {
+        for (const auto& renderer : renderers_) renderer->stop_flag().raise();
+    }
+    void lower_stop() noexcept override {
+        for (const auto& renderer : renderers_) {
+            try {
+                renderer->stop_flag().lower();
+            } catch (const DeviceError&) {
+                // A GPU that is lost says so to whoever uses it next.
+            }
+        }
+    }
+    bool is_stopped() const override { return renderers_.front()->stop_flag().is_raised(); }
+
+    DeviceRenderer& front() const { return *renderers_.front(); }
+    int width() const { return camera().film.width; }
+    int height() const { return camera().film.height; }
+    bool fits() const { return rows_ == height(); }
+
+    /// Of samples, whose seed changes where a random sequence ends.
+    RenderSettings settings_of(const SampleRange& range) const {
+        RenderSettings result = settings();
+        result.seed = range.seed;
+        return result;
+    }
+
+    /// An empty film: on the first GPU, or where that is too small on the host, from where it travels in bands.
+    void lay_out_film() {
+        const int rows = make_room();
+        const std::int64_t pixels = static_cast<std::int64_t>(width()) * height();
+        if (rows == height())
+            front().clear_film(pixels);
+        else
+            film_.assign(static_cast<std::size_t>(pixels), PixelSum{});
+        rows_ = rows;
+    }
+
+    /// How many rows of the picture fit into every GPU's memory at once.
+    int make_room() {
+        for (int rows = height();; rows = (rows + 1) / 2) {
+            try {
+                for (const auto& renderer : renderers_)
+                    renderer->reserve_film(static_cast<std::int64_t>(rows) * width(), renderers_.size() > 1);
+                return rows;
+            } catch (const OutOfDeviceMemory&) {
+                if (rows == 1) throw;
+            }
+        }
+    }
+
+    /// Samples of some rows, whose film the first GPU has: each GPU takes a range of them. One that fails stops the
+    /// others.
+    void expose_band(int first_row, int rows, const SampleRange& range, OwnStop& stop,
+                     std::atomic<std::int64_t>& done) {
+        const auto share = [&](std::size_t i) {
+            return static_cast<std::uint32_t>(static_cast<std::uint64_t>(range.count) * i / renderers_.size());
+        };
+        std::vector<std::future<void>> others;
+        const auto expose_share = [&](std::size_t i) {
+            try {
+                DeviceRenderer& renderer = *renderers_[i];
+                if (i > 0) renderer.clear_film(static_cast<std::int64_t>(rows) * width());
+                renderer.expose({first_row, rows, range.first + share(i), share(i + 1) - share(i)}, settings_of(range),
+                                done);
+            } catch (...) {
+                stop = true;
+                throw;
+            }
+        };
+        for (std::size_t i = 1; i < renderers_.size(); ++i)
+            others.push_back(std::async(std::launch::async, expose_share, i));
+        expose_share(0);
+        for (std::future<void>& other : others) other.get();
+        for (std::size_t i = 1; i < renderers_.size(); ++i) front().merge_film(*renderers_[i]);
+    }
+
+    DevicePicture develop_here() {
+        if (!fits()) throw DeviceError("the film is larger than the GPU's memory");
+        const CurrentDevice current(front().ordinal());
+        const std::int64_t columns = width(), rows = height();
+        DeviceArray<float> exposure(static_cast<std::size_t>(3 * columns * rows)),
+            depth(static_cast<std::size_t>(columns * rows));
+        front().develop_here(camera().exposure_time_s, exposure.data(), depth.data());
+        int stopped = 0;
+        front().stop_flag().download(&stopped, front().stream());
+        front().wait();
+        if (stopped) throw Cancelled();
+        return {share(std::move(exposure), front().ordinal(), {rows, columns, 3}),
+                share(std::move(depth), front().ordinal(), {rows, columns})};
+    }
+
+    /// Since the film was empty.
+    void collect_counts() {
+        RenderCounts sum{};
+        for (const auto& renderer : renderers_) {
+            const RenderCounts counts = renderer->counts();
+            sum.sampled_rays += counts.sampled_rays;
+            sum.passed_rays += counts.passed_rays;
+            sum.scene_rays += counts.scene_rays;
+            sum.lens_clocks += counts.lens_clocks;
+            sum.scene_clocks += counts.scene_clocks;
+            sum.all_clocks += counts.all_clocks;
+        }
+        stats_.sampled_rays = sum.sampled_rays;
+        stats_.passed_rays = sum.passed_rays;
+        stats_.scene_rays = sum.scene_rays;
+        const double per_clock = sum.all_clocks > 0 ? stats_.seconds / static_cast<double>(sum.all_clocks) : 0;
+        stats_.lens_seconds = per_clock * static_cast<double>(sum.lens_clocks);
+        stats_.scene_seconds = per_clock * static_cast<double>(sum.scene_clocks);
+        stats_.other_seconds = stats_.seconds - stats_.lens_seconds - stats_.scene_seconds;
+    }
+
+    PupilTracer tracer_;
+    std::string name_;
+    std::vector<OnDevice<DeviceRenderer>> renderers_;
+    FramePool pool_;
+    LastSetup last_setup_;
+    HostScene scene_;
+    int rows_ = 0;  ///< of the film that a GPU holds at a time; 0: the film has no place yet
+    FilmSums film_;  ///< where the GPU holds a part of it
+    RenderStats stats_;  ///< seconds: while it was exposed, until the picture is developed
+};
+
+}  // namespace
+
+std::unique_ptr<Session> make_cuda_session(const std::vector<int>& ordinals, PupilTracer tracer) {
+    return std::make_unique<CudaSession>(ordinals, std::move(tracer));
+}
+
+}  // namespace realcam

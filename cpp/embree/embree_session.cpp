@@ -1,0 +1,205 @@
+#include "embree_session.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <mutex>
+#include <system_error>
+#include <utility>
+
+#include "../camera/last_setup.hpp"
+#include "../render/film_sums.hpp"
+#include "../render/scene_change.hpp"
+#include "embree_scene.hpp"
+#include "fast_pupil_tracer.hpp"
+#include "host_frame.hpp"
+#include "host_stop.hpp"
+#include "kernels.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kTileSide = 32;
+/// Samples per pixel after which a tile is left and the next begins, so that the share done grows everywhere.
+constexpr std::uint32_t kSamplesPerVisit = 256;
+
+DeviceError rtc_error(RTCError code) {
+    const std::string text = "Embree could not be started: ";
+    return DeviceError(text + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(code)));
+}
+
+class EmbreeSession final : public Session {
+public:
+    EmbreeSession() : device_(rtcNewDevice(nullptr)) {
+        if (!device_) throw rtc_error(rtcGetDeviceError(nullptr));
+        kernels();
+    }
+    ~EmbreeSession() override {
+        cancel();
+        scene_.reset();
+        rtcReleaseDevice(device_);
+    }
+
+    std::string name() const override {
+        const auto version = rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_VERSION);
+        return "CPU (Embree " + std::to_string(version / 10000) + '.' + std::to_string(version / 100 % 100) +
+               ", x86-64-" + kernels().instruction_set + ", " +
+               std::to_string(tbb::this_task_arena::max_concurrency()) + " threads)";
+    }
+
+private:
+    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                 const KeepGoing& keep_going, OwnStop& stop) override {
+        const auto work = [&] {
+            arena(settings).execute([&] {
+                setup_ = last_setup_.make(camera, fast_pupil_tracer());
+                place(scene, camera);
+                camera_view_ = setup_->view(scene_->placed().origin_m());
+            });
+        };
+        run_heeding(work, keep_going, stop);
+        if (stop) throw Cancelled();
+    }
+
+    void clear() override {
+        const Film& film = camera().film;
+        film_.assign(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height), PixelSum{});
+        stats_ = {};
+    }
+
+    void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop&) override {
+        expose(range, settings(), done);
+    }
+
+    std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
+                                     std::shared_ptr<void> under_way) override {
+        // Turns that follow wait for the frame, so that what this thread works with stays as it is.
+        auto work = [this, ranges, curve, dials = Dials{camera().exposure_time_s, camera().iso}, settings = settings(),
+                     token = std::move(under_way)]() mutable {
+            const std::shared_ptr<void> until_the_end = std::move(token);
+            std::atomic<std::int64_t> done{0};
+            for (const SampleRange& range : ranges) expose(range, settings, done);
+            if (is_stopped()) throw Cancelled();
+            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve);
+        };
+        const Film& film = camera().film;
+        try {
+            return std::make_shared<HostFrame>(film.width, film.height, samples(),
+                                               std::async(std::launch::async, std::move(work)).share());
+        } catch (const std::system_error&) {
+            throw NoThread();
+        }
+    }
+
+    Image develop() override {
+        Image image = developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s);
+        image.stats = stats_;
+        image.stats.device = name();
+        return image;
+    }
+
+    std::vector<std::int64_t> count_samples() override { return samples_of(film_); }
+
+    std::size_t frames_in_flight() const override { return 1; }
+
+    void raise_stop() noexcept override { stop_.raise(); }
+    void lower_stop() noexcept override { stop_.lower(); }
+    bool is_stopped() const override { return stop_.flag(); }
+
+    struct Dials {
+        double exposure_time_s, iso;
+    };
+
+    static tbb::task_arena arena(const RenderSettings& settings) {
+        return tbb::task_arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+    }
+
+    void place(const Assembly& scene, const Camera& camera) {
+        const SceneChange change = scene_change(scene_ ? &scene_->placed() : nullptr, scene, camera);
+        if (change == SceneChange::none) return;
+        std::unique_ptr<EmbreeScene> last = std::exchange(scene_, nullptr);  // what fails is not kept
+        if (change == SceneChange::transforms) {
+            last->move(scene);
+            scene_ = std::move(last);
+        } else {
+            last.reset();  // before the next takes as much memory
+            scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m, stop_.flag());
+        }
+    }
+
+    void expose(const SampleRange& range, const RenderSettings& settings, std::atomic<std::int64_t>& done) {
+        const int width = camera_view_.width, height = camera_view_.height;
+        const int columns = (width + kTileSide - 1) / kTileSide, rows = (height + kTileSide - 1) / kTileSide;
+        arena(settings).execute([&] {
+            for (std::uint32_t first = 0; first < range.count && !is_stopped();) {
+                const std::uint32_t count = std::min(kSamplesPerVisit, range.count - first);
+                tbb::parallel_for(0, columns * rows, [&](int tile) {
+                    visit(tile % columns * kTileSide, tile / columns * kTileSide,
+                          {range.seed, range.first + first, count}, settings.path(), done);
+                });
+                first += count;
+            }
+        });
+    }
+
+    /// Some samples of the tile with that first pixel.
+    void visit(int x, int y, const SampleRange& range, const PathSettings& path, std::atomic<std::int64_t>& done) {
+        if (is_stopped()) return;
+        const SceneView scene_view = scene_->placed().view();
+        realcam_tile tile{};
+        tile.scene_view = &scene_view;
+        tile.camera_view = &camera_view_;
+        tile.embree_scene = scene_->handle();
+        tile.x = x;
+        tile.y = y;
+        tile.width = std::min(kTileSide, camera_view_.width - x);
+        tile.height = std::min(kTileSide, camera_view_.height - y);
+        tile.first_sample = range.first;
+        tile.sample_count = range.count;
+        tile.seed = range.seed;
+        tile.path_settings = &path;
+        tile.stopped = [](const void* stop) -> int { return *static_cast<const std::atomic<bool>*>(stop); };
+        tile.stop = &stop_.flag();
+        FilmSums sums(static_cast<std::size_t>(tile.width * tile.height));
+        tile.sums = sums.data();
+        kernels().render_tile(&tile);
+        for (int row = 0; row < tile.height; ++row)
+            for (int column = 0; column < tile.width; ++column)
+                film_[static_cast<std::size_t>(y + row) * static_cast<std::size_t>(camera_view_.width) +
+                      static_cast<std::size_t>(x + column)] +=
+                    sums[static_cast<std::size_t>(row * tile.width + column)];
+        done += static_cast<std::int64_t>(range.count) * tile.width * tile.height;
+        count(tile);
+    }
+
+    void count(const realcam_tile& tile) {
+        const std::lock_guard lock(stats_mutex_);
+        stats_.lens_seconds += tile.lens_seconds;
+        stats_.scene_seconds += tile.scene_seconds;
+        stats_.other_seconds += tile.other_seconds;
+        stats_.sampled_rays += tile.sampled_rays;
+        stats_.passed_rays += tile.passed_rays;
+        stats_.scene_rays += tile.scene_rays;
+    }
+
+    RTCDevice device_;
+    HostStop stop_;  ///< the scene's hierarchies look at it, too, while they are built
+    std::unique_ptr<EmbreeScene> scene_;
+    LastSetup last_setup_;
+    std::shared_ptr<const CameraSetup> setup_;  ///< owns what the view points to
+    CameraView camera_view_{};
+    FilmSums film_;
+    std::mutex stats_mutex_;
+    RenderStats stats_;
+};
+
+}  // namespace
+
+std::unique_ptr<Session> make_embree_session() {
+    return std::make_unique<EmbreeSession>();
+}
+
+}  // namespace realcam

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <future>
+#include <utility>
+#include <vector>
+
+#include "../render/live_frame.hpp"
+
+namespace realcam {
+
+/// A frame that a thread of the host takes.
+class HostFrame final : public LiveFrame {
+public:
+    using Codes = std::shared_future<std::vector<std::uint8_t>>;
+
+    HostFrame(int width, int height, std::int64_t samples, Codes codes)
+        : width_(width), height_(height), samples_(samples), codes_(std::move(codes)) {}
+
+    int width() const override { return width_; }
+    int height() const override { return height_; }
+    std::int64_t samples() const override { return samples_; }
+    bool wait_for(std::chrono::microseconds longest) const override {
+        return codes_.wait_for(longest) == std::future_status::ready;
+    }
+    const std::uint8_t* codes() const override { return codes_.get().data(); }
+
+private:
+    int width_, height_;
+    std::int64_t samples_;
+    Codes codes_;
+};
+
+}  // namespace realcam

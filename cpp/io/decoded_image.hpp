@@ -1,0 +1,38 @@
+#pragma once
+// A picture as its file holds it. What its numbers mean follows from what it is used for.
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "../scene/scene.hpp"
+
+namespace realcam::io {
+
+/// Red, green, blue and alpha of each pixel, row 0 at the top, rows without padding: 4 * width * height values. Alpha
+/// is not multiplied in.
+struct DecodedImage {
+    int width = 0, height = 0;
+    /// Codes from 0 to 255 where the file has 8 bits. Floats otherwise: codes of 16 bits as fractions of the largest,
+    /// and floating-point numbers as they are, from 0 to 65504 (alpha: to 1).
+    std::variant<std::vector<std::uint8_t>, std::vector<float>> rgba;
+    /// Floating-point numbers in the file: as colours they are light itself, and not sRGB codes.
+    bool is_linear = false;
+};
+
+/// Data are numbers, such as a roughness or a direction, which no file encodes for a screen.
+enum class TextureUse { colour, data };
+
+/// Whether the colours of a picture have to be decoded (IEC 61966-2-1) to become linear; its alpha is always linear.
+inline bool is_srgb(const DecodedImage& image, TextureUse use) {
+    return use == TextureUse::colour && !image.is_linear;
+}
+
+/// Whether it has pixels, and their number fits its size.
+bool is_whole(const DecodedImage& image);
+
+/// Takes the pixels of a whole image as they are, less the encoding of floats.
+Texture texture_of(DecodedImage image, TextureUse use, std::string name);
+
+}  // namespace realcam::io

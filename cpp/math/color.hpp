@@ -1,0 +1,71 @@
+#pragma once
+#include <cstdint>
+
+#include "lanes.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Light, or what a surface does to it, by linear Rec. 709 channels.
+struct Color {
+    float r, g, b;
+
+    constexpr bool operator==(const Color&) const = default;
+};
+
+REALCAM_INLINE constexpr Color grey(float v) {
+    return {v, v, v};
+}
+REALCAM_INLINE constexpr Color operator+(Color a, Color b) {
+    return {a.r + b.r, a.g + b.g, a.b + b.b};
+}
+REALCAM_INLINE constexpr Color operator-(Color a, Color b) {
+    return {a.r - b.r, a.g - b.g, a.b - b.b};
+}
+REALCAM_INLINE constexpr Color operator*(Color a, Color b) {
+    return {a.r * b.r, a.g * b.g, a.b * b.b};
+}
+REALCAM_INLINE constexpr Color operator/(Color a, Color b) {
+    return {a.r / b.r, a.g / b.g, a.b / b.b};
+}
+REALCAM_INLINE constexpr Color operator*(float s, Color c) {
+    return {s * c.r, s * c.g, s * c.b};
+}
+REALCAM_INLINE constexpr Color& operator+=(Color& a, Color b) {
+    return a = a + b;
+}
+REALCAM_INLINE constexpr Color& operator*=(Color& a, Color b) {
+    return a = a * b;
+}
+REALCAM_INLINE constexpr Color mix(Color a, Color b, float share_of_b) {
+    return (1.0f - share_of_b) * a + share_of_b * b;
+}
+
+REALCAM_INLINE constexpr float largest(Color c) {
+    const float rg = c.r > c.g ? c.r : c.g;
+    return rg > c.b ? rg : c.b;
+}
+REALCAM_INLINE constexpr bool is_black(Color c) {
+    return !(c.r + c.g + c.b > 0.0f);
+}
+/// Of linear Rec. 709 (ITU-R BT.709).
+REALCAM_INLINE constexpr float luminance(Color c) {
+    return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
+}
+REALCAM_INLINE constexpr Color select(bool condition, Color a, Color b) {
+    return {condition ? a.r : b.r, condition ? a.g : b.g, condition ? a.b : b.b};
+}
+
+/// N colours as Vec3Lanes are N vectors.
+template <int N>
+struct ColorLanes {
+    alignas(kLaneAlignment<float, N>) float r[N], g[N], b[N];
+
+    REALCAM_INLINE Color operator[](int lane) const { return {r[lane], g[lane], b[lane]}; }
+    REALCAM_INLINE void set(int lane, Color c) {
+        r[lane] = c.r;
+        g[lane] = c.g;
+        b[lane] = c.b;
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

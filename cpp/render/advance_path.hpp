@@ -1,0 +1,223 @@
+#pragma once
+#include "../scene/light.hpp"
+#include "../scene/make_bsdf.hpp"
+#include "path_settings.hpp"
+#include "path_state.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Light is looked for in two ways, by a direction that the lights suggest and by one that the BSDF suggests, and what
+// either finds is weighed by the densities with which both could have found it (Veach and Guibas 1995).
+
+enum class RenderStage { lens, scene, other };
+
+/// Veach's power heuristic: what counts of light that was found with one density, where the other way had the other.
+/// With kDelta, all of it, because no other way finds it.
+REALCAM_INLINE float mis_weight(float pdf, float other_pdf) {
+    const float ratio = other_pdf / pdf;
+    return 1.0f / (1.0f + ratio * ratio);
+}
+
+namespace advance_path_detail {
+
+/// From this bounce on, dim paths are ended by chance, and those that are kept count more.
+inline constexpr int kFirstRoulette = 3;
+
+/// Ends a path with the probability that its throughput has lost.
+template <int N>
+REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int lane, PathState<N>& path) {
+    const Color throughput = path.throughput[lane];
+    const float kept = largest(throughput) / path.weight[lane];
+    if (!(kept < 1.0f)) return;
+    const float u = block.random(lane, dimension::roulette + static_cast<std::uint32_t>(bounce)).x;
+    if (u < kept)
+        path.throughput.set(lane, (1.0f / kept) * throughput);
+    else
+        path.rays.active[lane] = 0;
+}
+
+/// `limit` > 0: of what a path may bring.
+REALCAM_INLINE Color clamped(Color c, float limit) {
+    const float most = largest(c);
+    return limit > 0.0f && most > limit ? (limit / most) * c : c;
+}
+
+REALCAM_INLINE Color absorbed(Color absorption, float way) {
+    return {std::exp(-way * absorption.r), std::exp(-way * absorption.g), std::exp(-way * absorption.b)};
+}
+
+/// Where a ray starts so as not to meet its own surface again: on the side to which it goes.
+REALCAM_INLINE Vec3f ray_start(const SurfacePoint& point, Vec3f direction) {
+    const float offset = dot(point.geometric_normal, direction) < 0.0f ? -point.self_offset : point.self_offset;
+    return point.position + offset * point.geometric_normal;
+}
+
+/// The ray that tests whether a light is hidden.
+template <int N>
+REALCAM_INLINE void set_shadow_ray(const SurfacePoint& point, const LightSample& light, int lane,
+                                   SceneRays<N>& shadow) {
+    const Vec3f start = ray_start(point, light.direction);
+    shadow.origin.set(lane, start);
+    if (light.distance < kFarAway) {
+        // From the start to the light, whose distance is then 1: a light may be as near as the offset. The ray
+        // stops short of the light, which is itself in the scene.
+        shadow.direction.set(lane, light.distance * light.direction - (start - point.position));
+        shadow.far[lane] = light.reach > 0 ? light.reach : 0.0f;
+    } else {
+        shadow.direction.set(lane, light.direction);
+        shadow.far[lane] = kFarAway;
+    }
+}
+
+template <int N>
+REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
+    return {path.receiver_position[lane], path.receiver_normal[lane]};
+}
+
+/// Light that the environment sends along the ray of a lane.
+template <int N>
+REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N>& path, int lane) {
+    const Vec3f direction = path.rays.direction[lane];
+    const float pdf = path.pdf[lane];
+    const float weight =
+        pdf < kDelta ? mis_weight(pdf, environment_light_pdf(scene, receiver_of(path, lane), direction)) : 1.0f;
+    return (weight * path.throughput[lane]) * environment_radiance(scene.environment, direction);
+}
+
+/// Light that the emitter at a hit sends along the ray of a lane.
+template <int N>
+REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& path, int lane, Hit hit,
+                                   const SurfacePoint& point) {
+    const float pdf = path.pdf[lane];
+    float weight = 1.0f;
+    if (pdf < kDelta) {
+        const LightReceiver receiver = receiver_of(path, lane);
+        const float cosine = -dot(path.rays.direction[lane], point.geometric_normal);
+        const Vec3f way = point.position - receiver.position;
+        weight = mis_weight(pdf, emitter_light_pdf(scene, receiver, area_light_of(scene, hit), length(way), cosine));
+    }
+    return (weight * path.throughput[lane]) * point.emission;
+}
+
+}  // namespace advance_path_detail
+
+/// Rays from the film through the lens.
+template <LensKind lens_kind, int N>
+REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block, PathState<N>& path,
+                                   PathResults<N>& results) {
+    CameraRays<N> camera_rays;
+    generate_rays<lens_kind>(camera, block, camera_rays);
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        path.rays.origin.set(i, camera_rays.origin[i]);
+        path.rays.direction.set(i, camera_rays.direction[i]);
+        path.rays.far[i] = kFarAway;
+        path.rays.active[i] = camera_rays.passed[i];
+        path.weight[i] = camera_rays.weight[i];
+        path.throughput.set(i, grey(camera_rays.weight[i]));
+        path.pdf[i] = kDelta;
+        path.absorption.set(i, {0, 0, 0});
+        results.irradiance.set(i, {0, 0, 0});
+        results.depth[i] = -1.0f;
+        results.sampled[i] = camera_rays.sampled[i];
+        results.passed[i] = camera_rays.passed[i];
+    }
+}
+
+/// Takes each path to the next surface, collects the light that reaches it there, and scatters it. Returns whether any
+/// goes on. `SceneT` offers intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` offers
+/// enter(RenderStage) and costs nothing where nobody asks for the time.
+template <MaterialSet set, int N, class SceneT, class Probe>
+REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& camera, const PathSettings& settings,
+                                     const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
+                                     PathState<N>& path, PathResults<N>& results) {
+    using namespace advance_path_detail;
+    SceneRays<N> shadow;
+    Hits<N> hits;
+    ColorLanes<N> unshadowed;
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
+
+    probe.enter(RenderStage::scene);
+    scene.intersect(path.rays, hits);
+    probe.enter(RenderStage::other);
+    // After the last bounce, one more ray looks for the light that narrow lobes show.
+    const bool is_last = bounce == settings.max_bounces, is_past = bounce > settings.max_bounces;
+    const std::uint32_t first_dimension =
+        dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
+    int alive = 0, lit = 0;
+    for (int i = 0; i < N; ++i) {
+        shadow.active[i] = 0;
+        if (!path.rays.active[i]) continue;
+        const Hit hit = hits[i];
+        const Vec3f direction = path.rays.direction[i];
+        const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
+        if (hit.triangle == kNoTriangle) {
+            path.rays.active[i] = 0;
+            if (view.has_environment)
+                results.irradiance.set(i, results.irradiance[i] + clamped(environment_light(view, path, i), limit));
+            continue;
+        }
+        const SurfacePoint point = surface_point<set>(view, hit, path.rays.origin[i], direction);
+        if constexpr (set == MaterialSet::any) {
+            const Color absorption = path.absorption[i];
+            if (!is_black(absorption))
+                path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
+        }
+        if (!is_black(point.emission))
+            results.irradiance.set(i, results.irradiance[i] + clamped(emitter_light(view, path, i, hit, point), limit));
+        if (bounce == 0) results.depth[i] = dot(camera.position - point.position, camera.backward);
+        if (is_past) {
+            path.rays.active[i] = 0;
+            continue;
+        }
+        auto bsdf = make_bsdf<set>(point, -direction);
+        const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}};
+        const std::uint32_t seed = hash32(block.stream[i] ^ block.sample[i], first_dimension);
+        const LightSample light =
+            sample_light<set>(view, receiver, block.random(i, first_dimension + dimension::light), seed);
+        const Color lambert_and_narrow = bsdf.eval(light.direction);
+        const bool goes_on = !is_last && settings.transport == LightTransport::paths;
+        // Where only narrow lobes send out a ray, Lambert's lobe sees light samples alone.
+        Color seen;
+        if (goes_on) {
+            seen = mis_weight(light.pdf, bsdf.pdf(light.direction)) * lambert_and_narrow;
+        } else {
+            if (settings.transport == LightTransport::whitted)
+                bsdf.keep_mirrors();
+            else
+                bsdf.keep_narrow_lobes();
+            const Color narrow = bsdf.eval(light.direction);
+            seen = lambert_and_narrow - narrow + mis_weight(light.pdf, bsdf.pdf(light.direction)) * narrow;
+        }
+        seen *= path.throughput[i] * light.irradiance;
+        set_shadow_ray(point, light, i, shadow);
+        shadow.active[i] = !is_black(seen);
+        lit |= shadow.active[i];
+        unshadowed.set(i, clamped(seen, limit));
+
+        const BsdfSample next = bsdf.sample(block.random(i, first_dimension + dimension::scatter), unit_float(seed));
+        const Color throughput = path.throughput[i] * next.weight;
+        path.throughput.set(i, throughput);
+        path.rays.origin.set(i, ray_start(point, next.direction));
+        path.rays.direction.set(i, next.direction);
+        path.rays.active[i] = !is_black(throughput);
+        path.pdf[i] = next.pdf;
+        path.receiver_position.set(i, receiver.position);
+        path.receiver_normal.set(i, receiver.normal);
+        if constexpr (set == MaterialSet::any) {
+            if (next.refracted) path.absorption.set(i, point.is_front ? point.material->absorption : Color{0, 0, 0});
+        }
+        if (path.rays.active[i] && bounce >= kFirstRoulette) play_roulette(block, bounce, i, path);
+        alive |= path.rays.active[i];
+    }
+    if (lit) {
+        probe.enter(RenderStage::scene);
+        scene.occluded(shadow, hidden);
+        probe.enter(RenderStage::other);
+        for (int i = 0; i < N; ++i)
+            if (shadow.active[i] & !hidden[i]) results.irradiance.set(i, results.irradiance[i] + unshadowed[i]);
+    }
+    return alive != 0;
+}
+
+}  // namespace REALCAM_NAMESPACE

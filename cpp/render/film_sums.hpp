@@ -1,0 +1,46 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "image.hpp"
+#include "pixel_sum.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A film in the host's memory while it is exposed, row by row.
+using FilmSums = std::vector<PixelSum>;
+
+/// Exposure and depth of a film, without what the picture cost.
+inline Image developed(const FilmSums& film, int width, int height, double exposure_time_s) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    image.exposure.reserve(3 * film.size());
+    image.depth.reserve(film.size());
+    for (const PixelSum& sum : film) {
+        for (int channel = 0; channel < 3; ++channel) image.exposure.push_back(sum.exposure(channel, exposure_time_s));
+        image.depth.push_back(sum.mean_depth());
+    }
+    return image;
+}
+
+/// A film as 8-bit sRGB, 3 per pixel.
+inline std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso,
+                                                 ToneCurve curve) {
+    std::vector<std::uint8_t> codes;
+    codes.reserve(3 * film.size());
+    for (const PixelSum& sum : film)
+        for (int channel = 0; channel < 3; ++channel) codes.push_back(sum.code(channel, exposure_time_s, iso, curve));
+    return codes;
+}
+
+/// How many samples each pixel has.
+inline std::vector<std::int64_t> samples_of(const FilmSums& film) {
+    std::vector<std::int64_t> counts;
+    counts.reserve(film.size());
+    for (const PixelSum& sum : film) counts.push_back(static_cast<std::int64_t>(sum.samples));
+    return counts;
+}
+
+}  // namespace REALCAM_NAMESPACE

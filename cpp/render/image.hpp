@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What a picture cost. Seconds of the stages are summed over the threads.
+struct RenderStats {
+    double seconds = 0;        ///< wall clock, all of it
+    double setup_seconds = 0;  ///< pupil and scene, part of the above
+    double lens_seconds = 0, scene_seconds = 0, other_seconds = 0;
+    std::uint64_t sampled_rays = 0;  ///< sent into the lens
+    std::uint64_t passed_rays = 0;   ///< that left it
+    std::uint64_t scene_rays = 0;    ///< camera, shadow and bounce rays traced in the scene
+    std::string device;
+};
+
+/// A noiseless exposure, as it lies on the film.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<float> exposure;  ///< height * width * 3, lux seconds, linear Rec. 709
+    std::vector<float> depth;     ///< height * width, metres along the axis from the film; infinite: nothing there
+    std::int64_t spp = 0;         ///< samples that were asked for, per pixel
+    RenderStats stats;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,47 @@
+#pragma once
+#include <memory>
+#include <utility>
+
+#include "session.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A scene before a camera that changes with every frame. Not for two threads at once, but for cancel. Functions throw
+/// what those of Session throw.
+class LiveView {
+public:
+    LiveView(std::unique_ptr<Session> session, Assembly scene) : session_(std::move(session)) {
+        show(std::move(scene));
+    }
+
+    /// Starts to take settings.spp samples more of each pixel (see Session::shoot).
+    std::shared_ptr<const LiveFrame> shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve,
+                                           const KeepGoing& keep_going = {}, std::shared_ptr<void> under_way = {}) {
+        auto frame = session_->shoot(scene_, camera, settings, curve, keep_going, std::move(under_way));
+        has_frame_ = true;
+        return frame;
+    }
+
+    /// The scene of the frames to come. Of one in which only transforms differ, only these are prepared.
+    void show(Assembly scene) {
+        session_->check(scene);
+        scene_ = std::move(scene);
+        has_frame_ = false;
+    }
+
+    /// What holds all that the frames up to the last have collected. Throws InputError before the first of a scene.
+    Session& collected() const {
+        if (!has_frame_) throw InputError("there is no picture yet; shoot() takes one");
+        return *session_;
+    }
+
+    /// Gives up all frames under way, from any thread. The next frame begins a new picture.
+    void cancel() { session_->cancel(Collected::drop); }
+
+private:
+    std::unique_ptr<Session> session_;
+    Assembly scene_;
+    bool has_frame_ = false;  ///< of the scene
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// How light is followed through the scene.
+enum class LightTransport : std::int32_t {
+    paths,    ///< all ways of light, by path tracing (Kajiya 1986)
+    whitted,  ///< direct light, and what mirrors and smooth glass show (Whitted 1980)
+};
+
+struct PathSettings {
+    std::int32_t max_bounces = 0;  ///< after which a path ends; 0: direct light only
+    LightTransport transport = LightTransport::paths;
+    float clamp = 0;  ///< radiance above which what a path brings after its first hit is cut off, cd/m^2; 0: never
+
+    constexpr bool operator==(const PathSettings&) const = default;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,37 @@
+#pragma once
+#include "../camera/generate_rays.hpp"
+#include "../math/color.hpp"
+#include "../scene/light_sample.hpp"
+#include "../scene/scattering.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Rays for traversal. Lanes with active 0 are left out.
+template <int N>
+struct SceneRays {
+    Vec3Lanes<float, N> origin, direction;
+    alignas(kLaneAlignment<float, N>) float far[N];  ///< how far along the ray to look, in lengths of the direction
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t active[N];
+};
+
+/// What a block of paths saw. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
+template <int N>
+struct PathResults {
+    ColorLanes<N> irradiance;
+    alignas(kLaneAlignment<float, N>) float depth[N];  ///< of the first hit along the camera's axis from the film,
+                                                       ///< metres; < 0: none
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N], passed[N];
+};
+
+/// Paths on their way from the film into the scene: the next ray of each, and what is known of the way up to it.
+template <int N>
+struct PathState {
+    SceneRays<N> rays;
+    ColorLanes<N> throughput;  ///< irradiance on the film for a unit of radiance that comes along the ray
+    alignas(kLaneAlignment<float, N>) float weight[N];  ///< the throughput with which the path began
+    alignas(kLaneAlignment<float, N>) float pdf[N];  ///< with which the ray's direction was drawn, per steradian
+    Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< of the surface that the ray left (LightReceiver)
+    ColorLanes<N> absorption;  ///< of the medium that the ray is in, per metre
+};
+
+}  // namespace REALCAM_NAMESPACE

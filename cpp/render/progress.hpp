@@ -1,0 +1,11 @@
+#pragma once
+#include <functional>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Called about 20 times a second on the thread that began the work. `done` goes from 0 to 1; returns false to stop.
+using Progress = std::function<bool(double done)>;
+
+}  // namespace REALCAM_NAMESPACE

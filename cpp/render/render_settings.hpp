@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "../error.hpp"
+#include "../platform.hpp"
+#include "path_settings.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline constexpr int kMaxThreads = 4096;  ///< more than machines have cores; TBB falls over what is far beyond
+
+struct RenderSettings {
+    int spp = 64;  ///< samples per pixel
+    std::uint32_t seed = 0;
+    int max_bounces = 0;  ///< 0: direct light only
+    int threads = 0;      ///< of the CPU; 0: all
+    LightTransport transport = LightTransport::paths;
+    float clamp = 0;  ///< see PathSettings
+
+    PathSettings path() const { return {max_bounces, transport, clamp}; }
+};
+
+/// Throws InputError where no picture has so many samples per pixel.
+inline void validate_spp(int spp) {
+    if (spp < 1 || spp > (1 << 24)) throw InputError("spp must lie between 1 and 16777216");
+}
+
+/// Throws InputError where the settings make no sense.
+inline void validate(const RenderSettings& settings) {
+    validate_spp(settings.spp);
+    if (settings.max_bounces < 0 || settings.max_bounces > 64)
+        throw InputError("max_bounces must lie between 0 and 64");
+    if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
+    if (settings.threads < 0 || settings.threads > kMaxThreads)
+        throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,294 @@
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../camera/camera.hpp"
+#include "../camera/develop.hpp"
+#include "../scene/scene_checks.hpp"
+#include "image.hpp"
+#include "live_frame.hpp"
+#include "render_settings.hpp"
+#include "run_with_progress.hpp"
+#include "sample_range.hpp"
+#include "seconds_since.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The number of samples of each pixel, row by row.
+struct SampleCounts {
+    int width, height;
+    std::vector<std::int64_t> counts;
+};
+
+/// What becomes of the samples that were taken before a stop.
+enum class Collected { keep, drop };
+
+/// One picture on a device, which collects samples for as long as scene, camera and settings stay the same. Of what
+/// changes from one `set` to the next, only that is prepared again.
+///
+/// Threads take turns: a call waits for that of another thread, but for `cancel`, which ends it. All functions throw
+/// DeviceError; after one the next `set` prepares everything anew. `keep_going` and `progress` are asked some 20 times
+/// a second on the calling thread, and what they throw comes out.
+class Session {
+public:
+    Session() = default;
+    virtual ~Session() = default;
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /// The device, for people.
+    virtual std::string name() const = 0;
+
+    /// Throws InputError and SceneFileError for a scene that makes no picture.
+    void check(const Assembly& scene) {
+        const Turn turn(mutex_, {});
+        checks_.check(scene);
+    }
+
+    /// What is photographed from now on. A scene with other parts or transforms, a camera with another lens, film,
+    /// model or pose, another seed or number of bounces begin a new picture; exposure time and ISO only develop it
+    /// anew. Throws InputError for what makes no picture, and Cancelled.
+    void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+             const KeepGoing& keep_going = {}) {
+        const Turn turn(mutex_, keep_going);
+        check_all(scene, camera, settings);
+        make_way(keep_going);
+        make_ready(scene, camera, settings, keep_going);
+    }
+
+    /// Gives up all samples.
+    void restart(const KeepGoing& keep_going = {}) {
+        const Turn turn(mutex_, keep_going);
+        make_way(keep_going);
+        give_up_samples();
+    }
+
+    /// Takes so many samples more of each pixel, and returns when they are there. Throws InputError where nothing is
+    /// set, and Cancelled: what was taken until then stays, so that pixels may differ in their number of samples.
+    void add(int spp, const Progress& progress = {}) {
+        validate_spp(spp);
+        const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+        const Turn turn(mutex_, keep_going);
+        if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+        make_way(keep_going);
+        OwnStop stop(*this);
+        std::atomic<std::int64_t> done{0};
+        const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height;
+        const auto work = [&] { expose(spp, [&](const SampleRange& range) { take(range, done, stop); }); };
+        const auto begin = std::chrono::steady_clock::now();
+        run_with_progress(work, [&] { return static_cast<double>(done) / total; }, progress, stop);
+        exposing_seconds_ += seconds_since(begin);
+        if (stop) throw Cancelled();
+    }
+
+    /// `set`, and starts to take settings.spp samples more of each pixel and to develop them; returns while that goes
+    /// on. The next frame may be shot before this one is there: where the device has as many under way as it takes,
+    /// this waits for the oldest. `under_way`: kept by what works on the host until that has ended.
+    std::shared_ptr<const LiveFrame> shoot(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                                           ToneCurve curve, const KeepGoing& keep_going = {},
+                                           std::shared_ptr<void> under_way = {}) {
+        const Turn turn(mutex_, keep_going);
+        check_all(scene, camera, settings);
+        make_way(keep_going);
+        make_ready(scene, camera, settings, keep_going);
+        std::vector<SampleRange> ranges;
+        expose(settings.spp, [&](const SampleRange& range) { ranges.push_back(range); });
+        try {
+            frames_.push_back(start(ranges, curve, std::move(under_way)));
+        } catch (...) {
+            ready_ = false;
+            throw;
+        }
+        return frames_.back();
+    }
+
+    /// All that was collected, developed with the camera's exposure time; waits for frames under way. Throws InputError
+    /// where there is nothing, and Cancelled where another thread stops it meanwhile.
+    Image picture(const KeepGoing& keep_going = {}) {
+        return of_all_collected(keep_going, [&] {
+            Image image = develop();
+            image.spp = samples_;
+            image.stats.setup_seconds = setup_seconds_;
+            image.stats.seconds = setup_seconds_ + exposing_seconds_;
+            return image;
+        });
+    }
+
+    /// Of the film that is set; waits for frames under way.
+    SampleCounts sample_counts(const KeepGoing& keep_going = {}) {
+        const Turn turn(mutex_, keep_going);
+        settle(keep_going);
+        const auto [width, height] = std::pair(camera_.film.width, camera_.film.height);
+        const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+        return {width, height, ready_ && !is_blank_ ? count_samples() : std::vector<std::int64_t>(pixels)};
+    }
+
+    /// Ends what is under way, from any thread: frames and other threads' calls throw Cancelled. No sample is begun any
+    /// more, so that it takes the time of one.
+    void cancel(Collected collected = Collected::keep) {
+        raise_stop();
+        const std::unique_lock lock(mutex_);
+        const LowerStop lower{*this};
+        settle({});
+        if (collected == Collected::drop) give_up_samples();
+    }
+
+protected:
+    /// What this call itself has asked to stop, and takes back at its end. As a bool: whether anybody has.
+    class OwnStop {
+    public:
+        explicit OwnStop(Session& session) : session_(session) {}
+        ~OwnStop() {
+            if (raised_) session_.lower_stop();
+        }
+        OwnStop(const OwnStop&) = delete;
+        OwnStop& operator=(const OwnStop&) = delete;
+
+        void operator=(bool) {
+            if (!raised_.exchange(true)) session_.raise_stop();
+        }
+        operator bool() const { return session_.is_stopped(); }
+
+    private:
+        Session& session_;
+        std::atomic<bool> raised_{false};
+    };
+
+    // What a device does. But for the three of the stop, they are called in turn, with fewer frames under way than
+    // frames_in_flight().
+
+    /// Makes ready what follows. Scene, camera and settings are valid, and the film is given up. Throws Cancelled where
+    /// the stop, which `keep_going` may ask for, has left something undone.
+    virtual void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                         const KeepGoing& keep_going, OwnStop& stop) = 0;
+    /// An empty film, and nothing counted.
+    virtual void clear() = 0;
+    /// Takes samples of all pixels, or fewer of some where it is stopped. `done` counts them.
+    virtual void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
+    /// Starts to take samples, and to develop what is there then.
+    virtual std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
+                                             std::shared_ptr<void> under_way) = 0;
+    virtual Image develop() = 0;
+    virtual std::vector<std::int64_t> count_samples() = 0;
+    virtual std::size_t frames_in_flight() const = 0;
+
+    /// From any thread. A stop stands until it was lowered as often as it was raised.
+    virtual void raise_stop() noexcept = 0;
+    virtual void lower_stop() noexcept = 0;
+    virtual bool is_stopped() const = 0;
+
+    /// f() of a film on which all is collected. Throws as `picture`.
+    template <class F>
+    auto of_all_collected(const KeepGoing& keep_going, F&& f) -> decltype(f()) {
+        const Turn turn(mutex_, keep_going);
+        settle(keep_going);
+        if (is_stopped()) throw Cancelled();
+        if (!ready_ || is_blank_) throw InputError("there is no picture yet; samples have to be taken first");
+        return f();
+    }
+
+    const Camera& camera() const { return camera_; }
+    const RenderSettings& settings() const { return settings_; }
+    std::int64_t samples() const { return samples_; }  ///< per pixel, begun since the film was empty
+
+private:
+    /// Held by one thread at a time.
+    class Turn {
+    public:
+        Turn(std::timed_mutex& mutex, const KeepGoing& keep_going) : lock_(mutex, std::defer_lock) {
+            while (!lock_.try_lock_for(std::chrono::milliseconds(50)))
+                if (keep_going && !keep_going()) throw Cancelled();
+        }
+
+    private:
+        std::unique_lock<std::timed_mutex> lock_;
+    };
+
+    struct LowerStop {
+        Session& session;
+        ~LowerStop() { session.lower_stop(); }
+    };
+
+    void check_all(const Assembly& scene, const Camera& camera, const RenderSettings& settings) {
+        validate(settings);
+        validate(camera);
+        checks_.check(scene);
+    }
+
+    void make_way(const KeepGoing& keep_going) {
+        while (frames_.size() >= frames_in_flight()) wait_for_oldest(keep_going);
+    }
+    void settle(const KeepGoing& keep_going) {
+        while (!frames_.empty()) wait_for_oldest(keep_going);
+    }
+    void wait_for_oldest(const KeepGoing& keep_going) {
+        wait(*frames_.front(), keep_going);
+        frames_.pop_front();
+    }
+
+    bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {
+        return same_parts(scene, scene_) && same_transforms(scene, scene_) && camera.lens == camera_.lens &&
+               camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
+               settings.seed == settings_.seed && settings.path() == settings_.path();
+    }
+
+    void make_ready(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                    const KeepGoing& keep_going) {
+        if (!ready_ || !is_same_picture(scene, camera, settings)) {
+            ready_ = false;  // whatever fails from here on, the next call begins anew
+            give_up_samples();
+            scene_ = {};  // before the next takes as much memory
+            OwnStop stop(*this);
+            const auto begin = std::chrono::steady_clock::now();
+            prepare(scene, camera, settings, keep_going, stop);
+            setup_seconds_ = seconds_since(begin);
+            scene_ = scene;
+            ready_ = true;
+        }
+        camera_ = camera;
+        settings_ = settings;
+    }
+
+    void give_up_samples() {
+        samples_ = 0;
+        exposing_seconds_ = 0;
+        is_blank_ = true;
+    }
+
+    /// f(range) for the ranges of so many samples more.
+    template <class F>
+    void expose(int spp, F&& f) {
+        try {
+            if (is_blank_) clear();
+            is_blank_ = false;
+            for (const std::int64_t end = samples_ + spp; samples_ < end;) {
+                const SampleRange range = next_samples(settings_.seed, samples_, end);
+                samples_ += range.count;
+                f(range);
+            }
+        } catch (...) {
+            ready_ = false;
+            throw;
+        }
+    }
+
+    std::timed_mutex mutex_;
+    SceneChecks checks_;
+    bool ready_ = false;  ///< for what follows:
+    Assembly scene_;
+    Camera camera_;
+    RenderSettings settings_;
+    std::int64_t samples_ = 0;
+    bool is_blank_ = true;  ///< no sample was begun
+    double setup_seconds_ = 0, exposing_seconds_ = 0;  ///< of the picture
+    std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< under way
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,25 @@
+#pragma once
+#include <chrono>
+
+#include "seconds_since.hpp"
+#include "session.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A whole picture, from its first sample on, and what it cost. Throws InputError for a camera, scene or settings that
+/// make no picture, Cancelled, and DeviceError.
+inline Image take_picture(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                          const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+    session.set(scene, camera, settings, keep_going);
+    session.restart(keep_going);
+    const double setup_seconds = seconds_since(start);
+    session.add(settings.spp, progress);
+    Image image = session.picture();
+    image.stats.setup_seconds = setup_seconds;
+    image.stats.seconds = seconds_since(start);
+    return image;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,191 @@
+#pragma once
+#include "dielectric_border.hpp"
+#include "microfacet_reflection.hpp"
+#include "phong_lobe.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// How a surface scatters light at one point, for one direction of view: the sum of up to six lobes, each of which a
+/// material model may leave out (make_bsdf.hpp). Directions are unit vectors in the scene's axes, away from the
+/// surface.
+class Bsdf {
+public:
+    ShadingFrame frame;
+    Vec3f geometric_normal;  ///< on the eye's side, as the frame's
+    Vec3f eye;               ///< local
+
+    Color diffuse = {0, 0, 0};             ///< reflectance
+    FacetReflectance above_diffuse;  ///< of facets as rough as those of `specular`: diffuse gets what they leave
+    Color phong = {0, 0, 0};  ///< reflectance of Phong's lobe
+    float shininess = 0;
+    Color mirror = {0, 0, 0};  ///< reflectance for this direction of view
+    MicrofacetReflection specular;
+    float specular_weight = 1;  ///< all that `specular` does is multiplied by this
+    DielectricBorder border;
+    float coat_weight = 0;  ///< share of the surface that `coat` covers
+    MicrofacetReflection coat;
+
+    REALCAM_INLINE Bsdf(Vec3f normal, Vec3f geometric_normal_, Vec3f to_eye)
+        : frame(normal), geometric_normal(geometric_normal_), eye(frame.to_local(to_eye)) {}
+
+    /// Called when all lobes are set.
+    REALCAM_HD void prepare() {
+        is_layered_ = above_diffuse.f90 > 0.0f || coat_weight > 0.0f;
+        through_coat_ = through_coat(coat.to_eye);
+        left_to_eye_ = grey(1.0f) - above_diffuse.albedo(specular.to_eye);
+        diffuse_ = diffuse;
+        if (is_layered_) diffuse_ = through_coat_ * diffuse * left_to_eye_ / mean_left();
+        choose_lobes();
+    }
+
+    REALCAM_INLINE bool is_opaque() const { return !(border.weight > 0.0f); }
+    /// Whether there is more than Lambert's lobe.
+    REALCAM_INLINE bool has_narrow_lobes() const { return share_[0] < 1.0f && total_ > 0.0f; }
+    /// Leaves Lambert's lobe out.
+    REALCAM_INLINE void keep_narrow_lobes() {
+        diffuse = diffuse_ = {0, 0, 0};
+        choose_lobes();
+    }
+    /// Leaves out all but mirrors and smooth borders.
+    REALCAM_INLINE void keep_mirrors() {
+        diffuse = diffuse_ = phong = {0, 0, 0};
+        if (!specular.is_smooth()) specular_weight = 0.0f;
+        if (!coat.is_smooth()) coat_weight = 0.0f;
+        if (!border.is_smooth()) border.weight = 0.0f;
+        choose_lobes();
+    }
+
+    /// BSDF times cosine; mirrors and smooth borders have none.
+    REALCAM_HD Color eval(Vec3f to_light) const {
+        const Vec3f light = frame.to_local(to_light);
+        if (!is_possible(light, to_light)) return {0, 0, 0};
+        if (light.z < 0.0f) return through_coat_ * border.eval(eye, light);
+        const float in = coat_weight > 0.0f ? through_coat(coat.facets_at(light.z)) : 1.0f;
+        Color value = (0.3183098862f * light.z) * diffuse_;
+        if (is_layered_) value *= in * left_at(light.z);
+        // What comes back as by a mirror meets the coat at the same angle twice, and what is reflected between the two
+        // is not lost: the share of one passage. Of two angles the lesser, so that nothing is gained.
+        const float coated = through_coat_ < in ? through_coat_ : in;
+        value += (coated * phong_value(eye, shininess, light)) * phong;
+        if (share_[2] > 0.0f) value += (coated * specular_weight) * specular.eval(eye, light);
+        if (border.weight > 0.0f) value += coated * border.eval(eye, light);
+        if (coat_weight > 0.0f) value += coat_weight * coat.eval(eye, light);
+        return value;
+    }
+
+    /// Density of sample, per steradian; mirrors and smooth borders have none.
+    REALCAM_HD float pdf(Vec3f to_light) const {
+        const Vec3f light = frame.to_local(to_light);
+        if (!is_possible(light, to_light)) return 0.0f;
+        if (light.z < 0.0f) return share_[3] * border.pdf(eye, light);
+        float density = share_[0] * 0.3183098862f * light.z;
+        if (share_[1] > 0.0f) density += share_[1] * phong_pdf({-eye.x, -eye.y, eye.z}, shininess, light);
+        if (share_[2] > 0.0f) density += share_[2] * specular.pdf(eye, light);
+        if (share_[3] > 0.0f) density += share_[3] * border.pdf(eye, light);
+        if (share_[5] > 0.0f) density += share_[5] * coat.pdf(eye, light);
+        return density;
+    }
+
+    /// Chooses a lobe by its reflectance, then a direction. `choice`: for rough borders, which need a third number.
+    REALCAM_HD BsdfSample sample(Vec2f u, float choice) const {
+        BsdfSample result{geometric_normal, {0, 0, 0}, 0.0f, false};
+        if (!(total_ > 0.0f)) return result;
+        int lobe = 0;
+        while (lobe < 5 && u.x >= share_[lobe]) u.x -= share_[lobe++];
+        const float share = share_[lobe];
+        if (!(share > 0.0f)) return result;
+        u.x /= share;
+        u.x = u.x < 0x1.fffffep-1f ? u.x : 0x1.fffffep-1f;
+        Vec3f light{0, 0, 1};
+        switch (lobe) {
+            case 0: light = sample_cosine({0, 0, 1}, u); break;
+            case 1: light = sample_phong({-eye.x, -eye.y, eye.z}, shininess, u); break;
+            case 2:
+                light = specular.sample(eye, u);
+                if (specular.is_smooth()) {
+                    const float factor = through_coat_ * specular_weight / share;
+                    return delta(light, factor * specular.albedo_to_eye());
+                }
+                break;
+            case 3: {
+                const BsdfSample passed = border.sample(eye, u, border.is_smooth() ? u.x : choice);
+                if (is_black(passed.weight)) return result;
+                light = passed.direction;
+                if (border.is_smooth()) result = delta(light, (through_coat_ * border.weight / share) * passed.weight);
+                result.refracted = passed.refracted;
+                if (border.is_smooth()) return result;
+                break;
+            }
+            case 4: return delta({-eye.x, -eye.y, eye.z}, (1.0f / share) * mirror);
+            default:
+                light = coat.sample(eye, u);
+                if (coat.is_smooth()) return delta(light, (coat_weight / share) * coat.albedo_to_eye());
+        }
+        // Facets may reflect light below the surface, where it would meet them again.
+        if (lobe != 3 && !(light.z > 0.0f)) return result;
+        result.direction = frame.to_world(light);
+        result.pdf = pdf(result.direction);
+        if (result.pdf > 0.0f) result.weight = (1.0f / result.pdf) * eval(result.direction);
+        return result;
+    }
+
+private:
+    REALCAM_INLINE float through_coat(GgxAlbedo facets) const {
+        return coat_weight > 0.0f ? 1.0f - coat_weight * coat.reflectance.albedo(facets).r : 1.0f;
+    }
+    /// Of light at a cosine, what the specular lobe leaves to the diffuse one.
+    REALCAM_INLINE Color left_at(float cosine) const {
+        return grey(1.0f) - above_diffuse.albedo(specular.facets_at(cosine));
+    }
+    /// What coat and specular lobe leave of light from everywhere: diffuse light over this is lost nowhere else.
+    REALCAM_HD Color mean_left() const {
+        if (!(coat_weight > 0.0f)) return at_least(grey(1.0f) - above_diffuse.albedo(specular.mean));
+        // Gauss's rule of four points for the integral over the squares of cosines, which weights them by themselves.
+        constexpr float kSquares[4] = {0.06943184f, 0.33000948f, 0.66999052f, 0.93056816f};
+        constexpr float kWeights[4] = {0.17392742f, 0.32607258f, 0.32607258f, 0.17392742f};
+        Color sum{0, 0, 0};
+        for (int i = 0; i < 4; ++i) {
+            const float cosine = std::sqrt(kSquares[i]);
+            sum += (kWeights[i] * through_coat(coat.facets_at(cosine))) * left_at(cosine);
+        }
+        return at_least(sum);
+    }
+    /// A divisor.
+    REALCAM_INLINE static Color at_least(Color c) {
+        const auto held = [](float v) { return v > 1e-4f ? v : 1e-4f; };
+        return {held(c.r), held(c.g), held(c.b)};
+    }
+
+    /// On the same side of shading and of geometric normal; below only where something passes.
+    REALCAM_INLINE bool is_possible(Vec3f light, Vec3f to_light) const {
+        const bool above = dot(geometric_normal, to_light) > 0.0f;
+        return above ? light.z > 0.0f : light.z < 0.0f && border.weight > 0.0f;
+    }
+
+    REALCAM_INLINE BsdfSample delta(Vec3f light, Color weight) const {
+        const Vec3f direction = frame.to_world(light);
+        return {direction, select(is_possible(light, direction), weight, Color{0, 0, 0}), kDelta, false};
+    }
+
+    REALCAM_INLINE void choose_lobes() {
+        share_[0] = through_coat_ * largest(diffuse * left_to_eye_);
+        share_[1] = through_coat_ * largest(phong);
+        share_[2] = through_coat_ * specular_weight * largest(specular.albedo_to_eye());
+        share_[3] = through_coat_ * border.weight;
+        share_[4] = largest(mirror);
+        share_[5] = coat_weight > 0.0f ? coat_weight * coat.albedo_to_eye().r : 0.0f;
+        total_ = share_[0] + share_[1] + share_[2] + share_[3] + share_[4] + share_[5];
+        if (!(total_ > 0.0f)) return;
+        REALCAM_UNROLL
+        for (int i = 0; i < 6; ++i) share_[i] /= total_;
+    }
+
+    bool is_layered_;
+    Color left_to_eye_;  ///< of the light, by the specular lobe
+    Color diffuse_;  ///< reflectance, times what depends on the direction of view alone
+    float through_coat_;
+    float share_[6];  ///< probabilities of diffuse, phong, specular, border, mirror, coat
+    float total_;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,177 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "scene_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Built on the host, anew whenever a light moves.
+class LightTree {
+public:
+    LightTree() = default;
+    LightTree(const std::vector<PointLight>& points, const std::vector<AreaLight>& areas) {
+        std::vector<Leaf> leaves;
+        for (const PointLight& p : points)
+            leaves.push_back(
+                {{p.position, p.position, {0, 0, 1}, -1.0f, luminance(p.intensity), 0, 1, -1, 1.0f}, 0, p.position});
+        for (const AreaLight& a : areas) {
+            const Vec3f b = a.corner + a.edge_u, c = a.corner + a.edge_v;
+            leaves.push_back({{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, 1.0f,
+                               a.area * luminance(a.radiance), 0, 0, -1, 1.0f},
+                              0,
+                              (1.0f / 3.0f) * (a.corner + b + c)});
+        }
+        for (std::size_t i = 0; i < leaves.size(); ++i) {
+            leaves[i].light = static_cast<std::int32_t>(i);
+            leaves[i].node.second_child = -1 - leaves[i].light;
+        }
+        trails_.resize(leaves.size());
+        nodes_.reserve(2 * leaves.size());
+        if (!leaves.empty()) add(leaves.begin(), leaves.end(), 0, 0);
+    }
+
+    const std::vector<LightNode>& nodes() const { return nodes_; }
+    const std::vector<std::uint64_t>& trails() const { return trails_; }
+
+private:
+    struct Leaf {
+        LightNode node;
+        std::int32_t light;
+        Vec3f middle;
+    };
+    using Leaves = std::vector<Leaf>::iterator;
+
+    static Vec3f least(Vec3f a, Vec3f b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+    static Vec3f most(Vec3f a, Vec3f b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
+    static float coordinate(Vec3f v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+    /// The narrowest cone that is easily found about two.
+    static void widen(LightNode& node, const LightNode& other) {
+        if (other.is_isotropic) node.is_isotropic = 1;
+        const double a = std::acos(std::clamp(static_cast<double>(node.cos_spread), -1.0, 1.0)),
+                     b = std::acos(std::clamp(static_cast<double>(other.cos_spread), -1.0, 1.0));
+        const Vec3d u = static_cast<Vec3d>(node.axis), v = static_cast<Vec3d>(other.axis);
+        const double between = std::atan2(length(cross(u, v)), dot(u, v));
+        if (between + b <= a) return;
+        if (between + a <= b) {
+            node.axis = other.axis;
+            node.cos_spread = other.cos_spread;
+            return;
+        }
+        const double spread = 0.5 * (a + b + between) + 1e-6;
+        const Vec3d turned = cross(cross(u, v), u);
+        if (spread >= 3.14159 || !(length(turned) > 0)) {
+            node.cos_spread = -1.0f;
+            return;
+        }
+        const double turn = spread - a;
+        node.axis = static_cast<Vec3f>(normalized(std::cos(turn) * u + std::sin(turn) * normalized(turned)));
+        node.cos_spread = static_cast<float>(std::cos(spread));
+    }
+
+    static LightNode around(const LightNode& a, const LightNode& b) {
+        LightNode node = a;
+        node.low = least(a.low, b.low);
+        node.high = most(a.high, b.high);
+        node.intensity = a.intensity + b.intensity;
+        node.partner = -1;
+        widen(node, b);
+        return node;
+    }
+
+    /// In one plane, and about as bright: a choice between them by their light alone is as good as any.
+    static bool are_alike(const LightNode& a, const LightNode& b) {
+        const float ratio = a.intensity / b.intensity;
+        return !a.is_isotropic && !b.is_isotropic && dot(a.axis, b.axis) > 0.9999f && ratio > 0.1f && ratio < 10.0f;
+    }
+
+    /// What a split costs: intensity times the spread in space and in direction (the paper's surface area orientation
+    /// heuristic).
+    static double cost(const LightNode& n) {
+        const Vec3d d = static_cast<Vec3d>(n.high - n.low);
+        const double area = d.x * d.y + d.y * d.z + d.z * d.x, size2 = dot(d, d);
+        const double spread = n.is_isotropic ? 3.141592653589793 : std::acos(static_cast<double>(n.cos_spread));
+        const double end = std::min(spread + 1.5707963267948966, 3.141592653589793), cosine = std::cos(spread);
+        const double directions = 6.283185307179586 * (1 - cosine) +
+                                  1.5707963267948966 * (2 * end * std::sin(spread) - std::cos(spread - 2 * end) -
+                                                        2 * spread * std::sin(spread) + cosine);
+        return static_cast<double>(n.intensity) * std::max(directions, 1e-3) * (area + 1e-6 * size2);
+    }
+
+    /// Where to split, after sorting along the best axis; the middle where all places are alike, and from a depth on at
+    /// which 64 turns would not do.
+    Leaves split(Leaves first, Leaves last, int depth) const {
+        constexpr int kBins = 12, kDeepest = 40;
+        Vec3f low = first->middle, high = low;
+        for (Leaves i = first; i != last; ++i) low = least(low, i->middle), high = most(high, i->middle);
+        double best = HUGE_VAL;
+        int best_axis = -1, best_bin = 0;
+        for (int axis = 0; axis < 3 && depth < kDeepest; ++axis) {
+            const float from = coordinate(low, axis), size = coordinate(high, axis) - from;
+            if (!(size > 0)) continue;
+            LightNode bins[kBins];
+            bool filled[kBins] = {};
+            for (Leaves i = first; i != last; ++i) {
+                const int bin = bin_of(*i, axis, from, size, kBins);
+                bins[bin] = filled[bin] ? around(bins[bin], i->node) : i->node;
+                filled[bin] = true;
+            }
+            double after[kBins] = {};
+            LightNode sum{};
+            bool any = false;
+            for (int k = kBins - 1; k > 0; --k) {
+                if (filled[k]) sum = any ? around(sum, bins[k]) : bins[k], any = true;
+                after[k] = any ? cost(sum) : HUGE_VAL;
+            }
+            any = false;
+            for (int k = 0; k + 1 < kBins; ++k) {
+                if (filled[k]) sum = any ? around(sum, bins[k]) : bins[k], any = true;
+                const double total = any ? cost(sum) + after[k + 1] : HUGE_VAL;
+                if (total < best) best = total, best_axis = axis, best_bin = k;
+            }
+        }
+        if (best_axis >= 0) {
+            const float from = coordinate(low, best_axis), size = coordinate(high, best_axis) - from;
+            const Leaves middle = std::partition(
+                first, last, [&](const Leaf& l) { return bin_of(l, best_axis, from, size, kBins) <= best_bin; });
+            if (middle != first && middle != last) return middle;
+        }
+        return first + (last - first) / 2;
+    }
+
+    static int bin_of(const Leaf& leaf, int axis, float from, float size, int bins) {
+        const float share = (coordinate(leaf.middle, axis) - from) / size;
+        return std::clamp(static_cast<int>(share * static_cast<float>(bins)), 0, bins - 1);
+    }
+
+    LightNode add(Leaves first, Leaves last, std::uint64_t turns, int depth) {
+        const std::size_t place = nodes_.size();
+        nodes_.push_back(first->node);
+        if (last - first == 1) {
+            trails_[static_cast<std::size_t>(first->light)] = turns;
+            return first->node;
+        }
+        if (last - first == 2 && are_alike(first->node, first[1].node)) {
+            trails_[static_cast<std::size_t>(first->light)] = trails_[static_cast<std::size_t>(first[1].light)] = turns;
+            LightNode pair = around(first->node, first[1].node);
+            pair.partner = first[1].light;
+            pair.first_share = pair.intensity > 0 ? first->node.intensity / pair.intensity : 0.5f;
+            return nodes_[place] = pair;
+        }
+        const Leaves middle = split(first, last, depth);
+        const LightNode one = add(first, middle, turns, depth + 1);
+        const auto second = static_cast<std::int32_t>(nodes_.size());
+        const LightNode other = add(middle, last, turns | std::uint64_t{1} << depth, depth + 1);
+        LightNode& node = nodes_[place] = around(one, other);
+        node.second_child = second;
+        return node;
+    }
+
+    std::vector<LightNode> nodes_;
+    std::vector<std::uint64_t> trails_;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,71 @@
+#pragma once
+#include "../math/color.hpp"
+#include "ggx.hpp"
+#include "ggx_tables.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// What GGX microfacets give back of light from everywhere, by a table (tools/make_ggx_tables.py), and what they send
+// into further reflections, which a single one leaves out (Kulla and Conty 2017).
+
+/// For a Fresnel term of f0 + (f90 - f0) (1 - cosine)^5 the share that is reflected is f0 (all - grazing) + f90
+/// grazing.
+struct GgxAlbedo {
+    float all, grazing;
+};
+
+namespace ggx_albedo_detail {
+
+inline constexpr int kRows = REALCAM_GGX_ROWS, kColumns = REALCAM_GGX_COLUMNS;
+
+struct TablePlace {
+    int index;
+    float fraction;
+};
+
+REALCAM_INLINE TablePlace table_place(float position, int count) {
+    const float scaled = position * static_cast<float>(count - 1);
+    const int index = static_cast<int>(scaled);
+    const int held = select(index < 0, 0, select(index < count - 2, index, count - 2));
+    const float fraction = scaled - static_cast<float>(held);
+    return {held, select(fraction < 0.0f, 0.0f, select(fraction > 1.0f, 1.0f, fraction))};
+}
+
+REALCAM_INLINE TablePlace row_of(float alpha) {
+    constexpr float kSmoothest = 0.0316227766f;  // the square root of kSmoothAlpha
+    return table_place((std::sqrt(alpha) - kSmoothest) / (1.0f - kSmoothest), kRows);
+}
+
+REALCAM_INLINE float between(float a, float b, float fraction) {
+    return a + fraction * (b - a);
+}
+
+REALCAM_INLINE float read_table(const float* table, TablePlace row, TablePlace column) {
+    const float *upper = table + row.index * kColumns + column.index, *lower = upper + kColumns;
+    return between(between(upper[0], upper[1], column.fraction), between(lower[0], lower[1], column.fraction),
+                   row.fraction);
+}
+
+}  // namespace ggx_albedo_detail
+
+/// Seen at this cosine.
+REALCAM_HD inline GgxAlbedo ggx_albedo(float cosine, float alpha) {
+    using namespace ggx_albedo_detail;
+    static constexpr float kAll[] = {REALCAM_GGX_ALBEDO};
+    static constexpr float kGrazing[] = {REALCAM_GGX_SCHLICK};
+    static_assert(sizeof kAll == sizeof(float) * kRows * kColumns && sizeof kGrazing == sizeof kAll);
+    const TablePlace row = row_of(alpha), column = table_place(std::cbrt(cosine), kColumns);
+    return {read_table(kAll, row, column), read_table(kGrazing, row, column)};
+}
+
+/// Over all directions of view, weighted by their cosines.
+REALCAM_HD inline GgxAlbedo ggx_mean_albedo(float alpha) {
+    using namespace ggx_albedo_detail;
+    static constexpr float kAll[] = {REALCAM_GGX_MEAN_ALBEDO};
+    static constexpr float kGrazing[] = {REALCAM_GGX_MEAN_SCHLICK};
+    const TablePlace row = row_of(alpha);
+    const int i = row.index;
+    return {between(kAll[i], kAll[i + 1], row.fraction), between(kGrazing[i], kGrazing[i + 1], row.fraction)};
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,67 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "../math/color.hpp"
+#include "texture_reference.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Which parameters of a Material count, and what they mean.
+enum class MaterialModel : std::int32_t {
+    phong,               ///< Wavefront's MTL: Lambert's and Phong's lobe, mirrors, smooth glass
+    metallic_roughness,  ///< glTF 2.0: GGX over a diffuse, metallic or transmitting base, under a clear coat
+};
+
+/// Whether a smooth border's reflectance grows towards grazing incidence.
+enum class FresnelTerm : std::int32_t { none, physical };
+
+/// How a surface scatters and emits light. Parameters are those of the file formats, as they are there.
+struct Material {
+    MaterialModel model = MaterialModel::phong;
+    Color diffuse = {0.5f, 0.5f, 0.5f};  ///< phong: reflectance (MTL Kd). metallic_roughness: the base colour
+    Color specular = {0, 0, 0};  ///< phong: reflectance of Phong's lobe (MTL Ks). metallic_roughness: what the
+                                 ///< dielectric's reflectance is multiplied by (KHR_materials_specular)
+    Color emission = {0, 0, 0};  ///< radiance in cd/m^2, on the side of the geometric normal
+    TextureReference diffuse_texture, specular_texture, emission_texture;
+    float ior = 1.5f;  ///< refractive index on the inside
+    float transmission = 0;  ///< share of the dielectric part that lets light through
+    Color filter = {1, 1, 1};  ///< what passes is multiplied by (MTL Tf); metallic_roughness: by the base colour
+    Color absorption = {0, 0, 0};  ///< inside, per metre (KHR_materials_volume)
+    std::int32_t is_thin = 0;  ///< not 0: a film with nothing inside, rays go on behind it as they came
+
+    // phong
+    float shininess = 0;  ///< Phong exponent (MTL Ns)
+    Color mirror = {0, 0, 0};  ///< reflectance as a mirror, at normal incidence
+    FresnelTerm fresnel = FresnelTerm::physical;  ///< of mirror and transmission
+
+    // metallic_roughness
+    float metallic = 0, roughness = 1;
+    float specular_weight = 1;  ///< of the dielectric's reflection, at any angle
+    float clearcoat = 0, clearcoat_roughness = 0;
+    TextureReference metallic_roughness_texture;  ///< roughness in green, metallic in blue, linear
+
+    TextureReference normal_texture;  ///< tangent space, linear
+    float normal_scale = 1;
+
+    constexpr bool operator==(const Material&) const = default;
+
+    constexpr bool emits() const { return !is_black(emission); }
+    /// Lambert's and Phong's lobe on an opaque surface, and no textures but for diffuse.
+    constexpr bool is_plain() const {
+        return model == MaterialModel::phong && transmission == 0 && is_black(mirror) && normal_texture.texture < 0 &&
+               specular_texture.texture < 0 && emission_texture.texture < 0;
+    }
+};
+
+inline constexpr std::array<TextureReference Material::*, 5> kMaterialTextures = {
+    &Material::diffuse_texture, &Material::specular_texture, &Material::emission_texture,
+    &Material::metallic_roughness_texture, &Material::normal_texture};
+
+/// What a scene's materials ask of the kernels: code for more than is there would cost speed.
+enum class MaterialSet : std::int32_t {
+    plain,  ///< Material::is_plain holds for all
+    any,
+};
+
+}  // namespace REALCAM_NAMESPACE

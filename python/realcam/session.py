@@ -1,0 +1,85 @@
+"""A picture that collects samples while somebody looks at it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._core import Camera, Scene
+from .image import Image
+from .render import warn_of_no_light
+
+
+class Session:
+    """One picture on a device, which collects samples for as long as scene and camera stay the same.
+
+    session = rc.Session(scene, camera)
+    while not good_enough(session.image()):
+        session.add(16)
+
+    device, seed, max_bounces and threads are those of render; add() after add() takes the samples that one render of
+    as many would take. Threads take turns, and cancel() ends the turn of another. Raises InputError, SceneFileError
+    and DeviceError; after one of these the picture begins anew. Warns of a scene without light.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        camera: Camera,
+        *,
+        device: str = "auto",
+        seed: int = 0,
+        max_bounces: int = 1,
+        threads: int = 0,
+    ) -> None:
+        self._seed = seed
+        self._core = _core._Session(scene, camera, device, seed, max_bounces, threads)
+        warn_of_no_light(scene)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that was set last."""
+        return self._core.scene
+
+    @property
+    def camera(self) -> Camera:
+        """The camera that was set last."""
+        return self._core.camera
+
+    def set(self, *, scene: Scene | None = None, camera: Camera | None = None) -> None:
+        """Another scene or camera; None keeps the one that was set last.
+
+        Only what changed is prepared again: of a scene from moved(), the places; of a camera with
+        the same lens and film, its pose. Either begins a new picture. Another exposure time or ISO only develops the
+        samples anew. Raises KeyboardInterrupt on Ctrl-C.
+        """
+        self._core.set(self.scene if scene is None else scene, self.camera if camera is None else camera)
+        if scene is not None:
+            warn_of_no_light(scene)
+
+    def add(self, spp: int = 1) -> None:
+        """Takes spp samples more of each pixel, 1 to 16777216, and returns when they are there.
+
+        Raises Cancelled where another thread calls cancel(), and KeyboardInterrupt on Ctrl-C. Both keep what was taken
+        until then, so that pixels may differ in their number of samples; each is developed with its own.
+        """
+        self._core.add(spp)
+
+    def image(self) -> Image:
+        """What was collected, as render returns it; spp is the mean over the pixels, rounded.
+
+        A pixel without a sample is black, at depth inf. Raises InputError where there is no sample yet.
+        """
+        pixels, depth, stats = self._core.picture()
+        spp = round(float(self.samples.mean()))
+        return Image(pixels=pixels, depth=depth, camera=self.camera, spp=spp, seed=self._seed, stats=stats)
+
+    @property
+    def samples(self) -> NDArray[np.int64]:
+        """(H, W) int64: the number of samples that each pixel has."""
+        return self._core.samples
+
+    def cancel(self) -> None:
+        """Ends what another thread does with this session, within the time of a sample: it raises Cancelled."""
+        self._core.cancel()

@@ -1,0 +1,273 @@
+"""Scenes of one room for realcam and for Mitsuba 3: the same triangles, lights and camera, with the same materials in
+the terms of either program. Mitsuba's variant is to be set before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import mitsuba as mi
+import numpy as np
+import realcam as rc
+
+Settings = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Mesh:
+    positions: np.ndarray
+    triangles: np.ndarray
+    normals: np.ndarray | None = None
+    uvs: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    mesh: Mesh
+    material: rc.Material
+    bsdf: Settings  # Mitsuba's
+    radiance: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Shot:
+    parts: list[Part]
+    sky: float | np.ndarray = 100.0  # cd/m^2, or (H, W, 3)
+    name: str = field(default="", compare=False)
+
+
+def quad(corner: list[float], u: list[float], v: list[float], pieces: int = 1) -> Mesh:
+    """Faces u x v."""
+    c, a, b = (np.array(x, float) for x in (corner, u, v))
+    steps = np.linspace(0, 1, pieces + 1)
+    s, t = (x.ravel() for x in np.meshgrid(steps, steps, indexing="ij"))
+    first = np.array([i * (pieces + 1) + k for i in range(pieces) for k in range(pieces)])
+    n = pieces + 1
+    triangles = np.concatenate(
+        [np.stack([first, first + n, first + n + 1], 1), np.stack([first, first + n + 1, first + 1], 1)]
+    )
+    return Mesh(c + np.outer(s, a) + np.outer(t, b), triangles, uvs=np.stack([s, t], 1))
+
+
+def sphere(center: list[float], radius: float, rings: int = 48) -> Mesh:
+    """Smooth, with normals that point outwards."""
+    polar, azimuth = np.meshgrid(
+        np.linspace(0, np.pi, rings + 1), np.linspace(0, 2 * np.pi, 2 * rings + 1), indexing="ij"
+    )
+    normals = np.stack([np.sin(polar) * np.cos(azimuth), np.cos(polar), -np.sin(polar) * np.sin(azimuth)], -1).reshape(
+        -1, 3
+    )
+    uvs = np.stack([azimuth / (2 * np.pi), 1 - polar / np.pi], -1).reshape(-1, 2)
+    n = 2 * rings + 1
+    a = np.array([r * n + c for r in range(rings) for c in range(2 * rings)])
+    lower = np.stack([a, a + n, a + n + 1], 1)
+    upper = np.stack([a, a + n + 1, a + 1], 1)
+    # Triangles at the poles have two corners in one place.
+    triangles = np.concatenate([lower[: -2 * rings], upper[2 * rings :]])
+    return Mesh(np.array(center) + radius * normals, triangles, normals, uvs)
+
+
+def flat(mesh: Mesh) -> Mesh:
+    return Mesh(mesh.positions, mesh.triangles, uvs=mesh.uvs)
+
+
+def diffuse(reflectance: tuple[float, float, float]) -> tuple[rc.Material, Settings]:
+    return rc.Material(diffuse=reflectance), {
+        "type": "twosided",
+        "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": list(reflectance)}},
+    }
+
+
+def room() -> list[Part]:
+    """Floor, wall and a lamp of 4000 cd/m^2 that faces down."""
+    return [
+        Part(quad([-2, 0, 2], [4, 0, 0], [0, 0, -4]), *diffuse((0.6, 0.6, 0.6))),
+        Part(quad([-2, 0, -2], [4, 0, 0], [0, 3, 0]), *diffuse((0.6, 0.3, 0.2))),
+        Part(quad([-0.5, 2.5, -0.5], [1, 0, 0], [0, 0, 1]), *diffuse((0.5, 0.5, 0.5)), radiance=(4000, 3600, 3000)),
+    ]
+
+
+def ball(material: rc.Material, bsdf: Settings) -> Shot:
+    return Shot([*room(), Part(sphere([0, 0.7, 0], 0.7), material, bsdf)])
+
+
+def realcam_scene(shot: Shot) -> rc.Scene:
+    count = 0
+    positions, triangles, normals, uvs, numbers, materials = [], [], [], [], [], []
+    for number, part in enumerate(shot.parts):
+        mesh = part.mesh
+        positions.append(mesh.positions)
+        triangles.append(mesh.triangles + count)
+        normals.append(mesh.normals if mesh.normals is not None else np.zeros_like(mesh.positions))
+        uvs.append(mesh.uvs if mesh.uvs is not None else np.zeros((len(mesh.positions), 2)))
+        numbers.append(np.full(len(mesh.triangles), number))
+        materials.append(part.material.replace(emission=part.radiance))
+        count += len(mesh.positions)
+    scene = rc.Scene.from_arrays(
+        np.concatenate(positions),
+        np.concatenate(triangles),
+        normals=np.concatenate(normals),
+        uvs=np.concatenate(uvs),
+        triangle_materials=np.concatenate(numbers),
+        materials=materials,
+    )
+    return scene.with_environment(shot.sky)
+
+
+def mitsuba_mesh(name: str, part: Part) -> mi.Mesh:
+    mesh = part.mesh
+    properties = mi.Properties()
+    properties["mesh_bsdf"] = mi.load_dict(part.bsdf)
+    if any(part.radiance):
+        properties["mesh_emitter"] = mi.load_dict(
+            {"type": "area", "radiance": {"type": "rgb", "value": list(part.radiance)}}
+        )
+    result = mi.Mesh(
+        name,
+        len(mesh.positions),
+        len(mesh.triangles),
+        has_vertex_normals=mesh.normals is not None,
+        has_vertex_texcoords=mesh.uvs is not None,
+        props=properties,
+    )
+    parameters = mi.traverse(result)
+    parameters["vertex_positions"] = mesh.positions.astype(np.float32).ravel()
+    parameters["faces"] = mesh.triangles.astype(np.uint32).ravel()
+    if mesh.normals is not None:
+        parameters["vertex_normals"] = mesh.normals.astype(np.float32).ravel()
+    if mesh.uvs is not None:
+        parameters["vertex_texcoords"] = mesh.uvs.astype(np.float32).ravel()
+    parameters.update()
+    return result
+
+
+def mitsuba_scene(shot: Shot) -> mi.Scene:
+    parts: Settings = {f"part{i}": mitsuba_mesh(f"part{i}", part) for i, part in enumerate(shot.parts)}
+    if isinstance(shot.sky, np.ndarray):
+        # Ours has -z in the middle of its columns, Mitsuba's at their beginning.
+        turned = np.roll(shot.sky, shot.sky.shape[1] // 2, axis=1)
+        parts["sky"] = {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(turned, np.float32))}
+    else:
+        parts["sky"] = {"type": "constant", "radiance": {"type": "rgb", "value": shot.sky}}
+    return mi.load_dict({"type": "scene"} | parts)
+
+
+def checker() -> np.ndarray:
+    """(H, W, 3) of colours, smooth enough for either program's filter."""
+    y, x = np.mgrid[0:64, 0:64] / 64
+    return np.stack([0.2 + 0.6 * (np.sin(6 * np.pi * x) > 0), 0.3 + 0.3 * y, 0.7 - 0.5 * x], -1)
+
+
+def waves() -> np.ndarray:
+    """(H, W, 3), a normal map."""
+    y, x = np.mgrid[0:64, 0:64] / 64
+    slope = 0.4 * np.cos(4 * np.pi * x), 0.2 * np.sin(4 * np.pi * y)
+    n = np.stack([-slope[0], -slope[1], np.ones_like(x)], -1)
+    return n / np.linalg.norm(n, axis=-1, keepdims=True) * 0.5 + 0.5
+
+
+def many_lamps() -> Shot:
+    rng = np.random.default_rng(3)
+    parts = room()[:2]
+    for _ in range(60):
+        at = [*rng.uniform(-1.8, 1.8, 2), 0]
+        corner = [at[0], rng.uniform(0.3, 2.5), at[1]]
+        size = rng.uniform(0.02, 0.1)
+        radiance = tuple(float(v) for v in rng.uniform(500, 30000, 3))
+        u = rng.normal(size=3)
+        v = np.cross(u, rng.normal(size=3))
+        parts.append(
+            Part(
+                quad(corner, list(size * u / np.linalg.norm(u)), list(size * v / np.linalg.norm(v))),
+                *diffuse((0.5, 0.5, 0.5)),
+                radiance=radiance,
+            )
+        )
+    return Shot(parts, sky=0.0)
+
+
+def uneven_sky() -> np.ndarray:
+    """With a sun of some degrees. Of many pixels, because Mitsuba's lie half of one beside ours, and are blended."""
+    y, x = (np.mgrid[0:1024, 0:2048] + 0.5) / 1024
+    sky = 50 + 40 * np.stack([np.cos(x * np.pi), np.sin(6 * y), np.cos(x * 3 * np.pi)], -1)
+    return sky + 60000 * np.exp(-((x - 1.25) ** 2 + (y - 0.24) ** 2) / 0.0011)[..., None]
+
+
+def srgb_codes(linear: np.ndarray) -> np.ndarray:
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return np.round(255 * encoded).astype(np.uint8)
+
+
+def bitmap(codes: np.ndarray, raw: bool) -> Settings:
+    """Mitsuba has row 0 at v = 0."""
+    return {"type": "bitmap", "bitmap": mi.Bitmap(codes[::-1].copy()), "raw": raw, "wrap_mode": "repeat"}
+
+
+def metal(roughness: float) -> Shot:
+    """Of a roughness at which next to no light goes from facet to facet, which Mitsuba leaves out. White, because
+    Schlick's term makes colours white towards grazing incidence, and Mitsuba's does not."""
+    material = rc.Material.metallic_roughness(base_color=(1, 1, 1), metallic=1, roughness=roughness)
+    return ball(
+        material,
+        {
+            "type": "twosided",
+            "bsdf": {
+                "type": "roughconductor",
+                "material": "none",
+                "distribution": "ggx",
+                "alpha": roughness**2,
+            },
+        },
+    )
+
+
+def textured() -> Shot:
+    colors, normals = srgb_codes(checker()), np.round(255 * waves()).astype(np.uint8)
+    material = rc.Material(diffuse=(1, 1, 1), texture=colors, normal_map=normals)
+    bsdf = {
+        "type": "twosided",
+        "bsdf": {
+            "type": "normalmap",
+            "normalmap": bitmap(normals, raw=True),
+            "use_shadowing_function": False,
+            "flip_invalid_normals": False,
+            "bsdf": {"type": "diffuse", "reflectance": bitmap(colors, raw=False)},
+        },
+    }
+    return ball(material, bsdf)
+
+
+SHOTS: dict[str, Callable[[], Shot]] = {
+    "diffuse": lambda: ball(*diffuse((0.8, 0.5, 0.2))),
+    "mirror": lambda: ball(
+        rc.Material(diffuse=(0, 0, 0), mirror=(0.8, 0.8, 0.8), fresnel=False),
+        {
+            "type": "twosided",
+            "bsdf": {"type": "conductor", "material": "none", "specular_reflectance": {"type": "rgb", "value": 0.8}},
+        },
+    ),
+    "smooth glass": lambda: ball(
+        rc.Material(diffuse=(0, 0, 0), transmission=1, ior=1.5), {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
+    ),
+    "film": lambda: ball(
+        rc.Material(diffuse=(0, 0, 0), transmission=1, ior=1.5, thin=True),
+        {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0},
+    ),
+    "rough metal": lambda: metal(0.15),
+    "narrow metal": lambda: metal(0.1),
+    "rough glass": lambda: ball(
+        rc.Material.metallic_roughness(transmission=1, roughness=0.25, ior=1.5),
+        {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.0625, "int_ior": 1.5, "ext_ior": 1.0},
+    ),
+    "textured, normal map": textured,
+    "image environment": lambda: Shot(
+        [*ball(*diffuse((0.5, 0.5, 0.5))).parts[:2], Part(sphere([0, 0.7, 0], 0.7), *diffuse((0.8, 0.8, 0.8)))],
+        sky=uneven_sky(),
+    ),
+    "emissive mesh": lambda: Shot(
+        [*room()[:2], Part(flat(sphere([0, 0.7, 0], 0.4, 12)), *diffuse((0.5, 0.5, 0.5)), radiance=(3000, 2000, 1000))],
+        sky=20.0,
+    ),
+    "many lights": many_lamps,
+}

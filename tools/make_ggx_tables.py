@@ -1,0 +1,87 @@
+"""Writes cpp/scene/ggx_tables.hpp: how much light GGX microfacets give back after a single reflection.
+
+    python tools/make_ggx_tables.py
+
+By Gauss-Legendre quadrature over the visible facets (Heitz 2018), so that what is integrated, G2/G1 (E) and G2/G1
+times Schlick's (1 - cos)^5 (B), is smooth. Rows: 32 square roots of alpha, evenly from that of 0.001 to 1. Columns: 48
+cube roots of the cosine, evenly from 0 to 1, because E has a dip at cosines of about alpha. Averages: over the
+cosines, weighted by them.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+ROWS, COLUMNS = 32, 48
+SMOOTHEST = 0.001
+NODES = 96
+
+
+def visible_facets(w: np.ndarray, alpha: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Facet normals that w sees, as the unit square is mapped on them: spherical caps, Dupuy and Benyoub 2023."""
+    stretched = np.array([alpha * w[0], 0.0, w[2]])
+    stretched /= np.linalg.norm(stretched)
+    z = (1 - u) * (1 + stretched[2]) - stretched[2]
+    radius = np.sqrt(np.maximum(0, 1 - z * z))
+    h = np.stack([radius * np.cos(2 * np.pi * v) + stretched[0], radius * np.sin(2 * np.pi * v), z + stretched[2]])
+    h[:2] *= alpha
+    return h / np.linalg.norm(h, axis=0)
+
+
+def smith_lambda(z: np.ndarray, alpha: float) -> np.ndarray:
+    return 0.5 * (np.sqrt(1 + alpha * alpha * (1 / (z * z) - 1)) - 1)
+
+
+def albedos(cosine: float, alpha: float) -> tuple[float, float]:
+    """E and B for one direction of view."""
+    cosine = max(cosine, 1e-5)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    u, v = np.meshgrid((nodes + 1) / 2, (nodes + 1) / 4, indexing="ij")  # half of the turn: the rest is its mirror
+    weight = np.outer(weights, weights) / 4
+    w = np.array([np.sqrt(1 - cosine * cosine), 0.0, cosine])
+    h = visible_facets(w, alpha, u, v)
+    facing = np.tensordot(w, h, 1)
+    out_z = 2 * facing * h[2] - w[2]
+    above = out_z > 0
+    mine = smith_lambda(np.asarray(cosine), alpha)
+    shadow = np.where(above, (1 + mine) / (1 + mine + smith_lambda(np.where(above, out_z, 1.0), alpha)), 0.0)
+    return float(np.sum(weight * shadow)), float(np.sum(weight * shadow * (1 - facing) ** 5))
+
+
+def averages(alpha: float) -> tuple[float, float]:
+    nodes, weights = np.polynomial.legendre.leggauss(64)
+    roots, weights = (nodes + 1) / 2, weights / 2  # over the cosine's cube root, where E is smoother
+    values = np.array([albedos(r**3, alpha) for r in roots])
+    density = 2 * roots**3 * 3 * roots**2 * weights
+    return tuple(float(x) for x in density @ values)
+
+
+def text_of(name: str, values: list[float]) -> str:
+    lines = ["    " + ", ".join(f"{v:.6f}f" for v in values[i : i + 8]) + "," for i in range(0, len(values), 8)]
+    return f"#define {name} \\\n" + " \\\n".join(lines).rstrip(",") + "\n"
+
+
+def main() -> None:
+    alphas = np.linspace(np.sqrt(SMOOTHEST), 1, ROWS) ** 2
+    cosines = np.linspace(0, 1, COLUMNS) ** 3
+    table = [albedos(c, a) for a in alphas for c in cosines]
+    means = [averages(a) for a in alphas]
+    Path("cpp/scene/ggx_tables.hpp").write_text(
+        "#pragma once\n"
+        "// Written by tools/make_ggx_tables.py, which says what the numbers are. Macros, because host and\n"
+        "// device each need an array of their own (ggx_albedo.hpp).\n"
+        "// clang-format off\n\n"
+        f"#define REALCAM_GGX_ROWS {ROWS}\n#define REALCAM_GGX_COLUMNS {COLUMNS}\n\n"
+        + text_of("REALCAM_GGX_ALBEDO", [e for e, _ in table])
+        + "\n"
+        + text_of("REALCAM_GGX_SCHLICK", [b for _, b in table])
+        + "\n"
+        + text_of("REALCAM_GGX_MEAN_ALBEDO", [e for e, _ in means])
+        + "\n"
+        + text_of("REALCAM_GGX_MEAN_SCHLICK", [b for _, b in means])
+        + "\n// clang-format on\n"
+    )
+
+
+if __name__ == "__main__":
+    main()
