@@ -223,19 +223,24 @@ def metal(roughness: float) -> Shot:
 
 
 def textured() -> Shot:
-    colors, normals = srgb_codes(checker()), np.round(255 * waves()).astype(np.uint8)
-    material = rc.Material(diffuse=(1, 1, 1), texture=colors, normal_map=normals)
+    colors = srgb_codes(checker())
+    bsdf = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": bitmap(colors, raw=False)}}
+    return ball(rc.Material(diffuse=(1, 1, 1), texture=colors), bsdf)
+
+
+def normal_mapped() -> Shot:
+    """A flat wall, because on smooth meshes the two programs turn a map's directions in different ways."""
+    normals = np.round(255 * waves()).astype(np.uint8)
+    material = rc.Material(diffuse=(0.7, 0.7, 0.7), normal_map=normals)
     bsdf = {
-        "type": "twosided",
-        "bsdf": {
-            "type": "normalmap",
-            "normalmap": bitmap(normals, raw=True),
-            "use_shadowing_function": False,
-            "flip_invalid_normals": False,
-            "bsdf": {"type": "diffuse", "reflectance": bitmap(colors, raw=False)},
-        },
+        "type": "normalmap",
+        "normalmap": bitmap(normals, raw=True),
+        "use_shadowing_function": False,
+        "flip_invalid_normals": False,
+        "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.7}},
     }
-    return ball(material, bsdf)
+    floor, _, lamp = room()
+    return Shot([floor, lamp, Part(quad([-2, 0, -2], [4, 0, 0], [0, 3, 0]), material, bsdf)])
 
 
 SHOTS: dict[str, Callable[[], Shot]] = {
@@ -254,13 +259,14 @@ SHOTS: dict[str, Callable[[], Shot]] = {
         rc.Material(diffuse=(0, 0, 0), transmission=1, ior=1.5, thin=True),
         {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0},
     ),
-    "rough metal": lambda: metal(0.15),
-    "narrow metal": lambda: metal(0.1),
+    "rough metal": lambda: metal(0.12),
+    "narrow metal": lambda: metal(0.08),
     "rough glass": lambda: ball(
         rc.Material.metallic_roughness(transmission=1, roughness=0.25, ior=1.5),
         {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.0625, "int_ior": 1.5, "ext_ior": 1.0},
     ),
-    "textured, normal map": textured,
+    "textured": textured,
+    "normal map": normal_mapped,
     "image environment": lambda: Shot(
         [*ball(*diffuse((0.5, 0.5, 0.5))).parts[:2], Part(sphere([0, 0.7, 0], 0.7), *diffuse((0.8, 0.8, 0.8)))],
         sky=uneven_sky(),
