@@ -4,9 +4,9 @@
 #include <memory>
 #include <new>
 
+#include "../io/one_line.hpp"
 #include "devices.hpp"
 #include "lens_command.hpp"
-#include "one_line.hpp"
 #include "render_command.hpp"
 
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr int kFailure = 2;
 
 int fail(const std::string& message) {
-    std::fprintf(stderr, "realcam: error: %s\n", realcam::app::one_line(message).c_str());
+    std::fprintf(stderr, "realcam: error: %s\n", realcam::io::one_line(message).c_str());
     return kFailure;
 }
 

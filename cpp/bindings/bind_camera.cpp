@@ -34,14 +34,16 @@ CameraModel model_from(const std::string& name) {
     throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, thick or full is wanted");
 }
 
+Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution) {
+    const Film film{width_mm, height_mm, resolution.first, resolution.second};
+    validate(film);
+    return film;
+}
+
 Film changed_film(const Film& film, std::optional<double> width_mm, std::optional<double> height_mm,
                   std::optional<std::pair<int, int>> resolution) {
     const auto [columns, rows] = resolution.value_or(std::pair(film.width, film.height));
-    return {width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm), columns, rows};
-}
-
-Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution) {
-    return {width_mm, height_mm, resolution.first, resolution.second};
+    return make_film(width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm), {columns, rows});
 }
 
 Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
@@ -106,7 +108,7 @@ void bind_film(py::module_& m) {
     py::class_<Film> film(m, "Film", "The light-sensitive rectangle and its pixels.");
     def_hashable_value(film);
     film.def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
-             "resolution: (columns, rows).")
+             "resolution: (columns, rows). Raises InputError.")
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
         .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })

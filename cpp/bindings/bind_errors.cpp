@@ -1,4 +1,5 @@
 #include "../error.hpp"
+#include "../io/one_line.hpp"
 
 #include <new>
 #include <stdexcept>
@@ -7,6 +8,9 @@
 #include "bindings.hpp"
 
 namespace realcam::bindings {
+
+using namespace py::literals;
+
 namespace {
 
 // Owned for ever: Python may translate an error while the module is torn down.
@@ -28,11 +32,11 @@ void define(py::module_& m, const char* name, const py::object& base, const char
 
 template <class E>
 void raise(const E& error) {
-    PyErr_SetObject(type_of<E>().ptr(), text_from(error.what()).ptr());
+    PyErr_SetObject(type_of<E>().ptr(), text_from(io::one_line(error.what())).ptr());
 }
 
 void raise(const LensFileError& error) {
-    py::object instance = type_of<LensFileError>()(text_from(error.what()));
+    py::object instance = type_of<LensFileError>()(text_from(io::one_line(error.what())));
     instance.attr("file") = text_from(error.file);
     instance.attr("line") = error.line;
     instance.attr("surface") = error.surface;
@@ -42,6 +46,9 @@ void raise(const LensFileError& error) {
 }  // namespace
 
 void bind_errors(py::module_& m) {
+    m.def(
+        "one_line", [](const std::string& message) { return text_from(io::one_line(message)); }, "message"_a,
+        "A message as one line: without control characters, and what is too long for a message without its middle.");
     define<Error>(m, "RealcamError", py::reinterpret_borrow<py::object>(PyExc_Exception),
                   "Base of all errors of realcam. The message is one line: what, where, and what is wanted.");
     const py::object base = type_of<Error>();

@@ -40,6 +40,13 @@ Camera metered(Camera camera, const Assembly& scene, const std::string& device, 
     return camera;
 }
 
+Film film_for_lens(const LensSystem& lens, std::optional<std::array<double, 2>> size_mm,
+                   std::optional<std::array<int, 2>> resolution) {
+    const Film film = default_film(lens, size_mm, resolution);
+    validate(film);
+    return film;
+}
+
 Assembly with_daylight(const Assembly& scene, const Camera& camera) {
     return with_static_geometry(scene, [&](Scene& changed) { add_daylight(changed, camera.pose); });
 }
@@ -49,10 +56,10 @@ Assembly with_daylight(const Assembly& scene, const Camera& camera) {
 // What the command line decides for a user who does not say; the C++ program decides in the same way.
 void bind_view(py::module_& m) {
     py::reinterpret_borrow<py::class_<Film>>(m.attr("Film"))
-        .def_static("for_lens", &default_film, "lens"_a, "size_mm"_a = py::none(), "resolution"_a = py::none(),
+        .def_static("for_lens", &film_for_lens, "lens"_a, "size_mm"_a = py::none(), "resolution"_a = py::none(),
                     "A film for a lens. size_mm: (width, height); resolution: (columns, rows). None is chosen: the\n"
                     "size that the lens was made for, 960 square pixels along the longer side; of a resolution alone\n"
-                    "the largest part of the lens's film that has its shape.");
+                    "the largest part of the lens's film that has its shape. Raises InputError.");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def("framing", &framed, "scene"_a, py::kw_only(), "position"_a = py::none(), "look_at"_a = py::none(),
              "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(),

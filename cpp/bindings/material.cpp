@@ -101,18 +101,23 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, TextureEnc
     }
     const py::ssize_t channels = pixels.ndim() == 3 ? pixels.shape(2) : pixels.ndim() == 2 ? 1 : 0;
     if ((channels != 1 && channels != 3 && channels != 4) || pixels.size() == 0) throw InputError(kShapes);
-    const InputArray<std::uint8_t> codes = codes_from(pixels);
     auto texture = std::make_shared<Texture>();
     texture->encoding = encoding;
     texture->width = static_cast<std::int32_t>(pixels.shape(1));
     texture->height = static_cast<std::int32_t>(pixels.shape(0));
-    texture->rgba.reserve(static_cast<std::size_t>(4 * codes.size() / channels));
-    const std::uint8_t* from = codes.data();
-    for (py::ssize_t i = 0; i < codes.size(); i += channels) {
-        const std::uint8_t* p = from + i;
-        const std::uint8_t colour[4] = {p[0], p[channels < 3 ? 0 : 1], p[channels < 3 ? 0 : 2],
-                                        channels == 4 ? p[3] : std::uint8_t{255}};
-        texture->rgba.insert(texture->rgba.end(), colour, colour + 4);
+    texture->rgba.reserve(static_cast<std::size_t>(4 * pixels.size() / channels));
+    // Some rows at a time: little memory, and Ctrl-C is heard in between.
+    const py::ssize_t rows = std::max<py::ssize_t>(1, (py::ssize_t{1} << 20) / (channels * pixels.shape(1)));
+    for (py::ssize_t row = 0; row < pixels.shape(0); row += rows) {
+        heed_signals();
+        const py::array band = pixels[py::slice(row, std::min(row + rows, pixels.shape(0)), 1)];
+        const InputArray<std::uint8_t> codes = codes_from(band);
+        for (py::ssize_t i = 0; i < codes.size(); i += channels) {
+            const std::uint8_t* p = codes.data() + i;
+            const std::uint8_t colour[4] = {p[0], p[channels < 3 ? 0 : 1], p[channels < 3 ? 0 : 2],
+                                            channels == 4 ? p[3] : std::uint8_t{255}};
+            texture->rgba.insert(texture->rgba.end(), colour, colour + 4);
+        }
     }
     return texture;
 }

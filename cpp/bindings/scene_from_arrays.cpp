@@ -35,10 +35,13 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
     if (!material_of_triangle.is_none()) triangle_materials = indices_from(material_of_triangle, "triangle_materials");
     check_shape(vertices, 3, "vertices_m");
     check_shape(triangles, 3, "triangles");
+    Checkpoint checkpoint(heed_signals);
     Scene scene;
     const auto points = vertices.unchecked<2>();
-    for (py::ssize_t i = 0; i < points.shape(0); ++i)
+    for (py::ssize_t i = 0; i < points.shape(0); ++i) {
+        checkpoint.pass();
         scene.positions_m.push_back({points(i, 0), points(i, 1), points(i, 2)});
+    }
     if (normals) {
         check_shape(*normals, 3, "normals");
         const auto n = normals->unchecked<2>();
@@ -62,6 +65,7 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
     scene.materials.resize(materials.empty() ? 1 : materials.size());
     for (std::size_t i = 0; i < materials.size(); ++i) set_material(scene, i, materials[i]);
     for (py::ssize_t i = 0; i < corners.shape(0); ++i) {
+        checkpoint.pass();
         Triangle triangle{};
         for (int k = 0; k < 3; ++k) triangle.vertices[k] = index(corners(i, k), points.shape(0), "vertex", i);
         if (triangle_materials)
@@ -69,7 +73,7 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
                 index(triangle_materials->at(i), static_cast<std::int64_t>(scene.materials.size()), "material", i);
         scene.triangles.push_back(triangle);
     }
-    validate(scene);
+    validate(scene, {}, false, checkpoint);
     const std::size_t dropped = drop_degenerate_triangles(scene);
     if (scene.triangles.empty()) throw InputError("all of the scene's triangles are without area");
     if (dropped > 0) scene.warnings.push_back(std::to_string(dropped) + " triangle(s) without area dropped");

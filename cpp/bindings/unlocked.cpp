@@ -63,7 +63,8 @@ void stop_too_at_exit(void (*stop)()) {
 void watch_exit_and_fork() {
     py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_all_work));
     pthread_atfork(nullptr, nullptr, [] {
-        if (under_way > 0) lost_threads = true;
+        // The child has none of the threads that would end that work; its own end must not wait for them.
+        if (under_way.exchange(0) > 0) lost_threads = true;
     });
 }
 

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <functional>
 
+#include "../keep_going.hpp"
 #include "quantised_boxes.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -49,8 +50,9 @@ inline double half_area(const Box& box) {
 /// It has not been measured: what inner nodes have besides their children is open, and so are the parents.
 class BinaryTree {
 public:
-    /// Throws DeviceError (out of memory, for one). There is at least one triangle.
-    BinaryTree(std::size_t triangles, const BoxOf& box_of);
+    /// Throws DeviceError (out of memory, for one), and Cancelled where `keep_going`, asked on any thread, returns
+    /// false. There is at least one triangle.
+    BinaryTree(std::size_t triangles, const BoxOf& box_of, const KeepGoing& keep_going);
     ~BinaryTree();
     BinaryTree(const BinaryTree&) = delete;
     BinaryTree& operator=(const BinaryTree&) = delete;

@@ -114,14 +114,14 @@ private:
 
 }  // namespace
 
-WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of) {
+WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of, const KeepGoing& keep_going) {
     WideNodes bvh;
     if (count == 0) {
         bvh.nodes.resize(1);
         quantise_boxes(bvh.nodes[0], {}, 0);
         return bvh;
     }
-    BinaryTree tree(count, box_of);
+    BinaryTree tree(count, box_of, keep_going);
     BinaryNode& root = tree.root();
     WideChildren top;
     std::uint32_t node_count = 1;
@@ -141,7 +141,8 @@ WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of) {
     return bvh;
 }
 
-WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                       const KeepGoing& keep_going) {
     if (triangles.size() > kMostTriangles)
         throw DeviceError("the scene has " + std::to_string(triangles.size()) + " triangles; a BVH holds " +
                           std::to_string(kMostTriangles));
@@ -149,7 +150,8 @@ WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangl
         const std::uint32_t* vertex = triangles[number].vertices;
         return {positions[vertex[0]], number, positions[vertex[1]], 0, positions[vertex[2]], 0};
     };
-    WideNodes tree = build_wide_nodes(triangles.size(), [&](std::uint32_t i) { return box_of(corners_of(i)); });
+    WideNodes tree =
+        build_wide_nodes(triangles.size(), [&](std::uint32_t i) { return box_of(corners_of(i)); }, keep_going);
     WideBvh bvh;
     bvh.nodes = std::move(tree.nodes);
     bvh.triangles.resize(triangles.size());

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "../keep_going.hpp"
 #include "../scene/scene_view.hpp"
 #include "binary_tree.hpp"
 #include "wide_bvh.hpp"
@@ -16,7 +17,7 @@ struct WideNodes {
 };
 
 /// Boxes by the caller's number. Otherwise as build_wide_bvh.
-WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of);
+WideNodes build_wide_nodes(std::size_t count, const BoxOf& box_of, const KeepGoing& keep_going = {});
 
 /// Makes the nodes those of other boxes, given by their place in the order of leaves; on all threads.
 void refit(std::vector<WideNode>& nodes, const BoxOf& box_of_leaf);
@@ -36,8 +37,9 @@ struct WideBvh {
 
 /// A hierarchy over triangles, by the surface area heuristic, on all threads of the calling arena. Positions are
 /// finite, their size between 1e-15 and 1e18 or 0. Throws DeviceError where Embree fails (out of memory, for one), or
-/// for more than 2^28 triangles.
-WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
+/// for more than 2^28 triangles; and Cancelled where `keep_going`, asked on any thread, returns false.
+WideBvh build_wide_bvh(std::span<const Vec3f> positions, std::span<const Triangle> triangles,
+                       const KeepGoing& keep_going = {});
 
 /// Moves the triangles to new positions of the same vertices, on all threads. The result is as right as that of a new
 /// build, and as fast as long as neighbours stay neighbours.

@@ -62,11 +62,12 @@ double expected_nodes(const std::vector<WideNode>& nodes) {
     return root > 0 ? sum / root : static_cast<double>(nodes.size());
 }
 
-SceneBvh build_scene_bvh(const RenderSpaceScene& scene) {
+SceneBvh build_scene_bvh(const RenderSpaceScene& scene, const KeepGoing& keep_going) {
     SceneBvh bvh;
-    bvh.static_geometry = build_wide_bvh(scene.static_geometry().positions(), scene.static_geometry().triangles());
+    bvh.static_geometry =
+        build_wide_bvh(scene.static_geometry().positions(), scene.static_geometry().triangles(), keep_going);
     for (const auto& object : scene.objects()) {
-        bvh.objects.push_back(build_wide_bvh(object->positions(), object->triangles()));
+        bvh.objects.push_back(build_wide_bvh(object->positions(), object->triangles(), keep_going));
         bvh.object_boxes.push_back(box_of(*object));
     }
     build_instances(bvh, scene);

@@ -19,7 +19,7 @@ struct SceneBvh {
 double expected_nodes(const std::vector<WideNode>& nodes);
 
 /// Throws what build_wide_bvh throws.
-SceneBvh build_scene_bvh(const RenderSpaceScene& scene);
+SceneBvh build_scene_bvh(const RenderSpaceScene& scene, const KeepGoing& keep_going = {});
 
 /// After RenderSpaceScene::move: only the boxes over the objects change; or all of the hierarchy over them, where rays
 /// would enter twice as many nodes of it as when it was built.

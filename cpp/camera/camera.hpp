@@ -60,16 +60,21 @@ inline bool is_place(Vec3d v) {
 
 }  // namespace camera_detail
 
-/// Throws InputError where the camera cannot take a picture.
-inline void validate(const Camera& camera) {
+/// Throws InputError where the film is none.
+inline void validate(const Film& film) {
     using namespace camera_detail;
-    const Film& film = camera.film;
     if (film.width < 1 || film.height < 1 || film.width > kMaxResolution || film.height > kMaxResolution)
         throw InputError("the resolution is " + std::to_string(film.width) + " x " + std::to_string(film.height) +
                          " pixels; 1 to " + std::to_string(kMaxResolution) + " each way are wanted");
     if (!lies_between(kSmallestFilm, film.width_mm, kLargestFilm) ||
         !lies_between(kSmallestFilm, film.height_mm, kLargestFilm))
         throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
+}
+
+/// Throws InputError where the camera cannot take a picture.
+inline void validate(const Camera& camera) {
+    using namespace camera_detail;
+    validate(camera.film);
     if (!lies_between(kLeastDial, camera.exposure_time_s, kMostDial))
         throw InputError("the exposure time must be a positive number of seconds, from 1e-37 to 1e38");
     if (!lies_between(kLeastDial, camera.iso, kMostDial))

@@ -48,7 +48,7 @@ private:
     void prepare(const Assembly& scene, const Camera& camera, const RenderSettings&, const KeepGoing& keep_going,
                  OwnStop& stop) override {
         const std::shared_ptr<const CameraSetup> setup = last_setup_.make(camera, tracer_);
-        const auto place = [&] { scene_.place(scene, camera); };
+        const auto place = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
             run_heeding(place, keep_going, stop);
             if (stop) throw Cancelled();

@@ -4,7 +4,7 @@
 
 namespace realcam {
 
-void HostScene::place(const Assembly& assembly, const Camera& camera) {
+void HostScene::place(const Assembly& assembly, const Camera& camera, const KeepGoing& keep_going) {
     const SceneChange change = change_to(assembly, camera);
     if (change == SceneChange::none) return;
     const bool moves = change == SceneChange::transforms;
@@ -15,8 +15,8 @@ void HostScene::place(const Assembly& assembly, const Camera& camera) {
     } else {
         placed.reset();  // before the next takes as much memory
         bvh_ = {};
-        placed = std::make_unique<RenderSpaceScene>(assembly, camera.pose.position_m);
-        bvh_ = build_scene_bvh(*placed);
+        placed = std::make_unique<RenderSpaceScene>(assembly, camera.pose.position_m, keep_going);
+        bvh_ = build_scene_bvh(*placed, keep_going);
     }
     for (DeviceRenderer* renderer : renderers_)
         moves ? renderer->set_instances(*placed, bvh_) : renderer->set_scene(*placed, bvh_);

@@ -20,7 +20,8 @@ public:
 
     /// Copies what has changed: nothing, the transforms of instances, or everything; the latter also for a camera that
     /// is too far from the place of the last. Throws DeviceError; the next call begins anew then.
-    void place(const Assembly& assembly, const Camera& camera);
+    /// Throws Cancelled where `keep_going`, asked on any thread, returns false.
+    void place(const Assembly& assembly, const Camera& camera, const KeepGoing& keep_going = {});
 
     Vec3d origin_m() const { return placed_->origin_m(); }
 

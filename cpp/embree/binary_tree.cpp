@@ -46,6 +46,10 @@ void set_children(void* node, void** children, unsigned, void*) {
     for (int i = 0; i < 2; ++i) static_cast<InnerNode*>(node)->child[i] = static_cast<BinaryNode*>(children[i]);
 }
 
+bool goes_on(void* keep_going, double) {
+    return (*static_cast<const KeepGoing*>(keep_going))();
+}
+
 void set_bounds(void*, const RTCBounds**, unsigned, void*) {}
 
 }  // namespace
@@ -63,7 +67,7 @@ struct BinaryTree::Memory {
     }
 };
 
-BinaryTree::BinaryTree(std::size_t triangles, const BoxOf& box_of) {
+BinaryTree::BinaryTree(std::size_t triangles, const BoxOf& box_of, const KeepGoing& keep_going) {
     auto memory = std::make_unique<Memory>();
     if (!memory->bvh) fail(rtcGetDeviceError(memory->device));
     std::vector<RTCBuildPrimitive> primitives = primitives_of(triangles, box_of);
@@ -77,7 +81,10 @@ BinaryTree::BinaryTree(std::size_t triangles, const BoxOf& box_of) {
     arguments.createLeaf = create_leaf;
     arguments.setNodeChildren = set_children;
     arguments.setNodeBounds = set_bounds;
+    arguments.userPtr = const_cast<KeepGoing*>(&keep_going);
+    if (keep_going) arguments.buildProgress = goes_on;
     root_ = static_cast<BinaryNode*>(rtcBuildBVH(&arguments));
+    if (keep_going && !keep_going()) throw Cancelled();
     if (!root_) fail(rtcGetDeviceError(memory->device));
     memory_ = memory.release();
 }

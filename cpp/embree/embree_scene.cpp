@@ -54,7 +54,7 @@ EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) const {
 }
 
 EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, const std::atomic<bool>& stop)
-    : device_(device), stop_(stop), placed_(assembly, origin_m) {
+    : device_(device), stop_(stop), placed_(assembly, origin_m, [&] { return !stop; }) {
     check();
     meshes_.push_back(build(placed_.static_geometry()));
     for (const auto& object : placed_.objects()) meshes_.push_back(build(*object));

@@ -1,5 +1,6 @@
 #include "embree_session.hpp"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -114,7 +115,9 @@ private:
     };
 
     static tbb::task_arena arena(const RenderSettings& settings) {
-        return tbb::task_arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+        // For more threads than cores TBB writes a warning to the console, and starts as many as there are cores.
+        const int most = tbb::info::default_concurrency();
+        return tbb::task_arena(settings.threads > 0 ? std::min(settings.threads, most) : most);
     }
 
     void place(const Assembly& scene, const Camera& camera) {

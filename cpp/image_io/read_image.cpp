@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "../error.hpp"
+#include "../io/decoded_image.hpp"
 #include "../io/free_memory.hpp"
 #include "image_file.hpp"
 #include "open_picture.hpp"
@@ -85,10 +85,7 @@ Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going
     environment.pixels.resize(picture.pixel_count());
     static_assert(sizeof(Color) == 3 * sizeof(float));
     picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->r, keep_going);
-    const auto light = [&](float v) {
-        // 16 bits keep more than srgb_to_linear's 8-bit codes.
-        return linear ? v : v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-    };
+    const auto light = [&](float v) { return linear ? v : io::linear_of_srgb(v); };
     for (Color& p : environment.pixels) p = {light(p.r), light(grey ? p.r : p.g), light(grey ? p.r : p.b)};
     return environment;
 }

@@ -5,13 +5,10 @@
 #include <utility>
 
 namespace realcam::io {
-namespace {
 
 float linear_of_srgb(float v) {
     return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
-
-}  // namespace
 
 bool is_whole(const DecodedImage& image) {
     const std::size_t size = std::visit([](const auto& values) { return values.size(); }, image.rgba);

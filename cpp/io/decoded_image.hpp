@@ -29,6 +29,10 @@ inline bool is_srgb(const DecodedImage& image, TextureUse use) {
     return use == TextureUse::colour && !image.is_linear;
 }
 
+/// sRGB transfer function (IEC 61966-2-1), from a fraction of the largest code to linear. For codes of 8 bits the
+/// renderer has srgb_to_linear.
+float linear_of_srgb(float v);
+
 /// Whether it has pixels, and their number fits its size.
 bool is_whole(const DecodedImage& image);
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "checkpoint.hpp"
+#include "../checkpoint.hpp"
 #include "json.hpp"
 
 namespace realcam::io {

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "checkpoint.hpp"
+#include "../checkpoint.hpp"
 #include "file_scene.hpp"
 
 namespace realcam::io {

@@ -2,7 +2,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "checkpoint.hpp"
+#include "../checkpoint.hpp"
 #include "file_scene.hpp"
 #include "gltf_document.hpp"
 

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "checkpoint.hpp"
+#include "../checkpoint.hpp"
 
 namespace realcam::io {
 

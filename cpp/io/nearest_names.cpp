@@ -44,7 +44,13 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
         if (candidate.size() > kLongestName) continue;
         const bool part = !name.empty() && (contains(candidate, name) || contains(name, candidate));
         const std::size_t distance = part ? 0 : edit_distance(name, candidate);
-        if (distance <= std::max<std::size_t>(2, candidate.size() / 3)) near.emplace_back(distance, candidate);
+        // "tesar" for "tessar-50mm": a short first word has to be nearer.
+        const std::string_view word = std::string_view(candidate).substr(0, candidate.find('-'));
+        const std::size_t of_word = edit_distance(name, word);
+        if (distance <= std::max<std::size_t>(2, candidate.size() / 3))
+            near.emplace_back(distance, candidate);
+        else if (of_word <= std::max<std::size_t>(1, word.size() / 3))
+            near.emplace_back(of_word, candidate);
     }
     std::sort(near.begin(), near.end());
     if (near.size() > 3) near.resize(3);

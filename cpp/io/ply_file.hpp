@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "../checkpoint.hpp"
 #include "../scene/scene.hpp"
-#include "checkpoint.hpp"
 
 namespace realcam::io {
 

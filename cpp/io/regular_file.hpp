@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "../checkpoint.hpp"
 #include "../error.hpp"
-#include "checkpoint.hpp"
 
 namespace realcam::io {
 

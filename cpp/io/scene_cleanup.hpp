@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "../scene/scene.hpp"
-#include "checkpoint.hpp"
 
 namespace realcam::io {
 

@@ -41,12 +41,11 @@ struct SceneFileOptions {
 /// format demands; OBJ and PLY say nothing, and get smooth normals where faces share vertices and meet at less than 45
 /// degrees.
 ///
-/// Materials: MTL's Kd, map_Kd (with its -s and -o), Ks, Ns (Phong exponent) and Ke (radiance, cd/m^2) are taken as
-/// they are. glTF's metallic-roughness model becomes a diffuse and a Phong lobe (see scene_materials.cpp), with their
-/// sum at most 1; emissiveFactor times KHR_materials_emissive_strength is radiance in cd/m^2. Of metallic-roughness and
-/// emissive maps the average is used.
+/// Materials are taken as they are: an MTL's of all its models of illumination, and glTF's metallic-roughness model
+/// with the extensions in io/gltf_material.hpp. MTL's Ke, and emissiveFactor times KHR_materials_emissive_strength, are
+/// radiance in cd/m^2. What is not modelled is named in Scene::warnings.
 ///
-/// Lights: KHR_lights_punctual, candela and lux; a spot light shines in all directions. Cameras are ignored.
+/// Lights: KHR_lights_punctual, candela and lux; a spot light emits in all directions. Cameras are ignored.
 ///
 /// `scale` applies to lengths alone; light keeps its units.
 Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "../scene/scene.hpp"
-#include "checkpoint.hpp"
 
 namespace realcam::io {
 

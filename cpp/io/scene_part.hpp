@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "checkpoint.hpp"
+#include "../checkpoint.hpp"
 #include "file_scene.hpp"
 
 namespace realcam::io {

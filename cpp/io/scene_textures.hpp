@@ -3,8 +3,8 @@
 #include <optional>
 #include <utility>
 
+#include "../checkpoint.hpp"
 #include "../scene/scene.hpp"
-#include "checkpoint.hpp"
 #include "file_scene.hpp"
 #include "scene_file.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "checkpoint.hpp"
+#include "../checkpoint.hpp"
 #include "regular_file.hpp"
 
 namespace realcam::io {

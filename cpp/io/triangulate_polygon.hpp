@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "../math/vec3.hpp"
-#include "checkpoint.hpp"
 
 namespace realcam::io {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "../scene/scene.hpp"
-#include "checkpoint.hpp"
 
 namespace realcam::io {
 

@@ -46,10 +46,10 @@ public:
     /// The device, for people.
     virtual std::string name() const = 0;
 
-    /// Throws InputError and SceneFileError for a scene that makes no picture.
-    void check(const Assembly& scene) {
-        const Turn turn(mutex_, {});
-        checks_.check(scene);
+    /// Throws InputError and SceneFileError for a scene that makes no picture, and Cancelled.
+    void check(const Assembly& scene, const KeepGoing& keep_going = {}) {
+        const Turn turn(mutex_, keep_going);
+        checks_.check(scene, {}, keep_going);
     }
 
     /// What is photographed from now on. A scene with other parts or transforms, a camera with another lens, film,
@@ -58,7 +58,7 @@ public:
     void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
              const KeepGoing& keep_going = {}) {
         const Turn turn(mutex_, keep_going);
-        check_all(scene, camera, settings);
+        check_all(scene, camera, settings, keep_going);
         make_way(keep_going);
         make_ready(scene, camera, settings, keep_going);
     }
@@ -95,7 +95,7 @@ public:
                                            ToneCurve curve, const KeepGoing& keep_going = {},
                                            std::shared_ptr<void> under_way = {}) {
         const Turn turn(mutex_, keep_going);
-        check_all(scene, camera, settings);
+        check_all(scene, camera, settings, keep_going);
         make_way(keep_going);
         make_ready(scene, camera, settings, keep_going);
         std::vector<SampleRange> ranges;
@@ -216,10 +216,11 @@ private:
         ~LowerStop() { session.lower_stop(); }
     };
 
-    void check_all(const Assembly& scene, const Camera& camera, const RenderSettings& settings) {
+    void check_all(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                   const KeepGoing& keep_going) {
         validate(settings);
         validate(camera);
-        checks_.check(scene);
+        checks_.check(scene, {}, keep_going);
     }
 
     void make_way(const KeepGoing& keep_going) {

@@ -39,8 +39,6 @@ public:
     }
 
     REALCAM_INLINE bool is_opaque() const { return !(border.weight > 0.0f); }
-    /// Whether there is more than Lambert's lobe.
-    REALCAM_INLINE bool has_narrow_lobes() const { return share_[0] < 1.0f && total_ > 0.0f; }
     /// Leaves Lambert's lobe out.
     REALCAM_INLINE void keep_narrow_lobes() {
         diffuse = diffuse_ = {0, 0, 0};

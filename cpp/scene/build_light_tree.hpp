@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -12,7 +13,7 @@ namespace REALCAM_NAMESPACE {
 class LightTree {
 public:
     LightTree() = default;
-    LightTree(const std::vector<PointLight>& points, const std::vector<AreaLight>& areas) {
+    LightTree(const std::vector<PointLight>& points, const std::vector<AreaLight>& areas, Checkpoint& checkpoint) {
         std::vector<Leaf> leaves;
         for (const PointLight& p : points)
             leaves.push_back(
@@ -30,7 +31,7 @@ public:
         }
         trails_.resize(leaves.size());
         nodes_.reserve(2 * leaves.size());
-        if (!leaves.empty()) add(leaves.begin(), leaves.end(), 0, 0);
+        if (!leaves.empty()) add(leaves.begin(), leaves.end(), 0, 0, checkpoint);
     }
 
     const std::vector<LightNode>& nodes() const { return nodes_; }
@@ -103,7 +104,7 @@ private:
 
     /// Where to split, after sorting along the best axis; the middle where all places are alike, and from a depth on at
     /// which 64 turns would not do.
-    Leaves split(Leaves first, Leaves last, int depth) const {
+    Leaves split(Leaves first, Leaves last, int depth, Checkpoint& checkpoint) const {
         constexpr int kBins = 12, kDeepest = 40;
         Vec3f low = first->middle, high = low;
         for (Leaves i = first; i != last; ++i) low = least(low, i->middle), high = most(high, i->middle);
@@ -115,6 +116,7 @@ private:
             LightNode bins[kBins];
             bool filled[kBins] = {};
             for (Leaves i = first; i != last; ++i) {
+                checkpoint.pass();
                 const int bin = bin_of(*i, axis, from, size, kBins);
                 bins[bin] = filled[bin] ? around(bins[bin], i->node) : i->node;
                 filled[bin] = true;
@@ -147,7 +149,7 @@ private:
         return std::clamp(static_cast<int>(share * static_cast<float>(bins)), 0, bins - 1);
     }
 
-    LightNode add(Leaves first, Leaves last, std::uint64_t turns, int depth) {
+    LightNode add(Leaves first, Leaves last, std::uint64_t turns, int depth, Checkpoint& checkpoint) {
         const std::size_t place = nodes_.size();
         nodes_.push_back(first->node);
         if (last - first == 1) {
@@ -161,10 +163,10 @@ private:
             pair.first_share = pair.intensity > 0 ? first->node.intensity / pair.intensity : 0.5f;
             return nodes_[place] = pair;
         }
-        const Leaves middle = split(first, last, depth);
-        const LightNode one = add(first, middle, turns, depth + 1);
+        const Leaves middle = split(first, last, depth, checkpoint);
+        const LightNode one = add(first, middle, turns, depth + 1, checkpoint);
         const auto second = static_cast<std::int32_t>(nodes_.size());
-        const LightNode other = add(middle, last, turns | std::uint64_t{1} << depth, depth + 1);
+        const LightNode other = add(middle, last, turns | std::uint64_t{1} << depth, depth + 1, checkpoint);
         LightNode& node = nodes_[place] = around(one, other);
         node.second_child = second;
         return node;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "scene.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -49,7 +50,7 @@ struct EnvironmentTables {
 
 /// For choosing the pixels of an image by their light and, for the even share, by their solid angle where they have
 /// any.
-inline EnvironmentTables environment_tables(const Environment& e) {
+inline EnvironmentTables environment_tables(const Environment& e, Checkpoint& checkpoint) {
     EnvironmentTables tables;
     if (e.pixels.empty()) {
         tables.mean_luminance = luminance(e.constant);
@@ -58,6 +59,7 @@ inline EnvironmentTables environment_tables(const Environment& e) {
     const auto width = static_cast<std::size_t>(e.width), height = static_cast<std::size_t>(e.height);
     std::vector<double> light, solid_angle;
     for (std::size_t row = 0; row < height; ++row) {
+        checkpoint.pass(width);
         const double sine =
             std::sin(3.141592653589793 * (static_cast<double>(row) + 0.5) / static_cast<double>(height));
         for (std::size_t column = 0; column < width; ++column) {
@@ -72,6 +74,7 @@ inline EnvironmentTables environment_tables(const Environment& e) {
     const std::vector<double> weights = mixed(light, solid_angle);
     std::vector<double> rows;
     for (std::size_t row = 0; row < height; ++row) {
+        checkpoint.pass(width);
         const auto first = weights.begin() + static_cast<std::ptrdiff_t>(row * width);
         const std::vector<double> pixels(first, first + static_cast<std::ptrdiff_t>(width));
         append_cdf(pixels, tables.conditional_cdf);

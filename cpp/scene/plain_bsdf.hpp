@@ -12,7 +12,6 @@ public:
     float shininess;
 
     REALCAM_INLINE bool is_opaque() const { return true; }
-    REALCAM_INLINE bool has_narrow_lobes() const { return !is_black(phong); }
     REALCAM_INLINE void keep_narrow_lobes() { diffuse = {0, 0, 0}; }
     REALCAM_INLINE void keep_mirrors() { diffuse = phong = {0, 0, 0}; }
 

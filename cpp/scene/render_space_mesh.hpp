@@ -15,17 +15,19 @@ namespace REALCAM_NAMESPACE {
 class RenderSpaceMesh {
 public:
     /// `frame`: from that of the scene.
-    RenderSpaceMesh(const Scene& scene, const Affine<double>& frame, LargeTriangles large = LargeTriangles::cut)
-        : scene_(scene), frame_(frame), split_(scene, frame, large) {
+    RenderSpaceMesh(const Scene& scene, const Affine<double>& frame, LargeTriangles large, Checkpoint& checkpoint)
+        : scene_(scene), frame_(frame), split_(scene, frame, large, checkpoint) {
         positions_.reserve(split_.position_count());
-        for (std::size_t i = 0; i < split_.position_count(); ++i)
+        for (std::size_t i = 0; i < split_.position_count(); ++i) {
+            checkpoint.pass();
             positions_.push_back(static_cast<Vec3f>(split_.position(i)));
+        }
         for (const Texture& t : scene.textures)
             textures_.push_back({t.rgba.empty() ? nullptr : t.rgba.data(),
                                  t.linear_rgba.empty() ? nullptr : t.linear_rgba.data(), t.width, t.height,
                                  t.encoding});
-        add_normals();
-        add_planes();
+        add_normals(checkpoint);
+        add_planes(checkpoint);
         for (std::uint32_t i = 0; i < triangles().size(); ++i)
             if (scene.materials[triangles()[i].material].emits()) emitters_.push_back(i);
     }
@@ -74,19 +76,22 @@ private:
         return {a, position(t.vertices[1]) - a, position(t.vertices[2]) - a};
     }
 
-    void add_normals() {
+    void add_normals(Checkpoint& checkpoint) {
         if (frame_.is_scale_and_shift() || split_.normals().empty()) return;
         // Not made unit vectors, so that what is interpolated between them is what it was.
         const InverseAffine<double> inverse = frame_.inverse();
         turned_normals_.reserve(split_.normals().size());
-        for (const Vec3f n : split_.normals())
+        for (const Vec3f n : split_.normals()) {
+            checkpoint.pass();
             turned_normals_.push_back(static_cast<Vec3f>(inverse.normal_of(static_cast<Vec3d>(n))));
+        }
     }
 
-    void add_planes() {
+    void add_planes(Checkpoint& checkpoint) {
         const double side = frame_.determinant() < 0 ? -1 : 1;  // a mirror turns corners round
         planes_.reserve(triangles().size());
         for (std::size_t i = 0; i < triangles().size(); ++i) {
+            checkpoint.pass();
             // Of the whole triangle, so that its pieces are one plane.
             const Edges whole = edges_of(scene_.triangles[split_.parent(i)],
                                          [&](std::uint32_t v) { return frame_.point(scene_.positions_m[v]); });

@@ -19,13 +19,16 @@ namespace REALCAM_NAMESPACE {
 /// its view.
 class RenderSpaceScene {
 public:
-    RenderSpaceScene(Assembly assembly, Vec3d origin_m)
+    /// Throws Cancelled where `keep_going` returns false.
+    RenderSpaceScene(Assembly assembly, Vec3d origin_m, const KeepGoing& keep_going = {})
         : assembly_(std::move(assembly)),
           origin_(origin_m),
-          static_geometry_(*assembly_.static_geometry, relative_to(origin_m)) {
+          checkpoint_(keep_going),
+          static_geometry_(*assembly_.static_geometry, relative_to(origin_m), LargeTriangles::cut, checkpoint_) {
         std::map<const Scene*, BoundingBox> boxes;
         std::map<std::pair<const Scene*, int>, std::uint32_t> shared;  // by those that are scaled about alike
         for (const Instance& instance : assembly_.instances) {
+            checkpoint_.pass();
             const Scene& object = *instance.object;
             const auto [box, is_first] = boxes.try_emplace(&object);
             if (is_first) add_triangles(box->second, object, {});
@@ -44,9 +47,10 @@ public:
         }
         for (const auto& object : objects_) object_views_.push_back(object->view());
         const Environment& environment = assembly_.static_geometry->environment;
-        environment_ = environment_tables(environment);
+        environment_ = environment_tables(environment, checkpoint_);
         find_material_set();
         update_instances();
+        checkpoint_ = Checkpoint();
     }
 
     /// Whether move can bring about an assembly: it has the same parts, and their frames are still good ones.
@@ -141,7 +145,7 @@ private:
     }
 
     void add_object(const Scene& object, const Affine<double>& frame, LargeTriangles large) {
-        objects_.push_back(std::make_unique<RenderSpaceMesh>(object, frame, large));
+        objects_.push_back(std::make_unique<RenderSpaceMesh>(object, frame, large, checkpoint_));
         static_objects_.push_back(large == LargeTriangles::cut);
     }
     bool is_static(std::size_t instance) const { return static_objects_[object_of_[instance]]; }
@@ -161,11 +165,12 @@ private:
         areas_.clear();
         add_lights(static_geometry_, {}, nullptr);
         for (std::size_t i = 0; i < assembly_.instances.size(); ++i) {
+            checkpoint_.pass();
             const Affine<double> exact = render_from_object(i);
             instances_.push_back(instance_view(exact, i));
             add_lights(*objects_[object_of_[i]], exact, &instances_.back());
         }
-        light_tree_ = LightTree(points_, areas_);
+        light_tree_ = LightTree(points_, areas_, checkpoint_);
     }
 
     InstanceView instance_view(const Affine<double>& exact, std::size_t i) const {
@@ -219,6 +224,7 @@ private:
 
     Assembly assembly_;
     Vec3d origin_;
+    Checkpoint checkpoint_;
     RenderSpaceMesh static_geometry_;
     std::vector<BoundingBox> boxes_;  ///< of each instance's object, as it is given
     std::vector<std::uint32_t> object_of_;  ///< of each instance, in:

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "../error.hpp"
 #include "assembly.hpp"
 
@@ -59,7 +60,8 @@ namespace scene_checks_detail {
 
 class Checker {
 public:
-    Checker(const Scene& scene, const std::string& file) : scene_(scene), file_(file) {}
+    Checker(const Scene& scene, const std::string& file, Checkpoint& checkpoint)
+        : scene_(scene), file_(file), checkpoint_(checkpoint) {}
 
     void check(bool may_be_empty) const {
         if (scene_.triangles.empty() && !may_be_empty)
@@ -84,6 +86,7 @@ private:
     void check_vertices() const {
         const std::size_t count = scene_.positions_m.size();
         for (std::size_t i = 0; i < count; ++i) {
+            checkpoint_.pass();
             if (!in_reach(scene_.positions_m[i])) {
                 require(false, "vertex", i, "coordinates must be finite numbers of at most 1e12 m");
             }
@@ -112,6 +115,7 @@ private:
                  " does not exist; there are " + std::to_string(count));
         };
         for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
+            checkpoint_.pass();
             const Triangle& triangle = scene_.triangles[t];
             for (const std::uint32_t v : triangle.vertices) {
                 if (v >= scene_.positions_m.size()) out_of(t, v, "vertex", scene_.positions_m.size());
@@ -165,6 +169,7 @@ private:
                 static_cast<std::size_t>(std::max(t.width, 0)) * static_cast<std::size_t>(std::max(t.height, 0));
             require(texels > 0 && (t.rgba.empty() ? t.linear_rgba.size() : t.rgba.size()) == 4 * texels, "texture", i,
                     "width x height x 4 numbers are wanted");
+            checkpoint_.pass(t.linear_rgba.size());
             for (const float v : t.linear_rgba)
                 require(v >= 0 && std::isfinite(v), "texture", i, "must hold finite numbers, none below 0");
         }
@@ -199,6 +204,7 @@ private:
 
     const Scene& scene_;
     const std::string& file_;
+    Checkpoint& checkpoint_;
 };
 
 }  // namespace scene_checks_detail
@@ -206,21 +212,26 @@ private:
 /// Checks everything that a renderer relies on: sizes of lists, indices, finite numbers, no negative light or
 /// reflectance. Throws SceneFileError if there is no triangle or if `file`, for the message, is given, and InputError
 /// otherwise; the message names the element, counted from 0. `may_be_empty`: of what has no triangle but emitters, or
-/// of a scene that consists of instances.
+/// of a scene that consists of instances. Throws Cancelled where `checkpoint` does.
+inline void validate(const Scene& scene, const std::string& file, bool may_be_empty, Checkpoint& checkpoint) {
+    scene_checks_detail::Checker(scene, file, checkpoint).check(may_be_empty);
+}
 inline void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false) {
-    scene_checks_detail::Checker(scene, file).check(may_be_empty);
+    Checkpoint unasked;
+    validate(scene, file, may_be_empty, unasked);
 }
 
 /// Checks scenes that come one after the other: static geometry, objects and transforms, and of each scene only what
 /// was no part of the last one. Keeps the last one in memory.
 class SceneChecks {
 public:
-    /// Throws as validate(Scene), and InputError for what is wrong with an instance.
-    void check(const Assembly& scene, const std::string& file = {}) {
+    /// Throws as validate(Scene), and InputError for what is wrong with an instance, and Cancelled.
+    void check(const Assembly& scene, const std::string& file = {}, const KeepGoing& keep_going = {}) {
+        Checkpoint checkpoint(keep_going);
         try {
             if (!scene.static_geometry) throw InputError("the scene is empty; at least one triangle is wanted");
             if (!same_parts(last_, scene)) {
-                check_parts(scene, file);
+                check_parts(scene, file, checkpoint);
                 validate(scene);
             } else if (!same_transforms(last_, scene)) {
                 validate_transforms(scene);
@@ -235,16 +246,17 @@ public:
     }
 
 private:
-    void check_parts(const Assembly& scene, const std::string& file) const {
+    void check_parts(const Assembly& scene, const std::string& file, Checkpoint& checkpoint) const {
         std::set<const Scene*> good{last_.static_geometry.get()};
         for (const Instance& instance : last_.instances) good.insert(instance.object.get());
         // What served as an object may be too little for a whole scene: no triangle.
         if (good.insert(scene.static_geometry.get()).second || scene.instances.empty())
-            validate(*scene.static_geometry, file, !scene.instances.empty());
+            validate(*scene.static_geometry, file, !scene.instances.empty(), checkpoint);
         for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+            checkpoint.pass();
             const Scene* const object = scene.instances[i].object.get();
             if (!object) throw InputError(label(scene, i) + " has no object");
-            if (good.insert(object).second) validate(*object, file, true);
+            if (good.insert(object).second) validate(*object, file, true, checkpoint);
         }
     }
 

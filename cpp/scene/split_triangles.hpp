@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "../math/affine.hpp"
 #include "scene.hpp"
 
@@ -26,11 +27,12 @@ inline Affine<double> relative_to(Vec3d origin_m) {
 /// the place of the triangle, the others are appended. Normals are those of the scene's own frame.
 class SplitTriangles {
 public:
-    SplitTriangles(const Scene& scene, const Affine<double>& frame, LargeTriangles large = LargeTriangles::cut)
+    SplitTriangles(const Scene& scene, const Affine<double>& frame, LargeTriangles large, Checkpoint& checkpoint)
         : scene_(scene), frame_(frame) {
         if (large == LargeTriangles::keep) return;
         const auto count = static_cast<std::uint32_t>(scene.triangles.size());
         for (std::uint32_t i = 0; i < count; ++i) {
+            checkpoint.pass();
             const Triangle t = scene.triangles[i];
             if (!may_be_too_large(t)) continue;
             parent_ = i;

@@ -77,20 +77,20 @@ private:
         shot.view.position_m = point("position_m");
         shot.view.look_at_m = point("look_at_m");
         shot.view.up = point("up").value_or(shot.view.up);
-        read_focus(shot.view);
+        shot.view.focus_distance_m = number_or_auto("focus_m", "a number of metres, inf or \"auto\"");
         shot.model = named("model", model_named, kModelNames).value_or(shot.model);
-        shot.exposure_time_s = table_.number("exposure_time_s");
+        shot.exposure_time_s = number_or_auto("exposure_time_s", "a number of seconds or \"auto\"");
         shot.iso = table_.number("iso").value_or(shot.iso);
         shot.tone = named("tone", tone_named, kToneNames).value_or(shot.tone);
     }
 
-    /// A distance, inf, or the text "auto".
-    void read_focus(ViewRequest& view) const {
-        const toml::node* node = table_.find("focus_m");
-        if (!node || node->value<std::string>() == "auto") return;
-        const double metres = node->is_number() ? node->value_or(0.0) : std::nan("");
-        if (std::isnan(metres)) table_.fail("\"focus_m\" must be a number of metres, inf or \"auto\"", node);
-        view.focus_distance_m = metres;
+    /// None for the text "auto", too.
+    std::optional<double> number_or_auto(const char* key, const char* wanted) const {
+        const toml::node* node = table_.find(key);
+        if (!node || node->value<std::string>() == "auto") return std::nullopt;
+        const double number = node->is_number() ? node->value_or(0.0) : std::nan("");
+        if (std::isnan(number)) table_.fail('"' + std::string(key) + "\" must be " + wanted, node);
+        return number;
     }
 
     void read_settings(RenderSettings& settings) const {
@@ -106,8 +106,10 @@ private:
 
     template <class Value = int>
     Value whole(const char* key, double number) const {
-        if (number != std::floor(number) || !(number >= 0) || !(number <= std::numeric_limits<Value>::max()))
-            table_.fail('"' + std::string(key) + "\" must be made of whole numbers", table_.find(key));
+        constexpr Value kMost = std::numeric_limits<Value>::max();
+        if (number != std::floor(number) || !(number >= 0) || !(number <= kMost))
+            table_.fail('"' + std::string(key) + "\" wants whole numbers from 0 to " + std::to_string(kMost),
+                        table_.find(key));
         return static_cast<Value>(number);
     }
 

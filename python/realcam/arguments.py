@@ -89,7 +89,10 @@ def _counted(count: int) -> str:
 
 def _text(value: Any) -> str:
     """Short: realcam's own objects are."""
-    return repr(value) if type(value).__module__.startswith("realcam") else reprlib.repr(value)
+    try:
+        return repr(value) if type(value).__module__.startswith("realcam") else reprlib.repr(value)
+    except ValueError:  # Python writes no whole number of thousands of digits
+        return f"one of the type {type(value).__name__}"
 
 
 def _misfit_of_names(

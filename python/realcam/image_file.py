@@ -29,9 +29,12 @@ def write_image(image: Image, path: str | os.PathLike[str], tone: str) -> None:
     """Raises ImageFileError, InputError."""
     if tone not in ("film", "linear"):
         raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
-    _pictures().write_picture(
-        system_name(path), image.pixels, image.depth, image.camera, image.spp, image.seed, tone == "film"
-    )
+    try:
+        _pictures().write_picture(
+            system_name(path), image.pixels, image.depth, image.camera, image.spp, image.seed, tone == "film"
+        )
+    except TypeError:
+        raise InputError("pixels, depth, camera, spp and seed of the image must be such as rc.render gives") from None
 
 
 def _pictures() -> ModuleType:

@@ -47,6 +47,7 @@ HOST_ONLY = {
     "camera/field_of_view.hpp",
     "camera/last_setup.hpp",
     "camera/picture_angle.hpp",
+    "checkpoint.hpp",
     "error.hpp",
     "keep_going.hpp",
     "optics/best_focus.hpp",

@@ -27,7 +27,7 @@ struct GltfFile {
     GltfFile() { folder.write("tri.bin", triangle_bytes()); }
 
     void read(const std::string& more) {
-        io::Checkpoint checkpoint;
+        Checkpoint checkpoint;
         scene = io::read_gltf(folder.write("m.gltf", gltf(R"([{"mesh":0}])", "[0]", more)), checkpoint);
     }
     /// The material with the members of `json`, in a file with twenty textures and as many pictures.
@@ -226,7 +226,7 @@ TEST_CASE("glTF: vertices get the set of coordinates of the material's first tex
         const std::string text = gltf(R"([{"mesh":0}])", "[0]", ",\"materials\":[{" + json + R"(}],
             "textures":[{"source":0}],"images":[{"uri":"a.png"}])",
                                       R"(,"NORMAL":1,"TEXCOORD_1":2)");
-        io::Checkpoint checkpoint;
+        Checkpoint checkpoint;
         return io::read_gltf(file.folder.write("u.gltf", text), checkpoint).vertices[0].uvs.size();
     };
     CHECK(uvs(R"("normalTexture":)" + info(0)) == 0);

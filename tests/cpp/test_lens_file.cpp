@@ -242,6 +242,7 @@ TEST_CASE("a lens that is not there is named, with the nearest names") {
     CHECK(contains(misspelt, "unknown lens \"duble-gauss-50mm\""));
     CHECK(contains(misspelt, "\"double-gauss-50mm\""));
     CHECK(contains(complaint_about_name("tessar"), "\"tessar-50mm\""));
+    CHECK(contains(complaint_about_name("tesar"), "\"tessar-50mm\""));
     CHECK(!contains(complaint_about_name("qqqqqqqqqqqqqqqq"), "did you mean"));
     CHECK(contains(complaint_about_name("qqqqqqqqqqqqqqqq"), "a bundled lens"));
     CHECK(contains(complaint_about_name("/nowhere/lens.toml"), "/nowhere/lens.toml: no such file"));

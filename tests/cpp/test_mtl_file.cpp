@@ -21,7 +21,7 @@ struct Mtl {
     /// The first material of a file that begins with "newmtl m".
     MtlMaterial material(const std::string& statements) {
         scene = {};
-        io::Checkpoint checkpoint;
+        Checkpoint checkpoint;
         io::read_mtl(scene, folder.write("a.mtl", "newmtl m\n" + statements), checkpoint);
         REQUIRE_FALSE(scene.materials.empty());
         return std::get<MtlMaterial>(scene.materials[0].content);
@@ -133,7 +133,7 @@ TEST_CASE("MTL: Tr alone is one less d, and d wins where both are given") {
     CHECK(mtl.warned("d -halo is not modelled"));
 
     // The next material begins anew.
-    io::Checkpoint checkpoint;
+    Checkpoint checkpoint;
     io::FileScene scene;
     io::read_mtl(scene, mtl.folder.write("two.mtl", "newmtl a\nd 0.5\nillum 4\nnewmtl b\nTr 0.25\nKs 1 1 1\n"),
                  checkpoint);

@@ -14,6 +14,8 @@ using namespace realcam::test;
 
 namespace {
 
+Checkpoint unasked;
+
 Scene scene_of(std::vector<Vec3d> positions, std::vector<Triangle> triangles) {
     Scene scene;
     scene.positions_m = std::move(positions);
@@ -80,7 +82,7 @@ TEST_CASE("large triangles come in pieces that fit together and cover the same")
         for (const Vec3d& middle : middles(half)) {
             CAPTURE(half);
             const Scene scene = ground(middle, half, kRight, kUp);
-            const SplitTriangles split(scene, relative_to({0, 0, 0}));
+            const SplitTriangles split(scene, relative_to({0, 0, 0}), LargeTriangles::cut, unasked);
             REQUIRE(split.any());
             most = std::max(most, split.triangles().size());
             double area = 0;
@@ -123,13 +125,13 @@ TEST_CASE("large triangles come in pieces that fit together and cover the same")
 
 TEST_CASE("what is not large for its distance stays as it is") {
     const Scene scene = ground({0, -1.5, 0}, 60, {1, 0, 0}, {0, 0, -1});
-    const SplitTriangles split(scene, relative_to({0, 0, 0}));
+    const SplitTriangles split(scene, relative_to({0, 0, 0}), LargeTriangles::cut, unasked);
     CHECK(!split.any());
     CHECK(&split.triangles() == &scene.triangles);
     CHECK(&split.normals() == &scene.normals);
     // From afar the largest one is small.
     const Scene large = ground({0, 0, -1e9}, 1e8, kRight, kUp);
-    CHECK(!SplitTriangles(large, relative_to({0, 0, 0})).any());
+    CHECK(!SplitTriangles(large, relative_to({0, 0, 0}), LargeTriangles::cut, unasked).any());
 }
 
 TEST_CASE("normals and texture coordinates of a piece are those of the whole") {
@@ -137,7 +139,7 @@ TEST_CASE("normals and texture coordinates of a piece are those of the whole") {
     const Scene scene = ground(middle, 1e5, kRight, kUp);
     const RenderSpaceScene placed(scene, {0, 0, 0});
     const SceneView view = placed.view();
-    const SplitTriangles split(scene, relative_to({0, 0, 0}));
+    const SplitTriangles split(scene, relative_to({0, 0, 0}), LargeTriangles::cut, unasked);
     for (std::size_t i = 0; i < split.triangles().size(); ++i)
         for (const std::uint32_t v : split.triangles()[i].vertices) {
             const Vec3d p = split.position(v) - middle;

@@ -232,7 +232,7 @@ TEST_CASE("wide BVH: moving the largest nodes makes the boxes smaller, and leave
     }
     mesh.add({-50, 0, -50}, {-50, 0, 50}, {50, 0, -50});
     mesh.add({50, 0, 50}, {-50, 0, 50}, {50, 0, -50});
-    BinaryTree tree(mesh.triangles.size(), [&](std::uint32_t i) { return mesh.box(i); });
+    BinaryTree tree(mesh.triangles.size(), [&](std::uint32_t i) { return mesh.box(i); }, {});
     measure(tree.root());
     Sum before{0, std::vector<int>(mesh.triangles.size())}, after = before;
     before.add(tree.root());

@@ -38,6 +38,10 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: rc.Film(resolution=(1.5, 2)), "resolution must be two whole numbers; it is (1.5, 2)"),
     (lambda: rc.Film(resolution=960), "resolution must be two whole numbers; it is 960"),
     (
+        lambda: CAMERA.generate_rays(spp=10**5000),
+        f"spp must be a whole number between {-(2**31)} and {2**31 - 1}; it is one of the type int",
+    ),
+    (
         lambda: rc.Film(resolution=(2**40, 2)),
         f"resolution must be a whole number between {-(2**31)} and {2**31 - 1}; it is ({2**40}, 2)",
     ),
@@ -166,3 +170,16 @@ def test_what_a_docstring_refers_to_exists() -> None:
                 thing = getattr(thing, part)
             seen += 1
     assert seen > 0
+
+
+def test_messages_repeat_no_page_of_what_was_given() -> None:
+    for call in (
+        lambda: rc.Lens.load("x" * 100_000),
+        lambda: rc.Scene.load("x" * 100_000 + ".obj"),
+        lambda: rc.render(SCENE, CAMERA, device="x" * 100_000),
+        lambda: rc.Lens.load("a/" + "b\n" * 100_000),
+    ):
+        with pytest.raises(rc.RealcamError) as caught:
+            call()
+        assert len(str(caught.value)) < 2100
+        assert "\n" not in str(caught.value)

@@ -50,15 +50,30 @@ def test_defaults_and_what_is_kept() -> None:
 
 
 @pytest.mark.parametrize(
+    ("size", "says"),
+    [
+        ((36, 24, (0, 640)), "0 x 640 pixels; 1 to 32768"),
+        ((36, 24, (960, -5)), "960 x -5 pixels"),
+        ((36, 24, (1000000, 1)), "1000000 x 1 pixels"),
+        ((0, 24, (36, 24)), "width and height"),
+        ((36, math.nan, (36, 24)), "width and height"),
+        ((1e-3, 1e170, (36, 24)), "width and height"),
+        ((1e-300, 24, (36, 24)), "width and height"),
+    ],
+)
+def test_a_film_that_is_none(size: tuple[float, float, tuple[int, int]], says: str) -> None:
+    width, height, resolution = size
+    with pytest.raises(rc.InputError, match=says):
+        rc.Film(*size)
+    with pytest.raises(rc.InputError, match=says):
+        rc.Film().replace(width_mm=width, height_mm=height, resolution=resolution)
+    with pytest.raises(rc.InputError, match=says):
+        rc.Film.for_lens(rc.Lens.load("tessar-50mm"), (width, height), resolution)
+
+
+@pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ({"film": rc.Film(36, 24, (0, 640))}, "0 x 640 pixels; 1 to 32768"),
-        ({"film": rc.Film(36, 24, (960, -5))}, "960 x -5 pixels"),
-        ({"film": rc.Film(36, 24, (1000000, 1))}, "1000000 x 1 pixels"),
-        ({"film": rc.Film(0, 24, (36, 24))}, "width and height"),
-        ({"film": rc.Film(36, math.nan, (36, 24))}, "width and height"),
-        ({"film": rc.Film(1e-3, 1e170, (36, 24))}, "width and height"),
-        ({"film": rc.Film(1e-300, 24, (36, 24))}, "width and height"),
         ({"exposure_time_s": 0}, "exposure time"),
         ({"exposure_time_s": math.inf}, "exposure time"),
         ({"exposure_time_s": 1e300}, "exposure time"),

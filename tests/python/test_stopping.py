@@ -294,6 +294,28 @@ def test_a_forked_process_works_or_says_why_not(concurrent: bool) -> None:
     assert out.splitlines()[1] == "0"
 
 
+def test_a_process_forked_amid_a_render_ends_at_once() -> None:
+    """By sys.exit, which runs what waits for work under way: there is none in the child."""
+    code = """
+        thread = threading.Thread(target=lambda: rc.render(room(), camera, spp=10**6, device="cpu"), daemon=True)
+        thread.start()
+        time.sleep(0.5)
+        if os.fork() == 0:
+            sys.exit()  # the pipes close when it has ended, and after the parent has
+        os.kill(os.getpid(), 9)
+        """
+    process = child(code)
+    begin = time.monotonic()
+    process.communicate(timeout=30)
+    assert time.monotonic() - begin < 8  # the wait for work would last 10 s
+
+
+def test_more_threads_than_cores_are_no_reason_for_a_warning(capfd: pytest.CaptureFixture[str]) -> None:
+    scene = rc.Scene.from_arrays([(0, 0, -2), (1, 0, -2), (0, 1, -2)], [(0, 1, 2)]).with_environment(1)
+    rc.render(scene, rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2))), spp=1, threads=1000)
+    assert capfd.readouterr().err == ""
+
+
 def test_more_threads_than_any_machine_has_are_refused() -> None:
     scene = rc.Scene.from_arrays([(0, 0, -2), (1, 0, -2), (0, 1, -2)], [(0, 1, 2)]).with_environment(1)
     camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2)))
@@ -331,8 +353,10 @@ def test_no_thread_to_be_had_is_told() -> None:
     assert set(answers) <= {told, "out of memory", "rendered"}
 
 
-def children_of(process: int) -> list[str]:
-    return Path(f"/proc/{process}/task/{process}/children").read_text().split()
+def renders_of(process: int) -> list[str]:
+    """matplotlib starts other programs when it is imported for the first time."""
+    children = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    return [child for child in children if Path(f"/proc/{child}/comm").read_text() == "realcam\n"]
 
 
 @pytest.mark.pictures
@@ -341,7 +365,7 @@ def test_the_demo_takes_its_render_along_when_it_is_terminated(tmp_path: Path) -
     command = [sys.executable, "-m", "realcam", "demo", "-o", str(tmp_path / "a" / "b"), "--spp", str(2**24)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         end = time.monotonic() + 30
-        while not (children := children_of(process.pid)) and time.monotonic() < end:
+        while not (children := renders_of(process.pid)) and time.monotonic() < end:
             time.sleep(0.05)
         assert children
         time.sleep(0.5)

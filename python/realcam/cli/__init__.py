@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 import typer
 
 from .. import __version__
-from .._core import RealcamError
+from .._core import RealcamError, one_line
 from . import bench, demo, lens
 from .options import add_command_of_the_executable
 
@@ -59,5 +59,5 @@ def run() -> None:
 
 
 def _fail(message: str) -> NoReturn:
-    print(f"realcam: error: {' '.join(message.split())}", file=sys.stderr)
+    print(f"realcam: error: {one_line(message)}", file=sys.stderr)
     sys.exit(2)

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <utility>
 
-#include "../error.hpp"
-#include "../keep_going.hpp"
+#include "error.hpp"
+#include "keep_going.hpp"
 
-namespace realcam::io {
+namespace realcam {
 
 /// Asks the caller of a long task, some fifty times a second, whether to go on.
 class Checkpoint {
@@ -38,4 +38,4 @@ private:
     Clock::time_point last_ = Clock::now();
 };
 
-}  // namespace realcam::io
+}  // namespace realcam
