@@ -61,8 +61,10 @@ EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origi
     const auto& instances = placed_.instances();
     if (instances.empty()) return;
     all_ = new_scene();
-    for (std::size_t i = 0; i < instances.size(); ++i)
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        if (stop_) throw Cancelled();
         instances_.push_back(attach(meshes_[1 + instances[i].object], static_cast<unsigned>(i)));
+    }
     if (!placed_.static_geometry().triangles().empty()) {
         const OwnGeometry static_geometry = attach(meshes_.front(), static_cast<unsigned>(instances.size()));
         rtcCommitGeometry(static_geometry.get());
@@ -79,6 +81,7 @@ EmbreeScene::OwnGeometry EmbreeScene::attach(const OwnScene& mesh, unsigned numb
 
 void EmbreeScene::add_instances() {
     for (std::size_t i = 0; i < instances_.size(); ++i) {
+        if (stop_) throw Cancelled();
         const Affine<float>& map = placed_.instances()[i].render_from_object;
         static_assert(sizeof(map) == 12 * sizeof(float));
         rtcSetGeometryTransform(instances_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &map);
