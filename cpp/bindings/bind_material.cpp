@@ -39,14 +39,15 @@ std::size_t place_of(TextureReference Material::* wanted) {
     return i;
 }
 
-TextureEncoding encoding_of(TextureReference Material::* member) {
+io::TextureUse use_of(TextureReference Material::* member) {
+    if (member == &Material::opacity_texture) return io::TextureUse::opacity;
     const bool is_data = member == &Material::normal_texture || member == &Material::metallic_roughness_texture;
-    return is_data ? TextureEncoding::linear : TextureEncoding::srgb;
+    return is_data ? io::TextureUse::data : io::TextureUse::colour;
 }
 
 /// None: no texture.
 void set_texture(PythonMaterial& m, TextureReference Material::* member, const py::object& pixels) {
-    m.textures[place_of(member)] = pixels.is_none() ? nullptr : texture_from(pixels, encoding_of(member));
+    m.textures[place_of(member)] = pixels.is_none() ? nullptr : texture_from(pixels, use_of(member));
     m.values.*member = {};
 }
 
@@ -73,6 +74,9 @@ struct Common {
     float normal_scale, ior, transmission;
     Colour absorption;
     bool thin;
+    float opacity, opacity_cutoff;
+    py::object opacity_texture;
+    bool double_sided;
 };
 
 PythonMaterial common(const std::string& name, const Common& from) {
@@ -86,6 +90,10 @@ PythonMaterial common(const std::string& name, const Common& from) {
     m.values.transmission = from.transmission;
     m.values.absorption = rgb(from.absorption);
     m.values.is_thin = from.thin;
+    m.values.opacity = from.opacity;
+    m.values.opacity_cutoff = from.opacity_cutoff;
+    set_texture(m, &Material::opacity_texture, from.opacity_texture);
+    m.values.emits_on_both_sides = from.double_sided;
     return m;
 }
 
@@ -93,9 +101,10 @@ PythonMaterial make_material(const Colour& diffuse, const Colour& specular, floa
                              const py::object& texture, const std::string& name, const Colour& mirror, bool fresnel,
                              float transmission, float ior, const Colour& filter, const Colour& absorption, bool thin,
                              const py::object& specular_texture, const py::object& emission_texture,
-                             const py::object& normal_map, float normal_scale) {
-    PythonMaterial m =
-        common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission, absorption, thin});
+                             const py::object& normal_map, float normal_scale, float opacity, float opacity_cutoff,
+                             const py::object& opacity_texture, bool double_sided) {
+    PythonMaterial m = common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission,
+                                     absorption, thin, opacity, opacity_cutoff, opacity_texture, double_sided});
     m.values.diffuse = rgb(diffuse);
     m.values.specular = rgb(specular);
     m.values.shininess = shininess;
@@ -113,9 +122,10 @@ PythonMaterial make_metallic_roughness(const Colour& base_color, float metallic,
                                        float transmission, const Colour& absorption, bool thin, float clearcoat,
                                        float clearcoat_roughness, const Colour& emission,
                                        const py::object& emission_texture, const py::object& normal_map,
-                                       float normal_scale, const std::string& name) {
-    PythonMaterial m =
-        common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission, absorption, thin});
+                                       float normal_scale, const std::string& name, float opacity, float opacity_cutoff,
+                                       const py::object& opacity_texture, bool double_sided) {
+    PythonMaterial m = common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission,
+                                     absorption, thin, opacity, opacity_cutoff, opacity_texture, double_sided});
     m.values.model = MaterialModel::metallic_roughness;
     m.values.diffuse = rgb(base_color);
     m.values.metallic = metallic;
@@ -132,7 +142,8 @@ PythonMaterial make_metallic_roughness(const Colour& base_color, float metallic,
 PythonMaterial changed(PythonMaterial m, const std::optional<Colour>& diffuse, const std::optional<Colour>& specular,
                        std::optional<float> shininess, const std::optional<Colour>& emission, const py::object& texture,
                        const std::optional<std::string>& name, std::optional<float> metallic,
-                       std::optional<float> roughness, std::optional<float> transmission, std::optional<float> ior) {
+                       std::optional<float> roughness, std::optional<float> transmission, std::optional<float> ior,
+                       std::optional<float> opacity) {
     if (diffuse) m.values.diffuse = rgb(*diffuse);
     if (specular) m.values.specular = rgb(*specular);
     if (emission) m.values.emission = rgb(*emission);
@@ -141,6 +152,7 @@ PythonMaterial changed(PythonMaterial m, const std::optional<Colour>& diffuse, c
     m.values.roughness = roughness.value_or(m.values.roughness);
     m.values.transmission = transmission.value_or(m.values.transmission);
     m.values.ior = ior.value_or(m.values.ior);
+    m.values.opacity = opacity.value_or(m.values.opacity);
     m.name = name.value_or(m.name);
     if (!texture.is(py::ellipsis())) set_texture(m, &Material::diffuse_texture, texture);
     return m;
@@ -160,6 +172,7 @@ std::string text_of(const PythonMaterial& material) {
         if (m.clearcoat > 0) text += ", clearcoat " + number(m.clearcoat);
     }
     if (m.transmission > 0) text += ", transmission " + number(m.transmission) + ", ior " + number(m.ior);
+    if (m.opacity < 1) text += ", opacity " + number(m.opacity);
     if (!is_black(m.emission)) text += ", emission " + color_text(m.emission);
     if (const auto& texture = material.textures[0])
         text += ", texture " + std::to_string(texture->width) + " x " + std::to_string(texture->height);
@@ -213,7 +226,7 @@ Assembly with_material(const Assembly& scene, const Which& which, const PythonMa
 
 Assembly with_texture(const Assembly& scene, const Which& which, const py::object& pixels) {
     PythonMaterial material = material_of(scene.static_geometry, find_material(scene, which));
-    material.textures[0] = texture_from(pixels, TextureEncoding::srgb);
+    material.textures[0] = texture_from(pixels, io::TextureUse::colour);
     material.values.diffuse_texture = {};
     return with_material(scene, which, material);
 }
@@ -230,7 +243,8 @@ void bind_material(py::module_& m) {
              "shininess"_a = 0.0f, "emission"_a = black, "texture"_a = py::none(), "name"_a = "", "mirror"_a = black,
              "fresnel"_a = true, "transmission"_a = 0.0f, "ior"_a = 1.5f, "filter"_a = white, "absorption"_a = black,
              "thin"_a = false, "specular_texture"_a = py::none(), "emission_texture"_a = py::none(),
-             "normal_map"_a = py::none(), "normal_scale"_a = 1.0f,
+             "normal_map"_a = py::none(), "normal_scale"_a = 1.0f, "opacity"_a = 1.0f, "opacity_cutoff"_a = 0.0f,
+             "opacity_texture"_a = py::none(), "double_sided"_a = false,
              "Wavefront's material (MTL). diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess:\n"
              "Phong exponent; emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise;\n"
              "mirror: reflectance as a mirror, at normal incidence; fresnel: whether it grows towards grazing\n"
@@ -243,24 +257,30 @@ void bind_material(py::module_& m) {
              "fractions\n"
              "from 0 to 1 that are rounded to such codes. Colours are taken as they are, whatever the fourth channel\n"
              "(alpha) says. normal_map: directions in tangent space, in the same way but linear; normal_scale: of\n"
-             "their x and y. name: to find it by in Scene.materials. Raises InputError.")
+             "their x and y. name: to find it by in Scene.materials.\n"
+             "opacity, times opacity_texture (its fourth channel, or the mean of fewer, linear): share of the surface\n"
+             "that is there; through the rest light goes as if there were nothing, shadows included. With an\n"
+             "opacity_cutoff above 0 there is all of it where that product reaches the cutoff, and nothing elsewhere.\n"
+             "double_sided: emission leaves on both sides. Raises InputError.")
         .def_static(
             "metallic_roughness", &make_metallic_roughness, py::kw_only(), "base_color"_a = white, "metallic"_a = 0.0f,
             "roughness"_a = 1.0f, "texture"_a = py::none(), "metallic_roughness_texture"_a = py::none(), "ior"_a = 1.5f,
             "specular_color"_a = white, "specular_weight"_a = 1.0f, "transmission"_a = 0.0f, "absorption"_a = black,
             "thin"_a = false, "clearcoat"_a = 0.0f, "clearcoat_roughness"_a = 0.0f, "emission"_a = black,
             "emission_texture"_a = py::none(), "normal_map"_a = py::none(), "normal_scale"_a = 1.0f, "name"_a = "",
+            "opacity"_a = 1.0f, "opacity_cutoff"_a = 0.0f, "opacity_texture"_a = py::none(), "double_sided"_a = false,
             "glTF's material: GGX microfacets of alpha = roughness^2 on a metal, on a dielectric over a diffuse base,\n"
             "or, for the share transmission of it, on a border that lets light through; all between 0 and 1.\n"
             "base_color, times texture: the metal's reflectance, the diffuse one, or the tint of what passes. ior: of\n"
             "the dielectric; specular_color, specular_weight: what its reflection is multiplied by.\n"
             "metallic_roughness_texture: roughness in green and metallic in blue, linear, times the numbers.\n"
-            "clearcoat: share of a second, colourless layer of index 1.5 above all. absorption, thin, emission and "
-            "the\n"
-            "other textures as in Material(). Raises InputError.")
+            "clearcoat: share of a second, colourless layer of index 1.5 above all. absorption, thin, emission, "
+            "opacity\n"
+            "and the other textures as in Material(). Raises InputError.")
         .def("replace", &changed, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
              "shininess"_a = py::none(), "emission"_a = py::none(), "texture"_a = py::ellipsis(), "name"_a = py::none(),
              "metallic"_a = py::none(), "roughness"_a = py::none(), "transmission"_a = py::none(), "ior"_a = py::none(),
+             "opacity"_a = py::none(),
              "The material with some numbers changed. What is not given stays; texture=None takes the texture away;\n"
              "diffuse is the base colour of a metallic_roughness material, specular its specular_color.")
         .def_property_readonly(
@@ -288,11 +308,16 @@ void bind_material(py::module_& m) {
         .def_property_readonly("clearcoat", number_property(&Material::clearcoat))
         .def_property_readonly("clearcoat_roughness", number_property(&Material::clearcoat_roughness))
         .def_property_readonly("normal_scale", number_property(&Material::normal_scale))
+        .def_property_readonly("opacity", number_property(&Material::opacity))
+        .def_property_readonly("opacity_cutoff", number_property(&Material::opacity_cutoff))
+        .def_property_readonly("double_sided",
+                               [](const PythonMaterial& p) { return p.values.emits_on_both_sides != 0; })
         .def_property_readonly("texture", texture_property(&Material::diffuse_texture),
                                "(H, W, 4), read-only: uint8 codes, or float32 of linear light; None: none.")
         .def_property_readonly("specular_texture", texture_property(&Material::specular_texture))
         .def_property_readonly("emission_texture", texture_property(&Material::emission_texture))
         .def_property_readonly("metallic_roughness_texture", texture_property(&Material::metallic_roughness_texture))
+        .def_property_readonly("opacity_texture", texture_property(&Material::opacity_texture))
         .def_property_readonly("normal_map", texture_property(&Material::normal_texture))
         .def_property_readonly("name", [](const PythonMaterial& p) { return text_from(p.name); })
         .def("__repr__", [](const PythonMaterial& p) { return text_from(text_of(p)); });

@@ -30,6 +30,13 @@ Vec3d vector_of(const Triple& v) {
     return {v[0], v[1], v[2]};
 }
 
+Vec3d unit_vector(const char* what, const Triple& direction) {
+    const Vec3d d = vector_of(direction);
+    const double size = length(d);
+    if (!(size > 0) || !std::isfinite(size)) throw InputError(std::string(what) + " must be a finite vector, not zero");
+    return (1 / size) * d;
+}
+
 Assembly load(const py::object& path, double scale, const std::vector<std::string>& objects) {
     const std::string name = path_from(path);
     const Unlocked unlocked;
@@ -118,13 +125,9 @@ void bind_scene(py::module_& m) {
         .def(
             "with_sun",
             [](const Assembly& scene, const Triple& direction, const Colour& illuminance) {
-                const Vec3d d = vector_of(direction);
-                const double size = length(d);
-                if (!(size > 0) || !std::isfinite(size))
-                    throw InputError("the sun's direction must be a finite vector, not zero");
-                return with_valid_static_geometry(scene, [&](Scene& changed) {
-                    changed.suns.push_back({static_cast<Vec3f>((1 / size) * d), rgb(illuminance)});
-                });
+                const Vec3d d = unit_vector("the sun's direction", direction);
+                return with_valid_static_geometry(
+                    scene, [&](Scene& changed) { changed.suns.push_back({static_cast<Vec3f>(d), rgb(illuminance)}); });
             },
             "direction"_a, "illuminance"_a,
             "With parallel light that travels along direction; illuminance (r, g, b) in lux.")
@@ -135,6 +138,25 @@ void bind_scene(py::module_& m) {
                     scene, [&](Scene& changed) { changed.points.push_back({vector_of(position), rgb(intensity)}); });
             },
             "position_m"_a, "intensity"_a, "With a point light; intensity (r, g, b) in cd.")
+        .def(
+            "with_spot_light",
+            [](const Assembly& scene, const Triple& position, const Triple& direction, const Colour& intensity,
+               double inner_cone_deg, double outer_cone_deg) {
+                constexpr double kDegree = 0.017453292519943295;
+                const Vec3d axis = unit_vector("the spot's direction", direction);
+                if (!(inner_cone_deg >= 0 && inner_cone_deg <= outer_cone_deg && outer_cone_deg <= 90))
+                    throw InputError("0 <= inner_cone_deg <= outer_cone_deg <= 90 is wanted");
+                return with_valid_static_geometry(scene, [&](Scene& changed) {
+                    changed.points.push_back({vector_of(position), rgb(intensity), axis, kDegree * inner_cone_deg,
+                                              kDegree * outer_cone_deg});
+                });
+            },
+            "position_m"_a, "direction"_a, "intensity"_a, py::kw_only(), "inner_cone_deg"_a = 0.0,
+            "outer_cone_deg"_a = 45.0,
+            "With a spot: a point light of that intensity (r, g, b), in cd, along direction, which fades from the "
+            "inner\n"
+            "cone to nothing at the outer one (KHR_lights_punctual); the cones' angles are from the axis. Raises "
+            "InputError.")
         .def_property_readonly("triangle_count", &Assembly::triangle_count, "Of static geometry and all instances.")
         .def_property_readonly("material_count", [](const Assembly& s) { return s.static_geometry->materials.size(); })
         .def_property_readonly("has_light", &Assembly::has_light)

@@ -92,7 +92,7 @@ void set_material(Scene& scene, std::size_t index, const PythonMaterial& materia
     drop_unused_textures(scene);
 }
 
-std::shared_ptr<const Texture> texture_from(const py::object& object, TextureEncoding encoding) {
+std::shared_ptr<const Texture> texture_from(const py::object& object, io::TextureUse use) {
     constexpr const char* kShapes = "a texture must be an array of shape (H, W), (H, W, 3) or (H, W, 4)";
     const py::array pixels = py::array::ensure(object);
     if (!pixels) {
@@ -102,7 +102,7 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, TextureEnc
     const py::ssize_t channels = pixels.ndim() == 3 ? pixels.shape(2) : pixels.ndim() == 2 ? 1 : 0;
     if ((channels != 1 && channels != 3 && channels != 4) || pixels.size() == 0) throw InputError(kShapes);
     auto texture = std::make_shared<Texture>();
-    texture->encoding = encoding;
+    texture->encoding = use == io::TextureUse::colour ? TextureEncoding::srgb : TextureEncoding::linear;
     texture->width = static_cast<std::int32_t>(pixels.shape(1));
     texture->height = static_cast<std::int32_t>(pixels.shape(0));
     texture->rgba.reserve(static_cast<std::size_t>(4 * pixels.size() / channels));
@@ -114,9 +114,10 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, TextureEnc
         const InputArray<std::uint8_t> codes = codes_from(band);
         for (py::ssize_t i = 0; i < codes.size(); i += channels) {
             const std::uint8_t* p = codes.data() + i;
-            const std::uint8_t colour[4] = {p[0], p[channels < 3 ? 0 : 1], p[channels < 3 ? 0 : 2],
-                                            channels == 4 ? p[3] : std::uint8_t{255}};
-            texture->rgba.insert(texture->rgba.end(), colour, colour + 4);
+            const std::uint8_t r = p[0], g = p[channels < 3 ? 0 : 1], b = p[channels < 3 ? 0 : 2];
+            const auto mean = static_cast<std::uint8_t>((r + g + b) / 3);
+            const std::uint8_t alpha = channels == 4 ? p[3] : use == io::TextureUse::opacity ? mean : 255;
+            texture->rgba.insert(texture->rgba.end(), {r, g, b, alpha});
         }
     }
     return texture;

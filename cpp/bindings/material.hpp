@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "../io/decoded_image.hpp"
 #include "../scene/scene.hpp"
 #include "bindings.hpp"
 
@@ -27,7 +28,7 @@ PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_
 void set_material(Scene& scene, std::size_t index, const PythonMaterial& material);
 
 /// Pixels as users have them: (H, W) or (H, W, 1) grey, (H, W, 3) or (H, W, 4), as codes 0 to 255 or shares 0 to 1 of
-/// them. Throws InputError for all else.
-std::shared_ptr<const Texture> texture_from(const py::object& pixels, TextureEncoding encoding);
+/// them. For opacity, without a fourth channel: their mean. Throws InputError for all else.
+std::shared_ptr<const Texture> texture_from(const py::object& pixels, io::TextureUse use);
 
 }  // namespace realcam::bindings

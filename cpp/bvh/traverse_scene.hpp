@@ -26,16 +26,14 @@ public:
     using Base::active;
     using Base::hit;
 
-    REALCAM_INLINE void step(const SceneBvhView& bvh, SceneTraversalStack& stack) {
+    template <class Holes>
+    REALCAM_INLINE void step(const SceneBvhView& bvh, SceneTraversalStack& stack, const Holes& holes) {
         if (!this->triangles_) this->enter_node(nodes_, stack);
         if (level_ == Level::objects) {
             put_off_objects(stack);
-        } else if (this->meet_triangles(triangles_of_mesh_, NoTraversalProbe())) {
-            this->hit_.instance = instance_;
-            if (any) {
-                this->pending_.slots = this->triangles_ = 0;
-                return;
-            }
+        } else if (this->meet_triangles(triangles_of_mesh_, instance_, holes, NoTraversalProbe()) && any) {
+            this->pending_.slots = this->triangles_ = 0;
+            return;
         }
         while (!active() && go_on(bvh, stack)) {
         }
@@ -108,29 +106,31 @@ private:
     bool turned_ = false;  ///< out of the frame of the scene
 };
 
-template <bool any>
-REALCAM_HD inline Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
+template <bool any, class Holes>
+REALCAM_HD inline Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far, const Holes& holes) {
     SceneTraversal<any> ray(bvh, origin, direction, far);
     SceneTraversalStack stack;
-    while (ray.active()) ray.step(bvh, stack);
+    while (ray.active()) ray.step(bvh, stack, holes);
     return ray.hit(far);
 }
 
 /// As closest_hit of one hierarchy. `instanced`: whether there is anything but static geometry.
-template <bool instanced>
-REALCAM_HD inline Hit closest_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
+template <bool instanced, class Holes = NoHoles>
+REALCAM_HD inline Hit closest_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
+                                  const Holes& holes = {}) {
     if constexpr (instanced)
-        return traverse<false>(bvh, origin, direction, far);
+        return traverse<false>(bvh, origin, direction, far, holes);
     else
-        return closest_hit(bvh.static_geometry, origin, direction, far);
+        return closest_hit(bvh.static_geometry, origin, direction, far, holes);
 }
 
-template <bool instanced>
-REALCAM_HD inline bool any_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
+template <bool instanced, class Holes = NoHoles>
+REALCAM_HD inline bool any_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
+                               const Holes& holes = {}) {
     if constexpr (instanced)
-        return traverse<true>(bvh, origin, direction, far).triangle != kNoTriangle;
+        return traverse<true>(bvh, origin, direction, far, holes).triangle != kNoTriangle;
     else
-        return any_hit(bvh.static_geometry, origin, direction, far);
+        return any_hit(bvh.static_geometry, origin, direction, far, holes);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,4 +1,5 @@
 #pragma once
+#include "../scene/opacity.hpp"
 #include "slab_ray.hpp"
 #include "watertight_triangle.hpp"
 
@@ -34,13 +35,13 @@ public:
     REALCAM_INLINE bool active() const { return ((pending_.slots & 0xffu) | triangles_) != 0; }
 
     /// One node, unless triangles of the last one are left, and up to kTrianglesPerStep triangles. The ray is active.
-    template <class Probe = NoTraversalProbe>
-    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, Probe&& probe = {}) {
+    template <class Holes, class Probe = NoTraversalProbe>
+    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, const Holes& holes, Probe&& probe = {}) {
         if (!triangles_) {
             probe.node();
             enter_node(bvh.nodes, stack);
         }
-        if (meet_triangles(bvh.triangles, probe) && any)
+        if (meet_triangles(bvh.triangles, kNoInstance, holes, probe) && any)
             pending_.slots = triangles_ = 0;
         else if (!active() && waiting_ > 0)
             pending_ = stack[--waiting_];
@@ -86,8 +87,9 @@ protected:
     }
 
     /// Up to kTrianglesPerStep of the last node; for `any`, until the first hit. Whether there was one.
-    template <class Probe>
-    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, Probe&& probe) {
+    template <class Holes, class Probe>
+    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, std::uint32_t instance, const Holes& holes,
+                                       Probe&& probe) {
         bool met = false;
         for (int i = 0; i < kTrianglesPerStep; ++i) {
             if (!triangles_) break;
@@ -95,10 +97,15 @@ protected:
             const unsigned first = triangles_ & (0u - triangles_);
             triangles_ ^= first;
             const std::uint32_t number = first_triangle_ + count_bits(content_ & (first - 1u));
-            if (meets_triangle(sheared_, load_constant(triangles + number), hit_)) {
-                met = true;
-                if (any) break;
+            Hit hit = hit_;
+            if (!meets_triangle(sheared_, load_constant(triangles + number), hit)) continue;
+            hit.instance = instance;
+            if constexpr (Holes::exist) {
+                if (!holes.stop(hit)) continue;
             }
+            hit_ = hit;
+            met = true;
+            if (any) break;
         }
         return met;
     }
@@ -135,23 +142,28 @@ protected:
     int waiting_ = 0;
 };
 
-template <bool any, class Probe = NoTraversalProbe>
-REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far, Probe&& probe = {}) {
+template <bool any, class Holes = NoHoles, class Probe = NoTraversalProbe>
+REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
+                               const Holes& holes = {}, Probe&& probe = {}) {
     Traversal<any> ray(origin, direction, far);
     TraversalStack stack;
-    while (ray.active()) ray.step(bvh, stack, probe);
+    while (ray.active()) ray.step(bvh, stack, holes, probe);
     return ray.hit(far);
 }
 
 /// The nearest triangle at a distance in [0, far), in lengths of the direction, which need not be 1. Barycentrics as
 /// Embree's: of the second and third corner. No hit: kNoTriangle, and `far` as the distance.
-REALCAM_HD inline Hit closest_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
-    return traverse<false>(bvh, origin, direction, far);
+template <class Holes = NoHoles>
+REALCAM_HD inline Hit closest_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
+                                  const Holes& holes = {}) {
+    return traverse<false>(bvh, origin, direction, far, holes);
 }
 
 /// Whether there is a triangle at a distance in [0, far), in lengths of the direction.
-REALCAM_HD inline bool any_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far) {
-    return traverse<true>(bvh, origin, direction, far).triangle != kNoTriangle;
+template <class Holes = NoHoles>
+REALCAM_HD inline bool any_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
+                               const Holes& holes = {}) {
+    return traverse<true>(bvh, origin, direction, far, holes).triangle != kNoTriangle;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -6,14 +6,15 @@ namespace REALCAM_NAMESPACE {
 
 /// The SceneT of render_samples on a GPU: one ray of one thread. `instanced`: whether there is anything but static
 /// geometry.
-template <bool instanced>
+template <MaterialSet set, bool instanced>
 struct BvhScene {
+    const SceneView& scene;
     const SceneBvhView& bvh;
     std::uint32_t rays_traced;
 
     REALCAM_INLINE void intersect(const SceneRays<1>& rays, Hits<1>& hits) {
         if (!rays.active[0]) return;
-        const Hit hit = closest_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0]);
+        const Hit hit = closest_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0], holes(rays));
         hits.distance[0] = hit.distance;
         hits.triangle[0] = hit.triangle;
         hits.u[0] = hit.u;
@@ -24,8 +25,16 @@ struct BvhScene {
     REALCAM_INLINE void occluded(const SceneRays<1>& rays, std::int32_t (&hidden)[1]) {
         hidden[0] = 0;
         if (!rays.active[0]) return;
-        hidden[0] = any_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0]);
+        hidden[0] = any_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0], holes(rays));
         ++rays_traced;
+    }
+
+private:
+    REALCAM_INLINE auto holes(const SceneRays<1>& rays) const {
+        if constexpr (set == MaterialSet::any)
+            return Holes{scene, rays.number[0]};
+        else
+            return NoHoles();
     }
 };
 

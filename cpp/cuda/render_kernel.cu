@@ -75,7 +75,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
 
     PixelSum sum{};
     std::uint32_t sampled = 0, passed = 0;
-    BvhScene<instanced> scene{job.bvh, 0};
+    BvhScene<set, instanced> scene{job.scene, job.bvh, 0};
     Clock clock;
     if (inside) {
         SampleBlock<1> block;
@@ -146,10 +146,16 @@ RenderKernel kernel_for(bool instanced, bool timed) {
     return timed ? render<lens_kind, set, false, StageClock> : render<lens_kind, set, false, NoClock>;
 }
 
-template <MaterialSet set>
-RenderKernel kernel_for(LensKind lens_kind, bool instanced, bool timed) {
-    return lens_kind == LensKind::plain ? kernel_for<LensKind::plain, set>(instanced, timed)
-                                        : kernel_for<LensKind::any, set>(instanced, timed);
+RenderKernel kernel_for(MaterialSet set, LensKind lens_kind, bool instanced, bool timed) {
+    const auto of_set = [&]<MaterialSet known>() {
+        return lens_kind == LensKind::plain ? kernel_for<LensKind::plain, known>(instanced, timed)
+                                            : kernel_for<LensKind::any, known>(instanced, timed);
+    };
+    switch (set) {
+        case MaterialSet::plain: return of_set.operator()<MaterialSet::plain>();
+        case MaterialSet::opaque: return of_set.operator()<MaterialSet::opaque>();
+        default: return of_set.operator()<MaterialSet::any>();
+    }
 }
 
 }  // namespace
@@ -165,9 +171,7 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const bool instanced = job.scene.instance_count > 0;
-    const RenderKernel kernel = job.scene.material_set == MaterialSet::plain
-                                    ? kernel_for<MaterialSet::plain>(job.camera.lens.kind, instanced, timed)
-                                    : kernel_for<MaterialSet::any>(job.camera.lens.kind, instanced, timed);
+    const RenderKernel kernel = kernel_for(job.scene.material_set, job.camera.lens.kind, instanced, timed);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../error.hpp"
+#include "../scene/opacity.hpp"
 
 namespace realcam {
 
@@ -29,7 +30,19 @@ void EmbreeScene::commit(const OwnScene& scene) const {
     check();
 }
 
-EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) const {
+/// Embree's filter: takes back hits at which the ray goes on.
+void EmbreeScene::let_through(const RTCFilterFunctionNArguments* hits) {
+    const auto& [mesh, instance_count] = *static_cast<const MeshWithHoles*>(hits->geometryUserPtr);
+    for (unsigned i = 0; i < hits->N; ++i) {
+        if (hits->valid[i] == 0) continue;
+        const std::uint32_t instance = RTCHitN_instID(hits->hit, hits->N, i, 0);
+        const Hit hit = {0.0f, RTCHitN_primID(hits->hit, hits->N, i), RTCHitN_u(hits->hit, hits->N, i),
+                         RTCHitN_v(hits->hit, hits->N, i), instance < instance_count ? instance : kNoInstance};
+        if (!stops_ray(mesh, hit, RTCRayN_id(hits->ray, hits->N, i))) hits->valid[i] = 0;
+    }
+}
+
+EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) {
     OwnScene scene = new_scene();
     const auto& positions = mesh.positions();
     const auto& triangles = mesh.triangles();
@@ -45,6 +58,12 @@ EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) const {
     if (vertices && corners) {
         std::copy(positions.begin(), positions.end(), vertices);
         for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].vertices, 3, corners + 3 * i);
+        if (mesh.has_holes()) {
+            with_holes_.push_back({mesh.view(), static_cast<std::uint32_t>(placed_.instances().size())});
+            rtcSetGeometryUserData(geometry.get(), &with_holes_.back());
+            rtcSetGeometryIntersectFilterFunction(geometry.get(), let_through);
+            rtcSetGeometryOccludedFilterFunction(geometry.get(), let_through);
+        }
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene.get(), geometry.get());
         commit(scene);

@@ -1,5 +1,7 @@
 #pragma once
 #include <atomic>
+#include <cstdint>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -30,7 +32,7 @@ private:
     using OwnGeometry = std::unique_ptr<RTCGeometryTy, Release>;
 
     OwnScene new_scene() const;
-    OwnScene build(const RenderSpaceMesh& mesh) const;
+    OwnScene build(const RenderSpaceMesh& mesh);
     /// Makes a geometry of `all_` an instance. Its number is that of RenderSpaceScene's; static geometry's follows on
     /// the last.
     OwnGeometry attach(const OwnScene& mesh, unsigned number) const;
@@ -38,9 +40,17 @@ private:
     void commit(const OwnScene& scene) const;
     void check() const;
 
+    /// What Embree's filter needs to know of a mesh with holes.
+    struct MeshWithHoles {
+        MeshView mesh;
+        std::uint32_t instance_count;
+    };
+    static void let_through(const RTCFilterFunctionNArguments* hits);
+
     RTCDevice device_;
     const std::atomic<bool>& stop_;
     RenderSpaceScene placed_;
+    std::deque<MeshWithHoles> with_holes_;  ///< their geometries know the addresses
     std::vector<OwnScene> meshes_;  ///< static geometry, then the objects
     OwnScene all_;  ///< null where there is only static geometry
     std::vector<OwnGeometry> instances_;

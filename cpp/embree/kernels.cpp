@@ -58,8 +58,8 @@ void render_tile_of(realcam_tile* tile) {
     PixelSum* target[kLanes];
     auto* const sums = static_cast<PixelSum*>(tile->sums);
     StageClock clock;
-    PacketScene scene{static_cast<RTCScene>(tile->embree_scene), static_cast<std::uint32_t>(view.instance_count),
-                      RayOrder::coherent, 0};
+    PacketScene<set> scene{static_cast<RTCScene>(tile->embree_scene), static_cast<std::uint32_t>(view.instance_count),
+                           RayOrder::coherent, 0};
     const int pixels = order.count();
     int pixel = 0;
     std::uint32_t sample = 0;
@@ -109,10 +109,11 @@ void render_tile_of(realcam_tile* tile) {
 }
 
 void render_tile(realcam_tile* tile) {
-    if (static_cast<const SceneView*>(tile->scene_view)->material_set == MaterialSet::plain)
-        render_tile_of<MaterialSet::plain>(tile);
-    else
-        render_tile_of<MaterialSet::any>(tile);
+    switch (static_cast<const SceneView*>(tile->scene_view)->material_set) {
+        case MaterialSet::plain: return render_tile_of<MaterialSet::plain>(tile);
+        case MaterialSet::opaque: return render_tile_of<MaterialSet::opaque>(tile);
+        case MaterialSet::any: return render_tile_of<MaterialSet::any>(tile);
+    }
 }
 
 void generate_all(const void* request) {

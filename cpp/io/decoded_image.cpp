@@ -1,5 +1,6 @@
 #include "decoded_image.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -16,7 +17,26 @@ bool is_whole(const DecodedImage& image) {
            size == std::size_t{4} * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
 }
 
+namespace {
+
+/// Into the fourth channel, unless that says something itself. `white`: its largest value.
+template <class Value>
+void put_mean_into_alpha(std::vector<Value>& rgba, Value white) {
+    for (std::size_t i = 3; i < rgba.size(); i += 4)
+        if (rgba[i] != white) return;
+    for (std::size_t i = 0; i < rgba.size(); i += 4)
+        rgba[i + 3] = std::min(static_cast<Value>((rgba[i] + rgba[i + 1] + rgba[i + 2]) / 3), white);
+}
+
+}  // namespace
+
 Texture texture_of(DecodedImage image, TextureUse use, std::string name) {
+    if (use == TextureUse::opacity) {
+        if (auto* codes = std::get_if<std::vector<std::uint8_t>>(&image.rgba))
+            put_mean_into_alpha<std::uint8_t>(*codes, 255);
+        else
+            put_mean_into_alpha(std::get<std::vector<float>>(image.rgba), 1.0f);
+    }
     Texture texture;
     texture.name = std::move(name);
     texture.width = image.width;
@@ -31,6 +51,15 @@ Texture texture_of(DecodedImage image, TextureUse use, std::string name) {
     for (std::size_t i = 0; encoded && i < texture.linear_rgba.size(); ++i)
         if (i % 4 != 3) texture.linear_rgba[i] = linear_of_srgb(texture.linear_rgba[i]);
     return texture;
+}
+
+bool has_holes(const Texture& texture) {
+    const auto has_less = [](const auto& rgba, auto white) {
+        for (std::size_t i = 3; i < rgba.size(); i += 4)
+            if (rgba[i] < white) return true;
+        return false;
+    };
+    return has_less(texture.rgba, 255) || has_less(texture.linear_rgba, 1.0f);
 }
 
 }  // namespace realcam::io

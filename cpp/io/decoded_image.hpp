@@ -21,8 +21,9 @@ struct DecodedImage {
     bool is_linear = false;
 };
 
-/// Data are numbers, such as a roughness or a direction, which no file encodes for a screen.
-enum class TextureUse { colour, data };
+/// Data are numbers, such as a roughness or a direction, which no file encodes for a screen. Opacity is in the fourth
+/// channel, or where a picture has none, or white alone there, in the mean of the others.
+enum class TextureUse { colour, data, opacity };
 
 /// Whether the colours of a picture have to be decoded (IEC 61966-2-1) to become linear; its alpha is always linear.
 inline bool is_srgb(const DecodedImage& image, TextureUse use) {
@@ -38,5 +39,8 @@ bool is_whole(const DecodedImage& image);
 
 /// Takes the pixels of a whole image as they are, less the encoding of floats.
 Texture texture_of(DecodedImage image, TextureUse use, std::string name);
+
+/// Whether any alpha is below 1.
+bool has_holes(const Texture& texture);
 
 }  // namespace realcam::io

@@ -45,7 +45,7 @@ struct SceneFileOptions {
 /// with the extensions in io/gltf_material.hpp. MTL's Ke, and emissiveFactor times KHR_materials_emissive_strength, are
 /// radiance in cd/m^2. What is not modelled is named in Scene::warnings.
 ///
-/// Lights: KHR_lights_punctual, candela and lux; a spot light emits in all directions. Cameras are ignored.
+/// Lights: KHR_lights_punctual, candela and lux. Cameras are ignored.
 ///
 /// `scale` applies to lengths alone; light keeps its units.
 Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);

@@ -19,9 +19,13 @@ void add_light(Scene& scene, const FileLight& light, const Affine<double>& trans
         if (length(d) > 0) scene.suns.push_back({static_cast<Vec3f>(normalized(d)), color_of(light.strength)});
         return;
     }
-    if (light.type == "spot") scene.warnings.push_back(label + " is a spot; it emits in all directions here");
-    if (light.type == "point" || light.type == "spot") {
+    if (light.type == "point") {
         scene.points.push_back({scale * transform.origin, color_of(light.strength)});
+    } else if (light.type == "spot") {
+        const Vec3d axis = -transform.z;
+        if (length(axis) > 0)
+            scene.points.push_back({scale * transform.origin, color_of(light.strength), normalized(axis),
+                                    light.inner_cone_angle, light.outer_cone_angle});
     } else {
         scene.warnings.push_back(label + ": point, directional or spot is wanted, not " + in_quotes(light.type));
     }

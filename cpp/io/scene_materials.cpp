@@ -38,7 +38,6 @@ private:
         set_emission(color_of(from.Ke), from.map_Ke);
         set_normal_map(from.norm, 1);
         if (from.bump) warn("has a bump map of heights, which is not modelled; a normal map (norm) is");
-        if (from.map_d) warn("is opaque where its map_d says otherwise: that map is not modelled");
         if (from.Pr || from.Pm) {
             set_mtl_metallic_roughness(from);
         } else {
@@ -56,7 +55,7 @@ private:
         material_.ior = from.Ni.value_or(1.5f);
         if (from.map_Pr || from.map_Pm)
             warn("has maps of roughness or metallic, which are modelled in glTF files only");
-        set_transmission(1 - from.d, from);
+        set_dissolve(from);
     }
 
     // The format's table of illumination models. In 3 to 9 highlights are what mirrors show of the lights, so that
@@ -64,15 +63,13 @@ private:
     void set_illumination_model(const MtlMaterial& from) {
         const float passing = 1 - from.d;
         switch (from.illum) {
-            case 0:
-                warn("has a constant colour (illum 0), which is not modelled; it is lit as others are");
-                [[fallthrough]];
-            case 1: set_transmission(passing, from); break;
+            case 0: make_unlit("illum 0"), set_dissolve(from); break;
+            case 1: set_dissolve(from); break;
             case 3:
-            case 8: set_mirror(from, FresnelTerm::none), set_transmission(passing, from); break;
-            case 5: set_mirror(from, FresnelTerm::physical), set_transmission(passing, from); break;
+            case 8: set_mirror(from, FresnelTerm::none), set_dissolve(from); break;
+            case 5: set_mirror(from, FresnelTerm::physical), set_dissolve(from); break;
             case 4:
-            case 9: set_mirror(from, FresnelTerm::physical), set_transmission(passing, from); break;
+            case 9: set_mirror(from, FresnelTerm::physical), set_film(passing, from); break;
             case 6: set_mirror(from, FresnelTerm::none), set_refraction(passing, from); break;
             case 7: set_mirror(from, FresnelTerm::physical), set_refraction(passing, from); break;
             case 10: warn("only receives shadows (illum 10), which is not modelled; it is shown"); break;
@@ -81,7 +78,7 @@ private:
                 set_specular_map(from.map_Ks);
                 material_.shininess = from.Ns;
                 if (from.map_Ns) warn("has a map of Ns, which is not modelled");
-                set_transmission(passing, from);
+                set_dissolve(from);
         }
     }
 
@@ -91,8 +88,16 @@ private:
         if (from.map_Ks) warn("has a map of Ks, which is modelled for highlights only");
     }
 
-    /// Light goes through without being bent, as through a hole or a film.
-    void set_transmission(float share, const MtlMaterial& from) {
+    /// d: how much of the surface is there. With a colour for what passes it is a film.
+    void set_dissolve(const MtlMaterial& from) {
+        if (unit_range(from.Tf) != Color{1, 1, 1}) return set_film(1 - from.d, from);
+        material_.opacity = from.d;
+        set_opacity_map(from.map_d, TextureUse::opacity);
+    }
+
+    /// Light goes through without being bent.
+    void set_film(float share, const MtlMaterial& from) {
+        if (from.map_d) warn("has a map_d, which is not modelled for what lets light through coloured or as glass");
         if (!(share > 0)) return;
         material_.transmission = share;
         material_.filter = unit_range(from.Tf);
@@ -101,6 +106,7 @@ private:
     }
 
     void set_refraction(float share, const MtlMaterial& from) {
+        if (from.map_d) warn("has a map_d, which is not modelled for what lets light through coloured or as glass");
         material_.transmission = share > 0 ? share : 1;
         material_.filter = unit_range(from.Tf);
         material_.ior = from.Ni.value_or(1.5f);
@@ -109,21 +115,54 @@ private:
     void from_gltf(const GltfMaterial& from) {
         material_.model = MaterialModel::metallic_roughness;
         material_.specular = {1, 1, 1};
-        float alpha = from.alpha;
         if (const auto& older = from.specular_glossiness) {
             set_color(older->diffuse_factor, older->diffuse_texture);
             set_specular_glossiness(*older);
-            alpha = older->alpha;
         } else {
             set_color(from.base_color_factor, from.base_color_texture);
             set_metallic_roughness(from);
         }
         set_normal_map(from.normal_texture, from.normal_scale);
         set_emission(from.emissive_strength * color_of(from.emissive_factor), from.emissive_texture);
+        material_.emits_on_both_sides = from.double_sided;
         set_clearcoat(from.clearcoat);
-        if (from.alpha_mode == AlphaMode::blend && alpha < 1) warn("is transparent (alpha); it is shown opaque");
-        if (from.alpha_mode == AlphaMode::mask) warn("has holes (alphaMode MASK); it is shown whole");
-        if (from.unlit) warn("is unlit, which is not modelled; it is lit as others are");
+        set_alpha(from);
+        if (from.unlit) make_unlit("KHR_materials_unlit");
+    }
+
+    void set_alpha(const GltfMaterial& from) {
+        if (from.alpha_mode == AlphaMode::opaque) return;
+        material_.opacity = from.specular_glossiness ? from.specular_glossiness->alpha : from.alpha;
+        set_opacity_map(from.colour_texture(), TextureUse::colour);
+        // A cutoff of 0 keeps everything.
+        if (from.alpha_mode == AlphaMode::mask && !(from.alpha_cutoff > 0)) {
+            material_.opacity = 1;
+            material_.opacity_texture = {};
+        } else if (from.alpha_mode == AlphaMode::mask) {
+            material_.opacity_cutoff = std::min(from.alpha_cutoff, 1.0f);
+            if (from.alpha_cutoff > 1) material_.opacity = 0;
+        }
+    }
+
+    void set_opacity_map(const FileTexture& map, TextureUse use) {
+        if (!map) return;
+        const SceneTextures::Found found = textures_.find(map, use);
+        const bool says_something = has_holes(scene_.textures[static_cast<std::size_t>(found.reference.texture)]);
+        if (!found.is_stand_in && says_something) material_.opacity_texture = found.reference;
+    }
+
+    /// Shows its colour whatever light there is, as a screen does, for which a camera needs to know how bright white
+    /// is.
+    void make_unlit(const std::string& why) {
+        constexpr float kWhite = 100;  // cd/m^2: a usual screen
+        material_.model = MaterialModel::phong;
+        material_.emission = kWhite * material_.diffuse;
+        material_.emission_texture = material_.diffuse_texture;
+        material_.emits_on_both_sides = 1;
+        material_.diffuse = material_.specular = {0, 0, 0};
+        material_.diffuse_texture = material_.specular_texture = {};
+        material_.transmission = 0;
+        warn("is unlit (" + why + "): its colour is shown as a screen of 100 cd/m^2 shows it");
     }
 
     void set_metallic_roughness(const GltfMaterial& from) {

@@ -137,13 +137,20 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     ColorLanes<N> unshadowed;
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
 
+    const std::uint32_t first_dimension =
+        dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
+    if constexpr (set == MaterialSet::any) {
+        for (int i = 0; i < N; ++i) {
+            const std::uint32_t number = hash32(block.stream[i] ^ block.sample[i], ~first_dimension);
+            path.rays.number[i] = number;
+            shadow.number[i] = hash32(number);
+        }
+    }
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     // After the last bounce, one more ray looks for the light that narrow lobes show.
     const bool is_last = bounce == settings.max_bounces, is_past = bounce > settings.max_bounces;
-    const std::uint32_t first_dimension =
-        dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
     int alive = 0, lit = 0;
     for (int i = 0; i < N; ++i) {
         shadow.active[i] = 0;
@@ -158,7 +165,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
             continue;
         }
         const SurfacePoint point = surface_point<set>(view, hit, path.rays.origin[i], direction);
-        if constexpr (set == MaterialSet::any) {
+        if constexpr (set != MaterialSet::plain) {
             const Color absorption = path.absorption[i];
             if (!is_black(absorption))
                 path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
@@ -204,7 +211,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         path.pdf[i] = next.pdf;
         path.receiver_position.set(i, receiver.position);
         path.receiver_normal.set(i, receiver.normal);
-        if constexpr (set == MaterialSet::any) {
+        if constexpr (set != MaterialSet::plain) {
             if (next.refracted) path.absorption.set(i, point.is_front ? point.material->absorption : Color{0, 0, 0});
         }
         if (path.rays.active[i] && bounce >= kFirstRoulette) play_roulette(block, bounce, i, path);

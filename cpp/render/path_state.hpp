@@ -12,6 +12,8 @@ struct SceneRays {
     Vec3Lanes<float, N> origin, direction;
     alignas(kLaneAlignment<float, N>) float far[N];  ///< how far along the ray to look, in lengths of the direction
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t active[N];
+    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];  ///< by which a ray decides at holes; for scenes
+                                                                        ///< of MaterialSet::any alone
 };
 
 /// What a block of paths saw. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.

@@ -15,13 +15,19 @@ public:
     LightTree() = default;
     LightTree(const std::vector<PointLight>& points, const std::vector<AreaLight>& areas, Checkpoint& checkpoint) {
         std::vector<Leaf> leaves;
-        for (const PointLight& p : points)
+        for (const PointLight& p : points) {
+            const bool is_spot = p.cos_scale > 0;
+            // Where a spot ends.
+            const float cos_spread = is_spot ? std::clamp(-p.cos_offset / p.cos_scale, 0.0f, 1.0f) : -1.0f;
             leaves.push_back(
-                {{p.position, p.position, {0, 0, 1}, -1.0f, luminance(p.intensity), 0, 1, -1, 1.0f}, 0, p.position});
+                {{p.position, p.position, p.axis, cos_spread, luminance(p.intensity), 0, !is_spot, -1, 1.0f},
+                 0,
+                 p.position});
+        }
         for (const AreaLight& a : areas) {
             const Vec3f b = a.corner + a.edge_u, c = a.corner + a.edge_v;
             leaves.push_back({{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, 1.0f,
-                               a.area * luminance(a.radiance), 0, 0, -1, 1.0f},
+                               a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
                               0,
                               (1.0f / 3.0f) * (a.corner + b + c)});
         }

@@ -1,7 +1,7 @@
 #pragma once
 #include "environment.hpp"
 #include "light_tree.hpp"
-#include "surface_point.hpp"
+#include "opacity.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -18,10 +18,12 @@ REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& l
     const MeshView& mesh = light.instance == kNoInstance ? static_cast<const MeshView&>(scene)
                                                          : scene.objects[scene.instances[light.instance].object];
     const Triangle& triangle = mesh.triangles[light.triangle];
-    const TextureReference& map = mesh.materials[triangle.material].emission_texture;
-    if (map.texture < 0) return light.radiance;
     const Hit place = {0.0f, light.triangle, along_u, along_v, light.instance};
-    return light.radiance * texture_color(mesh, map, surface_uv(mesh, triangle, place).at);
+    Color radiance = light.radiance;
+    const TextureReference& map = mesh.materials[triangle.material].emission_texture;
+    if (map.texture >= 0) radiance *= texture_color(mesh, map, surface_uv(mesh, triangle, place).at);
+    if constexpr (set == MaterialSet::any) radiance = opacity_at(mesh, triangle, place) * radiance;
+    return radiance;
 }
 
 /// A point on an area light, drawn evenly.
@@ -33,7 +35,8 @@ REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaL
     const float squared = dot(to_light, to_light);
     const float distance = std::sqrt(squared);
     const Vec3f direction = (1.0f / distance) * to_light;
-    const float cosine = -dot(direction, light.normal);
+    const float on_side = -dot(direction, light.normal);
+    const float cosine = light.is_two_sided ? std::fabs(on_side) : on_side;
     // Also where the point lies on the light, and the direction has no value.
     if (!(cosine > 0.0f)) return {light.normal, distance, 1.0f, {0, 0, 0}, kDelta};
     const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);
@@ -47,7 +50,10 @@ REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f pos
     if (!(squared > 1e-30f)) return {{0, 1, 0}, distance, 1.0f, {0, 0, 0}, kDelta};
     const float inverse = 1.0f / distance,
                 reach = 1.0f - kMarginShare * (largest_coordinate(light.position) * inverse + 1.0f);
-    return {inverse * to_light, distance, reach, (1.0f / squared) * light.intensity, kDelta};
+    const Vec3f direction = inverse * to_light;
+    const float fading = light.cos_offset - light.cos_scale * dot(light.axis, direction);
+    const float share = select(fading < 0.0f, 0.0f, select(fading < 1.0f, fading, 1.0f));
+    return {direction, distance, reach, (share * share / squared) * light.intensity, kDelta};
 }
 
 /// Probabilities of the kinds of light at a receiver: about the illuminance that each can bring there if nothing stands

@@ -23,6 +23,11 @@ struct Material {
     Color specular = {0, 0, 0};  ///< phong: reflectance of Phong's lobe (MTL Ks). metallic_roughness: what the
                                  ///< dielectric's reflectance is multiplied by (KHR_materials_specular)
     Color emission = {0, 0, 0};  ///< radiance in cd/m^2, on the side of the geometric normal
+    std::int32_t emits_on_both_sides = 0;  ///< not 0: on the other side, too
+    float opacity = 1;  ///< share of the surface that is there; through the rest rays go as if there were nothing
+    float opacity_cutoff =
+        0;  ///< above 0: all of the surface is there where opacity reaches this, and nothing elsewhere
+    TextureReference opacity_texture;  ///< its alpha channel multiplies opacity
     TextureReference diffuse_texture, specular_texture, emission_texture;
     float ior = 1.5f;  ///< refractive index on the inside
     float transmission = 0;  ///< share of the dielectric part that lets light through
@@ -50,17 +55,21 @@ struct Material {
     /// Lambert's and Phong's lobe on an opaque surface, and no textures but for diffuse.
     constexpr bool is_plain() const {
         return model == MaterialModel::phong && transmission == 0 && is_black(mirror) && normal_texture.texture < 0 &&
-               specular_texture.texture < 0 && emission_texture.texture < 0;
+               specular_texture.texture < 0 && emission_texture.texture < 0 && !has_holes();
     }
+    /// Whether some rays that meet the surface go on as if it were not there.
+    constexpr bool has_holes() const { return opacity < 1 || opacity_texture.texture >= 0; }
 };
 
-inline constexpr std::array<TextureReference Material::*, 5> kMaterialTextures = {
-    &Material::diffuse_texture, &Material::specular_texture, &Material::emission_texture,
-    &Material::metallic_roughness_texture, &Material::normal_texture};
+inline constexpr std::array<TextureReference Material::*, 6> kMaterialTextures = {
+    &Material::diffuse_texture,  &Material::specular_texture,
+    &Material::emission_texture, &Material::metallic_roughness_texture,
+    &Material::normal_texture,   &Material::opacity_texture};
 
 /// What a scene's materials ask of the kernels: code for more than is there would cost speed.
 enum class MaterialSet : std::int32_t {
     plain,  ///< Material::is_plain holds for all
+    opaque,  ///< none has holes
     any,
 };
 

@@ -61,6 +61,11 @@ public:
     /// Those of the triangles that give light.
     const std::vector<std::uint32_t>& emitters() const { return emitters_; }
 
+    bool has_holes() const {
+        const auto& materials = scene_.materials;
+        return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.has_holes(); });
+    }
+
     /// Corner and edges of a triangle, as exact as the scene gives them.
     struct Edges {
         Vec3d corner, u, v;

@@ -190,20 +190,34 @@ private:
     }
 
     void find_material_set() {
-        const auto has_others = [](const Scene& scene) {
-            return std::any_of(scene.materials.begin(), scene.materials.end(),
-                               [](const Material& m) { return !m.is_plain(); });
+        const auto add = [&](const Scene& scene) {
+            for (const Material& m : scene.materials)
+                material_set_ = std::max(material_set_, m.has_holes()  ? MaterialSet::any
+                                                        : m.is_plain() ? MaterialSet::plain
+                                                                       : MaterialSet::opaque);
         };
-        bool others = has_others(*assembly_.static_geometry);
-        for (const Instance& instance : assembly_.instances) others = others || has_others(*instance.object);
-        material_set_ = others ? MaterialSet::any : MaterialSet::plain;
+        add(*assembly_.static_geometry);
+        for (const Instance& instance : assembly_.instances) add(*instance.object);
+    }
+
+    static PointLight point_light(const ScenePointLight& from, Vec3d position, Vec3d axis) {
+        PointLight light{static_cast<Vec3f>(position), from.intensity};
+        if (!(length(axis) > 0)) return light;
+        light.axis = static_cast<Vec3f>(normalized(axis));
+        // A spot that ends without fading first would have an infinite slope: KHR_lights_punctual's bound.
+        const double cos_outer = std::cos(from.outer_cone_rad);
+        const double scale = 1 / std::max(1e-3, std::cos(from.inner_cone_rad) - cos_outer);
+        light.cos_scale = static_cast<float>(scale);
+        light.cos_offset = static_cast<float>(-cos_outer * scale);
+        return light;
     }
 
     /// The emitters of a mesh where a map from its frame puts them. `instance`: none of static geometry.
     void add_lights(const RenderSpaceMesh& mesh, const Affine<double>& map, const InstanceView* instance) {
         const Scene& scene = mesh.scene();
         for (const ScenePointLight& p : scene.points)
-            points_.push_back({static_cast<Vec3f>(map.point(mesh.frame().point(p.position_m))), p.intensity});
+            points_.push_back(point_light(p, map.point(mesh.frame().point(p.position_m)),
+                                          map.direction(mesh.frame().direction(p.axis))));
         const InverseAffine<double> inverse = map.inverse();
         const std::uint32_t number = instance ? static_cast<std::uint32_t>(instances_.size() - 1) : kNoInstance;
         for (const std::uint32_t emitter : mesh.emitters()) {
@@ -217,8 +231,9 @@ private:
                                                             static_cast<float>(1 / length(normal)), corner)
                                           : plane.margin;
             areas_.push_back({corner, static_cast<Vec3f>(u), static_cast<Vec3f>(v),
-                              static_cast<Vec3f>(normalized(normal)), scene.materials[t.material].emission,
-                              static_cast<float>(0.5 * length(cross(u, v))), margin, emitter, number});
+                              static_cast<Vec3f>(normalized(normal)), scene.materials[t.material].emits_on_both_sides,
+                              scene.materials[t.material].emission, static_cast<float>(0.5 * length(cross(u, v))),
+                              margin, emitter, number});
         }
     }
 

@@ -142,11 +142,11 @@ private:
             require(is_reflectance(m.mirror), "material", i, "mirror reflectance must be finite and not negative");
             require(is_reflectance(m.absorption), "material", i, "absorption must be finite and not negative");
             require(m.ior >= 0 && m.ior <= 1000, "material", i, "the refractive index must lie between 0 and 1000");
-            for (const float share :
-                 {m.transmission, m.metallic, m.roughness, m.specular_weight, m.clearcoat, m.clearcoat_roughness})
+            for (const float share : {m.transmission, m.metallic, m.roughness, m.specular_weight, m.clearcoat,
+                                      m.clearcoat_roughness, m.opacity, m.opacity_cutoff})
                 require(share >= 0 && share <= 1, "material", i,
-                        "transmission, metallic, roughness, specular weight, clearcoat and its roughness must lie "
-                        "between 0 and 1");
+                        "transmission, metallic, roughness, specular weight, clearcoat and its roughness, opacity and "
+                        "its cutoff must lie between 0 and 1");
             require(std::isfinite(m.normal_scale), "material", i, "the normal map's scale must be finite");
             for (const auto member : kMaterialTextures) check_reference(m.*member, i, textures);
         }
@@ -180,6 +180,11 @@ private:
             require(in_reach(scene_.points[i].position_m), "point light", i, "its position must be finite");
             require(is_light(scene_.points[i].intensity, most_intense), "point light", i,
                     "its intensity must lie between 0 and 1e30 cd");
+            const ScenePointLight& p = scene_.points[i];
+            const double size = length(p.axis);
+            require(size == 0 || std::abs(size - 1) < 1e-3, "point light", i, "a spot's axis must have length 1");
+            require(p.inner_cone_rad >= 0 && p.inner_cone_rad <= p.outer_cone_rad && p.outer_cone_rad <= 1.5707964,
+                    "point light", i, "a spot's cones must lie between 0 and pi / 2, the inner one in the outer one");
         }
         for (std::size_t i = 0; i < scene_.suns.size(); ++i) {
             const Vec3f d = scene_.suns[i].direction;

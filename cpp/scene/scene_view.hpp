@@ -39,9 +39,13 @@ struct TextureView {
     TextureEncoding encoding;  ///< of the codes
 };
 
+/// Intensity times (cos_scale c + cos_offset)^2, that sum kept between 0 and 1, at the cosine c of the angle to the
+/// axis: a spot's (KHR_lights_punctual). As it is without an axis: the same in all directions.
 struct PointLight {
     Vec3f position;
     Color intensity;
+    Vec3f axis = {0, 0, 1};
+    float cos_scale = 0, cos_offset = 1;
 };
 
 /// A light at infinity: parallel rays.
@@ -54,6 +58,7 @@ struct SunLight {
 struct AreaLight {
     Vec3f corner, edge_u, edge_v;
     Vec3f normal;  ///< unit; light leaves on this side
+    std::int32_t is_two_sided;  ///< not 0: and on the other
     Color radiance;
     float area;      ///< square metres
     float margin;    ///< see TrianglePlane

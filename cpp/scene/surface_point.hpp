@@ -126,14 +126,14 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     point.is_front = dot(plane.normal, ray_direction) <= 0;
     point.geometric_normal = point.is_front ? plane.normal : -plane.normal;
     point.normal = point.geometric_normal;
-    const bool is_textured = set == MaterialSet::any || material.diffuse_texture.texture >= 0;
+    const bool is_textured = set != MaterialSet::plain || material.diffuse_texture.texture >= 0;
     const SurfaceUv uv = is_textured ? surface_uv(mesh, triangle, hit) : SurfaceUv{{0, 0}, {0, 0}, {0, 0}};
     if (mesh.normals) {
         const Vec3f n = w * mesh.normals[corner[0]] + hit.u * mesh.normals[corner[1]] + hit.v * mesh.normals[corner[2]];
         const float n2 = dot(n, n);
         if (n2 > 0) point.normal = (1.0f / std::sqrt(n2)) * n;
     }
-    if constexpr (set == MaterialSet::any) {
+    if constexpr (set != MaterialSet::plain) {
         if (material.normal_texture.texture >= 0 && mesh.uvs) {
             const Vec3f outer = dot(point.normal, plane.normal) < 0 ? -point.normal : point.normal;
             point.normal = mapped_normal(mesh, triangle, material, uv, outer);
@@ -144,8 +144,8 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     point.material = &material;
     point.diffuse = material.diffuse;
     if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
-    point.emission = point.is_front ? material.emission : Color{0, 0, 0};
-    if constexpr (set == MaterialSet::any) {
+    point.emission = point.is_front || material.emits_on_both_sides ? material.emission : Color{0, 0, 0};
+    if constexpr (set != MaterialSet::plain) {
         point.emission *= texture_color(mesh, material.emission_texture, uv.at);
         const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
         point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at);

@@ -9,11 +9,15 @@ REALCAM_INLINE float srgb_to_linear(std::uint8_t code) {
     return v <= 0.04045f ? v * (1.0f / 12.92f) : std::pow((v + 0.055f) * (1.0f / 1.055f), 2.4f);
 }
 
-REALCAM_INLINE Color texel(const TextureView& texture, int column, int row) {
+REALCAM_INLINE std::int64_t texel_index(const TextureView& texture, int column, int row) {
     // Repeats: the remainder of a negative number is negative in C++.
     column = (column % texture.width + texture.width) % texture.width;
     row = (row % texture.height + texture.height) % texture.height;
-    const std::int64_t at = static_cast<std::int64_t>(row) * texture.width + column;
+    return static_cast<std::int64_t>(row) * texture.width + column;
+}
+
+REALCAM_INLINE Color texel(const TextureView& texture, int column, int row) {
+    const std::int64_t at = texel_index(texture, column, row);
     if (!texture.rgba) {
         const float* p = texture.linear_rgba + 4 * at;
         return {p[0], p[1], p[2]};
@@ -25,19 +29,44 @@ REALCAM_INLINE Color texel(const TextureView& texture, int column, int row) {
     return {kStep * static_cast<float>(p[0]), kStep * static_cast<float>(p[1]), kStep * static_cast<float>(p[2])};
 }
 
-/// Bilinear lookup, linear light.
-REALCAM_INLINE Color sample_texture(const TextureView& texture, Vec2f uv) {
+REALCAM_INLINE float texel_alpha(const TextureView& texture, int column, int row) {
+    const std::int64_t at = 4 * texel_index(texture, column, row) + 3;
+    return texture.rgba ? static_cast<float>(texture.rgba[at]) * (1.0f / 255.0f) : texture.linear_rgba[at];
+}
+
+/// The four texels about a point, and where between them it lies.
+struct TextureSpot {
+    int column, row;    ///< of the upper left one
+    float right, down;  ///< 0..1
+};
+
+REALCAM_INLINE TextureSpot texture_spot(const TextureView& texture, Vec2f uv) {
     // Transforms may take coordinates beyond what a float holds.
     if (!(std::fabs(uv.x) + std::fabs(uv.y) < 1e30f)) uv = {0, 0};
     // Far outside 0..1 the fraction is taken first, so that the integers below cannot overflow.
     const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(texture.width) - 0.5f;
     const float y = (1.0f - (uv.y - std::floor(uv.y))) * static_cast<float>(texture.height) - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
-    const int column = static_cast<int>(left), row = static_cast<int>(top);
-    const float fx = x - left, fy = y - top;
-    const Color upper = (1.0f - fx) * texel(texture, column, row) + fx * texel(texture, column + 1, row);
-    const Color lower = (1.0f - fx) * texel(texture, column, row + 1) + fx * texel(texture, column + 1, row + 1);
-    return (1.0f - fy) * upper + fy * lower;
+    return {static_cast<int>(left), static_cast<int>(top), x - left, y - top};
+}
+
+/// texel_at(column, row) of the four, bilinearly.
+template <class TexelAt>
+REALCAM_INLINE auto between_texels(TextureSpot s, TexelAt&& texel_at) {
+    const auto upper = (1.0f - s.right) * texel_at(s.column, s.row) + s.right * texel_at(s.column + 1, s.row);
+    const auto lower = (1.0f - s.right) * texel_at(s.column, s.row + 1) + s.right * texel_at(s.column + 1, s.row + 1);
+    return (1.0f - s.down) * upper + s.down * lower;
+}
+
+/// Bilinear lookup, linear light.
+REALCAM_INLINE Color sample_texture(const TextureView& texture, Vec2f uv) {
+    return between_texels(texture_spot(texture, uv), [&](int column, int row) { return texel(texture, column, row); });
+}
+
+/// Likewise of the fourth channel.
+REALCAM_INLINE float sample_texture_alpha(const TextureView& texture, Vec2f uv) {
+    return between_texels(texture_spot(texture, uv),
+                          [&](int column, int row) { return texel_alpha(texture, column, row); });
 }
 
 }  // namespace REALCAM_NAMESPACE

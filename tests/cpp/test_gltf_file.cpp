@@ -159,7 +159,10 @@ TEST_CASE("glTF: lights in candela and lux, at every node that has them") {
     CHECK(scene.points[1].position_m.x == 4.5);
     check_vec(scene.points[0].intensity, 40, 20, 10);
     check_vec(scene.points[2].intensity, 1, 1, 1);
-    CHECK(warns(scene, "light 2 is a spot"));
+    CHECK(length(scene.points[0].axis) == 0);
+    check_vec(static_cast<Vec3f>(scene.points[2].axis), 0, 0, -1);
+    CHECK(scene.points[2].inner_cone_rad == 0);
+    CHECK(scene.points[2].outer_cone_rad == doctest::Approx(0.785398163));
     REQUIRE(scene.suns.size() == 1);
     check_vec(scene.suns[0].illuminance, 1000, 1000, 1000);
     CHECK(double(scene.suns[0].direction.y) == doctest::Approx(-1));

@@ -156,7 +156,7 @@ TEST_CASE("what can be put up with is a warning") {
     const Material& m = scene.materials[scene.triangles[0].material];
     REQUIRE(m.diffuse_texture.texture == 0);
     CHECK(m.diffuse.r == 1.0f);  // black would hide it
-    CHECK((m.transmission == 0.5f && m.is_thin && m.ior == 1.0f));
+    CHECK((m.opacity == 0.5f && m.transmission == 0.0f));
     const std::vector<std::uint8_t>& rgba = scene.textures[0].rgba;
     CHECK(std::vector<std::uint8_t>(rgba.begin(), rgba.begin() + 4) == std::vector<std::uint8_t>{255, 0, 255, 255});
 

@@ -58,7 +58,36 @@ def scene_with_objects() -> rc.Scene:
     return scene
 
 
+def scene_with_holes() -> rc.Scene:
+    """Plates by their factor, a map and a cutoff, one behind the other, also in instances; a spot and a lamp with holes
+    that light them."""
+    rng = np.random.default_rng(5)
+    alpha = rng.integers(0, 255, (16, 16), dtype=np.uint8)
+    plate = np.array([[-0.8, 0, -2], [0.8, 0, -2], [0.8, 1.4, -2], [-0.8, 1.4, -2]], float)
+    corners = [plate + [0.2 * i, 0, -0.4 * i] for i in range(3)]
+    lamp = np.array([[-0.4, 2, -1], [-0.4, 2, -2], [0.4, 2, -2], [0.4, 2, -1]], float)
+    floor = np.array([[-3, 0, 3], [3, 0, 3], [3, 0, -6], [-3, 0, -6]], float)
+    scene = rc.Scene.from_arrays(
+        np.concatenate([*corners, lamp, floor]),
+        (4 * np.arange(5)[:, None] + [0, 1, 2, 0, 2, 3]).reshape(-1, 3),
+        uvs=np.tile([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]], (5, 1)),
+        triangle_materials=np.repeat(np.arange(5), 2),
+        materials=[
+            rc.Material(diffuse=(0.6, 0.2, 0.2), opacity=0.4),
+            rc.Material(diffuse=(0.2, 0.6, 0.2), opacity_texture=alpha),
+            rc.Material(diffuse=(0.2, 0.2, 0.6), opacity_texture=alpha, opacity_cutoff=0.5),
+            rc.Material(emission=(900, 900, 800), opacity_texture=alpha, double_sided=True),
+            rc.Material.metallic_roughness(base_color=(0.7, 0.7, 0.7), roughness=0.4),
+        ],
+    )
+    scene = scene.with_spot_light((1, 2.5, 1), (-0.4, -1, -0.8), (300, 300, 300), inner_cone_deg=10, outer_cone_deg=30)
+    place = np.diag([0.4, 0.4, 0.4, 1])
+    place[:3, 3] = (0.9, 0.05, 0.1)
+    return scene.with_environment(20).with_instance(scene, place)
+
+
 SCENES = {
+    "holes": scene_with_holes,
     "area light": lambda: frame_scene(spheres=20, boxes=20),
     "all kinds": textured_scene,
     "objects": scene_with_objects,

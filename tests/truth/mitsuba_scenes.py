@@ -243,6 +243,31 @@ def normal_mapped() -> Shot:
     return Shot([floor, lamp, Part(quad([-2, 0, -2], [4, 0, 0], [0, 3, 0]), material, bsdf)])
 
 
+def holed() -> Shot:
+    """A plate with round holes and one that is there by half, before a ball and over it: seen through, and shadows."""
+    y, x = np.mgrid[0:64, 0:64] / 64 * 4 % 1 - 0.5
+    alpha = np.where(x**2 + y**2 < 0.1, 0, 255).astype(np.uint8)
+    color = {"type": "rgb", "value": [0.2, 0.6, 0.3]}
+    bsdf = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
+    with_map = rc.Material(diffuse=(0.2, 0.6, 0.3), opacity_texture=alpha)
+    by_half = rc.Material(diffuse=(0.2, 0.6, 0.3), opacity=0.5)
+    return Shot(
+        [
+            *ball(*diffuse((0.8, 0.5, 0.2))).parts,
+            Part(
+                quad([-0.9, 0.1, 1.0], [0.9, 0, 0], [0, 0.9, 0]),
+                with_map,
+                {"type": "mask", "opacity": bitmap(alpha[..., None], raw=True), "bsdf": bsdf},
+            ),
+            Part(
+                quad([0, 1.7, -0.6], [1.2, 0, 0], [0, 0, 1.2]),
+                by_half,
+                {"type": "mask", "opacity": 0.5, "bsdf": bsdf},
+            ),
+        ]
+    )
+
+
 SHOTS: dict[str, Callable[[], Shot]] = {
     "diffuse": lambda: ball(*diffuse((0.8, 0.5, 0.2))),
     "mirror": lambda: ball(
@@ -276,4 +301,5 @@ SHOTS: dict[str, Callable[[], Shot]] = {
         sky=20.0,
     ),
     "many lights": many_lamps,
+    "holes": holed,
 }

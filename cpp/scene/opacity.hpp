@@ -1,0 +1,47 @@
+#pragma once
+#include "../math/random.hpp"
+#include "surface_point.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// A ray that meets a surface with holes stops there with the probability of its opacity. So the picture's mean is that
+// of light which is let through in part, for shadows as for what is seen, however many surfaces lie behind each other,
+// and no ray has to be split.
+
+/// Share of a surface that is there, at a place on one of its triangles.
+REALCAM_INLINE float opacity_at(const MeshView& mesh, const Triangle& triangle, Hit hit) {
+    const Material& material = mesh.materials[triangle.material];
+    float opacity = material.opacity;
+    const TextureReference& map = material.opacity_texture;
+    if (map.texture >= 0 && mesh.uvs)
+        opacity *=
+            sample_texture_alpha(mesh.textures[map.texture], transformed(map, surface_uv(mesh, triangle, hit).at));
+    if (material.opacity_cutoff > 0.0f) return opacity >= material.opacity_cutoff ? 1.0f : 0.0f;
+    return opacity;
+}
+
+/// Whether a ray stops at a hit on a mesh. `ray`: a number by which each ray decides anew, and each backend alike.
+REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray) {
+    const Triangle& triangle = mesh.triangles[hit.triangle];
+    if (!mesh.materials[triangle.material].has_holes()) return true;
+    return unit_float(hash32(hash32(ray, hit.triangle), hit.instance)) < opacity_at(mesh, triangle, hit);
+}
+
+/// For traversal, which asks at each triangle that a ray meets whether it stops there: of surfaces without holes.
+struct NoHoles {
+    static constexpr bool exist = false;
+};
+
+/// Likewise where some have holes.
+struct Holes {
+    static constexpr bool exist = true;
+    const SceneView& scene;
+    std::uint32_t ray;
+
+    REALCAM_INLINE bool stop(Hit hit) const {
+        if (hit.instance == kNoInstance) return stops_ray(scene, hit, ray);
+        return stops_ray(scene.objects[scene.instances[hit.instance].object], hit, ray);
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,181 @@
+// Rays at surfaces with holes: both traversals decide alike, and as often as the opacity says.
+#if defined(REALCAM_HAS_BVH)
+
+#include <atomic>
+#include <cmath>
+
+#include "../../cpp/bvh/scene_bvh.hpp"
+#include "../../cpp/bvh/traverse_scene.hpp"
+#include "../../cpp/embree/embree_scene.hpp"
+#include "../../cpp/embree/packet_scene.hpp"
+#include "bvh_rays.hpp"
+#include "doctest/doctest.h"
+
+using namespace realcam;
+using namespace realcam::test;
+
+namespace {
+
+Texture alpha_texture() {
+    Texture texture;
+    texture.width = texture.height = 2;
+    texture.rgba = {0, 0, 0, 0, 0, 0, 0, 85, 0, 0, 0, 170, 0, 0, 0, 255};
+    return texture;
+}
+
+/// Material 0 is whole, 1 is there by 40%, 2 as its texture says, 3 where that reaches a half.
+Scene holed(const Mesh& mesh) {
+    Scene scene;
+    for (const Vec3f p : mesh.positions) {
+        scene.positions_m.push_back(static_cast<Vec3d>(p));
+        scene.uvs.push_back({p.x, p.y});
+    }
+    scene.triangles = mesh.triangles;
+    for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) scene.triangles[i].material = i % 4;
+    scene.materials.resize(4);
+    scene.textures = {alpha_texture()};
+    scene.materials[1].opacity = 0.4f;
+    scene.materials[2].opacity_texture.texture = 0;
+    scene.materials[3].opacity_texture.texture = 0;
+    scene.materials[3].opacity_cutoff = 0.5f;
+    return scene;
+}
+
+struct EmbreeDevice {
+    RTCDevice device = rtcNewDevice(nullptr);
+    EmbreeDevice() = default;
+    EmbreeDevice(const EmbreeDevice&) = delete;
+    EmbreeDevice& operator=(const EmbreeDevice&) = delete;
+    ~EmbreeDevice() { rtcReleaseDevice(device); }
+};
+
+}  // namespace
+
+TEST_CASE("opacity: factor, alpha channel between texels, cutoff") {
+    Scene scene;
+    scene.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.uvs = {{0, 0}, {1, 0}, {0, 1}};
+    scene.triangles = {{{0, 1, 2}, 0}};
+    scene.materials = {Material{}};
+    scene.textures = {alpha_texture()};
+    const auto opacity = [&](float u, float v) {
+        const RenderSpaceScene placed(Assembly(scene), {0, 0, 0});
+        const MeshView mesh = placed.view();
+        return static_cast<double>(opacity_at(mesh, mesh.triangles[0], {1, 0, u, v}));
+    };
+    CHECK(opacity(0.25f, 0.25f) == 1.0);
+    scene.materials[0].opacity = 0.5f;
+    CHECK(opacity(0.25f, 0.25f) == 0.5);
+    scene.materials[0].opacity_texture.texture = 0;
+    // The middles of the texels, row 0 on top; then between them.
+    CHECK(opacity(0.25f, 0.75f) == doctest::Approx(0));
+    CHECK(opacity(0.75f, 0.75f) == doctest::Approx(0.5 / 3));
+    CHECK(opacity(0.25f, 0.25f) == doctest::Approx(0.5 * 2 / 3));
+    CHECK(opacity(0.75f, 0.25f) == doctest::Approx(0.5));
+    CHECK(opacity(0.5f, 0.25f) == doctest::Approx(0.5 * 5 / 6));
+    CHECK(opacity(0.5f, 0.5f) == doctest::Approx(0.25));
+    scene.materials[0].opacity_cutoff = 0.3f;
+    CHECK(opacity(0.25f, 0.25f) == 1.0);
+    CHECK(opacity(0.5f, 0.5f) == 0.0);
+}
+
+TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triangle, by its number") {
+    BvhDraw draw(71);
+    Assembly assembly(holed(soup(400, 20, 4, 31)));
+    const auto object = std::make_shared<const Scene>(holed(soup(30, 1, 1, 32)));
+    for (int i = 0; i < 20; ++i) {
+        Affine<double> place;
+        place.origin = static_cast<Vec3d>(draw.in_cube(15));
+        assembly.instances.push_back({object, place, ""});
+    }
+    for (const bool instanced : {false, true}) {
+        CAPTURE(instanced);
+        if (!instanced) assembly.instances.clear();
+        const EmbreeDevice embree;
+        const std::atomic<bool> stop{false};
+        const EmbreeScene on_embree(embree.device, assembly, {0, 0, 0}, stop);
+        const RenderSpaceScene placed(assembly, {0, 0, 0});
+        REQUIRE(placed.view().material_set == MaterialSet::any);
+        const SceneBvh bvh = build_scene_bvh(placed);
+        std::vector<WideBvhView> objects;
+        for (const WideBvh& one : bvh.objects) objects.push_back(one.view());
+        const std::vector<BvhInstance> leaves = bvh_instances(bvh, placed, objects);
+        const SceneBvhView view{bvh.static_geometry.view(), bvh.instances.nodes.data(), leaves.data()};
+        const SceneView scene = placed.view();
+
+        constexpr int kLanes = 64, kBlocks = 800;
+        int differ = 0, hits = 0, through = 0, wrong_shadows = 0;
+        PacketScene<MaterialSet::any> packets{on_embree.handle(), static_cast<std::uint32_t>(assembly.instances.size()),
+                                              RayOrder::incoherent, 0};
+        for (int block = 0; block < kBlocks; ++block) {
+            SceneRays<kLanes> rays;
+            Hits<kLanes> found;
+            std::int32_t hidden[kLanes];
+            for (int i = 0; i < kLanes; ++i) {
+                const Vec3f from = draw.in_cube(25);
+                rays.origin.set(i, from);
+                rays.direction.set(i, normalized(draw.in_cube(12) - from));
+                rays.far[i] = kFarAway;
+                rays.active[i] = 1;
+                rays.number[i] = hash32(static_cast<std::uint32_t>(block * kLanes + i));
+            }
+            packets.intersect(rays, found);
+            packets.occluded(rays, hidden);
+            for (int i = 0; i < kLanes; ++i) {
+                const Holes holes{scene, rays.number[i]};
+                const Vec3f from = rays.origin[i], to = rays.direction[i];
+                const Hit hit = instanced ? closest_hit<true>(view, from, to, kFarAway, holes)
+                                          : closest_hit<false>(view, from, to, kFarAway, holes);
+                const bool any = instanced ? any_hit<true>(view, from, to, kFarAway, holes)
+                                           : any_hit<false>(view, from, to, kFarAway, holes);
+                const Hit solid = instanced ? closest_hit<true>(view, from, to, kFarAway)
+                                            : closest_hit<false>(view, from, to, kFarAway);
+                hits += hit.triangle != kNoTriangle;
+                through += hit.triangle != solid.triangle;
+                differ += hit.triangle != found.triangle[i] || hit.instance != found.instance[i];
+                // What hides is what is met, however the ray is asked.
+                wrong_shadows += any != (hit.triangle != kNoTriangle);
+                wrong_shadows += (hidden[i] != 0) != (found.triangle[i] != kNoTriangle);
+            }
+        }
+        CHECK(hits > 5000);
+        CHECK(through > 2000);
+        CHECK(wrong_shadows == 0);
+        // Barycentric coordinates of the two traversals differ by some 1e-6, and with them opacities, and where a ray
+        // passes an edge or two triangles lie in one place: some 1e-5 of the rays.
+        CHECK(differ <= 5);
+    }
+}
+
+TEST_CASE("holes: rays pass plates as often as their opacities say") {
+    Scene scene;
+    constexpr int kPlates = 3;
+    for (std::uint32_t i = 0; i < kPlates; ++i) {
+        const double z = -1.0 - i;
+        for (const Vec3d corner : {Vec3d{-9, -9, z}, Vec3d{9, -9, z}, Vec3d{0, 9, z}})
+            scene.positions_m.push_back(corner);
+        scene.triangles.push_back({{3 * i, 3 * i + 1, 3 * i + 2}, i});
+        scene.materials.push_back(Material{});
+        scene.materials.back().opacity = 0.2f * static_cast<float>(i + 1);
+    }
+    const RenderSpaceScene placed(Assembly(scene), {0, 0, 0});
+    const SceneBvh bvh = build_scene_bvh(placed);
+    const SceneView view = placed.view();
+    constexpr int kRays = 200000;
+    double stopped[kPlates + 1] = {};
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const Hit hit =
+            closest_hit(bvh.static_geometry.view(), {0, 0, 0}, {0, 0, -1}, kFarAway, Holes{view, hash32(i)});
+        stopped[hit.triangle == kNoTriangle ? kPlates : hit.triangle] += 1.0 / kRays;
+    }
+    double left = 1;
+    for (int i = 0; i <= kPlates; ++i) {
+        const double expected = i < kPlates ? left * 0.2 * (i + 1) : left;
+        CAPTURE(i);
+        // Five standard errors.
+        CHECK(std::fabs(stopped[i] - expected) < 5 * std::sqrt(expected * (1 - expected) / kRays));
+        left -= expected;
+    }
+}
+
+#endif
