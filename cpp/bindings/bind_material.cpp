@@ -102,9 +102,10 @@ PythonMaterial make_material(const Colour& diffuse, const Colour& specular, floa
                              float transmission, float ior, const Colour& filter, const Colour& absorption, bool thin,
                              const py::object& specular_texture, const py::object& emission_texture,
                              const py::object& normal_map, float normal_scale, float opacity, float opacity_cutoff,
-                             const py::object& opacity_texture, bool double_sided) {
+                             const py::object& opacity_texture, bool double_sided, bool shadow_catcher) {
     PythonMaterial m = common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission,
                                      absorption, thin, opacity, opacity_cutoff, opacity_texture, double_sided});
+    m.values.only_shadows = shadow_catcher;
     m.values.diffuse = rgb(diffuse);
     m.values.specular = rgb(specular);
     m.values.shininess = shininess;
@@ -172,6 +173,7 @@ std::string text_of(const PythonMaterial& material) {
         if (m.clearcoat > 0) text += ", clearcoat " + number(m.clearcoat);
     }
     if (m.transmission > 0) text += ", transmission " + number(m.transmission) + ", ior " + number(m.ior);
+    if (m.only_shadows) text += ", shadow catcher";
     if (m.opacity < 1) text += ", opacity " + number(m.opacity);
     if (!is_black(m.emission)) text += ", emission " + color_text(m.emission);
     if (const auto& texture = material.textures[0])
@@ -244,7 +246,7 @@ void bind_material(py::module_& m) {
              "fresnel"_a = true, "transmission"_a = 0.0f, "ior"_a = 1.5f, "filter"_a = white, "absorption"_a = black,
              "thin"_a = false, "specular_texture"_a = py::none(), "emission_texture"_a = py::none(),
              "normal_map"_a = py::none(), "normal_scale"_a = 1.0f, "opacity"_a = 1.0f, "opacity_cutoff"_a = 0.0f,
-             "opacity_texture"_a = py::none(), "double_sided"_a = false,
+             "opacity_texture"_a = py::none(), "double_sided"_a = false, "shadow_catcher"_a = false,
              "Wavefront's material (MTL). diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess:\n"
              "Phong exponent; emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise;\n"
              "mirror: reflectance as a mirror, at normal incidence; fresnel: whether it grows towards grazing\n"
@@ -261,7 +263,11 @@ void bind_material(py::module_& m) {
              "opacity, times opacity_texture (its fourth channel, or the mean of fewer, linear): share of the surface\n"
              "that is there; through the rest light goes as if there were nothing, shadows included. With an\n"
              "opacity_cutoff above 0 there is all of it where that product reaches the cutoff, and nothing elsewhere.\n"
-             "double_sided: emission leaves on both sides. Raises InputError.")
+             "double_sided: emission leaves on both sides. shadow_catcher: invisible, but what is seen through it is "
+             "as\n"
+             "much darker as the lights are hidden from it (MTL's illumination model 10); light and shadows go "
+             "through;\n"
+             "it counts as a bounce. Raises InputError.")
         .def_static(
             "metallic_roughness", &make_metallic_roughness, py::kw_only(), "base_color"_a = white, "metallic"_a = 0.0f,
             "roughness"_a = 1.0f, "texture"_a = py::none(), "metallic_roughness_texture"_a = py::none(), "ior"_a = 1.5f,
@@ -310,6 +316,7 @@ void bind_material(py::module_& m) {
         .def_property_readonly("normal_scale", number_property(&Material::normal_scale))
         .def_property_readonly("opacity", number_property(&Material::opacity))
         .def_property_readonly("opacity_cutoff", number_property(&Material::opacity_cutoff))
+        .def_property_readonly("shadow_catcher", [](const PythonMaterial& p) { return p.values.only_shadows != 0; })
         .def_property_readonly("double_sided",
                                [](const PythonMaterial& p) { return p.values.emits_on_both_sides != 0; })
         .def_property_readonly("texture", texture_property(&Material::diffuse_texture),

@@ -97,13 +97,15 @@ protected:
             const unsigned first = triangles_ & (0u - triangles_);
             triangles_ ^= first;
             const std::uint32_t number = first_triangle_ + count_bits(content_ & (first - 1u));
-            Hit hit = hit_;
-            if (!meets_triangle(sheared_, load_constant(triangles + number), hit)) continue;
-            hit.instance = instance;
+            const Hit last = hit_;
+            if (!meets_triangle(sheared_, load_constant(triangles + number), hit_)) continue;
+            hit_.instance = instance;
             if constexpr (Holes::exist) {
-                if (!holes.stop(hit)) continue;
+                if (!holes.stop(hit_)) {
+                    hit_ = last;
+                    continue;
+                }
             }
-            hit_ = hit;
             met = true;
             if (any) break;
         }

@@ -72,7 +72,7 @@ private:
             case 9: set_mirror(from, FresnelTerm::physical), set_film(passing, from); break;
             case 6: set_mirror(from, FresnelTerm::none), set_refraction(passing, from); break;
             case 7: set_mirror(from, FresnelTerm::physical), set_refraction(passing, from); break;
-            case 10: warn("only receives shadows (illum 10), which is not modelled; it is shown"); break;
+            case 10: material_.only_shadows = 1; break;
             default:
                 material_.specular = color_of(from.Ks);
                 set_specular_map(from.map_Ks);

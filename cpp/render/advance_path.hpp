@@ -99,6 +99,25 @@ REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& p
     return (weight * path.throughput[lane]) * point.emission;
 }
 
+/// A sample of one of the lights, by the illuminance that each would bring if nothing stood in between: one of eight
+/// that sample_light draws, by its share of what they bring (resampling, Talbot et al. 2005), or of up to 64 where
+/// those were all behind the surface. Black: no light.
+template <MaterialSet set>
+REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightReceiver receiver, std::uint32_t seed) {
+    LightSample chosen{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
+    float sum = 0.0f;
+    for (int i = 0; i < 8 || (i < 64 && !(sum > 0.0f)); ++i) {
+        const auto random = [&] { return unit_float(seed = hash32(seed)); };
+        const Vec2f u = {random(), random()};
+        const LightSample light = sample_light<set>(scene, receiver, u, hash32(seed));
+        const float cosine = dot(receiver.normal, light.direction);
+        const float illuminance = cosine > 0.0f ? cosine * luminance(light.irradiance) : 0.0f;
+        sum += illuminance;
+        if (random() * sum < illuminance) chosen = light;
+    }
+    return chosen;
+}
+
 }  // namespace advance_path_detail
 
 /// Rays from the film through the lens.
@@ -136,14 +155,15 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     Hits<N> hits;
     ColorLanes<N> unshadowed;
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
+    std::int32_t darkens[N] = {};  // surfaces that show nothing but shadows
 
     const std::uint32_t first_dimension =
         dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
     if constexpr (set == MaterialSet::any) {
         for (int i = 0; i < N; ++i) {
             const std::uint32_t number = hash32(block.stream[i] ^ block.sample[i], ~first_dimension);
-            path.rays.number[i] = number;
-            shadow.number[i] = hash32(number);
+            path.rays.number[i] = path_ray_number(number);
+            shadow.number[i] = shadow_ray_number(hash32(number));
         }
     }
     probe.enter(RenderStage::scene);
@@ -177,9 +197,24 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
             path.rays.active[i] = 0;
             continue;
         }
+        const std::uint32_t seed = hash32(block.stream[i] ^ block.sample[i], first_dimension);
+        if constexpr (set == MaterialSet::any) {
+            darkens[i] = point.material->only_shadows;
+            if (darkens[i]) {
+                // What is behind is seen as far as the light here is not hidden. The ray keeps its direction, and so
+                // the density of that.
+                const LightSample light = light_by_illuminance<set>(view, {point.position, point.normal}, seed);
+                set_shadow_ray(point, light, i, shadow);
+                shadow.active[i] = !is_black(light.irradiance);
+                lit |= shadow.active[i];
+                unshadowed.set(i, {0, 0, 0});
+                path.rays.origin.set(i, ray_start(point, direction));
+                alive = 1;
+                continue;
+            }
+        }
         auto bsdf = make_bsdf<set>(point, -direction);
         const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}};
-        const std::uint32_t seed = hash32(block.stream[i] ^ block.sample[i], first_dimension);
         const LightSample light =
             sample_light<set>(view, receiver, block.random(i, first_dimension + dimension::light), seed);
         const Color lambert_and_narrow = bsdf.eval(light.direction);
@@ -221,8 +256,12 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         probe.enter(RenderStage::scene);
         scene.occluded(shadow, hidden);
         probe.enter(RenderStage::other);
-        for (int i = 0; i < N; ++i)
+        for (int i = 0; i < N; ++i) {
             if (shadow.active[i] & !hidden[i]) results.irradiance.set(i, results.irradiance[i] + unshadowed[i]);
+            if constexpr (set == MaterialSet::any) {
+                if (darkens[i] & shadow.active[i] & hidden[i]) path.rays.active[i] = 0;
+            }
+        }
     }
     return alive != 0;
 }

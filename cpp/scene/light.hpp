@@ -36,7 +36,7 @@ REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaL
     const float distance = std::sqrt(squared);
     const Vec3f direction = (1.0f / distance) * to_light;
     const float on_side = -dot(direction, light.normal);
-    const float cosine = light.is_two_sided ? std::fabs(on_side) : on_side;
+    const float cosine = set != MaterialSet::plain && light.is_two_sided ? std::fabs(on_side) : on_side;
     // Also where the point lies on the light, and the direction has no value.
     if (!(cosine > 0.0f)) return {light.normal, distance, 1.0f, {0, 0, 0}, kDelta};
     const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);

@@ -27,6 +27,7 @@ struct Material {
     float opacity = 1;  ///< share of the surface that is there; through the rest rays go as if there were nothing
     float opacity_cutoff =
         0;  ///< above 0: all of the surface is there where opacity reaches this, and nothing elsewhere
+    std::int32_t only_shadows = 0;  ///< not 0: invisible, but for the shadows on it (MTL's illumination model 10)
     TextureReference opacity_texture;  ///< its alpha channel multiplies opacity
     TextureReference diffuse_texture, specular_texture, emission_texture;
     float ior = 1.5f;  ///< refractive index on the inside
@@ -52,13 +53,13 @@ struct Material {
     constexpr bool operator==(const Material&) const = default;
 
     constexpr bool emits() const { return !is_black(emission); }
-    /// Lambert's and Phong's lobe on an opaque surface, and no textures but for diffuse.
+    /// Lambert's and Phong's lobe on an opaque surface, emission on one side, and no textures but for diffuse.
     constexpr bool is_plain() const {
         return model == MaterialModel::phong && transmission == 0 && is_black(mirror) && normal_texture.texture < 0 &&
-               specular_texture.texture < 0 && emission_texture.texture < 0 && !has_holes();
+               specular_texture.texture < 0 && emission_texture.texture < 0 && !has_holes() && emits_on_both_sides == 0;
     }
     /// Whether some rays that meet the surface go on as if it were not there.
-    constexpr bool has_holes() const { return opacity < 1 || opacity_texture.texture >= 0; }
+    constexpr bool has_holes() const { return opacity < 1 || opacity_texture.texture >= 0 || only_shadows != 0; }
 };
 
 inline constexpr std::array<TextureReference Material::*, 6> kMaterialTextures = {

@@ -20,10 +20,20 @@ REALCAM_INLINE float opacity_at(const MeshView& mesh, const Triangle& triangle, 
     return opacity;
 }
 
-/// Whether a ray stops at a hit on a mesh. `ray`: a number by which each ray decides anew, and each backend alike.
+// By the number of a ray each one decides anew, and each backend alike. It is odd for shadow rays.
+REALCAM_INLINE std::uint32_t path_ray_number(std::uint32_t hash) {
+    return hash & ~1u;
+}
+REALCAM_INLINE std::uint32_t shadow_ray_number(std::uint32_t hash) {
+    return hash | 1u;
+}
+
+/// Whether a ray stops at a hit on a mesh.
 REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray) {
     const Triangle& triangle = mesh.triangles[hit.triangle];
-    if (!mesh.materials[triangle.material].has_holes()) return true;
+    const Material& material = mesh.materials[triangle.material];
+    if (!material.has_holes()) return true;
+    if (material.only_shadows && (ray & 1u)) return false;
     return unit_float(hash32(hash32(ray, hit.triangle), hit.instance)) < opacity_at(mesh, triangle, hit);
 }
 

@@ -144,8 +144,9 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     point.material = &material;
     point.diffuse = material.diffuse;
     if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
-    point.emission = point.is_front || material.emits_on_both_sides ? material.emission : Color{0, 0, 0};
+    point.emission = point.is_front ? material.emission : Color{0, 0, 0};
     if constexpr (set != MaterialSet::plain) {
+        if (material.emits_on_both_sides) point.emission = material.emission;
         point.emission *= texture_color(mesh, material.emission_texture, uv.at);
         const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
         point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at);

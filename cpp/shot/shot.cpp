@@ -7,16 +7,16 @@
 #include "../io/lens_file.hpp"
 #include "../render/daylight.hpp"
 #include "../render/metering.hpp"
+#include "shot_scene.hpp"
 
 namespace realcam::shot {
 namespace {
 
 void add_texture(Scene& scene, const std::string& path, const PictureReaders& readers) {
-    auto image = readers.texture(path, {});
-    if (!image) throw InputError(path + ": cannot be read as a texture");
+    Texture texture = read_texture(path, io::TextureUse::colour, readers);
     if (scene.uvs.empty()) throw InputError(path + ": the scene has no texture coordinates to lay a texture by");
     const auto index = static_cast<std::int32_t>(scene.textures.size());
-    scene.textures.push_back(io::texture_of(std::move(*image), io::TextureUse::colour, path));
+    scene.textures.push_back(std::move(texture));
     for (Material& material : scene.materials) material.diffuse_texture = {index, {1, 0, 0}, {0, 1, 0}};
 }
 
@@ -36,7 +36,8 @@ Camera camera_of(const ShotRequest& request) {
 }
 
 Assembly scene_of(const ShotRequest& request, const PictureReaders& readers) {
-    Assembly scene = io::read_scene(request.scene, {request.scale}, readers.texture);
+    Assembly scene =
+        with_request(io::read_scene(request.scene, {request.scale}, readers.texture), request.additions, readers);
     if (request.texture.empty() && !request.chooses_environment()) return scene;
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);

@@ -1,20 +1,10 @@
 #pragma once
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "../io/scene_file.hpp"
 #include "../render/session.hpp"
 #include "../scene/assembly.hpp"
+#include "picture_readers.hpp"
 #include "shot_request.hpp"
 
 namespace realcam::shot {
-
-/// How pictures are read: the programs give OpenImageIO's.
-struct PictureReaders {
-    io::ImageReader texture;
-    std::function<Environment(const std::string& path)> environment;
-};
 
 /// A scene in its light, and the camera that photographs it.
 struct Shot {

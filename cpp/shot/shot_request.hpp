@@ -7,6 +7,7 @@
 #include "../camera/develop.hpp"
 #include "../render/default_view.hpp"
 #include "../render/render_settings.hpp"
+#include "scene_request.hpp"
 
 namespace realcam::shot {
 
@@ -17,6 +18,7 @@ struct ShotRequest {
     std::string texture;  ///< a picture for every material; empty: the scene's own
     std::optional<Vec3f> environment_cd_m2;
     std::string environment_file;
+    SceneRequest additions;
 
     std::string lens = "double-gauss-50mm";  ///< a bundled one, or a file
     std::optional<double> f_number;

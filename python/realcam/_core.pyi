@@ -568,6 +568,7 @@ class Material(_Value):
         opacity_cutoff: float = 0.0,
         opacity_texture: ArrayLike | None = None,
         double_sided: bool = False,
+        shadow_catcher: bool = False,
     ) -> None: ...
     @staticmethod
     def metallic_roughness(
@@ -652,6 +653,8 @@ class Material(_Value):
     def opacity_cutoff(self) -> float: ...
     @property
     def double_sided(self) -> bool: ...
+    @property
+    def shadow_catcher(self) -> bool: ...
     @property
     def texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
     @property

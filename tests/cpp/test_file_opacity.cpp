@@ -110,6 +110,12 @@ TEST_CASE("what is not lit shows its colour as a screen does, and says so") {
     CHECK(constant.scene.has_light());
 }
 
+TEST_CASE("MTL: illumination model 10 shows shadows alone") {
+    const Material m = mtl("illum 10\nKd 1 1 1\n").material;
+    CHECK(m.only_shadows);
+    CHECK(m.has_holes());
+}
+
 TEST_CASE("glTF: a double-sided material emits on both sides") {
     CHECK(gltf_material(R"({"emissiveFactor":[1,1,1],"doubleSided":true})").material.emits_on_both_sides);
     CHECK_FALSE(gltf_material(R"({"emissiveFactor":[1,1,1]})").material.emits_on_both_sides);

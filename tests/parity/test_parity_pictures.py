@@ -64,7 +64,7 @@ def scene_with_holes() -> rc.Scene:
     rng = np.random.default_rng(5)
     alpha = rng.integers(0, 255, (16, 16), dtype=np.uint8)
     plate = np.array([[-0.8, 0, -2], [0.8, 0, -2], [0.8, 1.4, -2], [-0.8, 1.4, -2]], float)
-    corners = [plate + [0.2 * i, 0, -0.4 * i] for i in range(3)]
+    corners = [plate + np.array([0.2 * i, 0, -0.4 * i]) for i in range(3)]
     lamp = np.array([[-0.4, 2, -1], [-0.4, 2, -2], [0.4, 2, -2], [0.4, 2, -1]], float)
     floor = np.array([[-3, 0, 3], [3, 0, 3], [3, 0, -6], [-3, 0, -6]], float)
     scene = rc.Scene.from_arrays(
@@ -83,7 +83,10 @@ def scene_with_holes() -> rc.Scene:
     scene = scene.with_spot_light((1, 2.5, 1), (-0.4, -1, -0.8), (300, 300, 300), inner_cone_deg=10, outer_cone_deg=30)
     place = np.diag([0.4, 0.4, 0.4, 1])
     place[:3, 3] = (0.9, 0.05, 0.1)
-    return scene.with_environment(20).with_instance(scene, place)
+    catcher = rc.Scene.from_arrays(
+        [[-2, 0.02, 2], [2, 0.02, 2], [2, 0.02, 0]], [[0, 1, 2]], materials=[rc.Material(shadow_catcher=True)]
+    )
+    return scene.with_environment(20).with_instance(scene, place).with_instance(catcher)
 
 
 SCENES = {

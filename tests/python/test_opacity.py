@@ -22,10 +22,10 @@ def holed(at_z: float, half: float = 3.0, **material: object) -> tuple[np.ndarra
 def plates(*parts: tuple[np.ndarray, rc.Material]) -> rc.Scene:
     """Texture coordinates 0 to 1, v upwards."""
     count = len(parts)
-    first = 4 * np.arange(count)[:, None]
+    first, halves = 4 * np.arange(count)[:, None], np.array([0, 1, 2, 0, 2, 3])
     return rc.Scene.from_arrays(
         np.concatenate([corners for corners, _ in parts]),
-        np.concatenate([first + [0, 1, 2], first + [0, 2, 3]], 1).reshape(-1, 3),
+        (first + halves).reshape(-1, 3),
         uvs=np.tile([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], (count, 1)),
         triangle_materials=np.repeat(np.arange(count), 2),
         materials=[material for _, material in parts],
@@ -134,6 +134,54 @@ def test_emission_on_both_sides() -> None:
     seen = [scenes.radiance(room, scenes.pinhole(look_at=(0, y, -2)), spp=256).mean() for y in (-1.0, 1.0)]
     assert seen[0] > 0
     assert seen[0] == pytest.approx(seen[1], rel=0.02)
+
+
+def test_a_shadow_catcher_shows_shadows_alone() -> None:
+    camera = scenes.pinhole()
+    catcher = (scenes.quad((0, 0, -2), 3)[0], rc.Material(shadow_catcher=True))
+    wall = (scenes.quad((0, 0, -2.5), 4)[0], rc.Material(diffuse=(0.5, 0.5, 0.5)))
+    # Beside the lens, between the lamp and the catcher: it hides the lamp from the half x < 0, of the wall as well.
+    shade = (scenes.quad((-3, 0, 0.5), 3)[0], rc.Material(diffuse=(0, 0, 0)))
+    lamp = ((0, 0, 1), (50.0, 50.0, 50.0))
+
+    def seen(*parts: tuple[np.ndarray, rc.Material]) -> np.ndarray:
+        # The catcher counts as a bounce.
+        picture = scenes.radiance(plates(*parts).with_point_light(*lamp), camera, spp=16, max_bounces=1)
+        return np.asarray(picture[..., 0])
+
+    np.testing.assert_array_equal(seen(catcher), 0)
+    np.testing.assert_allclose(seen(catcher, wall), seen(wall), rtol=1e-5)
+    # The plate hides the lamp from a half of the wall, too.
+    lit, caught = seen(wall), seen(catcher, wall, shade)
+    np.testing.assert_array_equal(caught[:, :11], 0)
+    np.testing.assert_allclose(caught[:, 13:], lit[:, 13:], rtol=1e-5)
+
+
+def test_a_shadow_catcher_takes_the_share_of_each_light() -> None:
+    """Two lamps of 3 to 1, of which a plate hides the stronger one: a quarter of what is behind stays."""
+    camera = scenes.pinhole()
+    catcher = (scenes.quad((0, 0, -2), 3)[0], rc.Material(shadow_catcher=True))
+    far = 60.0  # from where both fall alike on all of the catcher
+    shade = (scenes.quad((far / 2, 0, far / 2), 12)[0], rc.Material(diffuse=(0, 0, 0)))
+    scene = (
+        plates(catcher, shade)
+        .with_point_light((far, 0, far), (30000.0,) * 3)
+        .with_point_light((-far, 0, far), (10000.0,) * 3)
+        .with_environment(1e-3)  # which is seen behind, and brings next to nothing
+    )
+    with_plate = scenes.radiance(scene, camera, spp=256, max_bounces=1).mean()
+    assert with_plate / 1e-3 == pytest.approx(0.25, abs=0.02)
+
+
+def test_light_and_shadows_go_through_a_shadow_catcher() -> None:
+    floor = (scenes.quad((0, 0, -2), 3)[0], rc.Material(diffuse=(0.5, 0.5, 0.5)))
+    before = (scenes.quad((0, 0, 1), 60)[0], rc.Material(shadow_catcher=True))
+    camera, sun = scenes.pinhole(), ((0, 0, -1), (math.pi,) * 3)
+    np.testing.assert_allclose(
+        scenes.radiance(plates(floor, before).with_sun(*sun), camera),
+        scenes.radiance(plates(floor).with_sun(*sun), camera),
+        rtol=1e-5,
+    )
 
 
 @pytest.mark.parametrize(("inner", "outer"), [(0.0, 45.0), (20.0, 30.0), (25.0, 25.0), (0.0, 90.0)])

@@ -76,6 +76,146 @@ def test_focus_and_stop(tmp_path: Path) -> None:
     assert load(tmp_path, base + "f_number = 8\n").camera.lens.first_order().f_number == pytest.approx(8)
 
 
+TEAPOT = "v 0 0 0\nv 1 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n"
+PLACED = """
+format = 1
+scene = "quad.obj"
+position_m = [0, 0, 5]
+exposure_time_s = 1
+
+[[object]]
+file = "part.obj"
+position_m = [1, 2, 3]
+rotation_deg = [0, 90, 90]
+stretch = [1, 2, 1]
+scale = 0.5
+material = "brass"
+
+[[object]]
+file = "part.obj"
+name = "other"
+matrix = [1, 0, 0, 4, 0, 1, 0, 5, 0, 0, 1, 6, 0, 0, 0, 1]
+
+[material.brass]
+model = "metallic_roughness"
+base_color = [0.9, 0.7, 0.3]
+metallic = 1
+roughness = 0.25
+emission = 3
+
+[[light]]
+type = "spot"
+position_m = [0, 0, 3]
+direction = [0, 0, -2]
+intensity_cd = [10, 20, 30]
+
+[[light]]
+type = "sun"
+direction = [0, -1, 0]
+illuminance_lux = 5
+"""
+
+
+def test_objects_are_put_into_the_scene(tmp_path: Path) -> None:
+    (tmp_path / "part.obj").write_text(TEAPOT)
+    scene = load(tmp_path, PLACED).scene
+    (first, place), (second, other) = scene.instances
+    assert (first, second) == ("part", "other")
+    # About y by 90 degrees and then about z by 90: x goes to -z and stays; y to itself and to -x; z to x and to y.
+    expected = np.array([[0, -2, 0, 1], [0, 0, 1, 2], [-1, 0, 0, 3], [0, 0, 0, 1]])
+    np.testing.assert_allclose(place, expected, atol=1e-15)
+    np.testing.assert_allclose(other, np.array([[1, 0, 0, 4], [0, 1, 0, 5], [0, 0, 1, 6], [0, 0, 0, 1]]))
+    # In metres: corners (0.5, 0, 0) and (0, 1, 0) of the one, (1, 0, 0) and (0, 2, 0) of the other.
+    low, high = scene.bounds_m
+    np.testing.assert_allclose(low, (-1, -1, 0))
+    np.testing.assert_allclose(high, (5, 7, 6))
+
+
+def test_the_lights_of_a_shot_are_those_of_python(tmp_path: Path) -> None:
+    (tmp_path / "part.obj").write_text(TEAPOT)
+    shot = load(tmp_path, PLACED)
+    by_hand = rc.Scene.load(tmp_path / "quad.obj").with_spot_light((0, 0, 3), (0, 0, -1), (10, 20, 30))
+    brass = rc.Material.metallic_roughness(base_color=(0.9, 0.7, 0.3), metallic=1, roughness=0.25, emission=(3, 3, 3))
+    part = rc.Scene.load(tmp_path / "part.obj", scale=0.5).with_material(0, brass)
+    by_hand = by_hand.with_sun((0, -1, 0), (5, 5, 5)).with_instance(part, shot.scene.instances[0][1])
+    other = rc.Scene.load(tmp_path / "part.obj")
+    by_hand = by_hand.with_instance(other, shot.scene.instances[1][1])
+    camera = shot.camera.replace(film=rc.Film(36, 24, (30, 20)))
+    expected = rc.render(by_hand, camera, spp=8, device="cpu").pixels
+    np.testing.assert_array_equal(rc.render(shot.scene, camera, spp=8, device="cpu").pixels, expected)
+    assert expected.max() > 0
+
+
+def test_a_material_takes_the_place_of_those_of_its_name(tmp_path: Path) -> None:
+    (tmp_path / "m.mtl").write_text("newmtl wood\nKd 1 0 0\nnewmtl glass\nKd 0 1 0\n")
+    obj = QUAD.replace("f 1 2 3 4", "mtllib m.mtl\nvt 0 0\nusemtl wood\nf 1/1 2/1 3/1\nusemtl glass\nf 1/1 3/1 4/1")
+    (tmp_path / "two.obj").write_text(obj)
+    rc.render(rc.Scene.load(tmp_path / "two.obj").with_environment(1), rc.Camera(rc.Lens.load("tessar-50mm")), spp=1)
+    text = """
+        format = 1
+        scene = "two.obj"
+        exposure_time_s = 1
+        [material.glass]
+        transmission = 1
+        ior = 1.7
+        diffuse = 0
+        """
+    shot = load(tmp_path, text)
+    assert list(shot.scene.materials) == ["wood", "glass"]
+    glass = shot.scene.materials["glass"]
+    assert (glass.transmission, glass.diffuse, glass.model) == (1, (0, 0, 0), "phong")
+    assert glass.ior == pytest.approx(1.7)
+    assert shot.scene.materials["wood"].diffuse == (1, 0, 0)
+
+
+def test_textures_of_a_material_are_files(tmp_path: Path) -> None:
+    (tmp_path / "part.obj").write_text(TEAPOT)
+    lens = rc.Lens.load("tessar-50mm")
+    rc.render(rc.Scene.load(tmp_path / "part.obj").with_environment(1), rc.Camera(lens), spp=1).save(tmp_path / "t.png")
+    text = PLACED.replace("emission = 3", 'texture = "t.png"\nopacity_texture = "t.png"')
+    assert load(tmp_path, text).scene.triangle_count == 4
+    with pytest.raises(rc.InputError, match=r"shot\.toml:20: the material's object has no texture coordinates"):
+        load(tmp_path, text.replace('file = "part.obj"', 'file = "quad.obj"'))
+    with pytest.raises(rc.InputError, match=r"none\.png: cannot be read as a texture"):
+        load(tmp_path, text.replace("t.png", "none.png"))
+
+
+WRONG_ADDITIONS = [
+    ("[[object]]\nname = 'x'", r":3: file is missing"),
+    ("[[object]]\nfile = 'none.obj'", r"none\.obj: .*no such file"),
+    (
+        "[[object]]\nfile = 'quad.obj'\npositoin_m = [1, 2, 3]",
+        r':5: unknown key "positoin_m" \(did you mean "position_m"',
+    ),
+    ("[[object]]\nfile = 'quad.obj'\nstretch = 0", r":3: a transform must keep three directions"),
+    ("[[object]]\nfile = 'quad.obj'\nmaterial = 'bras'\n[material.brass]", r":3: there is no table \[material\.bras\]"),
+    ("[object]\nfile = 'quad.obj'", r":3: tables \[\[object\]\] are wanted"),
+    ("material = 3", r":3: tables \[material\.NAME\] are wanted"),
+    ("[material.brass]\nmodel = 'phong'", r':3: the scene has no material "brass"'),
+    ("[material.a]\nmodel = 'disney'", r':4: "model" must be phong or metallic_roughness'),
+    ("[material.a]\nrougness = 1", r':4: unknown key "rougness"'),
+    ("[material.a]\nmetallic = 1", r':4: unknown key "metallic"'),
+    ("[material.a]\nmodel = 'metallic_roughness'\nroughness = 2", r":3: .*between 0 and 1"),
+    ("[material.a]\nopacity = -1", r":3: .*between 0 and 1"),
+    ("[[light]]\ntype = 'lamp'", r':4: "type" must be "point", "spot" or "sun"'),
+    ("[[light]]\ntype = 'point'\nposition_m = [0, 0, 0]", r':3: "intensity_cd" is missing'),
+    ("[[light]]\ntype = 'point'\nintensity_cd = 1", r':3: "position_m" is missing'),
+    ("[[light]]\ntype = 'sun'\ndirection = [0, 0, 0]\nilluminance_lux = 1", r':5: "direction" must be a vector'),
+    ("[[light]]\ntype = 'sun'\ndirection = [0, 1, 0]\nilluminance_lux = -1", r":3: .*illuminance"),
+    (
+        "[[light]]\ntype = 'spot'\nposition_m = [0, 0, 0]\ndirection = [0, 1, 0]\nintensity_cd = 1\n"
+        "outer_cone_deg = 95",
+        r":3: .*cones",
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "says"), WRONG_ADDITIONS)
+def test_what_is_wrong_with_an_addition_is_told_with_its_line(text: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises((rc.InputError, rc.SceneFileError), match=says):
+        load(tmp_path, "format = 1\nscene = 'quad.obj'\n" + text)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -1,0 +1,10 @@
+#pragma once
+#include "scene_request.hpp"
+#include "shot_table.hpp"
+
+namespace realcam::shot {
+
+/// The tables [[object]], [material.NAME] and [[light]] of a shot file. Throws InputError naming file and line.
+SceneRequest read_scene_request(const ShotTable& shot);
+
+}  // namespace realcam::shot

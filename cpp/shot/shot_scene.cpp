@@ -1,0 +1,148 @@
+#include "shot_scene.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "../error.hpp"
+#include "../io/nearest_names.hpp"
+#include "../io/printable.hpp"
+#include "../scene/instance_names.hpp"
+
+namespace realcam::shot {
+namespace {
+
+using SharedScene = std::shared_ptr<const Scene>;
+
+class Builder {
+public:
+    Builder(Assembly scene, const SceneRequest& request, const PictureReaders& readers)
+        : scene_(std::move(scene)), request_(request), readers_(readers) {}
+
+    Assembly build() {
+        add_objects();
+        replace_materials();
+        if (!request_.points.empty() || !request_.suns.empty())
+            scene_ = with_static_geometry(std::move(scene_), [&](Scene& changed) {
+                changed.points.insert(changed.points.end(), request_.points.begin(), request_.points.end());
+                changed.suns.insert(changed.suns.end(), request_.suns.begin(), request_.suns.end());
+            });
+        return std::move(scene_);
+    }
+
+private:
+    void add_objects() {
+        DistinctNames names(scene_);
+        std::map<std::pair<std::string, double>, Assembly> files;  // each is read once
+        for (const ObjectRequest& wanted : request_.objects) {
+            const auto [file, is_new] = files.try_emplace({wanted.file, wanted.scale});
+            if (is_new) file->second = io::read_scene(wanted.file, {wanted.scale}, readers_.texture);
+            Assembly object = file->second;
+            if (!wanted.material.empty()) {
+                const MaterialRequest& material = find(wanted);
+                used_.insert(&material);
+                each_part(object, [&](const Scene& part) {
+                    return std::make_shared<const Scene>(of_one_material(part, material));
+                });
+            }
+            add(scene_, object, wanted.scene_from_object, wanted.name, names);
+        }
+    }
+
+    const MaterialRequest& find(const ObjectRequest& object) const {
+        std::vector<std::string> names;
+        for (const MaterialRequest& material : request_.materials) {
+            if (material.name == object.material) return material;
+            names.push_back(material.name);
+        }
+        throw InputError(object.place + ": there is no table [material." + object.material + "]" +
+                         io::did_you_mean(object.material, names));
+    }
+
+    void replace_materials() {
+        for (const MaterialRequest& material : request_.materials) {
+            bool found = false;
+            std::set<std::string> names;
+            each_part(scene_, [&](const Scene& part) -> SharedScene {
+                names.insert(part.material_names.begin(), part.material_names.end());
+                if (std::find(part.material_names.begin(), part.material_names.end(), material.name) ==
+                    part.material_names.end())
+                    return nullptr;
+                found = true;
+                Scene changed = part;
+                for (std::size_t i = 0; i < part.materials.size(); ++i)
+                    if (part.material_names[i] == material.name) put(changed, i, material);
+                return std::make_shared<const Scene>(std::move(changed));
+            });
+            if (!found && !used_.contains(&material))
+                throw InputError(material.place + ": the scene has no material " + io::in_quotes(material.name) +
+                                 io::did_you_mean(material.name, {names.begin(), names.end()}));
+        }
+    }
+
+    /// Puts f(part) in place of each part, the same for all that share it; null leaves it.
+    template <class F>
+    static void each_part(Assembly& scene, F&& f) {
+        std::map<const Scene*, SharedScene> made;
+        const auto change = [&](SharedScene& part) {
+            const auto [known, is_new] = made.try_emplace(part.get());
+            if (is_new) known->second = f(*part);
+            if (known->second) part = known->second;
+        };
+        change(scene.static_geometry);
+        for (Instance& instance : scene.instances) change(instance.object);
+    }
+
+    Scene of_one_material(const Scene& part, const MaterialRequest& material) {
+        Scene changed = part;
+        changed.materials.resize(1);
+        changed.material_names = {material.name};
+        changed.textures.clear();
+        for (Triangle& triangle : changed.triangles) triangle.material = 0;
+        put(changed, 0, material);
+        return changed;
+    }
+
+    void put(Scene& scene, std::size_t index, const MaterialRequest& from) {
+        constexpr io::TextureUse kUses[] = {io::TextureUse::colour, io::TextureUse::colour, io::TextureUse::colour,
+                                            io::TextureUse::data,   io::TextureUse::data,   io::TextureUse::opacity};
+        static_assert(std::size(kUses) == kMaterialTextures.size());
+        Material material = from.values;
+        for (std::size_t i = 0; i < kMaterialTextures.size(); ++i) {
+            if (from.textures[i].empty()) continue;
+            if (scene.uvs.empty())
+                throw InputError(from.place + ": the material's object has no texture coordinates to lay a texture by");
+            (material.*kMaterialTextures[i]).texture = static_cast<std::int32_t>(scene.textures.size());
+            scene.textures.push_back(texture(from.textures[i], kUses[i]));
+        }
+        scene.materials[index] = material;
+    }
+
+    const Texture& texture(const std::string& path, io::TextureUse use) {
+        const auto [known, is_new] = textures_.try_emplace({path, use});
+        if (is_new) known->second = read_texture(path, use, readers_);
+        return known->second;
+    }
+
+    Assembly scene_;
+    const SceneRequest& request_;
+    const PictureReaders& readers_;
+    std::set<const MaterialRequest*> used_;  // by objects
+    std::map<std::pair<std::string, io::TextureUse>, Texture> textures_;
+};
+
+}  // namespace
+
+Texture read_texture(const std::string& path, io::TextureUse use, const PictureReaders& readers) {
+    auto image = readers.texture(path, {});
+    if (!image) throw InputError(path + ": cannot be read as a texture");
+    return io::texture_of(std::move(*image), use, path);
+}
+
+Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers) {
+    return Builder(std::move(scene), request, readers).build();
+}
+
+}  // namespace realcam::shot

@@ -1,0 +1,15 @@
+#pragma once
+#include "../scene/assembly.hpp"
+#include "picture_readers.hpp"
+#include "scene_request.hpp"
+
+namespace realcam::shot {
+
+/// The scene with the objects, materials and lights of a shot file. A material takes the place of those of its name, in
+/// static geometry and objects. Throws InputError, SceneFileError and ImageFileError.
+Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers);
+
+/// A picture as a texture. Throws InputError where it cannot be read.
+Texture read_texture(const std::string& path, io::TextureUse use, const PictureReaders& readers);
+
+}  // namespace realcam::shot

@@ -1,0 +1,133 @@
+#pragma once
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../error.hpp"
+#include "../io/toml_table.hpp"
+
+namespace realcam::shot {
+
+/// A table of a shot file. Its complaints are InputErrors that name file and line; paths are relative to the file's
+/// folder.
+class ShotTable : public io::TomlTable {
+public:
+    ShotTable(const toml::table& table, const std::string& path)
+        : TomlTable(table, path, 0, fail_at), folder_(std::filesystem::path(path).parent_path()) {}
+
+    [[noreturn]] static void fail_at(const std::string& message, const std::string& file, int line, int) {
+        throw InputError(file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message);
+    }
+
+    /// Where the table, or a key of it, stands: "shot.toml:12".
+    std::string place(const char* key = nullptr) const {
+        const toml::node* node = key ? find(key) : nullptr;
+        return file() + ":" +
+               std::to_string((node ? *node : static_cast<const toml::node&>(raw())).source().begin.line);
+    }
+
+    /// The tables [[key]], in their order; none where the key is absent.
+    std::vector<ShotTable> tables(const char* key) const {
+        std::vector<ShotTable> all;
+        const toml::node* node = find(key);
+        if (!node) return all;
+        if (!node->is_array_of_tables()) fail("tables [[" + std::string(key) + "]] are wanted", node);
+        for (const toml::node& item : *node->as_array()) all.push_back(ShotTable(*item.as_table(), file()));
+        return all;
+    }
+
+    /// The tables [key.NAME] with their names.
+    std::vector<std::pair<std::string, ShotTable>> named_tables(const char* key) const {
+        std::vector<std::pair<std::string, ShotTable>> all;
+        const toml::node* node = find(key);
+        if (!node) return all;
+        if (!node->is_table()) fail("tables [" + std::string(key) + ".NAME] are wanted", node);
+        for (const auto& [name, item] : *node->as_table()) {
+            if (!item.is_table()) fail("tables [" + std::string(key) + ".NAME] are wanted", &item);
+            all.emplace_back(std::string(name.str()), ShotTable(*item.as_table(), file()));
+        }
+        return all;
+    }
+
+    std::optional<Vec3d> point(const char* key) const {
+        const auto v = numbers(key, 3);
+        if (v.empty()) return std::nullopt;
+        return Vec3d{v[0], v[1], v[2]};
+    }
+    Vec3d point_wanted(const char* key) const {
+        const std::optional<Vec3d> v = point(key);
+        if (!v) fail('"' + std::string(key) + "\" is missing: three numbers");
+        return *v;
+    }
+
+    /// A number, for all three, or three of them.
+    std::optional<Vec3d> number_or_three(const char* key) const {
+        const toml::node* node = find(key);
+        if (!node) return std::nullopt;
+        if (node->is_array()) return point(key);
+        const double v = *number(key);
+        return Vec3d{v, v, v};
+    }
+
+    /// None for the text "auto", too.
+    std::optional<double> number_or_auto(const char* key, const char* wanted) const {
+        const toml::node* node = find(key);
+        if (!node || node->value<std::string>() == "auto") return std::nullopt;
+        const double number = node->is_number() ? node->value_or(0.0) : std::nan("");
+        if (std::isnan(number)) fail('"' + std::string(key) + "\" must be " + wanted, node);
+        return number;
+    }
+
+    template <class Value = int>
+    Value whole(const char* key, double number) const {
+        constexpr Value kMost = std::numeric_limits<Value>::max();
+        if (number != std::floor(number) || !(number >= 0) || !(number <= kMost))
+            fail('"' + std::string(key) + "\" wants whole numbers from 0 to " + std::to_string(kMost), find(key));
+        return static_cast<Value>(number);
+    }
+
+    /// Relative to the folder of the shot file; empty where the key is absent.
+    std::string path(const char* key) const {
+        const std::string text = name(key);
+        if (text.empty()) {
+            if (find(key)) fail('"' + std::string(key) + "\" is empty", find(key));
+            return text;
+        }
+        return (folder_ / text).string();
+    }
+
+    /// The system would take what stands before a null character for the name.
+    std::string name(const char* key) const {
+        const std::string value = text(key);
+        if (value.find('\0') != std::string::npos)
+            fail('"' + std::string(key) + "\" holds a null character", find(key));
+        return value;
+    }
+
+    template <class Named>
+    auto named(const char* key, Named&& find_name, const char* wanted) const -> decltype(find_name("")) {
+        const std::string value = text(key);
+        if (!find(key)) return std::nullopt;
+        const auto found = find_name(value);
+        if (!found) fail('"' + std::string(key) + "\" must be " + wanted, find(key));
+        return found;
+    }
+
+    /// What a check of values says, with the line of the key, or of the table.
+    template <class Check>
+    void checked(const char* key, Check&& check) const {
+        try {
+            check();
+        } catch (const InputError& error) {
+            fail(error.what(), key ? find(key) : nullptr);
+        }
+    }
+
+private:
+    std::filesystem::path folder_;
+};
+
+}  // namespace realcam::shot
