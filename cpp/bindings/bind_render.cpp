@@ -13,6 +13,7 @@
 #include "../shot/names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "picture.hpp"
 #include "render_turn.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
@@ -76,8 +77,9 @@ Progress progress_of(const py::object& callback) {
 namespace {
 
 py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::string& device, std::int64_t seed,
-                 int max_bounces, int threads, const py::object& progress) {
-    const RenderSettings settings{spp, seed_from(seed), max_bounces, threads};
+                 int max_bounces, int threads, const std::vector<std::string>& layers, const py::object& progress) {
+    RenderSettings settings{spp, seed_from(seed), max_bounces, threads};
+    settings.layers = layers_named(layers);
     Session& session = session_for(device);
     const Progress report = progress_of(progress);
     Image image;
@@ -86,8 +88,7 @@ py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std
         const RenderTurn turn;
         image = take_picture(session, scene, camera, settings, report);
     }
-    return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}),
-                          copy_of(image.depth, {image.height, image.width}), image.stats);
+    return picture_from(image, settings.layers);
 }
 
 py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso, const std::string& tone) {
@@ -124,7 +125,7 @@ void bind_render(py::module_& m) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
     m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a,
-          "progress"_a);
+          "layers"_a, "progress"_a);
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");

@@ -41,17 +41,20 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
 }
 
 std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const {
-    return {{"realcam:version", REALCAM_VERSION},
-            {"realcam:lens", lens},
-            {"realcam:model", model},
-            {"realcam:focal_length_mm", number(focal_length_mm)},
-            {"realcam:f_number", number(f_number)},
-            {"realcam:focus_distance_m", number(focus_distance_m)},
-            {"realcam:film_mm", number(film_width_mm) + "x" + number(film_height_mm)},
-            {"realcam:exposure_time_s", number(exposure_time_s)},
-            {"realcam:iso", number(iso)},
-            {"realcam:seed", std::to_string(seed)},
-            {"realcam:spp", std::to_string(spp)}};
+    std::vector<std::pair<std::string, std::string>> entries = {
+        {"realcam:version", REALCAM_VERSION},
+        {"realcam:lens", lens},
+        {"realcam:model", model},
+        {"realcam:focal_length_mm", number(focal_length_mm)},
+        {"realcam:f_number", number(f_number)},
+        {"realcam:focus_distance_m", number(focus_distance_m)},
+        {"realcam:film_mm", number(film_width_mm) + "x" + number(film_height_mm)},
+        {"realcam:exposure_time_s", number(exposure_time_s)},
+        {"realcam:iso", number(iso)},
+        {"realcam:seed", std::to_string(seed)},
+        {"realcam:spp", std::to_string(spp)}};
+    if (!denoiser.empty()) entries.emplace_back("realcam:denoiser", denoiser);
+    return entries;
 }
 
 }  // namespace realcam::io

@@ -21,6 +21,7 @@ struct ImageMetadata {
     double iso = 100;
     std::uint32_t seed = 0;
     int spp = 0;
+    std::string denoiser;  ///< what has changed the exposure since it was taken; empty: nothing
 
     /// Names "realcam:..." and values, as they go into every format.
     std::vector<std::pair<std::string, std::string>> entries() const;

@@ -118,7 +118,8 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
         path.pdf[i] = kDelta;
         path.absorption.set(i, {0, 0, 0});
         results.irradiance.set(i, {0, 0, 0});
-        results.depth[i] = -1.0f;
+        results.depth[i] = kFarAway;
+        results.weight[i] = camera_rays.weight[i];
         results.sampled[i] = camera_rays.sampled[i];
         results.passed[i] = camera_rays.passed[i];
     }

@@ -19,7 +19,8 @@ template <int N>
 struct PathResults {
     ColorLanes<N> irradiance;
     alignas(kLaneAlignment<float, N>) float depth[N];  ///< of the first hit along the camera's axis from the film,
-                                                       ///< metres; < 0: none
+                                                       ///< metres; below 0 behind the film; kFarAway: none
+    alignas(kLaneAlignment<float, N>) float weight[N];  ///< of the sample in the exposure (CameraRays)
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N], passed[N];
 };
 

@@ -36,7 +36,7 @@ public:
         table_.allow({"format", "scene",       "scale",   "texture",         "environment", "environment_cd_m2",
                       "lens",   "f_number",    "film_mm", "resolution",      "position_m",  "look_at_m",
                       "up",     "focus_m",     "model",   "exposure_time_s", "iso",         "spp",
-                      "seed",   "max_bounces", "tone"});
+                      "seed",   "max_bounces", "tone",    "layers"});
         if (table_.number("format") != kFormat) table_.fail("format = " + std::to_string(kFormat) + " is wanted");
         ShotRequest shot;
         shot.scene = path("scene");
@@ -102,6 +102,8 @@ private:
         read("seed", settings.seed);
         read("max_bounces", settings.max_bounces);
         checked("spp", [&] { validate(settings); });
+        const std::vector<std::string> layers = table_.texts("layers");
+        checked("layers", [&] { settings.layers = layers_named(layers); });
     }
 
     template <class Value = int>

@@ -13,5 +13,9 @@ def write_picture(
     spp: int,
     seed: int,
     film_tone: bool,
+    layers: dict[str, NDArray[np.float32] | NDArray[np.uint32]],
+    object_names: list[str],
+    material_names: list[str],
+    denoiser: str,
 ) -> None: ...
 def check_image_path(path: bytes) -> None: ...
