@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "../devices/devices.hpp"
-#include "json_writer.hpp"
+#include "../io/json_writer.hpp"
 
 namespace realcam::app {
 
@@ -13,7 +13,7 @@ void list_devices(bool as_json) {
         for (const Device& device : list) std::printf("%-7s %s\n", device.name.c_str(), device.description.c_str());
         return;
     }
-    JsonWriter json;
+    io::JsonWriter json;
     json.begin_array();
     for (const Device& device : list)
         json.begin_object().key("device").text(device.name).key("name").text(device.description).end();

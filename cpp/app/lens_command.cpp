@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "../io/json_writer.hpp"
 #include "../io/lens_file.hpp"
 #include "../optics/focus.hpp"
-#include "json_writer.hpp"
 #include "lens_report.hpp"
 #include "values.hpp"
 
@@ -25,7 +25,7 @@ void run_info(const InfoOptions& options) {
 }
 
 void run_list(bool as_json) {
-    JsonWriter json;
+    io::JsonWriter json;
     json.begin_array();
     for (const std::string& name : io::lens_names()) {
         const LensSystem lens = io::read_lens(name);

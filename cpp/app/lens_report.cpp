@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "../camera/field_of_view.hpp"
+#include "../io/json_writer.hpp"
 #include "../optics/paraxial.hpp"
-#include "json_writer.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
@@ -138,7 +138,7 @@ std::string lens_as_text(const LensSystem& lens) {
 std::string lens_as_json(const LensSystem& lens) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const auto view = field_of_view(lens);
-    JsonWriter json;
+    io::JsonWriter json;
     json.begin_object().key("name").text(lens.name).key("title").text(lens.title).key("source").text(lens.source);
     json.key("surfaces").begin_array();
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {

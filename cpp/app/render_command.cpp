@@ -8,6 +8,7 @@
 #include "../devices/devices.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/free_memory.hpp"
+#include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
 #include "../shot/shot.hpp"
 #include "interrupt.hpp"
@@ -34,10 +35,14 @@ auto with_memory_for(const std::string& what, Work&& work) {
     }
 }
 
-void check_memory(const Film& film) {
-    /// Of the CPU's session while it turns its sums into a picture: 48 for the sums, 16 for the picture.
-    constexpr double kBytesPerPixel = 64;
-    const double wanted = kBytesPerPixel * film.width * film.height;
+void check_memory(const Film& film, LayerSet layers) {
+    // Of the CPU's session while it turns its sums into a picture.
+    std::size_t bytes_per_pixel = sizeof(PixelSum) + 16;
+    if (layers.has_any(kSampledLayers)) bytes_per_pixel += sizeof(LayerSum);
+    if (layers.has_any(kMiddleLayers)) bytes_per_pixel += sizeof(MiddleSurface);
+    for (std::size_t i = 0; i < kLayers.size(); ++i)
+        if (layers.has(static_cast<Layer>(i))) bytes_per_pixel += 4 * static_cast<std::size_t>(kLayers[i].channels);
+    const double wanted = static_cast<double>(bytes_per_pixel) * film.width * film.height;
     const auto free = static_cast<double>(io::free_memory());
     if (wanted > free)
         throw Error("out of memory: a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) +
@@ -57,7 +62,7 @@ public:
         check_apart(words_.outputs,
                     {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
         Camera camera = camera_of(request);
-        check_memory(camera.film);
+        check_memory(camera.film, request.settings.layers);
         const auto session = make_session(words_.device);  // first, because reading a scene may take long
         shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
         if (shot.has_daylight)

@@ -1,8 +1,11 @@
 #include "render_options.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 
+#include "../shot/names.hpp"
 #include "../shot/shot_file.hpp"
 #include "values.hpp"
 
@@ -46,6 +49,29 @@ void read_camera_words(const RenderWords& w, shot::ShotRequest& request) {
     if (!w.iso.empty()) request.iso = parse_number("--iso", w.iso);
 }
 
+bool is_exr(const std::string& path) {
+    const std::string suffix = std::filesystem::path(path).extension().string();
+    return suffix.size() == 4 && suffix[0] == '.' && (suffix[1] | 0x20) == 'e' && (suffix[2] | 0x20) == 'x' &&
+           (suffix[3] | 0x20) == 'r';
+}
+
+void read_layer_words(const RenderWords& w, RenderSettings& settings) {
+    const bool has_place = std::any_of(w.outputs.begin(), w.outputs.end(), is_exr);
+    if (!w.layers.empty()) {
+        if (!has_place) throw InputError("--layers: layers are written to .exr, and no --output is one");
+        std::vector<std::string> names;
+        std::istringstream words(w.layers);
+        for (std::string name; std::getline(words, name, ',');) names.push_back(name);
+        try {
+            settings.layers = layers_named(names);
+        } catch (const InputError& error) {
+            throw InputError("--layers: " + std::string(error.what()));
+        }
+    }
+    // Those of a shot file cost nothing where nobody would see them.
+    if (!has_place) settings.layers = {};
+}
+
 void read_settings_words(const RenderWords& w, RenderSettings& settings) {
     const auto read = [](const char* option, const std::string& word, auto& value) {
         using Value = std::remove_reference_t<decltype(value)>;
@@ -55,13 +81,19 @@ void read_settings_words(const RenderWords& w, RenderSettings& settings) {
     read("--seed", w.seed, settings.seed);
     read("--max-bounces", w.max_bounces, settings.max_bounces);
     read("--threads", w.threads, settings.threads);
+    if (!w.transport.empty()) {
+        const auto transport = shot::transport_named(w.transport);
+        if (!transport) throw InputError(std::string("--transport: ") + shot::kTransportNames + " is wanted");
+        settings.transport = *transport;
+    }
+    if (!w.clamp.empty()) settings.clamp = static_cast<float>(parse_number("--clamp", w.clamp));
     validate(settings);
 }
 
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderWords& w) {
-    const auto option = [&](const char* name, std::string& value, const char* help, const char* type) {
+    const auto option = [&](const char* name, std::string& value, const std::string& help, const char* type) {
         // An empty word would read as an option that was left out.
         const auto not_empty = CLI::Validator([](std::string& word) { return word.empty() ? "is empty" : ""; }, "", "");
         return command.add_option(name, value, help)->type_name(type)->check(not_empty);
@@ -99,7 +131,14 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     option("--spp", w.spp, "Samples per pixel [64]", "N");
     option("--seed", w.seed, "Of the random numbers [0]", "N");
     option("--max-bounces", w.max_bounces, "Light that bounces this often is seen; 0: direct light only [1]", "N");
+    option("--transport", w.transport,
+           "paths: all ways of light; whitted: direct light, and what mirrors and smooth glass show [paths]", "NAME");
+    option("--clamp", w.clamp,
+           "Cut off light above this that comes by a bounce: fewer bright dots, and a picture too dark [0: never]",
+           "CD_M2");
     option("--tone", w.tone, "Tone mapping of .png: film (soft highlights) or linear (clipped) [film]", "CURVE");
+    option("--layers", w.layers,
+           "Also write to .exr, separated by commas: all, or some of " + layer_names() + " [none]", "NAMES");
     option("--threads", w.threads, "0: all [0]", "N");
     option("--device", w.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1 [auto]", "DEVICE");
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
@@ -117,6 +156,7 @@ shot::ShotRequest understand(const RenderWords& w) {
     read_camera_words(w, request);
     if (!w.tone.empty()) request.tone = parse_tone(w.tone);
     read_settings_words(w, request.settings);
+    read_layer_words(w, request.settings);
     return request;
 }
 

@@ -13,6 +13,7 @@
 #include "../shot/names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "picture.hpp"
 #include "render_turn.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
@@ -42,6 +43,11 @@ Session& session_for(const std::string& device) {
 ToneCurve tone_curve_from(const std::string& name) {
     if (const auto tone = shot::tone_named(name)) return *tone;
     throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
+}
+
+LightTransport transport_from(const std::string& name) {
+    if (const auto transport = shot::transport_named(name)) return *transport;
+    throw InputError("unknown transport \"" + name + "\"; " + shot::kTransportNames + " is wanted");
 }
 
 std::uint32_t seed_from(std::int64_t seed) {
@@ -76,8 +82,10 @@ Progress progress_of(const py::object& callback) {
 namespace {
 
 py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::string& device, std::int64_t seed,
-                 int max_bounces, int threads, const py::object& progress) {
-    const RenderSettings settings{spp, seed_from(seed), max_bounces, threads};
+                 int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
+                 const std::vector<std::string>& layers, const py::object& progress) {
+    const RenderSettings settings{spp,         seed_from(seed),     max_bounces, threads, transport_from(transport),
+                                  clamp_cd_m2, layers_named(layers)};
     Session& session = session_for(device);
     const Progress report = progress_of(progress);
     Image image;
@@ -86,8 +94,7 @@ py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std
         const RenderTurn turn;
         image = take_picture(session, scene, camera, settings, report);
     }
-    return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}),
-                          copy_of(image.depth, {image.height, image.width}), image.stats);
+    return picture_from(image, settings.layers);
 }
 
 py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso, const std::string& tone) {
@@ -123,8 +130,8 @@ void bind_render(py::module_& m) {
         .def("__repr__", [](const RenderStats& s) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
-    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a,
-          "progress"_a);
+    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "transport"_a,
+          "clamp_cd_m2"_a, "threads"_a, "layers"_a, "progress"_a);
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");

@@ -6,6 +6,7 @@
 #include "../devices/devices.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "picture.hpp"
 
 namespace realcam::bindings {
 
@@ -17,8 +18,10 @@ namespace {
 class PythonSession {
 public:
     PythonSession(const Assembly& scene, const Camera& camera, const std::string& device, std::int64_t seed,
-                  int max_bounces, int threads)
-        : settings_{1, seed_from(seed), max_bounces, threads} {
+                  int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
+                  const std::vector<std::string>& layers)
+        : settings_{1,           seed_from(seed),     max_bounces, threads, transport_from(transport),
+                    clamp_cd_m2, layers_named(layers)} {
         {
             const Unlocked unlocked;
             session_ = make_session(device);
@@ -53,8 +56,7 @@ public:
             const Unlocked unlocked;
             return session_->picture(heed_signals);
         }();
-        return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}),
-                              copy_of(image.depth, {image.height, image.width}), image.stats);
+        return picture_from(image, settings_.layers);
     }
 
     py::array_t<std::int64_t> samples() {
@@ -81,8 +83,10 @@ private:
 
 void bind_session(py::module_& m) {
     py::class_<PythonSession>(m, "_Session")
-        .def(py::init<const Assembly&, const Camera&, const std::string&, std::int64_t, int, int>(), "scene"_a,
-             "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a)
+        .def(py::init<const Assembly&, const Camera&, const std::string&, std::int64_t, int, const std::string&, float,
+                      int, const std::vector<std::string>&>(),
+             "scene"_a, "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "transport"_a, "clamp_cd_m2"_a, "threads"_a,
+             "layers"_a)
         .def("set", &PythonSession::set, "scene"_a, "camera"_a)
         .def("add", &PythonSession::add, "spp"_a)
         .def("picture", &PythonSession::picture)

@@ -26,13 +26,17 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
     }
     const RenderSettings& settings = request.settings;
     return py::make_tuple(shot.scene, shot.camera, settings.spp, settings.seed, settings.max_bounces,
-                          request.tone == ToneCurve::film ? "film" : "linear");
+                          request.tone == ToneCurve::film ? "film" : "linear",
+                          py::tuple(py::cast(names_of(settings.layers))), io::name_of(settings.transport),
+                          settings.clamp);
 }
 
-py::dict metadata(const Camera& camera, int spp, std::uint32_t seed) {
+py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::string& transport, float clamp_cd_m2,
+                  const std::string& denoiser) {
     py::dict entries;
-    for (const auto& [name, value] : io::metadata_of(camera, {spp, seed, 0, 0}).entries())
-        entries[py::str(name)] = value;
+    io::ImageMetadata metadata = io::metadata_of(camera, {spp, seed, 0, 0, transport_from(transport), clamp_cd_m2});
+    metadata.denoiser = denoiser;
+    for (const auto& [name, value] : metadata.entries()) entries[py::str(name)] = value;
     return entries;
 }
 
@@ -40,7 +44,7 @@ py::dict metadata(const Camera& camera, int spp, std::uint32_t seed) {
 
 void bind_shot(py::module_& m) {
     m.def("_read_shot", &read_shot, "path"_a, "device"_a, "progress"_a);
-    m.def("_metadata", &metadata, "camera"_a, "spp"_a, "seed"_a);
+    m.def("_metadata", &metadata, "camera"_a, "spp"_a, "seed"_a, "transport"_a, "clamp_cd_m2"_a, "denoiser"_a);
 }
 
 }  // namespace realcam::bindings

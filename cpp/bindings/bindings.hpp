@@ -10,6 +10,7 @@
 #include "../io/lens_file.hpp"
 #include "../optics/lens_system.hpp"
 #include "../optics/object_point.hpp"
+#include "../render/path_settings.hpp"
 #include "../render/progress.hpp"
 #include "../scene/assembly.hpp"
 #include "unlocked.hpp"
@@ -50,6 +51,9 @@ Session& session_for(const std::string& device);
 
 /// "film" or "linear". Throws InputError.
 ToneCurve tone_curve_from(const std::string& name);
+
+/// "paths" or "whitted". Throws InputError.
+LightTransport transport_from(const std::string& name);
 
 /// Throws InputError for what does not fit 32 bits.
 std::uint32_t seed_from(std::int64_t seed);

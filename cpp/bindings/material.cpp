@@ -2,8 +2,6 @@
 
 #include <pybind11/numpy.h>
 
-#include <set>
-
 #include "arrays.hpp"
 #include "value_compare.hpp"
 
@@ -54,19 +52,6 @@ InputArray<std::uint8_t> codes_from(const py::array& pixels) {
 }
 
 }  // namespace
-
-std::vector<std::string> material_names(const Scene& scene) {
-    std::vector<std::string> names;
-    std::set<std::string> taken;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        const bool named = i < scene.material_names.size() && !scene.material_names[i].empty();
-        const std::string wanted = named ? scene.material_names[i] : "material " + std::to_string(i);
-        std::string name = wanted;
-        for (int k = 2; !taken.insert(name).second; ++k) name = wanted + '.' + std::to_string(k);
-        names.push_back(name);
-    }
-    return names;
-}
 
 PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index) {
     PythonMaterial material{

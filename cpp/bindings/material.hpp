@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../io/decoded_image.hpp"
+#include "../scene/material_names.hpp"
 #include "../scene/scene.hpp"
 #include "bindings.hpp"
 
@@ -17,10 +18,6 @@ struct PythonMaterial {
     /// In the order of kMaterialTextures; null: none.
     std::array<std::shared_ptr<const Texture>, kMaterialTextures.size()> textures;
 };
-
-/// Names by which the materials of a scene are found, all of them different: those of its file, "material 3" for one
-/// without a name, and "wood.2" for the second "wood".
-std::vector<std::string> material_names(const Scene& scene);
 
 PythonMaterial material_of(const std::shared_ptr<const Scene>& scene, std::size_t index);
 

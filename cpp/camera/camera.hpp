@@ -1,7 +1,10 @@
 #pragma once
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "../optics/exposure.hpp"
 #include "../optics/focus.hpp"
@@ -152,6 +155,36 @@ inline ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     return thick;
 }
 
+/// Of the ideal lens in the entrance pupil, for which what is in focus is sharp: with R its pupil's radius, b and s_f
+/// the distances from it to the film and to the plane in focus, a point at s has rays all over the pupil, which meet
+/// the plane in focus over 2 R |s_f - s| / s, and the film over b / s_f times that. Where the entrance pupil is at
+/// infinity, of the matrix of the real lens.
+inline CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens thin, ThickLens thick,
+                                             double film_distance) {
+    const double radius = static_cast<double>(thin.pupil_radius), image = static_cast<double>(thin.image_distance),
+                 inverse = static_cast<double>(thin.inverse_object_distance);
+    CircleOfConfusion circle{};
+    if (std::isfinite(entrance_pupil_position) && std::isfinite(radius * image * inverse)) {
+        // s = t + entrance_pupil_position, and the ray through the pupil's middle rises by s / b.
+        circle.rim = static_cast<float>(radius * (1 - inverse * entrance_pupil_position));
+        circle.rim_slope = static_cast<float>(-radius * inverse);
+        circle.middle = static_cast<float>(entrance_pupil_position / image);
+        circle.middle_slope = static_cast<float>(1 / image);
+        circle.least_middle = static_cast<float>(radius / image);
+        return circle;
+    }
+    const double A = static_cast<double>(thick.A), B = static_cast<double>(thick.B), C = static_cast<double>(thick.C),
+                 D = static_cast<double>(thick.D), pupil = static_cast<double>(thick.exit_pupil_distance);
+    const auto front = [&](double film, double slope) {
+        const double last = film - film_distance * slope;
+        return std::pair(static_cast<float>(D * last - B * slope), static_cast<float>(C * last - A * slope));
+    };
+    std::tie(circle.rim, circle.rim_slope) = front(0, static_cast<double>(thick.exit_pupil_radius) / pupil);
+    std::tie(circle.middle, circle.middle_slope) = front(1, 1 / pupil);
+    circle.least_middle = std::numeric_limits<float>::min();
+    return circle;
+}
+
 /// Throws InputError where an ideal model cannot take the place of the lens.
 inline void validate_ideal(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
@@ -225,6 +258,7 @@ public:
         view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
         view.thin = thin_lens_of(lens, data);
         view.thick = thick_lens_of(lens, data);
+        view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
         if (!pupil_) view.axis_irradiance = static_cast<float>(axis_irradiance(lens));
         if (pupil_) view.pupil = pupil_->view();
         view.lens = path_.view();

@@ -3,6 +3,7 @@
 
 #include "../optics/lens_view.hpp"
 #include "../optics/pupil_view.hpp"
+#include "circle_of_confusion.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -38,6 +39,7 @@ struct CameraView {
     float pupil_m;          ///< film to entrance pupil, metres
     ThinLens thin;
     ThickLens thick;
+    CircleOfConfusion circle;
     PupilView pupil;
     LensView<float> lens;
     Vec3f position;                ///< of the film's middle, relative to the origin of the placed scene, metres

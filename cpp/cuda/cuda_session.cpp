@@ -81,6 +81,29 @@ private:
         stats_.seconds += seconds_since(exposing);
     }
 
+    void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
+                    OwnStop& stop) override {
+        std::vector<LayerSum> seen;
+        for_bands(stop, [&](int row, int rows, std::size_t first, std::size_t pixels) {
+            seen.resize(pixels);
+            front().see_layers({row, rows, range.first, range.count}, range.seed, seen.data(), done);
+            for (std::size_t i = 0; i < pixels; ++i) film[first + i] += seen[i];
+        });
+    }
+
+    void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) override {
+        for_bands(stop, [&](int row, int rows, std::size_t first, std::size_t) {
+            front().see_middle_surfaces({row, rows, 0, 1}, &film[first]);
+        });
+    }
+
+    LayerImage develop_variance() override {
+        if (!fits()) return developed_variance(film_, camera().exposure_time_s);
+        FilmSums sums(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+        front().download_film(sums.data());
+        return developed_variance(sums, camera().exposure_time_s);
+    }
+
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void>) override {
         if (renderers_.size() > 1) throw InputError("frames are taken on one GPU; device=\"cuda:0\", say, is wanted");
@@ -160,6 +183,18 @@ private:
         else
             film_.assign(static_cast<std::size_t>(pixels), PixelSum{});
         rows_ = rows;
+    }
+
+    /// f(first row, rows, first pixel, pixels) for bands of the picture, of some 100 MB of layers each.
+    template <class F>
+    void for_bands(OwnStop& stop, F&& f) {
+        constexpr int kPixels = 1 << 20;
+        const int most = std::max(1, kPixels / width());
+        const auto columns = static_cast<std::size_t>(width());
+        for (int row = 0; row < height() && !stop; row += most) {
+            const int rows = std::min(most, height() - row);
+            f(row, rows, static_cast<std::size_t>(row) * columns, static_cast<std::size_t>(rows) * columns);
+        }
     }
 
     /// How many rows of the picture fit into every GPU's memory at once.

@@ -89,9 +89,10 @@ void DeviceRenderer::rehearse() {
 }
 
 void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, bool timed) {
-    launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.path(),
-                   settings.seed, part.first_sample, part.sample_count, part.first_row, part.row_count},
-                  timed, stream_);
+    launch_render(
+        {scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.path(), settings.seed,
+         part.first_sample, part.sample_count, part.first_row, part.row_count, settings.layers.has(Layer::variance)},
+        timed, stream_);
 }
 
 void DeviceRenderer::clear_film(std::int64_t pixels) {
@@ -186,6 +187,41 @@ void DeviceRenderer::count_samples(std::int64_t* counts) {
     launch_count(sums_.data(), static_cast<std::int64_t>(sums_.size()), here.data(), stream_);
     here.download(counts, stream_);
     stream_.wait("counting samples");
+}
+
+LayerJob DeviceRenderer::layer_job(const FilmPart& part, std::uint32_t seed) const {
+    return {scene_.view(),     scene_.bvh(),      camera_,        stop_.data(),  seed,
+            part.first_sample, part.sample_count, part.first_row, part.row_count};
+}
+
+void DeviceRenderer::see_layers(const FilmPart& part, std::uint32_t seed, LayerSum* sums,
+                                std::atomic<std::int64_t>& done) {
+    const CurrentDevice current(ordinal_);
+    const std::int64_t pixels = static_cast<std::int64_t>(part.row_count) * camera_.width;
+    // Some ten milliseconds each.
+    constexpr std::int64_t kLaunchSamples = 1 << 24;
+    const auto most = static_cast<std::uint32_t>(std::max<std::int64_t>(1, kLaunchSamples / pixels));
+    layer_sums_.resize(static_cast<std::size_t>(pixels));
+    layer_sums_.clear(stream_);
+    LayerJob job = layer_job(part, seed);
+    for (std::uint32_t taken = 0; taken < part.sample_count && !stop_.is_raised(); taken += job.sample_count) {
+        job.first_sample = part.first_sample + taken;
+        job.sample_count = std::min(most, part.sample_count - taken);
+        launch_see_layers(job, layer_sums_.data(), stream_);
+        stream_.wait("tracing layers");
+        done += job.sample_count * pixels;
+    }
+    layer_sums_.download(sums, stream_);
+    stream_.wait("copying layers from it");
+}
+
+void DeviceRenderer::see_middle_surfaces(const FilmPart& part, MiddleSurface* surfaces) {
+    const CurrentDevice current(ordinal_);
+    middle_surfaces_.resize(static_cast<std::size_t>(part.row_count) * static_cast<std::size_t>(camera_.width));
+    middle_surfaces_.clear(stream_);
+    launch_see_middle_surfaces(layer_job(part, 0), middle_surfaces_.data(), stream_);
+    middle_surfaces_.download(surfaces, stream_);
+    stream_.wait("copying layers from it");
 }
 
 RenderCounts DeviceRenderer::counts() {

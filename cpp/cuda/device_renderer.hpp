@@ -4,6 +4,7 @@
 
 #include "../render/render_settings.hpp"
 #include "device_scene.hpp"
+#include "layer_kernels.hpp"
 #include "render_kernel.hpp"
 #include "stop_flag.hpp"
 
@@ -66,6 +67,11 @@ public:
     /// The number of samples of each pixel, into the host's memory.
     void count_samples(std::int64_t* counts);
 
+    /// What the samples of the part's rows see first, summed, and the surfaces in the middle rays of its pixels, into
+    /// the host's memory. They end early where it was stopped, and then leave what is of no use. `done` counts samples.
+    void see_layers(const FilmPart& part, std::uint32_t seed, LayerSum* sums, std::atomic<std::int64_t>& done);
+    void see_middle_surfaces(const FilmPart& part, MiddleSurface* surfaces);
+
     /// What was counted since clear_counts, which does not wait for it.
     RenderCounts counts();
     void clear_counts();
@@ -79,6 +85,8 @@ private:
     /// Starts to add samples to `sums`, those of the part's first row.
     void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, bool timed);
 
+    LayerJob layer_job(const FilmPart& part, std::uint32_t seed) const;
+
     int ordinal_;
     StopFlag stop_;
     CudaStream stream_;
@@ -86,6 +94,8 @@ private:
     DeviceArrays camera_arrays_;
     CameraView camera_{};
     DeviceArray<PixelSum> sums_, others_;
+    DeviceArray<LayerSum> layer_sums_;
+    DeviceArray<MiddleSurface> middle_surfaces_;
     DeviceArray<float> exposure_, depth_;
     DeviceArray<std::uint8_t> codes_;
     DeviceArray<RenderCounts> counts_;

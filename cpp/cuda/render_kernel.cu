@@ -4,25 +4,13 @@
 #include "cuda_error.hpp"
 #include "lanes_per_pixel.hpp"
 #include "launch_grid.hpp"
+#include "warp_tiles.hpp"
 
 namespace realcam {
 namespace {
 
-constexpr int kWarpSize = 32;
 /// Six blocks of four warps hide more latency than four hold registers: 4% faster on an H200 for all that is spilled.
 constexpr int kBlocksPerMultiprocessor = 6;
-
-/// Where the threads of a launch stand in the picture: warps side by side, each over a small rectangle of pixels, so
-/// that its rays meet the same part of the scene; `lanes` threads share a pixel's samples.
-struct WarpTiles {
-    int lanes, width, height;  ///< threads of a pixel; pixels of a warp
-
-    __host__ __device__ explicit WarpTiles(int lanes_per_pixel) : lanes(lanes_per_pixel), width(1), height(1) {
-        for (int pixels = kWarpSize / lanes; pixels > 1; pixels /= 2) (width > height ? height : width) *= 2;
-    }
-    __host__ __device__ std::int64_t across(int columns) const { return (columns + width - 1) / width; }
-    __host__ __device__ std::int64_t down(int rows) const { return (rows + height - 1) / height; }
-};
 
 struct NoClock {
     __device__ void enter(RenderStage) {}
@@ -56,12 +44,6 @@ struct StageClock {
     }
 };
 
-template <class T>
-__device__ T sum_of_neighbours(T value, int lanes) {
-    for (int step = lanes / 2; step > 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
-    return value;
-}
-
 template <LensKind lens_kind, MaterialSet set, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
@@ -73,6 +55,9 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     const int row = static_cast<int>(warp / across) * tiles.height + place / tiles.width;
     const bool inside = column < job.camera.width && row < job.row_count;
 
+    // Not in registers, of which there are none to spare for what is seldom wanted.
+    __shared__ double squares[3][kBlockSize];
+    for (auto& channel : squares) channel[threadIdx.x] = 0;
     PixelSum sum{};
     std::uint32_t sampled = 0, passed = 0;
     BvhScene<set, instanced> scene{job.scene, job.bvh, 0};
@@ -90,6 +75,11 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
             block.sample[0] = job.first_sample + s;
             render_samples<lens_kind, set>(job.scene, job.camera, job.path, block, scene, clock, results);
             sum.add(results, 0);
+            if (job.adds_squares) {
+                PixelSum added{};
+                added.add_squares(results, 0);
+                for (int c = 0; c < 3; ++c) squares[c][threadIdx.x] += added.squares[c];
+            }
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
         }
@@ -97,8 +87,10 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         clock.enter(RenderStage::other);
     }
     for (double& e : sum.irradiance) e = sum_of_neighbours(e, tiles.lanes);
+    if (job.adds_squares)
+        for (int c = 0; c < 3; ++c) sum.squares[c] = sum_of_neighbours(squares[c][threadIdx.x], tiles.lanes);
     sum.depth = sum_of_neighbours(sum.depth, tiles.lanes);
-    sum.hits = sum_of_neighbours(sum.hits, tiles.lanes);
+    sum.met = sum_of_neighbours(sum.met, tiles.lanes);
     sum.samples = sum_of_neighbours(sum.samples, tiles.lanes);
     if (inside && lane % tiles.lanes == 0) job.sums[static_cast<std::int64_t>(row) * job.camera.width + column] += sum;
 

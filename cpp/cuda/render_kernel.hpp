@@ -27,6 +27,7 @@ struct RenderJob {
     PathSettings path;
     std::uint32_t seed, first_sample, sample_count;
     int first_row, row_count;  ///< of the picture
+    bool adds_squares;         ///< PixelSum::squares, too
 };
 
 /// Throws UnsupportedGpu where the current device cannot run this build's code.

@@ -75,6 +75,30 @@ private:
         expose(range, settings(), done);
     }
 
+    void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
+                    OwnStop&) override {
+        for_tiles(range, settings(), [&](int x, int y, const SampleRange& visit) {
+            realcam_tile tile = tile_at(x, y, visit);
+            std::vector<LayerSum> sums(pixels_of(tile));
+            tile.sums = sums.data();
+            kernels().see_layers(&tile);
+            for_pixels(tile, [&](std::size_t here, std::size_t there) { film[there] += sums[here]; });
+            done += samples_of_tile(tile);
+        });
+    }
+
+    void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop&) override {
+        for_tiles({settings().seed, 0, 1}, settings(), [&](int x, int y, const SampleRange& visit) {
+            realcam_tile tile = tile_at(x, y, visit);
+            std::vector<MiddleSurface> surfaces(pixels_of(tile));
+            tile.sums = surfaces.data();
+            kernels().see_middle_surfaces(&tile);
+            for_pixels(tile, [&](std::size_t here, std::size_t there) { film[there] = surfaces[here]; });
+        });
+    }
+
+    LayerImage develop_variance() override { return developed_variance(film_, camera().exposure_time_s); }
+
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void> under_way) override {
         // Turns that follow wait for the frame, so that what this thread works with stays as it is.
@@ -134,26 +158,43 @@ private:
     }
 
     void expose(const SampleRange& range, const RenderSettings& settings, std::atomic<std::int64_t>& done) {
+        const PathSettings path = settings.path();
+        for_tiles(range, settings, [&](int x, int y, const SampleRange& visit) {
+            realcam_tile tile = tile_at(x, y, visit);
+            tile.path_settings = &path;
+            tile.adds_squares = settings.layers.has(Layer::variance);
+            FilmSums sums(pixels_of(tile));
+            tile.sums = sums.data();
+            kernels().render_tile(&tile);
+            for_pixels(tile, [&](std::size_t here, std::size_t there) { film_[there] += sums[here]; });
+            done += samples_of_tile(tile);
+            count(tile);
+        });
+    }
+
+    /// visit(x, y, some samples) of the tile with that first pixel, until all samples of all tiles were taken.
+    template <class Visit>
+    void for_tiles(const SampleRange& range, const RenderSettings& settings, Visit&& visit) {
         const int width = camera_view_.width, height = camera_view_.height;
         const int columns = (width + kTileSide - 1) / kTileSide, rows = (height + kTileSide - 1) / kTileSide;
+        scene_view_ = scene_->placed().view();
         arena(settings).execute([&] {
             for (std::uint32_t first = 0; first < range.count && !is_stopped();) {
                 const std::uint32_t count = std::min(kSamplesPerVisit, range.count - first);
                 tbb::parallel_for(0, columns * rows, [&](int tile) {
-                    visit(tile % columns * kTileSide, tile / columns * kTileSide,
-                          {range.seed, range.first + first, count}, settings.path(), done);
+                    if (!is_stopped())
+                        visit(tile % columns * kTileSide, tile / columns * kTileSide,
+                              SampleRange{range.seed, range.first + first, count});
                 });
                 first += count;
             }
         });
     }
 
-    /// Some samples of the tile with that first pixel.
-    void visit(int x, int y, const SampleRange& range, const PathSettings& path, std::atomic<std::int64_t>& done) {
-        if (is_stopped()) return;
-        const SceneView scene_view = scene_->placed().view();
+    /// Without sums.
+    realcam_tile tile_at(int x, int y, const SampleRange& range) const {
         realcam_tile tile{};
-        tile.scene_view = &scene_view;
+        tile.scene_view = &scene_view_;
         tile.camera_view = &camera_view_;
         tile.embree_scene = scene_->handle();
         tile.x = x;
@@ -163,19 +204,26 @@ private:
         tile.first_sample = range.first;
         tile.sample_count = range.count;
         tile.seed = range.seed;
-        tile.path_settings = &path;
         tile.stopped = [](const void* stop) -> int { return *static_cast<const std::atomic<bool>*>(stop); };
         tile.stop = &stop_.flag();
-        FilmSums sums(static_cast<std::size_t>(tile.width * tile.height));
-        tile.sums = sums.data();
-        kernels().render_tile(&tile);
+        return tile;
+    }
+
+    static std::size_t pixels_of(const realcam_tile& tile) {
+        return static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+    }
+    static std::int64_t samples_of_tile(const realcam_tile& tile) {
+        return static_cast<std::int64_t>(tile.sample_count) * tile.width * tile.height;
+    }
+
+    /// f(pixel of the tile, pixel of the film).
+    template <class F>
+    void for_pixels(const realcam_tile& tile, F&& f) const {
         for (int row = 0; row < tile.height; ++row)
             for (int column = 0; column < tile.width; ++column)
-                film_[static_cast<std::size_t>(y + row) * static_cast<std::size_t>(camera_view_.width) +
-                      static_cast<std::size_t>(x + column)] +=
-                    sums[static_cast<std::size_t>(row * tile.width + column)];
-        done += static_cast<std::int64_t>(range.count) * tile.width * tile.height;
-        count(tile);
+                f(static_cast<std::size_t>(row * tile.width + column),
+                  static_cast<std::size_t>(tile.y + row) * static_cast<std::size_t>(camera_view_.width) +
+                      static_cast<std::size_t>(tile.x + column));
     }
 
     void count(const realcam_tile& tile) {
@@ -194,6 +242,7 @@ private:
     LastSetup last_setup_;
     std::shared_ptr<const CameraSetup> setup_;  ///< owns what the view points to
     CameraView camera_view_{};
+    SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
     std::mutex stats_mutex_;
     RenderStats stats_;

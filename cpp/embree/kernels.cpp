@@ -5,6 +5,7 @@
 #include "../camera/ray_request.hpp"
 #include "../optics/trace_request.hpp"
 #include "../render/pixel_sum.hpp"
+#include "../render/see_layers.hpp"
 #include "packet_scene.hpp"
 
 // Built once for each instruction set, see cmake/RealcamInstructionSets.cmake.
@@ -47,44 +48,38 @@ struct PixelOrder {
     }
 };
 
-template <MaterialSet set>
-void render_tile_of(realcam_tile* tile) {
-    const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
-    const PathSettings settings = *static_cast<const PathSettings*>(tile->path_settings);
-    const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
-    const PixelOrder order{tile->width, tile->height};
+/// f(block, lanes, place) for all samples of a tile, kLanes at a time: `place` has the pixel of each of the first
+/// `lanes` in the tile's sums.
+template <class F>
+void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
+    const PixelOrder order{tile.width, tile.height};
     SampleBlock<kLanes> block;
-    PathResults<kLanes> results;
-    PixelSum* target[kLanes];
-    auto* const sums = static_cast<PixelSum*>(tile->sums);
-    StageClock clock;
-    PacketScene<set> scene{static_cast<RTCScene>(tile->embree_scene), static_cast<std::uint32_t>(view.instance_count),
-                           RayOrder::coherent, 0};
+    int place[kLanes];
     const int pixels = order.count();
     int pixel = 0;
     std::uint32_t sample = 0;
-    while (pixel < pixels && !tile->stopped(tile->stop)) {
+    while (pixel < pixels && !tile.stopped(tile.stop)) {
         int lanes = 0;
         while (lanes < kLanes && pixel < pixels) {
             int x, y;
             order.at(pixel, x, y);
-            const bool inside = x < tile->width && y < tile->height;
-            const std::uint32_t left = inside ? tile->sample_count - sample : 0;
+            const bool inside = x < tile.width && y < tile.height;
+            const std::uint32_t left = inside ? tile.sample_count - sample : 0;
             const int take = static_cast<int>(left) < kLanes - lanes ? static_cast<int>(left) : kLanes - lanes;
             if (take > 0) {
-                const std::uint32_t stream = pixel_stream((tile->y + y) * camera.width + tile->x + x, tile->seed);
+                const std::uint32_t stream = pixel_stream((tile.y + y) * film_width + tile.x + x, tile.seed);
                 for (int k = 0; k < take; ++k) {
-                    block.column[lanes + k] = tile->x + x;
-                    block.row[lanes + k] = tile->y + y;
+                    block.column[lanes + k] = tile.x + x;
+                    block.row[lanes + k] = tile.y + y;
                     block.used[lanes + k] = 1;
                     block.stream[lanes + k] = stream;
-                    block.sample[lanes + k] = tile->first_sample + sample + static_cast<std::uint32_t>(k);
-                    target[lanes + k] = sums + y * tile->width + x;
+                    block.sample[lanes + k] = tile.first_sample + sample + static_cast<std::uint32_t>(k);
+                    place[lanes + k] = y * tile.width + x;
                 }
                 lanes += take;
                 sample += static_cast<std::uint32_t>(take);
             }
-            if (!inside || sample == tile->sample_count) {
+            if (!inside || sample == tile.sample_count) {
                 ++pixel;
                 sample = 0;
             }
@@ -93,14 +88,36 @@ void render_tile_of(realcam_tile* tile) {
             block.column[k] = block.row[k] = block.used[k] = 0;
             block.stream[k] = block.sample[k] = 0;
         }
+        f(block, lanes, place);
+    }
+}
+
+template <MaterialSet set>
+PacketScene<set> packet_scene_of(const realcam_tile& tile, const SceneView& view) {
+    return {static_cast<RTCScene>(tile.embree_scene), static_cast<std::uint32_t>(view.instance_count),
+            RayOrder::coherent, 0};
+}
+
+template <MaterialSet set>
+void render_tile_of(realcam_tile* tile) {
+    const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
+    const PathSettings settings = *static_cast<const PathSettings*>(tile->path_settings);
+    const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
+    PathResults<kLanes> results;
+    auto* const sums = static_cast<PixelSum*>(tile->sums);
+    StageClock clock;
+    PacketScene<set> scene = packet_scene_of<set>(*tile, view);
+    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
         render_samples<LensKind::any, set>(view, camera, settings, block, scene, clock, results);
         for (int k = 0; k < lanes; ++k) {
-            target[k]->add(results, k);
+            sums[place[k]].add(results, k);
             tile->sampled_rays += static_cast<std::uint64_t>(results.sampled[k]);
             tile->passed_rays += static_cast<std::uint64_t>(results.passed[k]);
         }
-    }
+        if (tile->adds_squares)
+            for (int k = 0; k < lanes; ++k) sums[place[k]].add_squares(results, k);
+    });
     clock.enter(RenderStage::other);
     tile->lens_seconds += clock.seconds[static_cast<int>(RenderStage::lens)];
     tile->scene_seconds += clock.seconds[static_cast<int>(RenderStage::scene)];
@@ -114,6 +131,32 @@ void render_tile(realcam_tile* tile) {
         case MaterialSet::opaque: return render_tile_of<MaterialSet::opaque>(tile);
         case MaterialSet::any: return render_tile_of<MaterialSet::any>(tile);
     }
+}
+
+void see_layers_of_tile(realcam_tile* tile) {
+    const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
+    const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
+    LayerResults<kLanes> results;
+    auto* const sums = static_cast<LayerSum*>(tile->sums);
+    auto scene = packet_scene_of<MaterialSet::any>(*tile, view);
+    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
+        scene.order = RayOrder::coherent;
+        see_layers(view, camera, block, scene, results);
+        for (int k = 0; k < lanes; ++k) sums[place[k]].add(results, k);
+    });
+}
+
+void see_middle_surfaces_of_tile(realcam_tile* tile) {
+    const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
+    const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
+    MiddleSurface seen[kLanes];
+    auto* const surfaces = static_cast<MiddleSurface*>(tile->sums);
+    auto scene = packet_scene_of<MaterialSet::any>(*tile, view);
+    for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
+        scene.order = RayOrder::coherent;
+        see_middle_surfaces(view, camera, block, scene, seen);
+        for (int k = 0; k < lanes; ++k) surfaces[place[k]] = seen[k];
+    });
 }
 
 void generate_all(const void* request) {
@@ -142,5 +185,5 @@ void trace_block(const void* lens_view, void* rays) {
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile,       realcam::generate_all,
-    realcam::trace_block,      realcam::trace_all<double>, realcam::trace_all<float>};
+    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile, realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
+    realcam::generate_all,     realcam::trace_block, realcam::trace_all<double>,  realcam::trace_all<float>};

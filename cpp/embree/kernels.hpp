@@ -16,7 +16,8 @@ struct realcam_tile {
     const void* path_settings;  // PathSettings
     int (*stopped)(const void* stop);  // asked before each block of samples; what is left then is left out
     const void* stop;
-    void* sums;               // PixelSum of the tile, row by row; added to
+    void* sums;  // PixelSum, LayerSum or MiddleSurface of the tile, row by row; sums are added to
+    int adds_squares;  // PixelSum::squares, too
     double lens_seconds, scene_seconds, other_seconds;
     std::uint64_t sampled_rays, passed_rays, scene_rays;
 };
@@ -24,6 +25,8 @@ struct realcam_tile {
 struct realcam_kernels {
     const char* instruction_set;
     void (*render_tile)(realcam_tile*);
+    void (*see_layers)(realcam_tile*);           // of the same samples
+    void (*see_middle_surfaces)(realcam_tile*);  // of one sample per pixel
     void (*generate_rays)(const void* request);              // RayRequest
     void (*trace_block)(const void* lens_view, void* rays);  // LensView<float>, LensRays<float, 256>
     void (*trace_f64)(const void* request);                  // TraceRequest<double>

@@ -30,10 +30,24 @@ struct PictureView {
     int width = 0, height = 0;
     const float* exposure = nullptr;  ///< height * width * 3, lux seconds
     const float* depth = nullptr;     ///< height * width, metres
+
+    struct Layer {
+        realcam::Layer layer;
+        const void* values;  ///< height * width * its channels, float or uint32
+    };
+    std::vector<Layer> layers;
+    IdNames object_names, material_names;  ///< of the ids in the layers; empty: none
 };
 
 inline PictureView view_of(const Image& image) {
-    return {image.width, image.height, image.exposure.data(), image.depth.data()};
+    PictureView view{image.width, image.height,       image.exposure.data(), image.depth.data(),
+                     {},          image.object_names, image.material_names};
+    for (const LayerImage& layer : image.layers) {
+        const void* const values = info_of(layer.layer).is_number ? static_cast<const void*>(layer.numbers.data())
+                                                                  : static_cast<const void*>(layer.values.data());
+        view.layers.push_back({layer.layer, values});
+    }
+    return view;
 }
 
 /// Writes a picture; the suffix picks the format. Throws ImageFileError and Cancelled, and then leaves nothing behind:
@@ -44,7 +58,7 @@ inline PictureView view_of(const Image& image) {
 /// is).
 ///   Z is a channel beside the colours, under the name that OpenEXR reserves for depth: compositing programs show it as
 ///   a layer of its own, and readers that know nothing of it leave it out. Many of those would not open a file with a
-///   second part.
+///   second part. Further layers are channels, too (docs/layers.md), and the names of their ids are in the metadata.
 void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                  ToneCurve tone = ToneCurve::film, const KeepGoing& keep_going = {});
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <vector>
 
 #include "../error.hpp"
+#include "../io/json_writer.hpp"
+#include "../io/printable.hpp"
 #include "image_file.hpp"
 #include "unfinished_file.hpp"
 
@@ -69,13 +72,15 @@ void write_rows(const std::string& path, const std::string& format, const ImageS
             throw ImageFileError(path + ": OpenImageIO cannot write ." + format + ": " + first_line(OIIO::geterror()));
         output->set_ioproxy(&file.proxy());
         check(output->open("picture." + format, spec), *output);
+        // Channels of several types are handed over as the file has them.
+        const TypeDesc type = spec.channelformats.empty() ? TypeDesc(OIIO::BaseTypeFromC<Value>::value) : TypeDesc();
         std::vector<Value> rows(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels) *
                                 kRows);
         for (int y = 0; y < spec.height; y += kRows) {
             if (keep_going && !keep_going()) throw Cancelled();
             const int end = std::min(y + kRows, spec.height);
             fill(static_cast<std::size_t>(y), static_cast<std::size_t>(end), rows.data());
-            check(output->write_scanlines(y, end, 0, OIIO::BaseTypeFromC<Value>::value, rows.data()), *output);
+            check(output->write_scanlines(y, end, 0, type, rows.data()), *output);
         }
         check(output->close(), *output);
     }
@@ -96,14 +101,64 @@ void write_png(const PictureView& picture, const std::string& path, const io::Im
     });
 }
 
+/// A layer in the file: the names of its channels, and what they hold.
+struct LayerChannels {
+    std::vector<const char*> names;
+    const char* unit;
+};
+
+LayerChannels channels_of(Layer layer) {
+    switch (layer) {
+        case Layer::depth: break;  // Z, which every file has
+        case Layer::normal: return {{"Normal.X", "Normal.Y", "Normal.Z"}, "scene axes"};
+        case Layer::albedo: return {{"Albedo.R", "Albedo.G", "Albedo.B"}, "0 to 1, linear Rec. 709"};
+        case Layer::circle_of_confusion_mm: return {{"CircleOfConfusion"}, "mm on the film, diameter"};
+        case Layer::sample_count: return {{"SampleCount"}, "samples of the pixel"};
+        case Layer::variance: return {{"Variance.R", "Variance.G", "Variance.B"}, "(lux seconds)^2, of R, G, B"};
+        case Layer::depth_middle: return {{"DepthMiddle.Z"}, "metres from the film along the axis, middle ray"};
+        case Layer::normal_middle:
+            return {{"NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"}, "scene axes, middle ray"};
+        case Layer::object_id: return {{"ObjectId"}, "key of realcam:objects, middle ray; 0: nothing"};
+        case Layer::material_id: return {{"MaterialId"}, "key of realcam:materials, middle ray; 0: nothing"};
+    }
+    return {};
+}
+
+/// {"1": "static geometry", ...}
+std::string json_of(const IdNames& names) {
+    io::JsonWriter json;
+    json.begin_object();
+    for (std::size_t i = 1; i < names.size(); ++i) json.key(std::to_string(i)).text(io::printable(names[i]));
+    return json.end().finish();
+}
+
+void add_layers(const PictureView& picture, ImageSpec& spec) {
+    std::string unit = "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis";
+    spec.channelformats.assign(4, TypeDesc::FLOAT);
+    for (const PictureView::Layer& layer : picture.layers) {
+        const LayerChannels channels = channels_of(layer.layer);
+        for (const char* name : channels.names) {
+            spec.channelnames.emplace_back(name);
+            spec.channelformats.push_back(info_of(layer.layer).is_number ? TypeDesc::UINT32 : TypeDesc::FLOAT);
+        }
+        if (channels.names.empty()) continue;
+        const std::string first = channels.names[0];
+        unit += "; " + first.substr(0, first.find('.')) + ": " + channels.unit;
+    }
+    spec.nchannels = static_cast<int>(spec.channelnames.size());
+    if (spec.nchannels == 4) spec.channelformats.clear();
+    spec.attribute("realcam:unit", unit);
+    if (!picture.object_names.empty()) spec.attribute("realcam:objects", json_of(picture.object_names));
+    if (!picture.material_names.empty()) spec.attribute("realcam:materials", json_of(picture.material_names));
+}
+
 void write_exr(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                const KeepGoing& keep_going) {
     ImageSpec spec = specification(picture, 4, TypeDesc::FLOAT, metadata);
     spec.channelnames = {"R", "G", "B", "Z"};
     spec.z_channel = 3;
     spec.attribute("compression", "zip");
-    spec.attribute("realcam:unit",
-                   "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis");
+    add_layers(picture, spec);
     // The standard attributes of OpenEXR, in its units.
     const auto set = [&](const char* name, double value) { spec.attribute(name, static_cast<float>(value)); };
     set("ExposureTime", metadata.exposure_time_s);  // expTime
@@ -115,10 +170,17 @@ void write_exr(const PictureView& picture, const std::string& path, const io::Im
     const float film[2] = {static_cast<float>(metadata.film_width_mm), static_cast<float>(metadata.film_height_mm)};
     spec.attribute("sensorOverallDimensions", TypeDesc(TypeDesc::FLOAT, TypeDesc::VEC2), film);
     const std::size_t row = row_values(picture, 1);
+    // All channels have four bytes, so that numbers lie among the floats.
     write_rows<float>(path, "exr", spec, keep_going, [&](std::size_t first, std::size_t end, float* out) {
         for (std::size_t i = first * row; i < end * row; ++i) {
             for (std::size_t c = 0; c < 3; ++c) *out++ = picture.exposure[3 * i + c];
             *out++ = picture.depth[i];
+            for (const PictureView::Layer& layer : picture.layers) {
+                if (layer.layer == Layer::depth) continue;
+                const auto channels = static_cast<std::size_t>(info_of(layer.layer).channels);
+                std::memcpy(out, static_cast<const char*>(layer.values) + 4 * channels * i, 4 * channels);
+                out += channels;
+            }
         }
     });
 }

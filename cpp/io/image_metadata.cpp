@@ -23,6 +23,10 @@ std::string name_of(CameraModel model) {
     return "full";
 }
 
+std::string name_of(LightTransport transport) {
+    return transport == LightTransport::whitted ? "whitted" : "paths";
+}
+
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) {
     const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
     ImageMetadata metadata;
@@ -37,21 +41,29 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.iso = camera.iso;
     metadata.seed = settings.seed;
     metadata.spp = settings.spp;
+    metadata.transport = settings.transport;
+    metadata.clamp_cd_m2 = static_cast<double>(settings.clamp);
     return metadata;
 }
 
 std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const {
-    return {{"realcam:version", REALCAM_VERSION},
-            {"realcam:lens", lens},
-            {"realcam:model", model},
-            {"realcam:focal_length_mm", number(focal_length_mm)},
-            {"realcam:f_number", number(f_number)},
-            {"realcam:focus_distance_m", number(focus_distance_m)},
-            {"realcam:film_mm", number(film_width_mm) + "x" + number(film_height_mm)},
-            {"realcam:exposure_time_s", number(exposure_time_s)},
-            {"realcam:iso", number(iso)},
-            {"realcam:seed", std::to_string(seed)},
-            {"realcam:spp", std::to_string(spp)}};
+    std::vector<std::pair<std::string, std::string>> entries = {
+        {"realcam:version", REALCAM_VERSION},
+        {"realcam:lens", lens},
+        {"realcam:model", model},
+        {"realcam:focal_length_mm", number(focal_length_mm)},
+        {"realcam:f_number", number(f_number)},
+        {"realcam:focus_distance_m", number(focus_distance_m)},
+        {"realcam:film_mm", number(film_width_mm) + "x" + number(film_height_mm)},
+        {"realcam:exposure_time_s", number(exposure_time_s)},
+        {"realcam:iso", number(iso)},
+        {"realcam:seed", std::to_string(seed)},
+        {"realcam:spp", std::to_string(spp)}};
+    // What is not said of a picture is that nothing was left out.
+    if (transport != LightTransport::paths) entries.emplace_back("realcam:transport", name_of(transport));
+    if (clamp_cd_m2 > 0) entries.emplace_back("realcam:clamp_cd_m2", number(clamp_cd_m2));
+    if (!denoiser.empty()) entries.emplace_back("realcam:denoiser", denoiser);
+    return entries;
 }
 
 }  // namespace realcam::io

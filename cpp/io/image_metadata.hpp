@@ -21,6 +21,9 @@ struct ImageMetadata {
     double iso = 100;
     std::uint32_t seed = 0;
     int spp = 0;
+    LightTransport transport = LightTransport::paths;
+    double clamp_cd_m2 = 0;
+    std::string denoiser;  ///< what has changed the exposure since it was taken; empty: nothing
 
     /// Names "realcam:..." and values, as they go into every format.
     std::vector<std::pair<std::string, std::string>> entries() const;
@@ -28,6 +31,8 @@ struct ImageMetadata {
 
 /// Names as on the command line: "full", "thick", "thin", "pinhole".
 std::string name_of(CameraModel model);
+/// "paths" or "whitted".
+std::string name_of(LightTransport transport);
 
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings);
 

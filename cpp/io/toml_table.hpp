@@ -92,6 +92,21 @@ public:
         return values;
     }
 
+    /// An array of texts; empty where the key is absent.
+    std::vector<std::string> texts(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return {};
+        const toml::array* array = node->as_array();
+        const std::string what = '"' + std::string(key) + "\" must be an array of texts in quotes";
+        if (!array) fail(what, node);
+        std::vector<std::string> values;
+        for (const toml::node& item : *array) {
+            if (!item.is_string()) fail(what, &item);
+            values.push_back(*item.value<std::string>());
+        }
+        return values;
+    }
+
     std::optional<TomlTable> table(std::string_view key) const {
         const toml::node* node = find(key);
         if (!node) return std::nullopt;

@@ -4,11 +4,14 @@
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <cstring>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "../bindings/unlocked.hpp"
 #include "../image_io/image_file.hpp"
@@ -60,16 +63,49 @@ py::array_t<float> read_environment(const std::string& path) {
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
+/// Layers by their names, as arrays of the picture's size. `kept`: what they point to, in case they were converted.
+std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, const FloatArray& depth,
+                                                      std::vector<py::array>& kept) {
+    std::vector<image_io::PictureView::Layer> views;
+    for (std::size_t i = 0; i < kLayers.size(); ++i) {
+        const LayerInfo& info = kLayers[i];
+        if (!layers.contains(info.name) || static_cast<Layer>(i) == Layer::depth) continue;
+        const py::object given = layers[info.name];
+        py::array array;
+        if (info.is_number)
+            array = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>(given);
+        else
+            array = FloatArray(given);
+        if (array.ndim() != (info.channels == 1 ? 2 : 3) || array.shape(0) != depth.shape(0) ||
+            array.shape(1) != depth.shape(1) || (array.ndim() == 3 && array.shape(2) != info.channels))
+            throw InputError("the layer \"" + std::string(info.name) + "\" must have the shape (H, W" +
+                             (info.channels == 1 ? ")" : ", " + std::to_string(info.channels) + ")") +
+                             " of the picture");
+        views.push_back({static_cast<Layer>(i), array.data()});
+        kept.push_back(std::move(array));
+    }
+    return views;
+}
+
 void write_picture(const std::string& path, const FloatArray& exposure, const FloatArray& depth, const Camera& camera,
-                   int spp, std::uint32_t seed, bool film_tone) {
+                   int spp, std::uint32_t seed, bool film_tone, const py::dict& layers, const IdNames& object_names,
+                   const IdNames& material_names, bool is_whitted, float clamp_cd_m2, const std::string& denoiser) {
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
         throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
-    const image_io::PictureView picture{static_cast<int>(depth.shape(1)), static_cast<int>(depth.shape(0)),
-                                        exposure.data(), depth.data()};
+    std::vector<py::array> kept;
+    const image_io::PictureView picture{static_cast<int>(depth.shape(1)),
+                                        static_cast<int>(depth.shape(0)),
+                                        exposure.data(),
+                                        depth.data(),
+                                        layers_from(layers, depth, kept),
+                                        object_names,
+                                        material_names};
     const Unlocked unlocked;
-    image_io::write_image(picture, path, io::metadata_of(camera, {spp, seed, 0, 0}),
-                          film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
+    io::ImageMetadata metadata = io::metadata_of(
+        camera, {spp, seed, 0, 0, is_whitted ? LightTransport::whitted : LightTransport::paths, clamp_cd_m2});
+    metadata.denoiser = denoiser;
+    image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
 }
 
 }  // namespace
@@ -81,7 +117,8 @@ PYBIND11_MODULE(_pictures, m) {
     m.def("read_texture", &read_texture, "path"_a, "encoded"_a);
     m.def("read_environment", &read_environment, "path"_a);
     m.def("write_picture", &write_picture, "path"_a, "exposure"_a, "depth"_a, "camera"_a, "spp"_a, "seed"_a,
-          "film_tone"_a);
+          "film_tone"_a, "layers"_a, "object_names"_a, "material_names"_a, "is_whitted"_a, "clamp_cd_m2"_a,
+          "denoiser"_a);
     m.def("check_image_path", &image_io::check_image_path, "path"_a);
     bindings::watch_exit_and_fork();  // of this extension's own work: each counts for itself
 }

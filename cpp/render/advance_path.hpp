@@ -137,7 +137,8 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
         path.pdf[i] = kDelta;
         path.absorption.set(i, {0, 0, 0});
         results.irradiance.set(i, {0, 0, 0});
-        results.depth[i] = -1.0f;
+        results.depth[i] = kFarAway;
+        results.weight[i] = camera_rays.weight[i];
         results.sampled[i] = camera_rays.sampled[i];
         results.passed[i] = camera_rays.passed[i];
     }
@@ -160,11 +161,8 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     const std::uint32_t first_dimension =
         dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
     if constexpr (set == MaterialSet::any) {
-        for (int i = 0; i < N; ++i) {
-            const std::uint32_t number = hash32(block.stream[i] ^ block.sample[i], ~first_dimension);
-            path.rays.number[i] = path_ray_number(number);
-            shadow.number[i] = shadow_ray_number(hash32(number));
-        }
+        number_rays(block, bounce, path.rays);
+        for (int i = 0; i < N; ++i) shadow.number[i] = shadow_ray_number(hash32(path.rays.number[i]));
     }
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);

@@ -35,6 +35,15 @@ inline std::vector<std::uint8_t> developed_codes(const FilmSums& film, double ex
     return codes;
 }
 
+/// Variance of the exposure, 3 per pixel (PixelSum::variance).
+inline LayerImage developed_variance(const FilmSums& film, double exposure_time_s) {
+    LayerImage image{Layer::variance, {}, {}};
+    image.values.reserve(3 * film.size());
+    for (const PixelSum& sum : film)
+        for (int channel = 0; channel < 3; ++channel) image.values.push_back(sum.variance(channel, exposure_time_s));
+    return image;
+}
+
 /// How many samples each pixel has.
 inline std::vector<std::int64_t> samples_of(const FilmSums& film) {
     std::vector<std::int64_t> counts;

@@ -2,6 +2,7 @@
 #include "../camera/generate_rays.hpp"
 #include "../math/color.hpp"
 #include "../scene/light_sample.hpp"
+#include "../scene/opacity.hpp"
 #include "../scene/scattering.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -16,12 +17,21 @@ struct SceneRays {
                                                                         ///< of MaterialSet::any alone
 };
 
+/// Numbers the rays of a bounce; those of the camera are bounce 0.
+template <int N>
+REALCAM_INLINE void number_rays(const SampleBlock<N>& block, int bounce, SceneRays<N>& rays) {
+    for (int i = 0; i < N; ++i)
+        rays.number[i] =
+            path_ray_number(hash32(block.stream[i] ^ block.sample[i], ~static_cast<std::uint32_t>(bounce)));
+}
+
 /// What a block of paths saw. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
 template <int N>
 struct PathResults {
     ColorLanes<N> irradiance;
     alignas(kLaneAlignment<float, N>) float depth[N];  ///< of the first hit along the camera's axis from the film,
-                                                       ///< metres; < 0: none
+                                                       ///< metres; below 0 behind the film; kFarAway: none
+    alignas(kLaneAlignment<float, N>) float weight[N];  ///< of the sample in the exposure (CameraRays)
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N], passed[N];
 };
 

@@ -4,6 +4,7 @@
 
 #include "../error.hpp"
 #include "../platform.hpp"
+#include "layers.hpp"
 #include "path_settings.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -17,6 +18,7 @@ struct RenderSettings {
     int threads = 0;      ///< of the CPU; 0: all
     LightTransport transport = LightTransport::paths;
     float clamp = 0;  ///< see PathSettings
+    LayerSet layers = {};
 
     PathSettings path() const { return {max_bounces, transport, clamp}; }
 };

@@ -1,8 +1,10 @@
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -13,6 +15,7 @@
 #include "../camera/develop.hpp"
 #include "../scene/scene_checks.hpp"
 #include "image.hpp"
+#include "layer_film.hpp"
 #include "live_frame.hpp"
 #include "render_settings.hpp"
 #include "run_with_progress.hpp"
@@ -80,10 +83,15 @@ public:
         make_way(keep_going);
         OwnStop stop(*this);
         std::atomic<std::int64_t> done{0};
-        const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height;
-        const auto work = [&] { expose(spp, [&](const SampleRange& range) { take(range, done, stop); }); };
+        const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height *
+                             (settings_.layers.has_any(kSampledLayers) ? 2 : 1);
+        const auto work = [&] {
+            expose(spp, [&](const SampleRange& range) { take(range, done, stop); });
+            see_what_is_missing(done, stop);
+        };
         const auto begin = std::chrono::steady_clock::now();
-        run_with_progress(work, [&] { return static_cast<double>(done) / total; }, progress, stop);
+        // Layers may have to catch up with more samples than these.
+        run_with_progress(work, [&] { return std::min(1.0, static_cast<double>(done) / total); }, progress, stop);
         exposing_seconds_ += seconds_since(begin);
         if (stop) throw Cancelled();
     }
@@ -109,11 +117,19 @@ public:
         return frames_.back();
     }
 
-    /// All that was collected, developed with the camera's exposure time; waits for frames under way. Throws InputError
-    /// where there is nothing, and Cancelled where another thread stops it meanwhile.
+    /// All that was collected, developed with the camera's exposure time, and the layers of the settings; waits for
+    /// frames under way. Throws InputError where there is nothing, and Cancelled where another thread stops it
+    /// meanwhile.
     Image picture(const KeepGoing& keep_going = {}) {
         return of_all_collected(keep_going, [&] {
+            if (lacks_layers()) {
+                OwnStop stop(*this);
+                std::atomic<std::int64_t> done{0};
+                run_heeding([&] { see_what_is_missing(done, stop); }, keep_going, stop);
+                if (stop) throw Cancelled();
+            }
             Image image = develop();
+            add_layers(image);
             image.spp = samples_;
             image.stats.setup_seconds = setup_seconds_;
             image.stats.seconds = setup_seconds_ + exposing_seconds_;
@@ -176,6 +192,13 @@ protected:
     virtual std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                              std::shared_ptr<void> under_way) = 0;
     virtual Image develop() = 0;
+    /// Layer::variance of a film whose samples were taken while the settings asked for it.
+    virtual LayerImage develop_variance() = 0;
+    /// Adds what the samples of all pixels see first to the film; ends early where it is stopped. `done` counts them.
+    virtual void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
+                            OwnStop& stop) = 0;
+    /// The surface in the middle ray of each pixel; ends early where it is stopped.
+    virtual void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) = 0;
     virtual std::vector<std::int64_t> count_samples() = 0;
     virtual std::size_t frames_in_flight() const = 0;
 
@@ -237,7 +260,8 @@ private:
     bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {
         return same_parts(scene, scene_) && same_transforms(scene, scene_) && camera.lens == camera_.lens &&
                camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
-               settings.seed == settings_.seed && settings.path() == settings_.path();
+               settings.seed == settings_.seed && settings.path() == settings_.path() &&
+               (settings_.layers.has(Layer::variance) || !settings.layers.has(Layer::variance));
     }
 
     void make_ready(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
@@ -261,6 +285,65 @@ private:
         samples_ = 0;
         exposing_seconds_ = 0;
         is_blank_ = true;
+        forget_layers();
+    }
+
+    std::size_t pixel_count() const {
+        return static_cast<std::size_t>(camera_.film.width) * static_cast<std::size_t>(camera_.film.height);
+    }
+
+    void forget_layers() {
+        layer_film_ = {};
+        layer_samples_ = 0;
+    }
+
+    bool lacks_layers() const {
+        return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < samples_) ||
+               (settings_.layers.has_any(kMiddleLayers) && layer_film_.middle.empty());
+    }
+
+    /// Brings the layers that are wanted up to the samples of the picture. Where it is stopped they begin anew.
+    void see_what_is_missing(std::atomic<std::int64_t>& done, OwnStop& stop) {
+        if (!lacks_layers() || stop) return;
+        try {
+            if (settings_.layers.has_any(kMiddleLayers) && layer_film_.middle.empty()) {
+                layer_film_.middle.resize(pixel_count());
+                see_middle_surfaces(layer_film_.middle, stop);
+            }
+            if (settings_.layers.has_any(kSampledLayers)) {
+                layer_film_.sums.resize(pixel_count());
+                while (layer_samples_ < samples_ && !stop) {
+                    const SampleRange range = next_samples(settings_.seed, layer_samples_, samples_);
+                    layer_samples_ += range.count;
+                    see_layers(range, layer_film_.sums, done, stop);
+                }
+            }
+        } catch (...) {
+            forget_layers();
+            ready_ = false;
+            throw;
+        }
+        if (stop) forget_layers();
+    }
+
+    void add_layers(Image& image) {
+        const LayerSet wanted = settings_.layers;
+        if (wanted.has_any(kSampledLayers) || wanted.has_any(kMiddleLayers)) {
+            const SurfaceIds ids(scene_);
+            image.layers = developed(layer_film_, wanted, ids);
+            if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
+            if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
+        }
+        if (wanted.has(Layer::variance)) image.layers.push_back(develop_variance());
+        if (wanted.has(Layer::sample_count)) {
+            constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
+            LayerImage counts{Layer::sample_count, {}, {}};
+            for (const std::int64_t count : count_samples())
+                counts.numbers.push_back(static_cast<std::uint32_t>(std::min(count, kMost)));
+            image.layers.push_back(std::move(counts));
+        }
+        std::sort(image.layers.begin(), image.layers.end(),
+                  [](const LayerImage& a, const LayerImage& b) { return a.layer < b.layer; });
     }
 
     /// f(range) for the ranges of so many samples more.
@@ -288,6 +371,8 @@ private:
     RenderSettings settings_;
     std::int64_t samples_ = 0;
     bool is_blank_ = true;  ///< no sample was begun
+    LayerFilm layer_film_;
+    std::int64_t layer_samples_ = 0;  ///< of samples_, those that layer_film_.sums holds
     double setup_seconds_ = 0, exposing_seconds_ = 0;  ///< of the picture
     std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< under way
 };

@@ -22,18 +22,23 @@ REALCAM_INLINE float opacity_at(const MeshView& mesh, const Triangle& triangle, 
 
 // By the number of a ray each one decides anew, and each backend alike. It is odd for shadow rays.
 REALCAM_INLINE std::uint32_t path_ray_number(std::uint32_t hash) {
-    return hash & ~1u;
+    return (hash & ~1u) | 2u;
 }
 REALCAM_INLINE std::uint32_t shadow_ray_number(std::uint32_t hash) {
     return hash | 1u;
 }
+
+/// Of a ray that stops at what is there by half or more, and passes what shows shadows alone: one ray that stands for a
+/// whole pixel must not depend on chance.
+inline constexpr std::uint32_t kDecidedRay = 0;
 
 /// Whether a ray stops at a hit on a mesh.
 REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray) {
     const Triangle& triangle = mesh.triangles[hit.triangle];
     const Material& material = mesh.materials[triangle.material];
     if (!material.has_holes()) return true;
-    if (material.only_shadows && (ray & 1u)) return false;
+    if (material.only_shadows && ((ray & 1u) || ray == kDecidedRay)) return false;
+    if (ray == kDecidedRay) return opacity_at(mesh, triangle, hit) >= 0.5f;
     return unit_float(hash32(hash32(ray, hit.triangle), hit.instance)) < opacity_at(mesh, triangle, hit);
 }
 

@@ -27,10 +27,11 @@ public:
     ShotReader(const toml::table& table, const std::string& path) : table_(table, path) {}
 
     ShotRequest read() const {
-        table_.allow({"format", "scene",       "scale",   "texture",         "environment", "environment_cd_m2",
-                      "lens",   "f_number",    "film_mm", "resolution",      "position_m",  "look_at_m",
-                      "up",     "focus_m",     "model",   "exposure_time_s", "iso",         "spp",
-                      "seed",   "max_bounces", "tone",    "object",          "material",    "light"});
+        table_.allow({"format", "scene",       "scale",      "texture",         "environment", "environment_cd_m2",
+                      "lens",   "f_number",    "film_mm",    "resolution",      "position_m",  "look_at_m",
+                      "up",     "focus_m",     "model",      "exposure_time_s", "iso",         "spp",
+                      "seed",   "max_bounces", "tone",       "layers",          "object",      "material",
+                      "light",  "transport",   "clamp_cd_m2"});
         if (table_.number("format") != kFormat) table_.fail("format = " + std::to_string(kFormat) + " is wanted");
         ShotRequest shot;
         shot.scene = table_.path("scene");
@@ -81,7 +82,11 @@ private:
         read("spp", settings.spp);
         read("seed", settings.seed);
         read("max_bounces", settings.max_bounces);
-        table_.checked("spp", [&] { validate(settings); });
+        settings.transport = table_.named("transport", transport_named, kTransportNames).value_or(settings.transport);
+        settings.clamp = static_cast<float>(table_.number("clamp_cd_m2").value_or(0));
+        table_.checked(settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(settings); });
+        const std::vector<std::string> layers = table_.texts("layers");
+        table_.checked("layers", [&] { settings.layers = layers_named(layers); });
     }
 
     ShotTable table_;

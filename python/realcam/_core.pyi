@@ -16,6 +16,10 @@ _Path: TypeAlias = str | PathLike[str]
 _Triple: TypeAlias = Sequence[float] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
 _Material: TypeAlias = float | tuple[float, float] | str | Glass | None
 _Progress: TypeAlias = Callable[[float], bool | None]
+_Layers: TypeAlias = dict[str, NDArray[np.float32] | NDArray[np.uint32]]
+_Picture: TypeAlias = tuple[
+    NDArray[np.float32], NDArray[np.float32], RenderStats, _Layers, tuple[str, ...], tuple[str, ...]
+]
 
 # Arrays of numpy, but for rays in a GPU's memory.
 _Doubles = TypeVar("_Doubles", default=NDArray[np.float64])
@@ -737,10 +741,12 @@ class RenderStats(_Value):
     @property
     def device(self) -> str: ...
 
-def _metadata(camera: Camera, spp: int, seed: int) -> dict[str, str]: ...
+def _metadata(
+    camera: Camera, spp: int, seed: int, transport: str, clamp_cd_m2: float, denoiser: str
+) -> dict[str, str]: ...
 def _read_shot(
     path: str | os.PathLike[str], device: str, progress: _Progress | None
-) -> tuple[Scene, Camera, int, int, int, str]: ...
+) -> tuple[Scene, Camera, int, int, int, str, tuple[str, ...], str, float]: ...
 def _render(
     scene: Scene,
     camera: Camera,
@@ -748,9 +754,12 @@ def _render(
     device: str,
     seed: int,
     max_bounces: int,
+    transport: str,
+    clamp_cd_m2: float,
     threads: int,
+    layers: Sequence[str],
     progress: _Progress | None,
-) -> tuple[NDArray[np.float32], NDArray[np.float32], RenderStats]: ...
+) -> _Picture: ...
 
 @final
 class LiveFrame:
@@ -772,11 +781,20 @@ class LiveView:
 @final
 class _Session:
     def __init__(
-        self, scene: Scene, camera: Camera, device: str, seed: int, max_bounces: int, threads: int
+        self,
+        scene: Scene,
+        camera: Camera,
+        device: str,
+        seed: int,
+        max_bounces: int,
+        transport: str,
+        clamp_cd_m2: float,
+        threads: int,
+        layers: Sequence[str],
     ) -> None: ...
     def set(self, scene: Scene, camera: Camera) -> None: ...
     def add(self, spp: int) -> None: ...
-    def picture(self) -> tuple[NDArray[np.float32], NDArray[np.float32], RenderStats]: ...
+    def picture(self) -> _Picture: ...
     def cancel(self) -> None: ...
     @property
     def samples(self) -> NDArray[np.int64]: ...

@@ -13,5 +13,11 @@ def write_picture(
     spp: int,
     seed: int,
     film_tone: bool,
+    layers: dict[str, NDArray[np.float32] | NDArray[np.uint32]],
+    object_names: list[str],
+    material_names: list[str],
+    is_whitted: bool,
+    clamp_cd_m2: float,
+    denoiser: str,
 ) -> None: ...
 def check_image_path(path: bytes) -> None: ...

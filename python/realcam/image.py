@@ -1,13 +1,15 @@
-"""A photograph: film exposure, depth, and how it was taken."""
+"""A photograph: film exposure, depth and other layers, and how it was taken."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from . import _core, image_file
+from . import _core, denoiser, image_file
 from ._core import Camera, RenderStats
 
 
@@ -16,7 +18,12 @@ class Image:
     """What lies on the film after the exposure, without noise.
 
     pixels: (H, W, 3) float32, exposure in lux seconds, linear Rec. 709, row 0 at the top.
-    depth: (H, W) float32, metres along the camera's axis from the film; inf where nothing was met.
+    depth: (H, W) float32, metres along the camera's axis from the film; inf where nothing was met. Mean over the
+    samples that met something, by their weight in the exposure.
+    layers: what was asked for by name (docs/layers.md), arrays of (H, W) or (H, W, 3), float32, and uint32 for ids
+    and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked for.
+    transport, clamp_cd_m2: as render had them. denoiser: what has changed the pixels since they were taken; empty:
+    nothing.
     """
 
     pixels: np.ndarray
@@ -25,21 +32,39 @@ class Image:
     spp: int
     seed: int
     stats: RenderStats
+    layers: Mapping[str, np.ndarray] = field(default_factory=dict)
+    object_names: tuple[str, ...] = ()
+    material_names: tuple[str, ...] = ()
+    transport: str = "paths"
+    clamp_cd_m2: float = 0.0
+    denoiser: str = ""
 
     def __eq__(self, other: object) -> bool:
         """Whether pictures, cameras and settings are the same; what it cost to take them does not count."""
         if not isinstance(other, Image):
             return NotImplemented
-        return (self.camera, self.spp, self.seed) == (other.camera, other.spp, other.seed) and all(
-            np.array_equal(*arrays, equal_nan=True)
-            for arrays in ((self.pixels, other.pixels), (self.depth, other.depth))
+        mine, others = self._arrays(), other._arrays()
+        return (
+            self.metadata() == other.metadata()
+            and self.camera == other.camera
+            and (self.object_names, self.material_names) == (other.object_names, other.material_names)
+            and mine.keys() == others.keys()
+            and all(np.array_equal(mine[name], others[name], equal_nan=True) for name in mine)
         )
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        return {**self.layers, "pixels": self.pixels, "depth": self.depth}
 
     __hash__ = None  # type: ignore[assignment]  # its arrays may be written to
 
     def __repr__(self) -> str:
         height, width = self.depth.shape
-        return f"<realcam.Image {width} x {height} pixels of {self.spp} samples, taken with {self.camera!r:.60}>"
+        layers = f", with layers {', '.join(self.layers)}" if self.layers else ""
+        denoised = ", denoised" if self.denoiser else ""
+        return (
+            f"<realcam.Image {width} x {height} pixels of {self.spp} samples{denoised}{layers}, "
+            f"taken with {self.camera!r:.60}>"
+        )
 
     def developed(self, tone: str = "film", iso: float | None = None) -> np.ndarray:
         """(H, W, 3) uint8 sRGB at the camera's sensitivity, or another one.
@@ -48,8 +73,18 @@ class Image:
         """
         return _core.develop(self.pixels, self.camera.iso if iso is None else iso, tone)
 
+    def denoised(self) -> Image:
+        """Without noise, as Intel's Open Image Denoise guesses it: a picture to look at, not to measure.
+
+        Wants the layers albedo and normal, and the extra realcam[denoise]. All but the pixels stays as it is; the layer
+        variance, which describes the noise, goes. Raises InputError where one of these is missing.
+        """
+        pixels, name = denoiser.denoised(self.pixels, self.layers)
+        layers = {layer: array for layer, array in self.layers.items() if layer != "variance"}
+        return replace(self, pixels=pixels, layers=layers, denoiser=name)
+
     def save(self, path: str | os.PathLike[str], tone: str = "film") -> None:
-        """Writes .png (developed) or .exr (film exposure R, G, B in lux seconds, and depth as layer Z in metres).
+        """Writes .png (developed) or .exr (film exposure R, G, B in lux seconds, depth as Z in metres, and all layers).
 
         Lens, f-number, focus, exposure time, ISO, seed and version are in the file's metadata. Raises ImageFileError;
         no half-written file is left. An image does not know which files its scene was read from: one of the same name
@@ -59,5 +94,32 @@ class Image:
 
     def metadata(self) -> dict[str, str]:
         """Names ("realcam:...") and values of what is written into picture files."""
-        entries: dict[str, str] = _core._metadata(self.camera, self.spp, self.seed)
+        entries: dict[str, str] = _core._metadata(
+            self.camera, self.spp, self.seed, self.transport, self.clamp_cd_m2, self.denoiser
+        )
         return entries
+
+
+def layer_names(layers: str | Iterable[str]) -> list[str]:
+    """Names of layers as users give them: some, or one, or "all"."""
+    return [layers] if isinstance(layers, str) else list(layers)
+
+
+def image_of(
+    picture: tuple[Any, ...], camera: Camera, spp: int, seed: int, transport: str, clamp_cd_m2: float
+) -> Image:
+    """What the core gives as a picture."""
+    pixels, depth, stats, layers, object_names, material_names = picture
+    return Image(
+        pixels=pixels,
+        depth=depth,
+        camera=camera,
+        spp=spp,
+        seed=seed,
+        stats=stats,
+        layers=layers,
+        object_names=object_names,
+        material_names=material_names,
+        transport=transport,
+        clamp_cd_m2=clamp_cd_m2,
+    )

@@ -31,10 +31,24 @@ def write_image(image: Image, path: str | os.PathLike[str], tone: str) -> None:
         raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
     try:
         _pictures().write_picture(
-            system_name(path), image.pixels, image.depth, image.camera, image.spp, image.seed, tone == "film"
+            system_name(path),
+            image.pixels,
+            image.depth,
+            image.camera,
+            image.spp,
+            image.seed,
+            tone == "film",
+            dict(image.layers),
+            list(image.object_names),
+            list(image.material_names),
+            image.transport == "whitted",
+            image.clamp_cd_m2,
+            image.denoiser,
         )
     except TypeError:
-        raise InputError("pixels, depth, camera, spp and seed of the image must be such as rc.render gives") from None
+        raise InputError(
+            "pixels, depth, camera, spp, seed, layers and names of the image must be such as rc.render gives"
+        ) from None
 
 
 def _pictures() -> ModuleType:

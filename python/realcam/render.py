@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from . import _core
 from ._core import Camera, Scene
-from .image import Image
+from .image import Image, image_of, layer_names
 
 ProgressCallback = Callable[[float], bool | None]
 
@@ -30,22 +30,32 @@ def render(
     device: str = "auto",
     seed: int = 0,
     max_bounces: int = 1,
+    transport: str = "paths",
+    clamp_cd_m2: float = 0.0,
     threads: int = 0,
+    layers: str | Iterable[str] = (),
     progress: bool | ProgressCallback = False,
 ) -> Image:
     """Photographs a scene: every sample is a ray from the film, through the lens, to the scene and its lights.
 
     spp: samples per pixel. max_bounces: 0 for direct light only, 1 for one reflection more, ...
-    threads: 0 for all. progress: True for a bar on stderr, or a function that is called about 20 times a second
-    with the share done, 0 to 1, and stops the render where it returns False. Warns of a scene without light.
+    transport: "paths" for all ways of light, "whitted" for direct light and what mirrors and smooth glass show.
+    clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
+    too dark; 0: never. threads: 0 for all.
+    layers: names of what else Image.layers is to hold, or "all" (docs/layers.md).
+    progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
+    0 to 1, and stops the render where it returns False. Warns of a scene without light.
 
     Raises InputError, SceneFileError, DeviceError; Cancelled where progress stopped it; KeyboardInterrupt on Ctrl-C.
     """
     warn_of_no_light(scene)
 
     def taken(callback: ProgressCallback | None) -> Image:
-        pixels, depth, stats = _core._render(scene, camera, spp, device, seed, max_bounces, threads, callback)
-        return Image(pixels=pixels, depth=depth, camera=camera, spp=spp, seed=seed, stats=stats)
+        names = layer_names(layers)
+        picture = _core._render(
+            scene, camera, spp, device, seed, max_bounces, transport, clamp_cd_m2, threads, names, callback
+        )
+        return image_of(picture, camera, spp, seed, transport, clamp_cd_m2)
 
     if progress is not True:
         return taken(progress or None)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
 from ._core import Camera, Scene
-from .image import Image
+from .image import Image, image_of, layer_names
 from .render import warn_of_no_light
 
 
@@ -18,9 +20,10 @@ class Session:
     while not good_enough(session.image()):
         session.add(16)
 
-    device, seed, max_bounces and threads are those of render; add() after add() takes the samples that one render of
-    as many would take. Threads take turns, and cancel() ends the turn of another. Raises InputError, SceneFileError
-    and DeviceError; after one of these the picture begins anew. Warns of a scene without light.
+    device, seed, max_bounces, transport, clamp_cd_m2, threads and layers are those of render; add() after add() takes
+    the samples that one render of as many would take. Threads take turns, and cancel() ends the turn of another. Raises
+    InputError, SceneFileError and DeviceError; after one of these the picture begins anew. Warns of a scene without
+    light.
     """
 
     def __init__(
@@ -31,10 +34,14 @@ class Session:
         device: str = "auto",
         seed: int = 0,
         max_bounces: int = 1,
+        transport: str = "paths",
+        clamp_cd_m2: float = 0.0,
         threads: int = 0,
+        layers: str | Iterable[str] = (),
     ) -> None:
-        self._seed = seed
-        self._core = _core._Session(scene, camera, device, seed, max_bounces, threads)
+        self._seed, self._transport, self._clamp_cd_m2 = seed, transport, clamp_cd_m2
+        names = layer_names(layers)
+        self._core = _core._Session(scene, camera, device, seed, max_bounces, transport, clamp_cd_m2, threads, names)
         warn_of_no_light(scene)
 
     @property
@@ -69,11 +76,12 @@ class Session:
     def image(self) -> Image:
         """What was collected, as render returns it; spp is the mean over the pixels, rounded.
 
-        A pixel without a sample is black, at depth inf. Raises InputError where there is no sample yet.
+        Layers are those of all samples that were begun, also after a stop. A pixel without a sample is black, at
+        depth inf. Raises InputError where there is no sample yet.
         """
-        pixels, depth, stats = self._core.picture()
+        picture = self._core.picture()
         spp = round(float(self.samples.mean()))
-        return Image(pixels=pixels, depth=depth, camera=self.camera, spp=spp, seed=self._seed, stats=stats)
+        return image_of(picture, self.camera, spp, self._seed, self._transport, self._clamp_cd_m2)
 
     @property
     def samples(self) -> NDArray[np.int64]:

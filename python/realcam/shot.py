@@ -25,6 +25,9 @@ class Shot:
     seed: int = 0
     max_bounces: int = 1
     tone: str = "film"
+    layers: tuple[str, ...] = ()
+    transport: str = "paths"
+    clamp_cd_m2: float = 0.0
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, device: str = "auto") -> Shot:
@@ -38,4 +41,5 @@ class Shot:
     def render(self, *, device: str = "auto", threads: int = 0, progress: bool | ProgressCallback = False) -> Image:
         """Takes the photograph: realcam.render with the shot's own settings."""
         settings: dict[str, Any] = {"spp": self.spp, "seed": self.seed, "max_bounces": self.max_bounces}
+        settings |= {"layers": self.layers, "transport": self.transport, "clamp_cd_m2": self.clamp_cd_m2}
         return render(self.scene, self.camera, **settings, device=device, threads=threads, progress=progress)

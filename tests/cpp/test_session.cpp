@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -45,8 +46,8 @@ public:
     std::string name() const override { return "notes"; }
 
     std::vector<std::string> notes;
-    std::vector<SampleRange> taken;
-    std::function<void()> while_taking;
+    std::vector<SampleRange> taken, seen;
+    std::function<void()> while_taking, while_seeing;
     std::vector<std::shared_ptr<NotedFrame>> frames;
     bool fails = false;
     std::atomic<bool> stop_flag{false};
@@ -70,6 +71,19 @@ private:
         return frames.emplace_back(std::make_shared<NotedFrame>(samples(), stop_flag));
     }
     Image develop() override { return {}; }
+    LayerImage develop_variance() override { return {Layer::variance, {0, 0, 0}, {}}; }
+    void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
+                    OwnStop&) override {
+        notes.push_back("see layers");
+        seen.push_back(range);
+        if (while_seeing) while_seeing();
+        for (LayerSum& sum : film) sum.weight += range.count;
+        done += range.count;
+    }
+    void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop&) override {
+        notes.push_back("see middle");
+        for (MiddleSurface& surface : film) surface = {1.5f, {0, 0, 1}, 0, kNoInstance, 0};
+    }
     std::vector<std::int64_t> count_samples() override { return {samples()}; }
     std::size_t frames_in_flight() const override { return 2; }
     void raise_stop() noexcept override {
@@ -228,8 +242,8 @@ TEST_CASE("as many frames are under way as the device takes") {
 
 TEST_CASE("each pixel is developed with its own number of samples") {
     FilmSums film(3);
-    film[0] = {{2, 4, 6}, 9, 3, 4};
-    film[1] = {{2, 4, 6}, 0, 0, 2};
+    film[0] = {{2, 4, 6}, {}, 9, 3, 4};
+    film[1] = {{2, 4, 6}, {}, 0, 0, 2};
     const Image image = developed(film, 3, 1, 2);
     CHECK(image.exposure == std::vector<float>{1, 2, 3, 2, 4, 6, 0, 0, 0});
     constexpr float none = std::numeric_limits<float>::infinity();
@@ -240,4 +254,83 @@ TEST_CASE("each pixel is developed with its own number of samples") {
           std::vector<std::uint8_t>{118, 162, 194, 162, 221, 255, 0, 0, 0});
     film[0] += film[1];
     CHECK(samples_of(film)[0] == 6);
+}
+
+TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
+    const Assembly scene(test::bare_scene());
+    Camera camera = small_camera();
+    RenderSettings settings;
+    NotedSession session;
+    session.set(scene, camera, settings);
+    session.add(3);
+    CHECK(session.picture().layers.empty());
+    CHECK(session.seen.empty());
+
+    // Wanted later, and of the same picture: its samples are seen from the first on.
+    settings.layers = {Layer::circle_of_confusion_mm, Layer::depth_middle, Layer::object_id, Layer::sample_count};
+    session.set(scene, camera, settings);
+    Image image = session.picture();
+    CHECK(session.taken.size() == 1);
+    REQUIRE(session.seen.size() == 1);
+    CHECK(session.seen[0].first == 0);
+    CHECK(session.seen[0].count == 3);
+    REQUIRE(image.layers.size() == 4);
+    CHECK(image.layers[1].numbers == std::vector<std::uint32_t>{3});
+    CHECK(image.layers[2].values == std::vector<float>{1.5f});
+    CHECK(image.layers[3].numbers == std::vector<std::uint32_t>{1});
+    CHECK(image.object_names == IdNames{"", "static geometry"});
+    CHECK(image.material_names.empty());
+    session.notes.clear();
+    session.add(2);
+    CHECK(session.notes == std::vector<std::string>{"take", "see layers"});
+    CHECK(session.seen.back().first == 3);
+    CHECK(session.seen.back().count == 2);
+    session.picture();
+    CHECK(session.notes.size() == 2);
+
+    // Half of a layer is none.
+    std::thread stop;
+    session.while_seeing = [&] {
+        stop = std::thread([&] { session.cancel(); });
+        while (!session.stop_flag) std::this_thread::yield();
+    };
+    CHECK_THROWS_AS(session.add(1), Cancelled);
+    stop.join();
+    session.while_seeing = {};
+    session.picture();
+    CHECK(session.seen.back().first == 0);
+    CHECK(session.seen.back().count == 6);
+
+    // Another place is another picture; so is one whose squares were not summed.
+    camera.pose.position_m.x += 1;
+    session.set(scene, camera, settings);
+    session.add(1);
+    CHECK(session.seen.back().first == 0);
+    CHECK(session.seen.back().count == 1);
+    settings.layers = {Layer::variance};
+    session.notes.clear();
+    session.set(scene, camera, settings);
+    session.add(1);
+    CHECK(session.notes == kAnew);
+    image = session.picture();
+    REQUIRE(image.layers.size() == 1);
+    CHECK(image.layers[0].layer == Layer::variance);
+    settings.layers = {};
+    session.notes.clear();
+    session.set(scene, camera, settings);
+    session.add(1);
+    CHECK(session.notes == kOn);
+}
+
+TEST_CASE("the variance of a pixel is that of the mean of its samples") {
+    FilmSums film(2);
+    // Samples 1, 2 and 6 of one channel: their variance is 7, that of their mean 7 / 3, after 2 s four times as much.
+    film[0] = {{9, 0, 3}, {41, 0, 3}, 0, 0, 3};
+    film[1] = {{5, 5, 5}, {25, 25, 25}, 0, 0, 1};
+    const LayerImage variance = developed_variance(film, 2);
+    REQUIRE(variance.values.size() == 6);
+    CHECK(double(variance.values[0]) == doctest::Approx(28.0 / 3));
+    CHECK(variance.values[1] == 0);
+    CHECK(variance.values[2] == 0);
+    for (std::size_t i = 3; i < 6; ++i) CHECK(std::isnan(variance.values[i]));
 }

@@ -6,6 +6,8 @@ counted; all others have to agree.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import realcam as rc
@@ -97,7 +99,7 @@ SCENES = {
 }
 
 
-def pictures(scene: rc.Scene, camera: rc.Camera, devices: tuple[str, str], **options: int) -> list[rc.Image]:
+def pictures(scene: rc.Scene, camera: rc.Camera, devices: tuple[str, str], **options: Any) -> list[rc.Image]:
     return [rc.render(scene, camera, device=device, **options) for device in devices]
 
 
@@ -115,6 +117,17 @@ def hold_parity(a: rc.Image, b: rc.Image) -> None:
     # Depth is a mean over the samples that met something.
     met = np.isfinite(a.depth) & np.isfinite(b.depth) & kept
     np.testing.assert_allclose(b.depth[met], a.depth[met], rtol=1e-3)
+
+
+def hold_layer_parity(a: rc.Image, b: rc.Image) -> None:
+    assert list(a.layers) == list(b.layers)
+    assert (a.object_names, a.material_names) == (b.object_names, b.material_names)
+    np.testing.assert_array_equal(a.layers["sample_count"], b.layers["sample_count"])
+    for name, reference in a.layers.items():
+        one, other = reference.astype(float), b.layers[name].astype(float)
+        same = np.isclose(other, one, rtol=1e-3, atol=1e-3 * np.abs(one[np.isfinite(one)]).mean(), equal_nan=True)
+        # A ray at the very edge of a surface or a rim may pass it on one side only; so may one sample of a mean.
+        assert (~same).sum() <= 2 + 3 * ASTRAY_SHARE * same.size, name
 
 
 @needs_gpu
@@ -147,6 +160,31 @@ def test_any_number_of_pixels_and_samples(resolution: tuple[int, int], spp: int)
     # One stray sample among few weighs much: the middle of the pixels' errors.
     errors = np.abs(b.pixels - a.pixels).max(axis=2) / (a.pixels.max(axis=2) + 1e-6 * a.pixels.max())
     assert np.median(errors) <= RELATIVE_RMSE
+
+
+@needs_gpu
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
+def test_layers_agree(scene: str, model: str) -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), model=model, position=(0, 1, 3), look_at=(0, 0.6, -2))
+    hold_layer_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, layers="all"))
+
+
+@needs_gpu
+@pytest.mark.parametrize("name", rc.lens_names())
+def test_layers_through_every_lens_agree(name: str) -> None:
+    lens = rc.Lens.load(name)
+    camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    hold_layer_parity(*pictures(SCENES["objects"](), camera, ("cpu", "cuda"), spp=32, layers="all"))
+
+
+@needs_gpu
+@pytest.mark.parametrize(("resolution", "spp"), [((1, 1), 1000), ((3, 2), 7), ((257, 3), 64)])
+def test_layers_of_any_number_of_pixels_and_samples(resolution: tuple[int, int], spp: int) -> None:
+    lens = rc.Lens.load("tessar-50mm").focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, resolution), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    hold_layer_parity(*pictures(SCENES["all kinds"](), camera, ("cpu", "cuda"), spp=spp, layers="all"))
 
 
 @needs_gpu

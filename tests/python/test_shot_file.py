@@ -53,6 +53,7 @@ def test_every_key_is_heard(tmp_path: Path) -> None:
         seed = 4
         max_bounces = 0
         tone = "linear"
+        layers = ["normal", "depth"]
         """,
     )
     camera = shot.camera
@@ -61,6 +62,8 @@ def test_every_key_is_heard(tmp_path: Path) -> None:
     assert (camera.film.width_mm, camera.film.height_mm, camera.film.resolution) == (20, 10, (40, 20))
     assert (camera.position, camera.look_at, camera.up) == ((0, 1, 5), (0, 1, 0), (1, 0, 0))
     assert (shot.spp, shot.seed, shot.max_bounces, shot.tone) == (3, 4, 0, "linear")
+    assert shot.layers == ("depth", "normal")
+    assert set(shot.render().layers) == {"depth", "normal"}
     lit = rc.render(shot.scene, camera, spp=1, max_bounces=0).pixels[10, 0]
     np.testing.assert_allclose(lit / lit[0], [1, 2, 3], rtol=1e-5)
 
@@ -244,6 +247,9 @@ def test_what_is_wrong_with_an_addition_is_told_with_its_line(text: str, says: s
         ("format = 1\nscene = 'quad.obj'\ntexture = 'gone.png'", r"gone\.png: cannot be read as a texture"),
         ("format = 1\nscene = 'gone.obj'", r"gone\.obj: no such file"),
         ("format = 1\nscene = 'quad.obj'\nlens = 'gone'", "unknown lens"),
+        ("format = 1\nscene = 'quad.obj'\nlayers = ['colour']", r'shot\.toml:3: unknown layer "colour"; all, or'),
+        ("format = 1\nscene = 'quad.obj'\nlayers = 'all'", r':3: "layers" must be an array of texts'),
+        ("format = 1\nscene = 'quad.obj'\nlayers = [1]", r':3: "layers" must be an array of texts'),
         ("format = 1\nscene = [", "shot.toml:2: not valid TOML"),
         ('format = 1\nscene = "a\\u0000b"', 'shot.toml:2: "scene" holds a null character'),
         ('format = 1\nscene = "a"\nlens = "tessar-50mm\\u0000"', 'shot.toml:3: "lens" holds a null character'),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -25,6 +26,8 @@ SHOTS = {
     "all is chosen": "",
     "an environment and a texture": 'environment = "sky.exr"\ntexture = "rgba.png"\nresolution = [60, 40]\nspp = 3\n',
     "metered with bounces": 'lens = "tessar-50mm"\nf_number = 8\nmax_bounces = 3\nseed = 9\nspp = 2\ntone = "linear"\n',
+    "all layers": 'layers = ["all"]\nspp = 2\n',
+    "some layers": 'layers = ["object_id", "normal"]\nenvironment_cd_m2 = 3\nspp = 2\n',
     "another model": 'model = "thick"\nfocus_m = inf\nfilm_mm = [24, 24]\nexposure_time_s = 0.001\niso = 800\n',
 }
 
@@ -79,6 +82,58 @@ def test_a_shot_is_the_same_file_to_the_last_byte(folder: Path, name: str) -> No
         assert first == content(folder / f"c{suffix}")
     spec = oiio.ImageBuf(str(folder / "a.exr")).spec()
     assert {key: spec.getattribute(key) for key in picture.metadata()} == picture.metadata()
+
+
+CHANNELS = {
+    "normal": ("Normal.X", "Normal.Y", "Normal.Z"),
+    "albedo": ("Albedo.R", "Albedo.G", "Albedo.B"),
+    "circle_of_confusion_mm": ("CircleOfConfusion",),
+    "sample_count": ("SampleCount",),
+    "variance": ("Variance.R", "Variance.G", "Variance.B"),
+    "depth_middle": ("DepthMiddle.Z",),
+    "normal_middle": ("NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"),
+    "object_id": ("ObjectId",),
+    "material_id": ("MaterialId",),
+}
+
+
+@pytest.mark.parametrize("program", ["executable", "python"])
+def test_layers_are_channels_of_the_file(folder: Path, program: str) -> None:
+    words = ["render", "card.obj", "-o", "a.exr", "--resolution", "30x20", "--spp", "3", "--layers", "all"]
+    made = run([executable()] if program == "executable" else PYTHON, *words, folder=folder)
+    assert made.returncode == 0, made.stderr
+    (folder / "shot.toml").write_text('format = 1\nscene = "card.obj"\nresolution = [30, 20]\nspp = 3\n')
+    shot = rc.Shot.load(folder / "shot.toml")
+    layers = rc.render(shot.scene, shot.camera, spp=3, layers="all").layers
+    picture = oiio.ImageInput.open(str(folder / "a.exr"))
+    spec = picture.spec()
+    assert spec.channelnames[:4] == ("R", "G", "B", "Z")
+    assert set(spec.channelnames[4:]) == {name for names in CHANNELS.values() for name in names}
+    for layer, names in CHANNELS.items():
+        for i, name in enumerate(names):
+            at = spec.channelnames.index(name)
+            is_number = layers[layer].dtype == np.uint32
+            assert spec.channelformat(at) == ("uint" if is_number else "float")
+            stored = picture.read_image(0, 0, at, at + 1, "uint" if is_number else "float")[..., 0]
+            expected = layers[layer] if len(names) == 1 else layers[layer][..., i]
+            np.testing.assert_array_equal(stored, expected, err_msg=name)
+    assert json.loads(spec.getattribute("realcam:objects")) == {"1": "static geometry"}
+    assert json.loads(spec.getattribute("realcam:materials")) == {"1": "m"}
+    assert "CircleOfConfusion: mm on the film" in spec.getattribute("realcam:unit")
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["--layers", "all", "-o", "a.png"], "--layers: layers are written to .exr, and no --output is one"),
+        (["--layers", "colour", "-o", "a.exr"], '--layers: unknown layer "colour"; all, or some of depth, normal'),
+        (["--layers", "depth,,normal", "-o", "a.exr"], '--layers: unknown layer ""'),
+    ],
+)
+def test_layers_that_cannot_be_written_are_refused(folder: Path, words: list[str], says: str) -> None:
+    made = run([executable()], "render", "card.obj", *words, folder=folder)
+    assert made.returncode == 2
+    assert says in made.stderr.decode()
 
 
 @pytest.mark.parametrize(

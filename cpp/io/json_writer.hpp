@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-namespace realcam::app {
+namespace realcam::io {
 
 /// Writes JSON, indented. Calls follow the text: begin_object().key("a").number(1).end().
 class JsonWriter {
@@ -28,4 +28,4 @@ private:
     bool first_ = true, after_key_ = false;
 };
 
-}  // namespace realcam::app
+}  // namespace realcam::io

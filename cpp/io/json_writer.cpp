@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace realcam::app {
+namespace realcam::io {
 
 JsonWriter& JsonWriter::begin(char open, char close) {
     before_value();
@@ -75,4 +75,4 @@ void JsonWriter::quote(const std::string& value) {
     text_ += '"';
 }
 
-}  // namespace realcam::app
+}  // namespace realcam::io

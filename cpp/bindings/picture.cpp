@@ -1,0 +1,36 @@
+#include "picture.hpp"
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+namespace {
+
+py::tuple texts_from(const IdNames& names) {
+    py::tuple texts(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) texts[i] = text_from(names[i]);
+    return texts;
+}
+
+py::array array_of_layer(const LayerImage& layer, py::ssize_t height, py::ssize_t width) {
+    const LayerInfo& info = info_of(layer.layer);
+    if (info.is_number) return copy_of(layer.numbers, {height, width});
+    if (info.channels == 1) return copy_of(layer.values, {height, width});
+    return copy_of(layer.values, {height, width, info.channels});
+}
+
+}  // namespace
+
+py::tuple picture_from(const Image& image, LayerSet layers) {
+    const py::array pixels = copy_of(image.exposure, {image.height, image.width, 3}),
+                    depth = copy_of(image.depth, {image.height, image.width});
+    py::dict arrays;
+    if (layers.has(Layer::depth)) arrays[info_of(Layer::depth).name] = depth;
+    for (const LayerImage& layer : image.layers)
+        arrays[info_of(layer.layer).name] = array_of_layer(layer, image.height, image.width);
+    return py::make_tuple(pixels, depth, image.stats, arrays, texts_from(image.object_names),
+                          texts_from(image.material_names));
+}
+
+}  // namespace realcam::bindings

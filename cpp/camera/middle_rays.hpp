@@ -1,0 +1,100 @@
+#pragma once
+#include "generate_rays.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// How many places in the pupil are tried before a pixel counts as dark: at two percent of its radius from the next.
+inline constexpr int kMiddlePlaces = 2048;
+
+namespace middle_rays_detail {
+
+/// Places in the unit disc, each farther out than the one before, and evenly spread (Vogel's spiral). The first is the
+/// middle.
+REALCAM_INLINE Vec2f spiral(int index) {
+    constexpr float kGoldenTurn = 0.381966011f;
+    const float turns = static_cast<float>(index) * kGoldenTurn;
+    const Vec2f azimuth = cos_sin_of_turn(turns - std::floor(turns));
+    // The corners of the box count: a pupil with blades may fill them.
+    const float reach = 1.4142136f * std::sqrt(static_cast<float>(index) / static_cast<float>(kMiddlePlaces));
+    return {reach * azimuth.x, reach * azimuth.y};
+}
+
+/// The optical direction from a film point to a place in the box around its pupil.
+REALCAM_INLINE Vec3f direction_to(const PupilView& pupil, const PupilRowPosition& row, Vec2f place) {
+    const float l = row.centre + row.half_width * place.x, m = row.half_height * place.y;
+    const float rest = pupil.index_squared - l * l - m * m;
+    return {l * row.cos - m * row.sin, l * row.sin + m * row.cos, -sqrt_or_zero(rest)};
+}
+
+/// From `first` on, the next place that lies in the pupil by its table; kMiddlePlaces where there is none.
+REALCAM_INLINE int next_place(const PupilView& pupil, const PupilRowPosition& row, Vec2f film, int first) {
+    for (int k = first; k < kMiddlePlaces; ++k) {
+        const Vec3f direction = direction_to(pupil, row, spiral(k));
+        if (direction.z < 0.0f && pupil_pdf(pupil, film.x, film.y, direction.x, direction.y) > 0.0f) return k;
+    }
+    return kMiddlePlaces;
+}
+
+template <int N>
+REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+    LensRays<float, N> inside;
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t place[N];
+    int searching = 0;
+    for (int i = 0; i < N; ++i) {
+        const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
+        const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
+        // The pupil's own middle is tried even where the table leaves it out: the table is a polygon.
+        place[i] = block.used[i] && row.lit > 0.0f ? 0 : kMiddlePlaces;
+        rays.passed[i] = 0;
+        rays.sampled[i] = block.used[i];
+        place_ray(camera, rays, i, {}, false);
+        searching |= place[i] < kMiddlePlaces;
+    }
+    while (searching) {
+        searching = 0;
+        for (int i = 0; i < N; ++i) {
+            const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
+            const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
+            const bool tries = !rays.passed[i] && place[i] < kMiddlePlaces;
+            inside.origin.set(i, {film.x, film.y, camera.film_distance});
+            inside.direction.set(i, direction_to(camera.pupil, row, spiral(tries ? place[i] : 0)));
+            inside.status[i] = tries ? 0 : static_cast<int>(RayStatus::vignetted);
+        }
+        trace_lens(camera.lens, inside);
+        for (int i = 0; i < N; ++i) {
+            if (rays.passed[i] || place[i] == kMiddlePlaces) continue;
+            if (inside.status[i] == 0) {
+                place_ray(camera, rays, i, {inside.origin[i], normalized(inside.direction[i]), 1.0f}, true);
+                rays.passed[i] = 1;
+                continue;
+            }
+            const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
+            const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
+            place[i] = next_place(camera.pupil, row, film, place[i] + 1);
+            searching |= place[i] < kMiddlePlaces;
+        }
+    }
+}
+
+}  // namespace middle_rays_detail
+
+/// The ray from the middle of each pixel through the middle of the pupil as it is seen from there; where that one does
+/// not pass (mirror lenses have a hole there), the nearest to it in the pupil that does. Weights are 1, and 0 where
+/// none passes. Of the block, streams and samples do not count.
+template <int N>
+REALCAM_HD inline void middle_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+    if (camera.model == CameraModel::full_lens) {
+        middle_rays_detail::lens_rays(camera, block, rays);
+        return;
+    }
+    for (int i = 0; i < N; ++i) {
+        const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f}), middle = {0.0f, 0.0f};
+        LensFrameRay ray = camera.model == CameraModel::thick_lens ? thick_lens_ray(camera, film, middle)
+                                                                   : thin_lens_ray(camera, film, middle, 0.0f);
+        ray.weight = 1.0f;
+        place_ray(camera, rays, i, ray, block.used[i] != 0);
+        rays.sampled[i] = rays.passed[i] = block.used[i];
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,121 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "../error.hpp"
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What may be wanted of a picture besides light: per pixel, numbers that describe what was seen there.
+enum class Layer : std::uint32_t {
+    depth,
+    normal,
+    albedo,
+    circle_of_confusion_mm,
+    sample_count,
+    variance,
+    depth_middle,
+    normal_middle,
+    object_id,
+    material_id,
+};
+
+struct LayerInfo {
+    const char* name;  ///< on the command line, in shot files and in Python
+    int channels;
+    bool is_number;  ///< uint32 instead of float
+};
+
+/// In the order of Layer.
+inline constexpr std::array<LayerInfo, 10> kLayers = {{
+    {"depth", 1, false},
+    {"normal", 3, false},
+    {"albedo", 3, false},
+    {"circle_of_confusion_mm", 1, false},
+    {"sample_count", 1, true},
+    {"variance", 3, false},
+    {"depth_middle", 1, false},
+    {"normal_middle", 3, false},
+    {"object_id", 1, true},
+    {"material_id", 1, true},
+}};
+
+constexpr const LayerInfo& info_of(Layer layer) {
+    return kLayers[static_cast<std::size_t>(layer)];
+}
+
+class LayerSet {
+public:
+    constexpr LayerSet() = default;
+    constexpr LayerSet(std::initializer_list<Layer> layers) {
+        for (const Layer layer : layers) add(layer);
+    }
+    static constexpr LayerSet all() {
+        LayerSet set;
+        set.bits_ = (1u << kLayers.size()) - 1;
+        return set;
+    }
+
+    constexpr void add(Layer layer) { bits_ |= 1u << static_cast<std::uint32_t>(layer); }
+    constexpr bool has(Layer layer) const { return ((bits_ >> static_cast<std::uint32_t>(layer)) & 1u) != 0; }
+    constexpr bool has_any(LayerSet other) const { return (bits_ & other.bits_) != 0; }
+    constexpr bool operator==(const LayerSet&) const = default;
+
+private:
+    std::uint32_t bits_ = 0;
+};
+
+/// Those for which samples are traced to their first surface once more.
+inline constexpr LayerSet kSampledLayers = {Layer::normal, Layer::albedo, Layer::circle_of_confusion_mm};
+/// Those of the surface in the middle ray of each pixel.
+inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
+                                           Layer::material_id};
+
+/// The names of all layers, for messages.
+inline std::string layer_names() {
+    std::string names;
+    for (const LayerInfo& layer : kLayers) names += std::string(names.empty() ? "" : ", ") + layer.name;
+    return names;
+}
+
+inline std::vector<std::string> names_of(LayerSet set) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < kLayers.size(); ++i)
+        if (set.has(static_cast<Layer>(i))) names.emplace_back(kLayers[i].name);
+    return names;
+}
+
+/// The layers of these names; "all" means each. Throws InputError for another name.
+inline LayerSet layers_named(const std::vector<std::string>& names) {
+    LayerSet set;
+    for (const std::string& name : names) {
+        if (name == "all") {
+            set = LayerSet::all();
+            continue;
+        }
+        std::size_t i = 0;
+        while (i < kLayers.size() && name != kLayers[i].name) ++i;
+        if (i == kLayers.size())
+            throw InputError("unknown layer \"" + name.substr(0, 60) + "\"; all, or some of " + layer_names() +
+                             " are wanted");
+        set.add(static_cast<Layer>(i));
+    }
+    return set;
+}
+
+/// The names of objects or materials by their ids. 0, which has no name, is nothing.
+using IdNames = std::vector<std::string>;
+
+/// One layer of a picture: height * width * channels values, or, where the layer is one of numbers, such numbers.
+struct LayerImage {
+    Layer layer;
+    std::vector<float> values;
+    std::vector<std::uint32_t> numbers;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,97 @@
+#pragma once
+#include <limits>
+
+#include "../camera/middle_rays.hpp"
+#include "../scene/albedo.hpp"
+#include "layer_sum.hpp"
+#include "path_state.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+namespace see_layers_detail {
+
+/// Traces the rays that passed to their first surfaces. They have their numbers.
+template <int N, class SceneT>
+REALCAM_HD inline void trace_to_surfaces(const CameraRays<N>& camera_rays, SceneT&& scene, SceneRays<N>& rays,
+                                         Hits<N>& hits) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        rays.origin.set(i, camera_rays.origin[i]);
+        rays.direction.set(i, camera_rays.direction[i]);
+        rays.far[i] = kFarAway;
+        rays.active[i] = camera_rays.passed[i];
+    }
+    scene.intersect(rays, hits);
+}
+
+/// Metres along the axis from the film.
+REALCAM_INLINE float depth_of(const CameraView& camera, Vec3f position) {
+    return dot(camera.position - position, camera.backward);
+}
+
+REALCAM_INLINE float circle_at(const CameraView& camera, float depth_m) {
+    return circle_diameter(camera.circle, 1000.0f * (depth_m - camera.front_vertex_m));
+}
+
+REALCAM_INLINE const MeshView& mesh_of(const SceneView& view, Hit hit) {
+    return hit.instance == kNoInstance ? static_cast<const MeshView&>(view)
+                                       : view.objects[view.instances[hit.instance].object];
+}
+
+}  // namespace see_layers_detail
+
+/// What the samples of a block, which are those of render_samples, see first. SceneT as in advance_paths.
+template <int N, class SceneT>
+REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
+                                  SceneT&& scene, LayerResults<N>& results) {
+    using namespace see_layers_detail;
+    CameraRays<N> camera_rays;
+    SceneRays<N> rays;
+    Hits<N> hits;
+    generate_rays(camera, block, camera_rays);
+    number_rays(block, 0, rays);
+    trace_to_surfaces(camera_rays, scene, rays, hits);
+    for (int i = 0; i < N; ++i) {
+        results.weight[i] = camera_rays.passed[i] ? camera_rays.weight[i] : 0.0f;
+        results.met[i] = 0;
+        if (!camera_rays.passed[i]) continue;
+        const Hit hit = hits[i];
+        if (hit.triangle == kNoTriangle) {
+            results.circle_mm[i] = circle_at(camera, kFarAway);
+            continue;
+        }
+        const SurfacePoint point = surface_point<MaterialSet::any>(view, hit, rays.origin[i], rays.direction[i]);
+        results.met[i] = 1;
+        results.normal.set(i, point.normal);
+        results.albedo.set(i, albedo_of(point));
+        results.circle_mm[i] = circle_at(camera, depth_of(camera, point.position));
+    }
+}
+
+/// The nearest surface in the middle ray of each pixel of a block (middle_rays).
+template <int N, class SceneT>
+REALCAM_HD inline void see_middle_surfaces(const SceneView& view, const CameraView& camera, const SampleBlock<N>& block,
+                                           SceneT&& scene, MiddleSurface (&surfaces)[N]) {
+    using namespace see_layers_detail;
+    CameraRays<N> camera_rays;
+    SceneRays<N> rays;
+    Hits<N> hits;
+    middle_rays(camera, block, camera_rays);
+    for (int i = 0; i < N; ++i) rays.number[i] = kDecidedRay;
+    trace_to_surfaces(camera_rays, scene, rays, hits);
+    for (int i = 0; i < N; ++i) {
+        surfaces[i] = {
+            camera_rays.passed[i] ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN(),
+            {0, 0, 0},
+            kNoTriangle,
+            kNoInstance,
+            0};
+        if (!camera_rays.passed[i] || hits.triangle[i] == kNoTriangle) continue;
+        const Hit hit = hits[i];
+        const SurfacePoint point = surface_point<MaterialSet::any>(view, hit, rays.origin[i], rays.direction[i]);
+        surfaces[i] = {depth_of(camera, point.position), point.normal, hit.triangle, hit.instance,
+                       mesh_of(view, hit).triangles[hit.triangle].material};
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../scene/assembly.hpp"
+#include "../scene/material_names.hpp"
+#include "layer_sum.hpp"
+#include "layers.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Ids of what a scene consists of. Objects: 1 is static geometry, and instances follow in their order. Materials: from
+/// 1 on, those of static geometry, then those of each object, in the order in which it is first instanced; all
+/// instances of an object share them.
+class SurfaceIds {
+public:
+    explicit SurfaceIds(const Assembly& assembly) : objects_{"", "static geometry"}, materials_{""} {
+        std::map<const Scene*, std::uint32_t> first;
+        const auto first_of = [&](const Scene& scene) {
+            const auto [place, is_new] = first.try_emplace(&scene, static_cast<std::uint32_t>(materials_.size()));
+            if (is_new)
+                for (std::string& name : material_names(scene)) materials_.push_back(std::move(name));
+            return place->second;
+        };
+        first_material_.push_back(first_of(*assembly.static_geometry));
+        for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
+            const Instance& instance = assembly.instances[i];
+            objects_.push_back(instance.name.empty() ? "instance " + std::to_string(i) : instance.name);
+            first_material_.push_back(first_of(*instance.object));
+        }
+    }
+
+    std::uint32_t object(const MiddleSurface& surface) const {
+        return surface.triangle == kNoTriangle ? 0 : place_of(surface) + 1;
+    }
+    std::uint32_t material(const MiddleSurface& surface) const {
+        return surface.triangle == kNoTriangle ? 0 : first_material_[place_of(surface)] + surface.material;
+    }
+
+    const IdNames& object_names() const { return objects_; }
+    const IdNames& names_of_materials() const { return materials_; }
+
+private:
+    static std::uint32_t place_of(const MiddleSurface& surface) {
+        return surface.instance == kNoInstance ? 0 : surface.instance + 1;
+    }
+
+    IdNames objects_, materials_;
+    std::vector<std::uint32_t> first_material_;  ///< of static geometry, then of each instance
+};
+
+}  // namespace REALCAM_NAMESPACE
