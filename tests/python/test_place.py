@@ -91,7 +91,7 @@ def test_depth_is_the_mean_over_the_samples_that_hit() -> None:
     camera = scenes.pinhole()
     slope = scenes.quad((0, 0, -3), 2, right=(0.8, 0, -0.6), diffuse=0.5)
     points, rays = scenes.points_on_plane(camera, 16, (0, 0, -3), np.cross((0.8, 0, -0.6), (0, 1, 0)))
-    expected = (-points[:, 2]).reshape(16, 24, 16).mean(axis=2)
+    expected = scenes.mean_over_pixels(rays, -points[:, 2])  # weighted as the exposure is
     depth = rc.render(scenes.scene_of(slope).with_environment(1), camera, spp=16).depth
     np.testing.assert_allclose(depth, expected, rtol=1e-5)
     assert len(rays.weights) == 16 * 24 * 16
