@@ -15,7 +15,7 @@ import realcam as rc
 mi = pytest.importorskip("mitsuba", reason="Mitsuba is not installed: pip install 'realcam[truth]'")
 try:
     mi.set_variant("llvm_ad_rgb")
-    from . import mitsuba_scenes as scenes
+    import mitsuba_shots as scenes
 except (ImportError, RuntimeError) as error:  # no LLVM, or one that Mitsuba cannot use
     pytest.skip(f"Mitsuba has no LLVM to work with: {error}", allow_module_level=True)
 
