@@ -39,15 +39,9 @@ std::size_t place_of(TextureReference Material::* wanted) {
     return i;
 }
 
-io::TextureUse use_of(TextureReference Material::* member) {
-    if (member == &Material::opacity_texture) return io::TextureUse::opacity;
-    const bool is_data = member == &Material::normal_texture || member == &Material::metallic_roughness_texture;
-    return is_data ? io::TextureUse::data : io::TextureUse::colour;
-}
-
 /// None: no texture.
 void set_texture(PythonMaterial& m, TextureReference Material::* member, const py::object& pixels) {
-    m.textures[place_of(member)] = pixels.is_none() ? nullptr : texture_from(pixels, use_of(member));
+    m.textures[place_of(member)] = pixels.is_none() ? nullptr : texture_from(pixels, io::use_of(member));
     m.values.*member = {};
 }
 

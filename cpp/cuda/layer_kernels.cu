@@ -22,11 +22,8 @@ __device__ SampleBlock<1> block_at(const LayerJob& job, int column, int row) {
 template <bool instanced>
 __global__ void see_layers_of(const __grid_constant__ LayerJob job, int lanes_per_pixel, LayerSum* sums) {
     const WarpTiles tiles(lanes_per_pixel);
-    const std::int64_t warp = thread_index() / kWarpSize;
-    const int lane = threadIdx.x % kWarpSize, place = lane / tiles.lanes;
-    const std::int64_t across = tiles.across(job.camera.width);
-    const int column = static_cast<int>(warp % across) * tiles.width + place % tiles.width;
-    const int row = static_cast<int>(warp / across) * tiles.height + place / tiles.width;
+    const int lane = threadIdx.x % kWarpSize;
+    const auto [column, row] = tiles.pixel_of(thread_index(), job.camera.width);
     const bool inside = column < job.camera.width && row < job.row_count;
 
     LayerSum sum{};

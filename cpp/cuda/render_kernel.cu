@@ -48,11 +48,8 @@ template <LensKind lens_kind, MaterialSet set, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
     const WarpTiles tiles(lanes_per_pixel);
-    const std::int64_t warp = thread_index() / kWarpSize;
-    const int lane = threadIdx.x % kWarpSize, place = lane / tiles.lanes;
-    const std::int64_t across = tiles.across(job.camera.width);
-    const int column = static_cast<int>(warp % across) * tiles.width + place % tiles.width;
-    const int row = static_cast<int>(warp / across) * tiles.height + place / tiles.width;
+    const int lane = threadIdx.x % kWarpSize;
+    const auto [column, row] = tiles.pixel_of(thread_index(), job.camera.width);
     const bool inside = column < job.camera.width && row < job.row_count;
 
     // Not in registers, of which there are none to spare for what is seldom wanted.

@@ -15,6 +15,17 @@ struct WarpTiles {
     }
     __host__ __device__ std::int64_t across(int columns) const { return (columns + width - 1) / width; }
     __host__ __device__ std::int64_t down(int rows) const { return (rows + height - 1) / height; }
+
+    struct Pixel {
+        int column, row;
+    };
+    /// Of a thread, by its number in the launch, over a part of the picture with so many columns.
+    __device__ Pixel pixel_of(std::int64_t thread, int columns) const {
+        const std::int64_t warp = thread / kWarpSize, tiles = across(columns);
+        const int place = static_cast<int>(thread % kWarpSize) / lanes;
+        return {static_cast<int>(warp % tiles) * width + place % width,
+                static_cast<int>(warp / tiles) * height + place / width};
+    }
 };
 
 template <class T>

@@ -25,6 +25,13 @@ struct DecodedImage {
 /// channel, or where a picture has none, or white alone there, in the mean of the others.
 enum class TextureUse { colour, data, opacity };
 
+/// What the picture for a property of a material is used for.
+inline TextureUse use_of(TextureReference Material::* property) {
+    if (property == &Material::opacity_texture) return TextureUse::opacity;
+    const bool is_data = property == &Material::normal_texture || property == &Material::metallic_roughness_texture;
+    return is_data ? TextureUse::data : TextureUse::colour;
+}
+
 /// Whether the colours of a picture have to be decoded (IEC 61966-2-1) to become linear; its alpha is always linear.
 inline bool is_srgb(const DecodedImage& image, TextureUse use) {
     return use == TextureUse::colour && !image.is_linear;

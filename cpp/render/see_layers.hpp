@@ -33,11 +33,6 @@ REALCAM_INLINE float circle_at(const CameraView& camera, float depth_m) {
     return circle_diameter(camera.circle, 1000.0f * (depth_m - camera.front_vertex_m));
 }
 
-REALCAM_INLINE const MeshView& mesh_of(const SceneView& view, Hit hit) {
-    return hit.instance == kNoInstance ? static_cast<const MeshView&>(view)
-                                       : view.objects[view.instances[hit.instance].object];
-}
-
 }  // namespace see_layers_detail
 
 /// What the samples of a block, which are those of render_samples, see first. SceneT as in advance_paths.
@@ -90,7 +85,7 @@ REALCAM_HD inline void see_middle_surfaces(const SceneView& view, const CameraVi
         const Hit hit = hits[i];
         const SurfacePoint point = surface_point<MaterialSet::any>(view, hit, rays.origin[i], rays.direction[i]);
         surfaces[i] = {depth_of(camera, point.position), point.normal, hit.triangle, hit.instance,
-                       mesh_of(view, hit).triangles[hit.triangle].material};
+                       mesh_of(view, hit.instance).triangles[hit.triangle].material};
     }
 }
 

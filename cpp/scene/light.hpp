@@ -15,8 +15,7 @@ REALCAM_INLINE float area_light_pdf(float area, float distance_squared, float co
 template <MaterialSet set>
 REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& light, float along_u, float along_v) {
     if constexpr (set == MaterialSet::plain) return light.radiance;
-    const MeshView& mesh = light.instance == kNoInstance ? static_cast<const MeshView&>(scene)
-                                                         : scene.objects[scene.instances[light.instance].object];
+    const MeshView& mesh = mesh_of(scene, light.instance);
     const Triangle& triangle = mesh.triangles[light.triangle];
     const Hit place = {0.0f, light.triangle, along_u, along_v, light.instance};
     Color radiance = light.radiance;
@@ -116,8 +115,7 @@ REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, LightReceiver rec
 /// The area light that a hit on an emitting triangle is on.
 REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
     const bool is_static = hit.instance == kNoInstance;
-    const MeshView& mesh =
-        is_static ? static_cast<const MeshView&>(scene) : scene.objects[scene.instances[hit.instance].object];
+    const MeshView& mesh = mesh_of(scene, hit.instance);
     std::int32_t first = 0, last = mesh.emitter_count;
     while (first + 1 < last) {
         const std::int32_t middle = (first + last) / 2;

@@ -53,10 +53,7 @@ struct Holes {
     const SceneView& scene;
     std::uint32_t ray;
 
-    REALCAM_INLINE bool stop(Hit hit) const {
-        if (hit.instance == kNoInstance) return stops_ray(scene, hit, ray);
-        return stops_ray(scene.objects[scene.instances[hit.instance].object], hit, ray);
-    }
+    REALCAM_INLINE bool stop(Hit hit) const { return stops_ray(mesh_of(scene, hit.instance), hit, ray); }
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -28,6 +28,12 @@ struct Hits {
     }
 };
 
+/// The triangles of an instance's object, or of static geometry.
+REALCAM_INLINE const MeshView& mesh_of(const SceneView& scene, std::uint32_t instance) {
+    if (instance == kNoInstance) return scene;
+    return scene.objects[scene.instances[instance].object];
+}
+
 /// A point on a surface, turned to the side from which the ray came.
 struct SurfacePoint {
     Vec3f position;

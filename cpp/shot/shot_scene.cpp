@@ -106,16 +106,13 @@ private:
     }
 
     void put(Scene& scene, std::size_t index, const MaterialRequest& from) {
-        constexpr io::TextureUse kUses[] = {io::TextureUse::colour, io::TextureUse::colour, io::TextureUse::colour,
-                                            io::TextureUse::data,   io::TextureUse::data,   io::TextureUse::opacity};
-        static_assert(std::size(kUses) == kMaterialTextures.size());
         Material material = from.values;
         for (std::size_t i = 0; i < kMaterialTextures.size(); ++i) {
             if (from.textures[i].empty()) continue;
             if (scene.uvs.empty())
                 throw InputError(from.place + ": the material's object has no texture coordinates to lay a texture by");
             (material.*kMaterialTextures[i]).texture = static_cast<std::int32_t>(scene.textures.size());
-            scene.textures.push_back(texture(from.textures[i], kUses[i]));
+            scene.textures.push_back(texture(from.textures[i], io::use_of(kMaterialTextures[i])));
         }
         scene.materials[index] = material;
     }
