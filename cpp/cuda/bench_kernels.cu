@@ -98,7 +98,7 @@ __global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh
     const BenchRay ray = rays[i];
     const Hit hit = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway);
     if (hit.triangle == kNoTriangle) return;
-    const SurfacePoint point = surface_point<MaterialSet::plain>(scene, hit, ray.origin, ray.direction);
+    const SurfacePoint point = surface_point<SceneKind::plain>(scene, hit, ray.origin, ray.direction);
     const Vec2f u = sample_2d(pixel_stream(i, 1), 0, 7);
     Vec3f direction = sample_cosine(point.geometric_normal, u);
     if (uniform) {

@@ -6,7 +6,7 @@ namespace REALCAM_NAMESPACE {
 
 /// The SceneT of render_samples on a GPU: one ray of one thread. `instanced`: whether there is anything but static
 /// geometry.
-template <MaterialSet set, bool instanced>
+template <SceneKind scene_kind, bool instanced>
 struct BvhScene {
     const SceneView& scene;
     const SceneBvhView& bvh;
@@ -31,7 +31,7 @@ struct BvhScene {
 
 private:
     REALCAM_INLINE auto holes(const SceneRays<1>& rays) const {
-        if constexpr (set == MaterialSet::any)
+        if constexpr (scene_kind == SceneKind::any)
             return Holes{scene, rays.number[0]};
         else
             return NoHoles();

@@ -29,7 +29,7 @@ __global__ void see_layers_of(const __grid_constant__ LayerJob job, int lanes_pe
     LayerSum sum{};
     if (inside) {
         SampleBlock<1> block = block_at(job, column, row);
-        BvhScene<MaterialSet::any, instanced> scene{job.scene, job.bvh, 0};
+        BvhScene<SceneKind::any, instanced> scene{job.scene, job.bvh, 0};
         LayerResults<1> results;
         const auto step = static_cast<std::uint32_t>(tiles.lanes);
         for (std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes); s < job.sample_count; s += step) {
@@ -53,7 +53,7 @@ __global__ void see_middle_surfaces_of(const __grid_constant__ LayerJob job, Mid
     if (pixel >= static_cast<std::int64_t>(job.row_count) * job.camera.width || *job.stop) return;
     const SampleBlock<1> block =
         block_at(job, static_cast<int>(pixel % job.camera.width), static_cast<int>(pixel / job.camera.width));
-    BvhScene<MaterialSet::any, instanced> scene{job.scene, job.bvh, 0};
+    BvhScene<SceneKind::any, instanced> scene{job.scene, job.bvh, 0};
     MiddleSurface seen[1];
     see_middle_surfaces(job.scene, job.camera, block, scene, seen);
     surfaces[pixel] = seen[0];

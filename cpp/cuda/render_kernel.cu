@@ -44,7 +44,7 @@ struct StageClock {
     }
 };
 
-template <LensKind lens_kind, MaterialSet set, bool instanced, class Clock>
+template <LensKind lens_kind, SceneKind scene_kind, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
     const WarpTiles tiles(lanes_per_pixel);
@@ -57,7 +57,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     for (auto& channel : squares) channel[threadIdx.x] = 0;
     PixelSum sum{};
     std::uint32_t sampled = 0, passed = 0;
-    BvhScene<set, instanced> scene{job.scene, job.bvh, 0};
+    BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
     Clock clock;
     if (inside) {
         SampleBlock<1> block;
@@ -70,7 +70,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         for (; s < job.sample_count; s += static_cast<std::uint32_t>(tiles.lanes)) {
             if (*job.stop) break;
             block.sample[0] = job.first_sample + s;
-            render_samples<lens_kind, set>(job.scene, job.camera, job.path, block, scene, clock, results);
+            render_samples<lens_kind, scene_kind>(job.scene, job.camera, job.path, block, scene, clock, results);
             sum.add(results, 0);
             if (job.adds_squares) {
                 PixelSum added{};
@@ -129,21 +129,22 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
 
 using RenderKernel = void (*)(RenderJob, int);
 
-template <LensKind lens_kind, MaterialSet set>
+template <LensKind lens_kind, SceneKind scene_kind>
 RenderKernel kernel_for(bool instanced, bool timed) {
-    if (instanced) return timed ? render<lens_kind, set, true, StageClock> : render<lens_kind, set, true, NoClock>;
-    return timed ? render<lens_kind, set, false, StageClock> : render<lens_kind, set, false, NoClock>;
+    if (instanced)
+        return timed ? render<lens_kind, scene_kind, true, StageClock> : render<lens_kind, scene_kind, true, NoClock>;
+    return timed ? render<lens_kind, scene_kind, false, StageClock> : render<lens_kind, scene_kind, false, NoClock>;
 }
 
-RenderKernel kernel_for(MaterialSet set, LensKind lens_kind, bool instanced, bool timed) {
-    const auto of_set = [&]<MaterialSet known>() {
+RenderKernel kernel_for(SceneKind scene_kind, LensKind lens_kind, bool instanced, bool timed) {
+    const auto of_set = [&]<SceneKind known>() {
         return lens_kind == LensKind::plain ? kernel_for<LensKind::plain, known>(instanced, timed)
                                             : kernel_for<LensKind::any, known>(instanced, timed);
     };
-    switch (set) {
-        case MaterialSet::plain: return of_set.operator()<MaterialSet::plain>();
-        case MaterialSet::opaque: return of_set.operator()<MaterialSet::opaque>();
-        default: return of_set.operator()<MaterialSet::any>();
+    switch (scene_kind) {
+        case SceneKind::plain: return of_set.operator()<SceneKind::plain>();
+        case SceneKind::opaque: return of_set.operator()<SceneKind::opaque>();
+        default: return of_set.operator()<SceneKind::any>();
     }
 }
 
@@ -151,7 +152,7 @@ RenderKernel kernel_for(MaterialSet set, LensKind lens_kind, bool instanced, boo
 
 void check_render_code() {
     cudaFuncAttributes attributes{};
-    check_cuda(cudaFuncGetAttributes(&attributes, render<LensKind::any, MaterialSet::any, true, NoClock>),
+    check_cuda(cudaFuncGetAttributes(&attributes, render<LensKind::any, SceneKind::any, true, NoClock>),
                "loading its code");
 }
 
@@ -160,7 +161,7 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const bool instanced = job.scene.instance_count > 0;
-    const RenderKernel kernel = kernel_for(job.scene.material_set, job.camera.lens.kind, instanced, timed);
+    const RenderKernel kernel = kernel_for(job.scene.kind, job.camera.lens.kind, instanced, timed);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }

@@ -92,13 +92,13 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
     }
 }
 
-template <MaterialSet set>
-PacketScene<set> packet_scene_of(const realcam_tile& tile, const SceneView& view) {
+template <SceneKind scene_kind>
+PacketScene<scene_kind> packet_scene_of(const realcam_tile& tile, const SceneView& view) {
     return {static_cast<RTCScene>(tile.embree_scene), static_cast<std::uint32_t>(view.instance_count),
             RayOrder::coherent, 0};
 }
 
-template <MaterialSet set>
+template <SceneKind scene_kind>
 void render_tile_of(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const PathSettings settings = *static_cast<const PathSettings*>(tile->path_settings);
@@ -106,10 +106,10 @@ void render_tile_of(realcam_tile* tile) {
     PathResults<kLanes> results;
     auto* const sums = static_cast<PixelSum*>(tile->sums);
     StageClock clock;
-    PacketScene<set> scene = packet_scene_of<set>(*tile, view);
+    PacketScene<scene_kind> scene = packet_scene_of<scene_kind>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
-        render_samples<LensKind::any, set>(view, camera, settings, block, scene, clock, results);
+        render_samples<LensKind::any, scene_kind>(view, camera, settings, block, scene, clock, results);
         for (int k = 0; k < lanes; ++k) {
             sums[place[k]].add(results, k);
             tile->sampled_rays += static_cast<std::uint64_t>(results.sampled[k]);
@@ -126,10 +126,10 @@ void render_tile_of(realcam_tile* tile) {
 }
 
 void render_tile(realcam_tile* tile) {
-    switch (static_cast<const SceneView*>(tile->scene_view)->material_set) {
-        case MaterialSet::plain: return render_tile_of<MaterialSet::plain>(tile);
-        case MaterialSet::opaque: return render_tile_of<MaterialSet::opaque>(tile);
-        case MaterialSet::any: return render_tile_of<MaterialSet::any>(tile);
+    switch (static_cast<const SceneView*>(tile->scene_view)->kind) {
+        case SceneKind::plain: return render_tile_of<SceneKind::plain>(tile);
+        case SceneKind::opaque: return render_tile_of<SceneKind::opaque>(tile);
+        case SceneKind::any: return render_tile_of<SceneKind::any>(tile);
     }
 }
 
@@ -138,7 +138,7 @@ void see_layers_of_tile(realcam_tile* tile) {
     const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
     LayerResults<kLanes> results;
     auto* const sums = static_cast<LayerSum*>(tile->sums);
-    auto scene = packet_scene_of<MaterialSet::any>(*tile, view);
+    auto scene = packet_scene_of<SceneKind::any>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
         see_layers(view, camera, block, scene, results);
@@ -151,7 +151,7 @@ void see_middle_surfaces_of_tile(realcam_tile* tile) {
     const CameraView camera = *static_cast<const CameraView*>(tile->camera_view);
     MiddleSurface seen[kLanes];
     auto* const surfaces = static_cast<MiddleSurface*>(tile->sums);
-    auto scene = packet_scene_of<MaterialSet::any>(*tile, view);
+    auto scene = packet_scene_of<SceneKind::any>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
         see_middle_surfaces(view, camera, block, scene, seen);

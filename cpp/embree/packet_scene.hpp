@@ -5,7 +5,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// The SceneT of render_samples on a CPU: hands the lanes to Embree in packets of 16.
-template <MaterialSet set>
+template <SceneKind scene_kind>
 struct PacketScene {
     RTCScene scene;
     std::uint32_t instance_count;
@@ -74,7 +74,7 @@ private:
             packet.tfar[k] = on ? rays.far[i] : 0.0f;
             packet.time[k] = 0.0f;
             packet.mask[k] = 0xffffffffu;
-            packet.id[k] = set == MaterialSet::any && on ? rays.number[i] : 0;  // for the filter of EmbreeScene
+            packet.id[k] = scene_kind == SceneKind::any && on ? rays.number[i] : 0;  // for the filter of EmbreeScene
             packet.flags[k] = 0;
             valid[k] = on ? -1 : 0;
             used += on ? 1 : 0;

@@ -102,14 +102,14 @@ REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& p
 /// A sample of one of the lights, by the illuminance that each would bring if nothing stood in between: one of eight
 /// that sample_light draws, by its share of what they bring (resampling, Talbot et al. 2005), or of up to 64 where
 /// those were all behind the surface. Black: no light.
-template <MaterialSet set>
+template <SceneKind scene_kind>
 REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightReceiver receiver, std::uint32_t seed) {
     LightSample chosen{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     float sum = 0.0f;
     for (int i = 0; i < 8 || (i < 64 && !(sum > 0.0f)); ++i) {
         const auto random = [&] { return unit_float(seed = hash32(seed)); };
         const Vec2f u = {random(), random()};
-        const LightSample light = sample_light<set>(scene, receiver, u, hash32(seed));
+        const LightSample light = sample_light<scene_kind>(scene, receiver, u, hash32(seed));
         const float cosine = dot(receiver.normal, light.direction);
         const float illuminance = cosine > 0.0f ? cosine * luminance(light.irradiance) : 0.0f;
         sum += illuminance;
@@ -147,7 +147,7 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
 /// Takes each path to the next surface, collects the light that reaches it there, and scatters it. Returns whether any
 /// goes on. `SceneT` offers intersect(rays, hits) and occluded(rays, hidden) for N rays; `Probe` offers
 /// enter(RenderStage) and costs nothing where nobody asks for the time.
-template <MaterialSet set, int N, class SceneT, class Probe>
+template <SceneKind scene_kind, int N, class SceneT, class Probe>
 REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                      const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
                                      PathState<N>& path, PathResults<N>& results) {
@@ -160,7 +160,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
 
     const std::uint32_t first_dimension =
         dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
-    if constexpr (set == MaterialSet::any) {
+    if constexpr (scene_kind == SceneKind::any) {
         number_rays(block, bounce, path.rays);
         for (int i = 0; i < N; ++i) shadow.number[i] = shadow_ray_number(hash32(path.rays.number[i]));
     }
@@ -182,8 +182,8 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
                 results.irradiance.set(i, results.irradiance[i] + clamped(environment_light(view, path, i), limit));
             continue;
         }
-        const SurfacePoint point = surface_point<set>(view, hit, path.rays.origin[i], direction);
-        if constexpr (set != MaterialSet::plain) {
+        const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction);
+        if constexpr (scene_kind != SceneKind::plain) {
             const Color absorption = path.absorption[i];
             if (!is_black(absorption))
                 path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
@@ -196,12 +196,12 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
             continue;
         }
         const std::uint32_t seed = hash32(block.stream[i] ^ block.sample[i], first_dimension);
-        if constexpr (set == MaterialSet::any) {
+        if constexpr (scene_kind == SceneKind::any) {
             darkens[i] = point.material->only_shadows;
             if (darkens[i]) {
                 // What is behind is seen as far as the light here is not hidden. The ray keeps its direction, and so
                 // the density of that.
-                const LightSample light = light_by_illuminance<set>(view, {point.position, point.normal}, seed);
+                const LightSample light = light_by_illuminance<scene_kind>(view, {point.position, point.normal}, seed);
                 set_shadow_ray(point, light, i, shadow);
                 shadow.active[i] = !is_black(light.irradiance);
                 lit |= shadow.active[i];
@@ -211,10 +211,10 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
                 continue;
             }
         }
-        auto bsdf = make_bsdf<set>(point, -direction);
+        auto bsdf = make_bsdf<scene_kind>(point, -direction);
         const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}};
         const LightSample light =
-            sample_light<set>(view, receiver, block.random(i, first_dimension + dimension::light), seed);
+            sample_light<scene_kind>(view, receiver, block.random(i, first_dimension + dimension::light), seed);
         const Color lambert_and_narrow = bsdf.eval(light.direction);
         const bool goes_on = !is_last && settings.transport == LightTransport::paths;
         // Where only narrow lobes send out a ray, Lambert's lobe sees light samples alone.
@@ -244,7 +244,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         path.pdf[i] = next.pdf;
         path.receiver_position.set(i, receiver.position);
         path.receiver_normal.set(i, receiver.normal);
-        if constexpr (set != MaterialSet::plain) {
+        if constexpr (scene_kind != SceneKind::plain) {
             if (next.refracted) path.absorption.set(i, point.is_front ? point.material->absorption : Color{0, 0, 0});
         }
         if (path.rays.active[i] && bounce >= kFirstRoulette) play_roulette(block, bounce, i, path);
@@ -256,7 +256,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         probe.enter(RenderStage::other);
         for (int i = 0; i < N; ++i) {
             if (shadow.active[i] & !hidden[i]) results.irradiance.set(i, results.irradiance[i] + unshadowed[i]);
-            if constexpr (set == MaterialSet::any) {
+            if constexpr (scene_kind == SceneKind::any) {
                 if (darkens[i] & shadow.active[i] & hidden[i]) path.rays.active[i] = 0;
             }
         }

@@ -14,7 +14,7 @@ struct SceneRays {
     alignas(kLaneAlignment<float, N>) float far[N];  ///< how far along the ray to look, in lengths of the direction
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t active[N];
     alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];  ///< by which a ray decides at holes; for scenes
-                                                                        ///< of MaterialSet::any alone
+                                                                        ///< of SceneKind::any alone
 };
 
 /// Numbers the rays of a bounce; those of the camera are bounce 0.

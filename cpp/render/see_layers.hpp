@@ -55,7 +55,7 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
             results.circle_mm[i] = circle_at(camera, kFarAway);
             continue;
         }
-        const SurfacePoint point = surface_point<MaterialSet::any>(view, hit, rays.origin[i], rays.direction[i]);
+        const SurfacePoint point = surface_point<SceneKind::any>(view, hit, rays.origin[i], rays.direction[i]);
         results.met[i] = 1;
         results.normal.set(i, point.normal);
         results.albedo.set(i, albedo_of(point));
@@ -83,7 +83,7 @@ REALCAM_HD inline void see_middle_surfaces(const SceneView& view, const CameraVi
             0};
         if (!camera_rays.passed[i] || hits.triangle[i] == kNoTriangle) continue;
         const Hit hit = hits[i];
-        const SurfacePoint point = surface_point<MaterialSet::any>(view, hit, rays.origin[i], rays.direction[i]);
+        const SurfacePoint point = surface_point<SceneKind::any>(view, hit, rays.origin[i], rays.direction[i]);
         surfaces[i] = {depth_of(camera, point.position), point.normal, hit.triangle, hit.instance,
                        mesh_of(view, hit.instance).triangles[hit.triangle].material};
     }

@@ -12,21 +12,21 @@ REALCAM_INLINE float area_light_pdf(float area, float distance_squared, float co
 }
 
 /// What an area light sends from the point with these barycentric coordinates.
-template <MaterialSet set>
+template <SceneKind scene_kind>
 REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& light, float along_u, float along_v) {
-    if constexpr (set == MaterialSet::plain) return light.radiance;
+    if constexpr (scene_kind == SceneKind::plain) return light.radiance;
     const MeshView& mesh = mesh_of(scene, light.instance);
     const Triangle& triangle = mesh.triangles[light.triangle];
     const Hit place = {0.0f, light.triangle, along_u, along_v, light.instance};
     Color radiance = light.radiance;
     const TextureReference& map = mesh.materials[triangle.material].emission_texture;
     if (map.texture >= 0) radiance *= texture_color(mesh, map, surface_uv(mesh, triangle, place).at);
-    if constexpr (set == MaterialSet::any) radiance = opacity_at(mesh, triangle, place) * radiance;
+    if constexpr (scene_kind == SceneKind::any) radiance = opacity_at(mesh, triangle, place) * radiance;
     return radiance;
 }
 
 /// A point on an area light, drawn evenly.
-template <MaterialSet set>
+template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
     const float root = std::sqrt(u.x), along_u = root * (1.0f - u.y), along_v = root * u.y;
     const Vec3f on_light = light.corner + along_u * light.edge_u + along_v * light.edge_v;
@@ -35,12 +35,13 @@ REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaL
     const float distance = std::sqrt(squared);
     const Vec3f direction = (1.0f / distance) * to_light;
     const float on_side = -dot(direction, light.normal);
-    const float cosine = set != MaterialSet::plain && light.is_two_sided ? std::fabs(on_side) : on_side;
+    const float cosine = scene_kind != SceneKind::plain && light.is_two_sided ? std::fabs(on_side) : on_side;
     // Also where the point lies on the light, and the direction has no value.
     if (!(cosine > 0.0f)) return {light.normal, distance, 1.0f, {0, 0, 0}, kDelta};
     const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);
     const float pdf = area_light_pdf(light.area, squared, cosine);
-    return {direction, distance, reach, (1.0f / pdf) * emitted_radiance<set>(scene, light, along_u, along_v), pdf};
+    return {direction, distance, reach, (1.0f / pdf) * emitted_radiance<scene_kind>(scene, light, along_u, along_v),
+            pdf};
 }
 
 REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f position) {
@@ -126,7 +127,7 @@ REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
 
 /// Chooses one light, and a place on it. One pair of numbers does both, so that what is even over a pixel's samples is
 /// even over each light. `seed` as in choose_light.
-template <MaterialSet set>
+template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
     const LightKinds kinds(scene, receiver);
     LightSample sample{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
@@ -142,7 +143,7 @@ REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver re
         probability *= chosen.probability;
         const std::int32_t area = chosen.light - scene.point_count;
         sample = area < 0 ? sample_point_light(scene.points[chosen.light], receiver.position)
-                          : sample_area_light<set>(scene, scene.areas[area], receiver.position, u);
+                          : sample_area_light<scene_kind>(scene, scene.areas[area], receiver.position, u);
     } else {
         u.x -= probability;
         probability = kinds.environment_probability();

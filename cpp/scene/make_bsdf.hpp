@@ -98,11 +98,11 @@ REALCAM_INLINE void add_metallic_roughness(Bsdf& bsdf, const SurfacePoint& point
 
 }  // namespace make_bsdf_detail
 
-/// The BSDF of a point for a direction of view. For MaterialSet::plain all materials must be plain.
-template <MaterialSet set>
+/// The BSDF of a point for a direction of view. For SceneKind::plain all materials must be plain.
+template <SceneKind scene_kind>
 REALCAM_INLINE auto make_bsdf(const SurfacePoint& point, Vec3f to_eye) {
     using namespace make_bsdf_detail;
-    if constexpr (set == MaterialSet::plain) {
+    if constexpr (scene_kind == SceneKind::plain) {
         const Material& m = *point.material;
         return PlainBsdf{point.normal, point.geometric_normal, to_eye, point.diffuse, m.specular, m.shininess};
     } else {

@@ -67,10 +67,10 @@ inline constexpr std::array<TextureReference Material::*, 6> kMaterialTextures =
     &Material::emission_texture, &Material::metallic_roughness_texture,
     &Material::normal_texture,   &Material::opacity_texture};
 
-/// What a scene's materials ask of the kernels: code for more than is there would cost speed.
-enum class MaterialSet : std::int32_t {
-    plain,  ///< Material::is_plain holds for all
-    opaque,  ///< none has holes
+/// What a scene asks of the kernels: code for more than is there would cost speed.
+enum class SceneKind : std::int32_t {
+    plain,  ///< Material::is_plain holds for all materials, and nothing moves
+    opaque,  ///< no material has holes, and nothing moves
     any,
 };
 

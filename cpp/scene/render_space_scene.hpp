@@ -48,7 +48,7 @@ public:
         for (const auto& object : objects_) object_views_.push_back(object->view());
         const Environment& environment = assembly_.static_geometry->environment;
         environment_ = environment_tables(environment, checkpoint_);
-        find_material_set();
+        find_kind();
         update_instances();
         checkpoint_ = Checkpoint();
     }
@@ -75,7 +75,7 @@ public:
     }
 
     SceneView view() const {
-        SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, material_set_, false, {}};
+        SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, kind_, false, {}};
         const Scene& scene = *assembly_.static_geometry;
         const Environment& environment = scene.environment;
         view.objects = object_views_.data();
@@ -189,12 +189,12 @@ private:
                 object_of_[i], static_cast<std::int32_t>(areas_.size())};
     }
 
-    void find_material_set() {
+    void find_kind() {
         const auto add = [&](const Scene& scene) {
             for (const Material& m : scene.materials)
-                material_set_ = std::max(material_set_, m.has_holes()  ? MaterialSet::any
-                                                        : m.is_plain() ? MaterialSet::plain
-                                                                       : MaterialSet::opaque);
+                kind_ = std::max(kind_, m.has_holes()  ? SceneKind::any
+                                        : m.is_plain() ? SceneKind::plain
+                                                       : SceneKind::opaque);
         };
         add(*assembly_.static_geometry);
         for (const Instance& instance : assembly_.instances) add(*instance.object);
@@ -250,7 +250,7 @@ private:
     std::vector<PointLight> points_;
     std::vector<AreaLight> areas_;
     LightTree light_tree_;
-    MaterialSet material_set_ = MaterialSet::plain;
+    SceneKind kind_ = SceneKind::plain;
     EnvironmentTables environment_;
 };
 

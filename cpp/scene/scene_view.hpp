@@ -129,7 +129,7 @@ struct SceneView : MeshView, InstancesView {
     const MeshView* objects;
     const SunLight* suns;
     std::int32_t object_count, sun_count;
-    MaterialSet material_set;
+    SceneKind kind;
     bool has_environment;
     EnvironmentView environment;
 };

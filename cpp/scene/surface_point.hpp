@@ -119,7 +119,7 @@ REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangl
     return size2 > 0.0f ? (1.0f / std::sqrt(size2)) * mapped : normal;
 }
 
-template <MaterialSet set>
+template <SceneKind scene_kind>
 REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
     const Triangle triangle = mesh.triangles[hit.triangle];
     const TrianglePlane plane = mesh.planes[hit.triangle];
@@ -132,14 +132,14 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     point.is_front = dot(plane.normal, ray_direction) <= 0;
     point.geometric_normal = point.is_front ? plane.normal : -plane.normal;
     point.normal = point.geometric_normal;
-    const bool is_textured = set != MaterialSet::plain || material.diffuse_texture.texture >= 0;
+    const bool is_textured = scene_kind != SceneKind::plain || material.diffuse_texture.texture >= 0;
     const SurfaceUv uv = is_textured ? surface_uv(mesh, triangle, hit) : SurfaceUv{{0, 0}, {0, 0}, {0, 0}};
     if (mesh.normals) {
         const Vec3f n = w * mesh.normals[corner[0]] + hit.u * mesh.normals[corner[1]] + hit.v * mesh.normals[corner[2]];
         const float n2 = dot(n, n);
         if (n2 > 0) point.normal = (1.0f / std::sqrt(n2)) * n;
     }
-    if constexpr (set != MaterialSet::plain) {
+    if constexpr (scene_kind != SceneKind::plain) {
         if (material.normal_texture.texture >= 0 && mesh.uvs) {
             const Vec3f outer = dot(point.normal, plane.normal) < 0 ? -point.normal : point.normal;
             point.normal = mapped_normal(mesh, triangle, material, uv, outer);
@@ -151,7 +151,7 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     point.diffuse = material.diffuse;
     if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
     point.emission = point.is_front ? material.emission : Color{0, 0, 0};
-    if constexpr (set != MaterialSet::plain) {
+    if constexpr (scene_kind != SceneKind::plain) {
         if (material.emits_on_both_sides) point.emission = material.emission;
         point.emission *= texture_color(mesh, material.emission_texture, uv.at);
         const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
@@ -176,14 +176,14 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
 }
 
 /// Likewise of a whole scene: rays go into the object's frame, with the same distances, and what they find comes back.
-template <MaterialSet set>
+template <SceneKind scene_kind>
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
     if (hit.instance == kNoInstance)
-        return surface_point<set>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
+        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
     const InstanceView& instance = scene.instances[hit.instance];
     const InverseAffine<float>& into = instance.object_from_render;
-    SurfacePoint point =
-        surface_point<set>(scene.objects[instance.object], hit, into.point(ray_origin), into.direction(ray_direction));
+    SurfacePoint point = surface_point<scene_kind>(scene.objects[instance.object], hit, into.point(ray_origin),
+                                                   into.direction(ray_direction));
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);

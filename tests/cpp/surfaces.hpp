@@ -34,7 +34,7 @@ inline Vec3f eye_at(double cosine) {
 }
 
 inline Bsdf bsdf_of(const Surface& surface, Vec3f eye) {
-    return make_bsdf<MaterialSet::any>(point_on(surface), eye);
+    return make_bsdf<SceneKind::any>(point_on(surface), eye);
 }
 
 template <class Change>

@@ -103,7 +103,7 @@ TEST_CASE("directions follow the density of the whole BSDF") {
     for (const Surface& surface : rough_surfaces()) {
         if (!surface.material.is_plain()) continue;
         const Material& m = surface.material;
-        add_test(tests, make_bsdf<MaterialSet::plain>(point_on(surface), eye_at(0.6)), seed++);
+        add_test(tests, make_bsdf<SceneKind::plain>(point_on(surface), eye_at(0.6)), seed++);
         CHECK(m.model == MaterialModel::phong);
     }
     tests.hold(2e-2);

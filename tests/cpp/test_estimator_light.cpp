@@ -37,7 +37,7 @@ Color grey_of_pi() {
 
 /// Light of a direct light sample, where an irradiance of E becomes a radiance of E.
 double seen(const SceneView& scene, LightReceiver receiver, Vec2f u) {
-    const LightSample light = sample_light<MaterialSet::plain>(scene, receiver, u, 7);
+    const LightSample light = sample_light<SceneKind::plain>(scene, receiver, u, 7);
     const PlainBsdf white{receiver.normal, receiver.normal, receiver.normal, grey_of_pi(), {0, 0, 0}, 0};
     return static_cast<double>((white.eval(light.direction) * light.irradiance).r);
 }

@@ -95,7 +95,7 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
         const std::atomic<bool> stop{false};
         const EmbreeScene on_embree(embree.device, assembly, {0, 0, 0}, stop);
         const RenderSpaceScene placed(assembly, {0, 0, 0});
-        REQUIRE(placed.view().material_set == MaterialSet::any);
+        REQUIRE(placed.view().kind == SceneKind::any);
         const SceneBvh bvh = build_scene_bvh(placed);
         std::vector<WideBvhView> objects;
         for (const WideBvh& one : bvh.objects) objects.push_back(one.view());
@@ -105,8 +105,8 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
 
         constexpr int kLanes = 64, kBlocks = 800;
         int differ = 0, hits = 0, through = 0, wrong_shadows = 0;
-        PacketScene<MaterialSet::any> packets{on_embree.handle(), static_cast<std::uint32_t>(assembly.instances.size()),
-                                              RayOrder::incoherent, 0};
+        PacketScene<SceneKind::any> packets{on_embree.handle(), static_cast<std::uint32_t>(assembly.instances.size()),
+                                            RayOrder::incoherent, 0};
         for (int block = 0; block < kBlocks; ++block) {
             SceneRays<kLanes> rays;
             Hits<kLanes> found;

@@ -50,7 +50,7 @@ TEST_CASE("shadow rays that are left out are not hidden, in packets of their own
     }
     std::int32_t hidden[kRays];
     for (std::int32_t& h : hidden) h = 77;
-    PacketScene<MaterialSet::opaque> packets{world.scene, 0, RayOrder::incoherent, 0};
+    PacketScene<SceneKind::opaque> packets{world.scene, 0, RayOrder::incoherent, 0};
     packets.occluded(rays, hidden);
     for (int i = 0; i < kRays; ++i) {
         CAPTURE(i);

@@ -97,7 +97,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
                 // Straight above the origin, so that x and y keep a sliver's width.
                 const Vec3f from{0, 0, 0.5f};
                 const LightSample sample =
-                    sample_area_light<MaterialSet::plain>(view, view.areas[k], from, uniform.pair());
+                    sample_area_light<SceneKind::plain>(view, view.areas[k], from, uniform.pair());
                 bins.add(view.areas[k], static_cast<Vec3d>(from) + static_cast<double>(sample.distance) *
                                                                        static_cast<Vec3d>(sample.direction));
             }
@@ -124,7 +124,7 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
         for (const Vec2f u : extreme_inputs())
             for (const Vec3f from : {Vec3f{0.2f, 0.2f, 1}, Vec3f{0, 0, 1e-6f}, Vec3f{0, 0, 0}, Vec3f{0.2f, 0.2f, -1}}) {
                 const LightSample sample =
-                    sample_area_light<MaterialSet::plain>(lamps.view(), lamps.view().areas[k], from, u);
+                    sample_area_light<SceneKind::plain>(lamps.view(), lamps.view().areas[k], from, u);
                 CHECK((sample.irradiance.r >= 0 && std::isfinite(sample.irradiance.r)));
                 CHECK(std::fabs(length(sample.direction) - 1) < 1e-6f);
                 CHECK(!(sample.reach > 1));
@@ -190,7 +190,7 @@ TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which
         for (const double s : share) expected.push_back(s * kSamples);
         Uniform uniform(seed++);
         for (int i = 0; i < kSamples; ++i) {
-            const LightSample s = sample_light<MaterialSet::plain>(view, receiver, uniform.pair(), 1);
+            const LightSample s = sample_light<SceneKind::plain>(view, receiver, uniform.pair(), 1);
             const bool is_sun = s.pdf == kDelta && s.distance >= kFarAway;
             ++counts[is_sun ? (s.irradiance.r > 0 ? 2u : 3u) : s.distance >= kFarAway ? 1u : 0u];
         }
@@ -200,6 +200,5 @@ TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which
 
     const Scene dark = bare_scene();
     const RenderSpaceScene nothing(dark, {0, 0, 0});
-    CHECK(
-        is_black(sample_light<MaterialSet::plain>(nothing.view(), {{0, 0, 0}, {0, 1, 0}}, {0.5f, 0.5f}, 1).irradiance));
+    CHECK(is_black(sample_light<SceneKind::plain>(nothing.view(), {{0, 0, 0}, {0, 1, 0}}, {0.5f, 0.5f}, 1).irradiance));
 }
