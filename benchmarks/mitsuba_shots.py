@@ -4,7 +4,7 @@ the terms of either program. Mitsuba's variant is to be set before."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import mitsuba as mi
@@ -12,6 +12,7 @@ import numpy as np
 import realcam as rc
 
 Settings = dict[str, Any]
+EXPOSURE_S = 1 / 125
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,20 @@ class Part:
     material: rc.Material
     bsdf: Settings  # Mitsuba's
     radiance: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    turn: float = 0.0  # radians about y within EXPOSURE_S, and
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)  # metres
+
+    @property
+    def moves(self) -> bool:
+        return self.turn != 0 or any(self.shift)
+
+    def place(self, share: float) -> np.ndarray:
+        """(4, 4), at a share of the exposure."""
+        matrix, angle = np.eye(4), share * self.turn
+        matrix[0, 0] = matrix[2, 2] = np.cos(angle)
+        matrix[0, 2], matrix[2, 0] = np.sin(angle), -np.sin(angle)
+        matrix[:3, 3] = share * np.array(self.shift)
+        return matrix
 
 
 @dataclass(frozen=True)
@@ -93,9 +108,18 @@ def ball(material: rc.Material, bsdf: Settings) -> Shot:
 
 
 def realcam_scene(shot: Shot) -> rc.Scene:
+    scene = static_scene([part for part in shot.parts if not part.moves])
+    for i, part in enumerate(part for part in shot.parts if part.moves):
+        scene = scene.with_instance(static_scene([part]), name=str(i))
+        places = [part.place(share) for share in np.linspace(0, 1, 9)]
+        scene = scene.moved(str(i), places, times_s=list(np.linspace(0, EXPOSURE_S, 9)))
+    return scene.with_environment(shot.sky)
+
+
+def static_scene(parts: list[Part]) -> rc.Scene:
     count = 0
     positions, triangles, normals, uvs, numbers, materials = [], [], [], [], [], []
-    for number, part in enumerate(shot.parts):
+    for number, part in enumerate(parts):
         mesh = part.mesh
         positions.append(mesh.positions)
         triangles.append(mesh.triangles + count)
@@ -104,7 +128,7 @@ def realcam_scene(shot: Shot) -> rc.Scene:
         numbers.append(np.full(len(mesh.triangles), number))
         materials.append(part.material.replace(emission=part.radiance))
         count += len(mesh.positions)
-    scene = rc.Scene.from_arrays(
+    return rc.Scene.from_arrays(
         np.concatenate(positions),
         np.concatenate(triangles),
         normals=np.concatenate(normals),
@@ -112,7 +136,6 @@ def realcam_scene(shot: Shot) -> rc.Scene:
         triangle_materials=np.concatenate(numbers),
         materials=materials,
     )
-    return scene.with_environment(shot.sky)
 
 
 def mitsuba_mesh(name: str, part: Part) -> mi.Mesh:
@@ -142,8 +165,15 @@ def mitsuba_mesh(name: str, part: Part) -> mi.Mesh:
     return result
 
 
-def mitsuba_scene(shot: Shot) -> mi.Scene:
-    parts: Settings = {f"part{i}": mitsuba_mesh(f"part{i}", part) for i, part in enumerate(shot.parts)}
+def standing(part: Part, share: float) -> Part:
+    place, mesh = part.place(share), part.mesh
+    normals = None if mesh.normals is None else mesh.normals @ place[:3, :3].T
+    return replace(part, mesh=replace(mesh, positions=mesh.positions @ place[:3, :3].T + place[:3, 3], normals=normals))
+
+
+def mitsuba_scene(shot: Shot, share: float = 0.0) -> mi.Scene:
+    """As it stands at a share of the exposure: Mitsuba 3 has no meshes that move."""
+    parts: Settings = {f"part{i}": mitsuba_mesh(f"part{i}", standing(part, share)) for i, part in enumerate(shot.parts)}
     if isinstance(shot.sky, np.ndarray):
         # Ours has -z in the middle of its columns, Mitsuba's at their beginning.
         turned = np.roll(shot.sky, shot.sky.shape[1] // 2, axis=1)
@@ -268,7 +298,16 @@ def holed() -> Shot:
     )
 
 
+def moving() -> Shot:
+    """A ball that flies, a plate that turns before it, and a lamp that goes over both."""
+    floor, wall, lamp = room()
+    plate = Part(quad([-0.8, 0.2, 1.2], [0.7, 0, 0], [0, 0.7, 0]), *diffuse((0.3, 0.5, 0.8)), turn=0.9)
+    ball_in_flight = Part(sphere([-0.4, 0.7, 0], 0.5), *diffuse((0.8, 0.5, 0.2)), shift=(0.8, 0.3, 0.2))
+    return Shot([floor, wall, replace(lamp, shift=(0.6, -0.5, 0.4), turn=0.5), plate, ball_in_flight])
+
+
 SHOTS: dict[str, Callable[[], Shot]] = {
+    "motion": moving,
     "diffuse": lambda: ball(*diffuse((0.8, 0.5, 0.2))),
     "mirror": lambda: ball(
         rc.Material(diffuse=(0, 0, 0), mirror=(0.8, 0.8, 0.8), fresnel=False),

@@ -46,6 +46,8 @@ void read_camera_words(const RenderWords& w, shot::ShotRequest& request) {
     if (!w.focus.empty()) request.view.focus_distance_m = parse_focus("--focus", w.focus);
     if (!w.model.empty()) request.model = parse_model(w.model);
     if (!w.exposure_time.empty()) request.exposure_time_s = parse_exposure_time("--exposure-time", w.exposure_time);
+    if (!w.shutter_opens.empty()) request.shutter.opens_s = parse_number("--shutter-opens", w.shutter_opens);
+    if (!w.readout_time.empty()) request.shutter.readout_time_s = parse_number("--readout-time", w.readout_time);
     if (!w.iso.empty()) request.iso = parse_number("--iso", w.iso);
 }
 
@@ -119,6 +121,9 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     option("--f-number", w.f_number, "Close the diaphragm to f/N [wide open]", "N");
     option("--exposure-time", w.exposure_time,
            "Seconds, such as 1/125, or auto [auto: the average lands on middle grey]", "TIME");
+    option("--shutter-opens", w.shutter_opens, "When, in seconds of a scene that moves [0]", "SECONDS");
+    option("--readout-time", w.readout_time,
+           "Of a rolling shutter: seconds from the top row of pixels to the bottom [0]", "SECONDS");
     option("--iso", w.iso, "Sensitivity [100]", "ISO");
     option("--model", w.model, "full, thick, thin or pinhole [full]", "MODEL");
     command.option_defaults()->group("Scene");

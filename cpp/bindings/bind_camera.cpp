@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 #include <tuple>
+#include <variant>
+#include <vector>
 
 #include "../camera/default_film.hpp"
 #include "../camera/picture_angle.hpp"
@@ -46,8 +48,34 @@ Film changed_film(const Film& film, std::optional<double> width_mm, std::optiona
     return make_film(width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm), {columns, rows});
 }
 
+/// (time_s, position, look_at), or with up.
+using Key = std::variant<std::tuple<double, Triple, Triple>, std::tuple<double, Triple, Triple, Triple>>;
+
+std::vector<PoseKey> motion_from(const std::vector<Key>& keys) {
+    std::vector<PoseKey> motion;
+    for (const Key& key : keys) {
+        if (const auto* with_up = std::get_if<1>(&key)) {
+            const auto& [time, position, look_at, up] = *with_up;
+            motion.push_back({time, {vector_of(position), vector_of(look_at), vector_of(up)}});
+        } else {
+            const auto& [time, position, look_at] = std::get<0>(key);
+            motion.push_back({time, {vector_of(position), vector_of(look_at), Pose().up}});
+        }
+    }
+    return motion;
+}
+
+py::tuple keys_of(const Camera& camera) {
+    py::list keys;
+    for (const PoseKey& key : camera.motion)
+        keys.append(py::make_tuple(key.time_s, triple_of(key.pose.position_m), triple_of(key.pose.look_at_m),
+                                   triple_of(key.pose.up)));
+    return py::tuple(keys);
+}
+
 Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Triple& position, const Triple& look_at,
-                   const Triple& up, double exposure_time_s, double iso, const std::string& model) {
+                   const Triple& up, double exposure_time_s, double iso, const std::string& model,
+                   double shutter_opens_s, double readout_time_s, const std::vector<Key>& motion) {
     Camera camera;
     camera.lens = lens;
     camera.film = film ? *film : default_film(lens, std::nullopt, std::nullopt);
@@ -55,14 +83,18 @@ Camera make_camera(const LensSystem& lens, std::optional<Film> film, const Tripl
     camera.model = model_from(model);
     camera.exposure_time_s = exposure_time_s;
     camera.iso = iso;
+    camera.shutter = {shutter_opens_s, readout_time_s};
     validate(camera);
+    if (!motion.empty()) set_motion(camera, motion_from(motion));
     return camera;
 }
 
 Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, const std::optional<Film>& film,
                       const std::optional<Triple>& position, const std::optional<Triple>& look_at,
                       const std::optional<Triple>& up, std::optional<double> exposure_time_s, std::optional<double> iso,
-                      const std::optional<std::string>& model) {
+                      const std::optional<std::string>& model, std::optional<double> shutter_opens_s,
+                      std::optional<double> readout_time_s, const std::optional<std::vector<Key>>& motion) {
+    if (position || look_at || up) camera.motion.clear();
     if (lens) camera.lens = *lens;
     if (film) camera.film = *film;
     if (position) camera.pose.position_m = vector_of(*position);
@@ -71,7 +103,11 @@ Camera changed_camera(Camera camera, const std::optional<LensSystem>& lens, cons
     camera.exposure_time_s = exposure_time_s.value_or(camera.exposure_time_s);
     camera.iso = iso.value_or(camera.iso);
     if (model) camera.model = model_from(*model);
+    camera.shutter.opens_s = shutter_opens_s.value_or(camera.shutter.opens_s);
+    camera.shutter.readout_time_s = readout_time_s.value_or(camera.shutter.readout_time_s);
+    if (motion && motion->empty()) camera.motion.clear();
     validate(camera);
+    if (motion && !motion->empty()) set_motion(camera, motion_from(*motion));
     return camera;
 }
 
@@ -130,17 +166,23 @@ void bind_camera(py::module_& m) {
         "lens is: entrance_pupil_position_m says from where the scene is seen.");
     def_hashable_value(camera_class, [](const Camera& camera) { validate(camera); });
     camera_class
-        .def(py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
-             "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
-             "model"_a = "full",
-             "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
-             "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
-             "Raises InputError.")
+        .def(
+            py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},
+            "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
+            "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
+            "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
+            "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
+            "shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: of a rolling shutter,\n"
+            "the time from the top row of pixels to the bottom one; each is exposed for exposure_time_s.\n"
+            "motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in rising order of time, in\n"
+            "place of position, look_at and up, which are then those at time 0. Between keys the camera moves evenly.\n"
+            "Raises InputError.")
         .def("replace", &changed_camera, py::kw_only(), "lens"_a = py::none(), "film"_a = py::none(),
              "position"_a = py::none(), "look_at"_a = py::none(), "up"_a = py::none(), "exposure_time_s"_a = py::none(),
-             "iso"_a = py::none(), "model"_a = py::none(),
+             "iso"_a = py::none(), "model"_a = py::none(), "shutter_opens_s"_a = py::none(),
+             "readout_time_s"_a = py::none(), "motion"_a = py::none(),
              "The camera with some of what Camera() takes changed. None stays; so does the film with another lens\n"
-             "(see Film.for_lens). Raises InputError.")
+             "(see Film.for_lens). A new position, look_at or up ends its motion. Raises InputError.")
         .def_property_readonly(
             "field_of_view_deg", &field_of_view_deg,
             "FieldOfView(horizontal, vertical, diagonal): angles in front of the lens, in degrees, between what lands\n"
@@ -158,6 +200,9 @@ void bind_camera(py::module_& m) {
         .def_property_readonly("up", [](const Camera& c) { return triple_of(c.pose.up); })
         .def_readonly("exposure_time_s", &Camera::exposure_time_s)
         .def_readonly("iso", &Camera::iso)
+        .def_property_readonly("shutter_opens_s", [](const Camera& c) { return c.shutter.opens_s; })
+        .def_property_readonly("readout_time_s", [](const Camera& c) { return c.shutter.readout_time_s; })
+        .def_property_readonly("motion", &keys_of, "Keys (time_s, position, look_at, up); none: it stands still.")
         .def_property_readonly("model", [](const Camera& c) { return io::name_of(c.model); })
         .def("__repr__", [](const Camera& c) { return text_of(c); });
     m.def(

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -78,10 +79,22 @@ std::size_t find_instance(const Assembly& scene, const std::variant<py::ssize_t,
                                          "\"; the number of one of them is wanted");
 }
 
-Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& instance, const py::object& matrix) {
-    const Transforms transforms = transforms_from(matrix);
-    if (transforms.several) throw InputError("one instance has one transform; a single matrix is wanted");
-    move(scene, find_instance(scene, instance), transforms.list.front());
+Assembly moved(Assembly scene, const std::variant<py::ssize_t, std::string>& which, const py::object& matrices,
+               const std::optional<std::vector<double>>& times_s) {
+    const std::size_t instance = find_instance(scene, which);
+    Transforms transforms = transforms_from(matrices);
+    if (times_s) {
+        Motion motion{*times_s, std::move(transforms.list)};
+        if (const std::string why = motion_error(motion); !why.empty())
+            throw InputError(label(scene, instance) + ": " + why);
+        move(scene, instance, Placement(std::move(motion)));
+    } else {
+        if (transforms.several)
+            throw InputError(
+                "an instance that stays where it is has one transform; for one that moves, times_s is "
+                "wanted: the time of each");
+        move(scene, instance, transforms.list.front());
+    }
     validate(scene);
     return scene;
 }
@@ -90,6 +103,24 @@ py::tuple instances_of(const Assembly& scene) {
     py::list list;
     for (const Instance& i : scene.instances)
         list.append(py::make_tuple(text_from(i.name), matrix_of(i.scene_from_object)));
+    return py::tuple(list);
+}
+
+/// A stack of (4, 4) matrices.
+py::array_t<double> matrices_of(const std::vector<Affine<double>>& maps) {
+    py::list list;
+    for (const Affine<double>& map : maps) list.append(matrix_of(map));
+    return py::module_::import("numpy").attr("array")(list);
+}
+
+py::tuple motions_of(const Assembly& scene) {
+    py::list list;
+    for (const Instance& i : scene.instances) {
+        if (i.motion)
+            list.append(py::make_tuple(py::tuple(py::cast(i.motion->times_s)), matrices_of(i.motion->transforms)));
+        else
+            list.append(py::none());
+    }
     return py::tuple(list);
 }
 
@@ -107,11 +138,22 @@ void bind_instances(py::class_<Assembly>& scene) {
             "name\n"
             "\"name/part\". A name that the scene has already gets a number: \"car\", \"car.2\", \"car.3\".\n"
             "Raises InputError for a matrix that is flat.")
-        .def("moved", &moved, "instance"_a, "scene_from_object"_a,
-             "With another transform of one of the instances, by its name or number, and of its parts.\n"
-             "Made for every frame: the next picture takes over all that was built for the last.\n"
-             "Raises InputError where there is no such instance, or several.")
-        .def_property_readonly("instances", &instances_of, "For each its name and (4, 4) scene_from_object.");
+        .def(
+            "moved", &moved, "instance"_a, "scene_from_object"_a, "times_s"_a = py::none(),
+            "With another transform of one of the instances, by its name or number, and of its parts.\n"
+            "times_s: of K keys, in rising order, seconds of the scene; scene_from_object then has shape (K, 4, 4) or\n"
+            "(K, 3, 4). Between two keys it moves evenly and turns by the shorter way (Shoemake and Duff 1992), "
+            "before\n"
+            "the first and after the last it stands; what the shutter sees of it is blurred (Camera.shutter_opens_s).\n"
+            "Made for every frame: the next picture takes over all that was built for the last.\n"
+            "Raises InputError where there is no such instance, or several, and for what is no transform or motion.")
+        .def("at_time", &standing_at, "time_s"_a,
+             "The scene as it stands at a time: with the transforms of then, and "
+             "without motion.")
+        .def_property_readonly("instances", &instances_of,
+                               "For each its name and (4, 4) scene_from_object; of one that moves, at time 0.")
+        .def_property_readonly("motions", &motions_of,
+                               "For each instance None, or (times_s, (K, 4, 4) scene_from_object) of one that moves.");
 }
 
 }  // namespace realcam::bindings

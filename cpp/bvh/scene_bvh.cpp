@@ -20,24 +20,29 @@ Box box_of(const RenderSpaceMesh& mesh) {
 
 /// Of a box's corners where an instance puts them. The ray is taken into the object's frame by some roundings of the
 /// coordinates; what it meets on the very surface of the box is not to be lost by them.
-Box placed_box(const Box& box, const InstanceView& instance) {
+Box placed_box(const Box& box, const Affine<float>& render_from_object) {
     constexpr float kRoundings = 0x1p-20f, kInfinity = std::numeric_limits<float>::infinity();
     Box placed = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (unsigned corner = 0; corner < 8; ++corner) {
-        const Vec3f p = instance.render_from_object.point({corner & 1u ? box.upper.x : box.lower.x,
-                                                           corner & 2u ? box.upper.y : box.lower.y,
-                                                           corner & 4u ? box.upper.z : box.lower.z});
+        const Vec3f p =
+            render_from_object.point({corner & 1u ? box.upper.x : box.lower.x, corner & 2u ? box.upper.y : box.lower.y,
+                                      corner & 4u ? box.upper.z : box.lower.z});
         grow(placed, {p, p});
     }
     const float margin = kRoundings * (largest_coordinate(placed.lower) + largest_coordinate(placed.upper) +
-                                       largest_coordinate(instance.render_from_object.origin));
+                                       largest_coordinate(render_from_object.origin));
     const Vec3f all_sides = {margin, margin, margin};
     return {placed.lower - all_sides, placed.upper + all_sides};
 }
 
 Box instance_box(const SceneBvh& bvh, const RenderSpaceScene& scene, std::uint32_t number) {
     const InstanceView& instance = scene.instances()[number];
-    return placed_box(bvh.object_boxes[instance.object], instance);
+    const Box& own = bvh.object_boxes[instance.object];
+    Box box = placed_box(own, instance.render_from_object);
+    // Between two keys every point goes along a line, which does not leave the box of both.
+    for (std::int32_t k = 0; k < instance.key_count; ++k)
+        grow(box, placed_box(own, scene.keys()[static_cast<std::size_t>(instance.first_key + k)]));
+    return box;
 }
 
 void build_instances(SceneBvh& bvh, const RenderSpaceScene& scene) {
@@ -85,7 +90,7 @@ std::vector<BvhInstance> bvh_instances(const SceneBvh& bvh, const RenderSpaceSce
     std::vector<BvhInstance> leaves;
     for (const std::uint32_t index : bvh.instances.order) {
         const InstanceView& instance = scene.instances()[index];
-        leaves.push_back({instance.object_from_render, objects[instance.object], index});
+        leaves.push_back({instance.object_from_render, objects[instance.object], index, instance.key_count > 0});
     }
     return leaves;
 }

@@ -26,16 +26,16 @@ public:
     using Base::active;
     using Base::hit;
 
-    template <class Holes>
-    REALCAM_INLINE void step(const SceneBvhView& bvh, SceneTraversalStack& stack, const Holes& holes) {
+    template <class SceneRay>
+    REALCAM_INLINE void step(const SceneBvhView& bvh, SceneTraversalStack& stack, const SceneRay& scene_ray) {
         if (!this->triangles_) this->enter_node(nodes_, stack);
         if (level_ == Level::objects) {
             put_off_objects(stack);
-        } else if (this->meet_triangles(triangles_of_mesh_, instance_, holes, NoTraversalProbe()) && any) {
+        } else if (this->meet_triangles(triangles_of_mesh_, instance_, scene_ray, NoTraversalProbe()) && any) {
             this->pending_.slots = this->triangles_ = 0;
             return;
         }
-        while (!active() && go_on(bvh, stack)) {
+        while (!active() && go_on(bvh, stack, scene_ray)) {
         }
     }
 
@@ -57,7 +57,8 @@ private:
     }
 
     /// Where nothing is left at hand: takes up what waits. Whether there was anything.
-    REALCAM_INLINE bool go_on(const SceneBvhView& bvh, SceneTraversalStack& stack) {
+    template <class SceneRay>
+    REALCAM_INLINE bool go_on(const SceneBvhView& bvh, SceneTraversalStack& stack, const SceneRay& scene_ray) {
         if (level_ == Level::object && this->waiting_ == floor_) {
             level_ = Level::objects;
             nodes_ = bvh.nodes;
@@ -75,7 +76,7 @@ private:
             const unsigned first = next.slots & (0u - next.slots);
             next.slots ^= first;
             if (next.slots == kObjects) --this->waiting_;
-            enter_object(load_constant(bvh.instances + next.first_child + count_bits(first - 1u)));
+            enter_object(load_constant(bvh.instances + next.first_child + count_bits(first - 1u)), scene_ray);
             return true;
         }
         if (level_ == Level::objects && turned_) {
@@ -87,14 +88,19 @@ private:
         return true;
     }
 
-    REALCAM_INLINE void enter_object(const BvhInstance& instance) {
+    template <class SceneRay>
+    REALCAM_INLINE void enter_object(const BvhInstance& instance, const SceneRay& scene_ray) {
         level_ = Level::object;
         instance_ = instance.index;
         nodes_ = instance.object.nodes;
         triangles_of_mesh_ = instance.object.triangles;
         floor_ = this->waiting_;
         turned_ = true;
-        this->turn_to(instance.object_from_render.point(origin_), instance.object_from_render.direction(direction_));
+        InverseAffine<float> into = instance.object_from_render;
+        if constexpr (!SceneRay::is_plain) {
+            if (instance.moves) into = scene_ray.into_object(instance.index);
+        }
+        this->turn_to(into.point(origin_), into.direction(direction_));
     }
 
     Vec3f origin_, direction_;
@@ -106,31 +112,32 @@ private:
     bool turned_ = false;  ///< out of the frame of the scene
 };
 
-template <bool any, class Holes>
-REALCAM_HD inline Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far, const Holes& holes) {
+template <bool any, class SceneRay>
+REALCAM_HD inline Hit traverse(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
+                               const SceneRay& scene_ray) {
     SceneTraversal<any> ray(bvh, origin, direction, far);
     SceneTraversalStack stack;
-    while (ray.active()) ray.step(bvh, stack, holes);
+    while (ray.active()) ray.step(bvh, stack, scene_ray);
     return ray.hit(far);
 }
 
 /// As closest_hit of one hierarchy. `instanced`: whether there is anything but static geometry.
-template <bool instanced, class Holes = NoHoles>
+template <bool instanced, class SceneRay = PlainSceneRay>
 REALCAM_HD inline Hit closest_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
-                                  const Holes& holes = {}) {
+                                  const SceneRay& scene_ray = {}) {
     if constexpr (instanced)
-        return traverse<false>(bvh, origin, direction, far, holes);
+        return traverse<false>(bvh, origin, direction, far, scene_ray);
     else
-        return closest_hit(bvh.static_geometry, origin, direction, far, holes);
+        return closest_hit(bvh.static_geometry, origin, direction, far, scene_ray);
 }
 
-template <bool instanced, class Holes = NoHoles>
+template <bool instanced, class SceneRay = PlainSceneRay>
 REALCAM_HD inline bool any_hit(const SceneBvhView& bvh, Vec3f origin, Vec3f direction, float far,
-                               const Holes& holes = {}) {
+                               const SceneRay& scene_ray = {}) {
     if constexpr (instanced)
-        return traverse<true>(bvh, origin, direction, far, holes).triangle != kNoTriangle;
+        return traverse<true>(bvh, origin, direction, far, scene_ray).triangle != kNoTriangle;
     else
-        return any_hit(bvh.static_geometry, origin, direction, far, holes);
+        return any_hit(bvh.static_geometry, origin, direction, far, scene_ray);
 }
 
 }  // namespace REALCAM_NAMESPACE

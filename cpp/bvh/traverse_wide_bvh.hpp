@@ -1,5 +1,5 @@
 #pragma once
-#include "../scene/opacity.hpp"
+#include "../scene/scene_ray.hpp"
 #include "slab_ray.hpp"
 #include "watertight_triangle.hpp"
 
@@ -35,13 +35,14 @@ public:
     REALCAM_INLINE bool active() const { return ((pending_.slots & 0xffu) | triangles_) != 0; }
 
     /// One node, unless triangles of the last one are left, and up to kTrianglesPerStep triangles. The ray is active.
-    template <class Holes, class Probe = NoTraversalProbe>
-    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, const Holes& holes, Probe&& probe = {}) {
+    template <class SceneRay, class Probe = NoTraversalProbe>
+    REALCAM_INLINE void step(const WideBvhView& bvh, TraversalStack& stack, const SceneRay& scene_ray,
+                             Probe&& probe = {}) {
         if (!triangles_) {
             probe.node();
             enter_node(bvh.nodes, stack);
         }
-        if (meet_triangles(bvh.triangles, kNoInstance, holes, probe) && any)
+        if (meet_triangles(bvh.triangles, kNoInstance, scene_ray, probe) && any)
             pending_.slots = triangles_ = 0;
         else if (!active() && waiting_ > 0)
             pending_ = stack[--waiting_];
@@ -87,8 +88,8 @@ protected:
     }
 
     /// Up to kTrianglesPerStep of the last node; for `any`, until the first hit. Whether there was one.
-    template <class Holes, class Probe>
-    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, std::uint32_t instance, const Holes& holes,
+    template <class SceneRay, class Probe>
+    REALCAM_INLINE bool meet_triangles(const BvhTriangle* triangles, std::uint32_t instance, const SceneRay& scene_ray,
                                        Probe&& probe) {
         bool met = false;
         for (int i = 0; i < kTrianglesPerStep; ++i) {
@@ -100,8 +101,8 @@ protected:
             const Hit last = hit_;
             if (!meets_triangle(sheared_, load_constant(triangles + number), hit_)) continue;
             hit_.instance = instance;
-            if constexpr (Holes::exist) {
-                if (!holes.stop(hit_)) {
+            if constexpr (!SceneRay::is_plain) {
+                if (!scene_ray.stops(hit_)) {
                     hit_ = last;
                     continue;
                 }
@@ -144,28 +145,28 @@ protected:
     int waiting_ = 0;
 };
 
-template <bool any, class Holes = NoHoles, class Probe = NoTraversalProbe>
+template <bool any, class SceneRay = PlainSceneRay, class Probe = NoTraversalProbe>
 REALCAM_HD inline Hit traverse(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
-                               const Holes& holes = {}, Probe&& probe = {}) {
+                               const SceneRay& scene_ray = {}, Probe&& probe = {}) {
     Traversal<any> ray(origin, direction, far);
     TraversalStack stack;
-    while (ray.active()) ray.step(bvh, stack, holes, probe);
+    while (ray.active()) ray.step(bvh, stack, scene_ray, probe);
     return ray.hit(far);
 }
 
 /// The nearest triangle at a distance in [0, far), in lengths of the direction, which need not be 1. Barycentrics as
 /// Embree's: of the second and third corner. No hit: kNoTriangle, and `far` as the distance.
-template <class Holes = NoHoles>
+template <class SceneRay = PlainSceneRay>
 REALCAM_HD inline Hit closest_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
-                                  const Holes& holes = {}) {
-    return traverse<false>(bvh, origin, direction, far, holes);
+                                  const SceneRay& scene_ray = {}) {
+    return traverse<false>(bvh, origin, direction, far, scene_ray);
 }
 
 /// Whether there is a triangle at a distance in [0, far), in lengths of the direction.
-template <class Holes = NoHoles>
+template <class SceneRay = PlainSceneRay>
 REALCAM_HD inline bool any_hit(const WideBvhView& bvh, Vec3f origin, Vec3f direction, float far,
-                               const Holes& holes = {}) {
-    return traverse<true>(bvh, origin, direction, far, holes).triangle != kNoTriangle;
+                               const SceneRay& scene_ray = {}) {
+    return traverse<true>(bvh, origin, direction, far, scene_ray).triangle != kNoTriangle;
 }
 
 }  // namespace REALCAM_NAMESPACE

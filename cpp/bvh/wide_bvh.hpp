@@ -51,6 +51,7 @@ struct alignas(16) BvhInstance {
     InverseAffine<float> object_from_render;
     WideBvhView object;
     std::uint32_t index;  ///< in the scene's list
+    std::uint32_t moves;  ///< not 0: while the shutter is open, and the transform is that of its begin
 };
 
 /// Static geometry's triangles, and a hierarchy over objects: its slots hold instances instead of triangles.

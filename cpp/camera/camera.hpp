@@ -1,11 +1,14 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include "../math/uniform_keys.hpp"
 #include "../optics/exposure.hpp"
 #include "../optics/focus.hpp"
 #include "../optics/pupil.hpp"
@@ -32,22 +35,46 @@ struct Pose {
     bool operator==(const Pose&) const = default;
 };
 
-/// Lens, film, pose and the two dials.
+/// A pose at a time.
+struct PoseKey {
+    double time_s = 0;
+    Pose pose;
+
+    bool operator==(const PoseKey&) const = default;
+};
+
+/// When the film is exposed: every row of pixels for the same time, the top one first.
+struct Shutter {
+    double opens_s = 0;         ///< time in the scene at which the exposure of the top row begins
+    double readout_time_s = 0;  ///< from then to where that of a row below the last would begin; 0: all rows together
+
+    bool operator==(const Shutter&) const = default;
+};
+
+/// Lens, film, pose, shutter and the two dials.
 struct Camera {
     LensSystem lens;
     Film film;
-    Pose pose;
+    Pose pose;  ///< of a camera that moves, at time 0
     CameraModel model = CameraModel::full_lens;
     double exposure_time_s = 1.0 / 125;
     double iso = 100;
+    Shutter shutter;
+    std::vector<PoseKey> motion;  ///< in rising order of time; empty: it stays where it is
+
+    bool moves() const { return !motion.empty(); }
+    /// From the begin of the first row's exposure to the end of the last one's.
+    TimeInterval exposure() const {
+        return {shutter.opens_s, shutter.opens_s + shutter.readout_time_s + exposure_time_s};
+    }
 };
 
 namespace camera_detail {
 
 // Numbers beyond these are no camera's, and those of its rays would leave the range of float32.
 inline constexpr double kSmallestFilm = 1e-6, kLargestFilm = 1e9;  ///< each way, mm, as a lens: from a few atoms on
-inline constexpr double kFarthestPosition = 1e12;                     ///< each coordinate, m, as a scene's corners
-inline constexpr double kNearestLook = 1e-9;                       ///< look_at from position, m
+inline constexpr double kFarthestPosition = 1e12;  ///< each coordinate, m, as a scene's corners
+inline constexpr double kNearestLook = 1e-9;  ///< look_at from position, m
 inline constexpr double kShortestUp = 1e-100, kLongestUp = 1e100;  ///< squares of both are numbers
 /// Exposure time, s, and ISO number: they and the exposure of middle grey, 10 / ISO, are float32 with all their digits.
 inline constexpr double kLeastDial = 1e-37, kMostDial = 1e38;
@@ -74,6 +101,34 @@ inline void validate(const Film& film) {
         throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
 }
 
+/// Throws InputError where nothing can be seen from there.
+inline void validate(const Pose& pose) {
+    using namespace camera_detail;
+    if (!is_place(pose.position_m) || !is_place(pose.look_at_m))
+        throw InputError("the camera's position and look_at must be finite numbers of at most 1e12 m");
+    if (!lies_between(kShortestUp, length(pose.up), kLongestUp))
+        throw InputError("the camera's up direction must have a finite length, from 1e-100 to 1e100");
+    const Vec3d forward = pose.look_at_m - pose.position_m;
+    const double distance = length(forward);
+    if (!(distance > kNearestLook) || !(length(cross(forward, pose.up)) > 1e-9 * distance * length(pose.up)))
+        throw InputError("the camera must look at a point other than its position, and not along its up direction");
+}
+
+/// Throws InputError where keys are no motion of a camera.
+inline void validate(const std::vector<PoseKey>& motion) {
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+        const std::string key = "key " + std::to_string(k) + " of the camera's motion: ";
+        const double time = motion[k].time_s;
+        if (!(std::fabs(time) <= kMostSeconds)) throw InputError(key + "a time must lie within 1e9 s");
+        if (k > 0 && !(motion[k - 1].time_s < time)) throw InputError(key + "the times must rise");
+        try {
+            validate(motion[k].pose);
+        } catch (const InputError& error) {
+            throw InputError(key + error.what());
+        }
+    }
+}
+
 /// Throws InputError where the camera cannot take a picture.
 inline void validate(const Camera& camera) {
     using namespace camera_detail;
@@ -86,15 +141,12 @@ inline void validate(const Camera& camera) {
     if (const std::string why = film_distance_error(camera.lens); !why.empty()) throw InputError(why);
     if (!(camera.lens.stop_semi_diameter >= 0))
         throw InputError("the radius of the lens's open stop must be a length of 0 or more");
-    const Pose& pose = camera.pose;
-    if (!is_place(pose.position_m) || !is_place(pose.look_at_m))
-        throw InputError("the camera's position and look_at must be finite numbers of at most 1e12 m");
-    if (!lies_between(kShortestUp, length(pose.up), kLongestUp))
-        throw InputError("the camera's up direction must have a finite length, from 1e-100 to 1e100");
-    const Vec3d forward = pose.look_at_m - pose.position_m;
-    const double distance = length(forward);
-    if (!(distance > kNearestLook) || !(length(cross(forward, pose.up)) > 1e-9 * distance * length(pose.up)))
-        throw InputError("the camera must look at a point other than its position, and not along its up direction");
+    if (!(std::fabs(camera.shutter.opens_s) <= kMostSeconds))
+        throw InputError("the time at which the shutter opens must lie within 1e9 s");
+    if (!lies_between(0, camera.shutter.readout_time_s, kMostSeconds))
+        throw InputError("the readout time must be a number of seconds from 0 to 1e9");
+    validate(camera.pose);
+    validate(camera.motion);
 }
 
 namespace camera_detail {
@@ -107,6 +159,37 @@ inline Axes axes_of(const Pose& pose) {
     const Vec3d backward = normalized(pose.position_m - pose.look_at_m);
     const Vec3d right = normalized(cross(pose.up, backward));
     return {right, cross(backward, right), backward};
+}
+
+inline Affine<double> scene_from_camera(const Pose& pose) {
+    const Axes axes = axes_of(pose);
+    return {axes.right, axes.up, axes.backward, pose.position_m};
+}
+
+inline Motion motion_of(const std::vector<PoseKey>& keys) {
+    Motion motion;
+    for (const PoseKey& key : keys) {
+        motion.times_s.push_back(key.time_s);
+        motion.transforms.push_back(scene_from_camera(key.pose));
+    }
+    return motion;
+}
+
+/// At even times of the exposure; empty where it does not move meanwhile. Throws InputError where it turns too fast.
+inline std::vector<Affine<double>> exposure_keys(const Camera& camera) {
+    if (!camera.moves()) return {};
+    const Motion motion = motion_of(camera.motion);
+    const TimeInterval exposure = camera.exposure();
+    // What is near shows where the camera is, and what is far how it is turned.
+    Motion turns = motion, ways = motion;
+    for (Affine<double>& turn : turns.transforms) turn.origin = {0, 0, 0};
+    for (Affine<double>& way : ways.transforms) way = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, way.origin};
+    const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, middle[] = {{0, 0, 0}};
+    const std::optional<int> turning = key_steps(turns, exposure, axes), going = key_steps(ways, exposure, middle);
+    if (!turning || !going)
+        throw InputError("the camera turns too fast; in one exposure about 20 turns can be followed");
+    const int steps = std::max(*turning, *going);
+    return steps == 0 ? std::vector<Affine<double>>() : uniform_keys(motion, exposure, steps);
 }
 
 /// Pupil and magnification of the real lens, as an ideal lens in the entrance pupil. The film plane is paraxially
@@ -204,21 +287,47 @@ inline void validate_ideal(const LensSystem& lens, CameraModel model) {
 
 }  // namespace camera_detail
 
+/// Where a camera is at a time.
+inline Pose pose_at(const Camera& camera, double time_s) {
+    if (!camera.moves()) return camera.pose;
+    if (time_s <= camera.motion.front().time_s) return camera.motion.front().pose;
+    for (const PoseKey& key : camera.motion)
+        if (time_s == key.time_s) return key.pose;
+    if (time_s > camera.motion.back().time_s) return camera.motion.back().pose;
+    const Affine<double> map = camera_detail::motion_of(camera.motion).at(time_s);
+    return {map.origin, map.origin - map.z, map.y};
+}
+
+/// The middle of its film when the shutter opens, m.
+inline Vec3d position_when_open(const Camera& camera) {
+    return pose_at(camera, camera.shutter.opens_s).position_m;
+}
+
+/// Lets a camera move. Throws InputError for keys that are none.
+inline void set_motion(Camera& camera, std::vector<PoseKey> keys) {
+    camera.motion = std::move(keys);
+    validate(camera);
+    camera.pose = pose_at(camera, 0);
+}
+
 /// Whether a scene that was placed about this origin serves the camera. It is moved to the camera, and stays where it
 /// is while the camera moves by little: at ten focus distances (or 10 m) float32 still resolves a hundredth of a
 /// pixel's width at the plane in focus.
 inline bool lies_near(const Camera& camera, Vec3d origin_m) {
     const double focus_m = std::isfinite(camera.lens.focus_distance) ? camera.lens.focus_distance / 1000 : 1.0;
-    return length(camera.pose.position_m - origin_m) <= 10 * focus_m;
+    return length(position_when_open(camera) - origin_m) <= 10 * focus_m;
 }
 
 /// A camera made ready: owns the tables that its view points to.
 class CameraSetup {
 public:
-    /// Throws InputError. `tracer`: see Pupil. `last`: a set-up whose pupil is taken over if it is the same one:
-    /// finding it is most of the work, and a camera that only moves keeps it.
+    /// Throws InputError, also for a camera that turns too fast for the exposure. `tracer`: see Pupil. `last`: a set-up
+    /// whose pupil is taken over if it is the same one: finding it is most of the work, and a camera that only moves
+    /// keeps it.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr)
         : camera_(validated(camera)), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
+        const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
+        for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
         if (last && last->has_pupil_of(camera))
             pupil_ = last->pupil_;
         else if (camera.model == CameraModel::full_lens)
@@ -241,13 +350,14 @@ public:
                 " um, is too small for pictures through every surface; open it, or use another camera model");
     }
 
-    /// `origin_m`: of the placed scene.
-    CameraView view(Vec3d origin_m) const {
+    /// `origin_m`: of the placed scene. `scene_moves`: whether that does during the exposure.
+    CameraView view(Vec3d origin_m, bool scene_moves = false) const {
         using namespace camera_detail;
         const LensSystem& lens = camera_.lens;
         const FirstOrder data = first_order(lens, lens.wavelength_nm);
-        const Axes axes = axes_of(camera_.pose);
         CameraView view{};
+        static_cast<CameraPlacement&>(view) =
+            placement(scene_from_camera(pose_at(camera_, camera_.shutter.opens_s)), origin_m);
         view.model = camera_.model;
         view.width = camera_.film.width;
         view.height = camera_.film.height;
@@ -262,10 +372,7 @@ public:
         if (!pupil_) view.axis_irradiance = static_cast<float>(axis_irradiance(lens));
         if (pupil_) view.pupil = pupil_->view();
         view.lens = path_.view();
-        view.position = static_cast<Vec3f>(camera_.pose.position_m - origin_m);
-        view.right = static_cast<Vec3f>(axes.right);
-        view.up = static_cast<Vec3f>(axes.up);
-        view.backward = static_cast<Vec3f>(axes.backward);
+        set_times(view, scene_moves);
         return view;
     }
 
@@ -278,6 +385,20 @@ private:
         return camera;
     }
 
+    static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
+        return {static_cast<Vec3f>(scene_from_camera.origin - origin_m), static_cast<Vec3f>(scene_from_camera.x),
+                static_cast<Vec3f>(scene_from_camera.y), static_cast<Vec3f>(scene_from_camera.z)};
+    }
+
+    void set_times(CameraView& view, bool scene_moves) const {
+        view.keys = keys_.data();
+        view.key_count = static_cast<int>(keys_.size());
+        if (keys_.empty() && !scene_moves) return;
+        const double all = camera_.shutter.readout_time_s + camera_.exposure_time_s;
+        view.row_time = static_cast<float>(camera_.shutter.readout_time_s / all / camera_.film.height);
+        view.exposed_time = static_cast<float>(camera_.exposure_time_s / all);
+    }
+
     bool has_pupil_of(const Camera& camera) const {
         return pupil_ && camera.model == CameraModel::full_lens && camera_.lens == camera.lens &&
                camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm;
@@ -285,6 +406,7 @@ private:
 
     Camera camera_;
     LensPath<float> path_;
+    std::vector<CameraPlacement> keys_;  ///< positions relative to the first
     std::shared_ptr<const Pupil> pupil_;
 };
 

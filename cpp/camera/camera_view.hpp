@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 
+#include "../math/key_interval.hpp"
 #include "../optics/lens_view.hpp"
 #include "../optics/pupil_view.hpp"
 #include "circle_of_confusion.hpp"
@@ -29,7 +30,14 @@ struct ThickLens {
     float exit_pupil_radius;
 };
 
-struct CameraView {
+/// Where the camera is in the placed scene.
+struct CameraPlacement {
+    Vec3f position;             ///< of the film's middle, metres
+    Vec3f right, up, backward;  ///< unit: x, y, z of the lens frame
+};
+
+/// Its own placement is that at the begin of the exposure.
+struct CameraView : CameraPlacement {
     CameraModel model;
     int width, height;                    ///< pixels
     float film_half_width, film_half_height;  ///< mm
@@ -42,9 +50,29 @@ struct CameraView {
     CircleOfConfusion circle;
     PupilView pupil;
     LensView<float> lens;
-    Vec3f position;                ///< of the film's middle, relative to the origin of the placed scene, metres
-    Vec3f right, up, backward;     ///< axes of the camera in the scene: x, y, z of the lens frame
+    // Of an exposure during which something moves; else 0. Times are shares of it:
+    float row_time;      ///< by which each row of pixels begins later than the one above
+    float exposed_time;  ///< for which each is exposed
+    const CameraPlacement* keys;  ///< of a camera that moves, at even times; positions relative to its own
+    int key_count;
 };
+
+/// The camera at a time of the exposure. Between two keys its axes are interpolated, and made unit and right-angled
+/// again.
+REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
+    if (camera.key_count == 0) return camera;
+    const KeyInterval at = key_interval(time, camera.key_count);
+    const CameraPlacement &a = camera.keys[at.first], &b = camera.keys[at.first + 1];
+    const auto between = [&](Vec3f u, Vec3f v) { return (1.0f - at.share) * u + at.share * v; };
+    const Vec3f backward = normalized(between(a.backward, b.backward)), right = between(a.right, b.right);
+    const Vec3f across = normalized(right - dot(right, backward) * backward);
+    return {camera.position + between(a.position, b.position), across, cross(backward, across), backward};
+}
+
+/// Of a point along the camera's axis from the film, metres.
+REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
+    return dot(camera.position - point, camera.backward);
+}
 
 /// A camera's view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.
 template <class Copy>
@@ -53,6 +81,7 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
         if (array) array = copy(array, static_cast<std::size_t>(count));
     };
     move(view.lens.surfaces, view.lens.count);
+    move(view.keys, view.key_count);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
     return view;

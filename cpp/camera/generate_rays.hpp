@@ -32,6 +32,8 @@ namespace dimension {
 inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
 /// For the end of long paths, far behind those of the last bounce.
 inline constexpr std::uint32_t roulette = 0x10000;
+/// Of the time, for which most samples have no use.
+inline constexpr std::uint32_t time = 0x20000;
 }  // namespace dimension
 
 /// Rays in scene axes, metres, relative to the origin of the placed scene.

@@ -1,5 +1,5 @@
 #pragma once
-#include "generate_rays.hpp"
+#include "exposed_rays.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -76,15 +76,10 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
     }
 }
 
-}  // namespace middle_rays_detail
-
-/// The ray from the middle of each pixel through the middle of the pupil as it is seen from there; where that one does
-/// not pass (mirror lenses have a hole there), the nearest to it in the pupil that does. Weights are 1, and 0 where
-/// none passes. Of the block, streams and samples do not count.
 template <int N>
-REALCAM_HD inline void middle_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     if (camera.model == CameraModel::full_lens) {
-        middle_rays_detail::lens_rays(camera, block, rays);
+        lens_rays(camera, block, rays);
         return;
     }
     for (int i = 0; i < N; ++i) {
@@ -95,6 +90,19 @@ REALCAM_HD inline void middle_rays(const CameraView& camera, const SampleBlock<N
         place_ray(camera, rays, i, ray, block.used[i] != 0);
         rays.sampled[i] = rays.passed[i] = block.used[i];
     }
+}
+
+}  // namespace middle_rays_detail
+
+/// The ray from the middle of each pixel through the middle of the pupil as it is seen from there; where that one does
+/// not pass (mirror lenses have a hole there), the nearest to it in the pupil that does. Weights are 1, and 0 where
+/// none passes. `times`: in the middle of the exposure of each pixel. Of the block, streams and samples do not count.
+template <int N>
+REALCAM_HD inline void middle_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
+                                   float (&times)[N]) {
+    middle_rays_detail::still_rays(camera, block, rays);
+    set_times(camera, block, times, [](int) { return 0.5f; });
+    move_rays(camera, times, rays);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,5 +1,5 @@
 #pragma once
-#include "generate_rays.hpp"
+#include "exposed_rays.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -39,7 +39,8 @@ REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t 
         block.stream[k] = pixel_stream(pixel, request.seed);
         block.sample[k] = static_cast<std::uint32_t>(ray % request.spp);
     }
-    generate_rays(request.camera, block, rays);
+    float times[N];
+    generate_exposed_rays(request.camera, block, rays, times);
     for (int k = 0; k < used; ++k) {
         const Vec3f o = rays.origin[k], d = rays.direction[k];
         float* out_origin = request.origins + 3 * (first + k);

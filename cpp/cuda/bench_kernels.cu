@@ -98,7 +98,7 @@ __global__ void bounce(const __grid_constant__ SceneView scene, SceneBvhView bvh
     const BenchRay ray = rays[i];
     const Hit hit = closest_hit<instanced>(bvh, ray.origin, ray.direction, kFarAway);
     if (hit.triangle == kNoTriangle) return;
-    const SurfacePoint point = surface_point<SceneKind::plain>(scene, hit, ray.origin, ray.direction);
+    const SurfacePoint point = surface_point<SceneKind::plain>(scene, hit, ray.origin, ray.direction, 0.0f);
     const Vec2f u = sample_2d(pixel_stream(i, 1), 0, 7);
     Vec3f direction = sample_cosine(point.geometric_normal, u);
     if (uniform) {
@@ -173,7 +173,7 @@ HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, Pup
     const CurrentDevice current(ordinal);
     CudaStream stream;
     HitRates rates{};
-    const RenderSpaceScene placed(scene, camera.pose.position_m);
+    const RenderSpaceScene placed(scene, position_when_open(camera), camera.exposure());
     const auto building = std::chrono::steady_clock::now();
     const SceneBvh bvh = build_scene_bvh(placed);
     rates.build_seconds = seconds_since(building);

@@ -14,7 +14,7 @@ struct BvhScene {
 
     REALCAM_INLINE void intersect(const SceneRays<1>& rays, Hits<1>& hits) {
         if (!rays.active[0]) return;
-        const Hit hit = closest_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0], holes(rays));
+        const Hit hit = closest_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0], scene_ray(rays));
         hits.distance[0] = hit.distance;
         hits.triangle[0] = hit.triangle;
         hits.u[0] = hit.u;
@@ -25,16 +25,16 @@ struct BvhScene {
     REALCAM_INLINE void occluded(const SceneRays<1>& rays, std::int32_t (&hidden)[1]) {
         hidden[0] = 0;
         if (!rays.active[0]) return;
-        hidden[0] = any_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0], holes(rays));
+        hidden[0] = any_hit<instanced>(bvh, rays.origin[0], rays.direction[0], rays.far[0], scene_ray(rays));
         ++rays_traced;
     }
 
 private:
-    REALCAM_INLINE auto holes(const SceneRays<1>& rays) const {
+    REALCAM_INLINE auto scene_ray(const SceneRays<1>& rays) const {
         if constexpr (scene_kind == SceneKind::any)
-            return Holes{scene, rays.number[0]};
+            return AnySceneRay{scene, rays.number[0], rays.time[0]};
         else
-            return NoHoles();
+            return PlainSceneRay();
     }
 };
 

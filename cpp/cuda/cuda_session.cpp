@@ -47,7 +47,7 @@ public:
 private:
     void prepare(const Assembly& scene, const Camera& camera, const RenderSettings&, const KeepGoing& keep_going,
                  OwnStop& stop) override {
-        const std::shared_ptr<const CameraSetup> setup = last_setup_.make(camera, tracer_);
+        setup_ = last_setup_.make(camera, tracer_);
         const auto place = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
             run_heeding(place, keep_going, stop);
@@ -55,7 +55,7 @@ private:
         } else {
             place();  // which takes less time than a thread to start
         }
-        const CameraView view = setup->view(scene_.origin_m());
+        const CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
         for (const auto& renderer : renderers_) renderer->set_camera(view);
     }
 
@@ -144,6 +144,11 @@ private:
         std::vector<std::int64_t> counts(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
         front().count_samples(counts.data());
         return counts;
+    }
+
+    PlacedCamera placed_camera() const override {
+        const RenderSpaceScene& placed = scene_.placed();
+        return {setup_->view(placed.origin_m(), placed.moves()), placed.origin_m()};
     }
 
     std::size_t frames_in_flight() const override { return 3; }
@@ -277,6 +282,7 @@ private:
     std::vector<OnDevice<DeviceRenderer>> renderers_;
     FramePool pool_;
     LastSetup last_setup_;
+    std::shared_ptr<const CameraSetup> setup_;
     HostScene scene_;
     int rows_ = 0;  ///< of the film that a GPU holds at a time; 0: the film has no place yet
     FilmSums film_;  ///< where the GPU holds a part of it

@@ -10,12 +10,13 @@ void HostScene::place(const Assembly& assembly, const Camera& camera, const Keep
     const bool moves = change == SceneChange::transforms;
     std::unique_ptr<RenderSpaceScene> placed = std::exchange(placed_, nullptr);
     if (moves) {
-        placed->move(assembly);
+        placed->move(assembly, camera.exposure());
         refit_instances(bvh_, *placed);
     } else {
         placed.reset();  // before the next takes as much memory
         bvh_ = {};
-        placed = std::make_unique<RenderSpaceScene>(assembly, camera.pose.position_m, keep_going);
+        placed =
+            std::make_unique<RenderSpaceScene>(assembly, position_when_open(camera), camera.exposure(), keep_going);
         bvh_ = build_scene_bvh(*placed, keep_going);
     }
     for (DeviceRenderer* renderer : renderers_)

@@ -23,7 +23,7 @@ public:
     /// Throws Cancelled where `keep_going`, asked on any thread, returns false.
     void place(const Assembly& assembly, const Camera& camera, const KeepGoing& keep_going = {});
 
-    Vec3d origin_m() const { return placed_->origin_m(); }
+    const RenderSpaceScene& placed() const { return *placed_; }
 
 private:
     std::vector<DeviceRenderer*> renderers_;

@@ -161,7 +161,7 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const bool instanced = job.scene.instance_count > 0;
-    const RenderKernel kernel = kernel_for(job.scene.kind, job.camera.lens.kind, instanced, timed);
+    const RenderKernel kernel = kernel_for(kind_of(job.scene, job.camera), job.camera.lens.kind, instanced, timed);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }

@@ -5,6 +5,7 @@
 
 #include "../bvh/wide_bvh.hpp"
 #include "../camera/camera_view.hpp"
+#include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../scene/scene_view.hpp"
 

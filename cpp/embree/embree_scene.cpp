@@ -72,8 +72,9 @@ EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) {
     return scene;
 }
 
-EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, const std::atomic<bool>& stop)
-    : device_(device), stop_(stop), placed_(assembly, origin_m, [&] { return !stop; }) {
+EmbreeScene::EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, TimeInterval exposure,
+                         const std::atomic<bool>& stop)
+    : device_(device), stop_(stop), placed_(assembly, origin_m, exposure, [&] { return !stop; }) {
     check();
     meshes_.push_back(build(placed_.static_geometry()));
     for (const auto& object : placed_.objects()) meshes_.push_back(build(*object));
@@ -101,16 +102,22 @@ EmbreeScene::OwnGeometry EmbreeScene::attach(const OwnScene& mesh, unsigned numb
 void EmbreeScene::add_instances() {
     for (std::size_t i = 0; i < instances_.size(); ++i) {
         if (stop_) throw Cancelled();
-        const Affine<float>& map = placed_.instances()[i].render_from_object;
-        static_assert(sizeof(map) == 12 * sizeof(float));
-        rtcSetGeometryTransform(instances_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &map);
+        const InstanceView& instance = placed_.instances()[i];
+        const Affine<float>* const keys =
+            instance.key_count > 0 ? &placed_.keys()[static_cast<std::size_t>(instance.first_key)] : nullptr;
+        const auto count = static_cast<unsigned>(std::max(instance.key_count, 1));
+        static_assert(sizeof(Affine<float>) == 12 * sizeof(float));
+        rtcSetGeometryTimeStepCount(instances_[i].get(), count);
+        for (unsigned k = 0; k < count; ++k)
+            rtcSetGeometryTransform(instances_[i].get(), k, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
+                                    keys ? keys + k : &instance.render_from_object);
         rtcCommitGeometry(instances_[i].get());
     }
     commit(all_);
 }
 
-void EmbreeScene::move(const Assembly& assembly) {
-    placed_.move(assembly);
+void EmbreeScene::move(const Assembly& assembly, TimeInterval exposure) {
+    placed_.move(assembly, exposure);
     if (all_) add_instances();
 }
 

@@ -14,14 +14,16 @@ namespace realcam {
 /// object and one over them all.
 class EmbreeScene {
 public:
-    /// Throws DeviceError (out of memory, for one), and Cancelled where `stop` becomes true meanwhile, or in move.
-    EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, const std::atomic<bool>& stop);
+    /// Throws DeviceError (out of memory, for one), what RenderSpaceScene throws, and Cancelled where `stop` becomes
+    /// true meanwhile, or in move.
+    EmbreeScene(RTCDevice device, const Assembly& assembly, Vec3d origin_m, TimeInterval exposure,
+                const std::atomic<bool>& stop);
 
     const RenderSpaceScene& placed() const { return placed_; }
     RTCScene handle() const { return all_ ? all_.get() : meshes_.front().get(); }
 
     /// As RenderSpaceScene::move.
-    void move(const Assembly& assembly);
+    void move(const Assembly& assembly, TimeInterval exposure);
 
 private:
     struct Release {

@@ -58,7 +58,7 @@ private:
             arena(settings).execute([&] {
                 setup_ = last_setup_.make(camera, fast_pupil_tracer());
                 place(scene, camera);
-                camera_view_ = setup_->view(scene_->placed().origin_m());
+                camera_view_ = setup_->view(scene_->placed().origin_m(), scene_->placed().moves());
             });
         };
         run_heeding(work, keep_going, stop);
@@ -127,6 +127,7 @@ private:
     }
 
     std::vector<std::int64_t> count_samples() override { return samples_of(film_); }
+    PlacedCamera placed_camera() const override { return {camera_view_, scene_->placed().origin_m()}; }
 
     std::size_t frames_in_flight() const override { return 1; }
 
@@ -149,11 +150,12 @@ private:
         if (change == SceneChange::none) return;
         std::unique_ptr<EmbreeScene> last = std::exchange(scene_, nullptr);  // what fails is not kept
         if (change == SceneChange::transforms) {
-            last->move(scene);
+            last->move(scene, camera.exposure());
             scene_ = std::move(last);
         } else {
             last.reset();  // before the next takes as much memory
-            scene_ = std::make_unique<EmbreeScene>(device_, scene, camera.pose.position_m, stop_.flag());
+            scene_ = std::make_unique<EmbreeScene>(device_, scene, position_when_open(camera), camera.exposure(),
+                                                   stop_.flag());
         }
     }
 

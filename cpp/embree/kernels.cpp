@@ -4,6 +4,7 @@
 
 #include "../camera/ray_request.hpp"
 #include "../optics/trace_request.hpp"
+#include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/see_layers.hpp"
 #include "packet_scene.hpp"
@@ -126,7 +127,8 @@ void render_tile_of(realcam_tile* tile) {
 }
 
 void render_tile(realcam_tile* tile) {
-    switch (static_cast<const SceneView*>(tile->scene_view)->kind) {
+    switch (
+        kind_of(*static_cast<const SceneView*>(tile->scene_view), *static_cast<const CameraView*>(tile->camera_view))) {
         case SceneKind::plain: return render_tile_of<SceneKind::plain>(tile);
         case SceneKind::opaque: return render_tile_of<SceneKind::opaque>(tile);
         case SceneKind::any: return render_tile_of<SceneKind::any>(tile);

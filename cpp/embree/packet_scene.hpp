@@ -72,7 +72,7 @@ private:
             packet.dir_z[k] = on ? rays.direction.z[i] : 0.0f;
             packet.tnear[k] = 0.0f;
             packet.tfar[k] = on ? rays.far[i] : 0.0f;
-            packet.time[k] = 0.0f;
+            packet.time[k] = scene_kind == SceneKind::any && on ? rays.time[i] : 0.0f;
             packet.mask[k] = 0xffffffffu;
             packet.id[k] = scene_kind == SceneKind::any && on ? rays.number[i] : 0;  // for the filter of EmbreeScene
             packet.flags[k] = 0;

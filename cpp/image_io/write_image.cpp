@@ -118,6 +118,7 @@ LayerChannels channels_of(Layer layer) {
         case Layer::depth_middle: return {{"DepthMiddle.Z"}, "metres from the film along the axis, middle ray"};
         case Layer::normal_middle:
             return {{"NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"}, "scene axes, middle ray"};
+        case Layer::motion: return {{"Motion.X", "Motion.Y"}, "pixels right and down while exposed, middle ray"};
         case Layer::object_id: return {{"ObjectId"}, "key of realcam:objects, middle ray; 0: nothing"};
         case Layer::material_id: return {{"MaterialId"}, "key of realcam:materials, middle ray; 0: nothing"};
     }

@@ -9,6 +9,7 @@
 #include "../math/affine.hpp"
 #include "../scene/scene_view.hpp"
 #include "file_material.hpp"
+#include "file_motion.hpp"
 
 namespace realcam::io {
 
@@ -35,6 +36,7 @@ struct FileNode {
     std::uint32_t parent = kNoParent, end = 0;
     std::uint32_t first_mesh = 0, mesh_count = 0;  ///< in FileScene::meshes
     std::int32_t light = -1;  ///< number in FileScene::lights
+    std::int32_t motion = -1;  ///< number in FileScene::motions; below 0: it stays where it is
 };
 
 /// A picture that materials name.
@@ -57,6 +59,7 @@ struct FileScene {
     std::vector<FileVertices> vertices;
     std::vector<FileMesh> meshes;
     std::vector<FileNode> nodes;
+    std::vector<FileMotion> motions;
     std::vector<FileMaterial> materials;
     std::vector<FilePicture> pictures;
     std::vector<FileLight> lights;

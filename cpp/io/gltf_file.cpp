@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "../error.hpp"
+#include "gltf_animations.hpp"
 #include "gltf_extensions.hpp"
 #include "gltf_lights.hpp"
 #include "gltf_materials.hpp"
@@ -65,6 +66,7 @@ FileScene read_gltf(const std::string& path, Checkpoint& checkpoint) {
     warn_of_extensions(scene, document);
     const std::vector<std::size_t> numbers = lay_out_nodes(scene, document, checkpoint);
     add_meshes(scene, document, accessors, numbers, checkpoint);
+    read_gltf_animations(scene, document, accessors, numbers, checkpoint);
     fetch_pictures(scene, document, buffers);
     return scene;
 }

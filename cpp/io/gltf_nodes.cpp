@@ -1,44 +1,15 @@
 #include "gltf_nodes.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "../error.hpp"
+#include "gltf_transform.hpp"
 #include "printable.hpp"
 
 namespace realcam::io {
 namespace {
 
 constexpr std::size_t kNoNode = static_cast<std::size_t>(-1);
-
-Vec3d vector_of(const Json& numbers, Vec3d otherwise) {
-    return {numbers[std::size_t{0}].number(otherwise.x), numbers[1].number(otherwise.y),
-            numbers[2].number(otherwise.z)};
-}
-
-Affine<double> matrix_of(const Json& m) {  // by columns
-    const auto column = [&](std::size_t c) {
-        return Vec3d{m[4 * c].number(0), m[4 * c + 1].number(0), m[4 * c + 2].number(0)};
-    };
-    return {column(0), column(1), column(2), column(3)};
-}
-
-Affine<double> transform_of(const Json& node) {
-    if (node["matrix"].size() == 16) return matrix_of(node["matrix"]);
-    const Json& q = node["rotation"];
-    double x = q[std::size_t{0}].number(0), y = q[1].number(0), z = q[2].number(0), w = q[3].number(1);
-    // Files round quaternions to seven digits, which would scale what they turn.
-    if (const double size = std::sqrt(x * x + y * y + z * z + w * w); size > 0) {
-        x /= size, y /= size, z /= size, w /= size;
-    }
-    const Vec3d scale = vector_of(node["scale"], {1, 1, 1});
-    Affine<double> out;
-    out.x = scale.x * Vec3d{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)};
-    out.y = scale.y * Vec3d{2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)};
-    out.z = scale.z * Vec3d{2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
-    out.origin = vector_of(node["translation"], {0, 0, 0});
-    return out;
-}
 
 class NodeLayout {
 public:

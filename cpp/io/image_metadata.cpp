@@ -38,6 +38,8 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.film_width_mm = camera.film.width_mm;
     metadata.film_height_mm = camera.film.height_mm;
     metadata.exposure_time_s = camera.exposure_time_s;
+    metadata.shutter_opens_s = camera.shutter.opens_s;
+    metadata.readout_time_s = camera.shutter.readout_time_s;
     metadata.iso = camera.iso;
     metadata.seed = settings.seed;
     metadata.spp = settings.spp;
@@ -59,8 +61,10 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
         {"realcam:iso", number(iso)},
         {"realcam:seed", std::to_string(seed)},
         {"realcam:spp", std::to_string(spp)}};
-    // What is not said of a picture is that nothing was left out.
+    // What is not said of a picture is that nothing was left out, and that the shutter opened at once at time 0.
     if (transport != LightTransport::paths) entries.emplace_back("realcam:transport", name_of(transport));
+    if (shutter_opens_s != 0) entries.emplace_back("realcam:shutter_opens_s", number(shutter_opens_s));
+    if (readout_time_s > 0) entries.emplace_back("realcam:readout_time_s", number(readout_time_s));
     if (clamp_cd_m2 > 0) entries.emplace_back("realcam:clamp_cd_m2", number(clamp_cd_m2));
     if (!denoiser.empty()) entries.emplace_back("realcam:denoiser", denoiser);
     return entries;

@@ -18,6 +18,7 @@ struct ImageMetadata {
     double focus_distance_m = 0;  ///< object plane to film; may be infinite
     double film_width_mm = 0, film_height_mm = 0;
     double exposure_time_s = 0;
+    double shutter_opens_s = 0, readout_time_s = 0;
     double iso = 100;
     std::uint32_t seed = 0;
     int spp = 0;

@@ -11,8 +11,9 @@
 
 namespace realcam::io {
 
-/// What of a file becomes instances instead of a part of static geometry: nodes that the caller names, with all
-/// below them, and meshes with so many copies that their triangles are worth sharing.
+/// What of a file becomes instances instead of a part of static geometry: nodes that the caller names, and nodes that
+/// move, with all below them that does not move otherwise, and meshes with so many copies that their triangles are
+/// worth sharing.
 class SceneObjects {
 public:
     /// All arguments have to outlive it. Throws SceneFileError for a name that no node has.
@@ -33,8 +34,16 @@ private:
     /// hierarchy with all others.
     static constexpr std::size_t kSharedTriangles = 1 << 20;
 
-    std::shared_ptr<Scene> read_object(std::uint32_t node, const Affine<double>& transform,
+    void add_node(std::uint32_t node, const Affine<double>& transform, std::ptrdiff_t part_of, Scene& static_geometry);
+    void add_scene(const std::shared_ptr<Scene>& scene, std::uint32_t node, const Affine<double>& transform,
+                   std::ptrdiff_t part_of, Scene& static_geometry);
+    std::shared_ptr<Scene> read_object(std::uint32_t node, const Affine<double>& transform, const LeavesOut& leaves_out,
                                        Scene& static_geometry) const;
+    /// Whether a node moves within its parent, and shows it.
+    bool moves(std::uint32_t node) const { return file_.nodes[node].motion >= 0 && shows_[node]; }
+    /// In metres.
+    Placement placement(std::uint32_t node, const Affine<double>& transform);
+    Affine<double> transform_at(std::uint32_t node, double time);
     std::shared_ptr<Scene> read_meshes(std::uint32_t node) const;
 
     /// The meshes of a node: the first of them, and how many there are.
@@ -46,6 +55,8 @@ private:
     double scale_;
     Checkpoint& checkpoint_;
     std::set<std::string> names_;
+    std::vector<bool> shows_;  ///< of the nodes: has triangles or lights, or those below have
+    double matrices_ = 0;  ///< that transform_at has multiplied
     std::set<Meshes> shared_;
     std::map<Meshes, std::shared_ptr<Scene>> shared_scenes_;
     std::vector<std::pair<std::shared_ptr<Scene>, Instance>> instances_;

@@ -69,32 +69,47 @@ REALCAM_INLINE void set_shadow_ray(const SurfacePoint& point, const LightSample&
     }
 }
 
-template <int N>
+/// When a path goes through the scene, as a share of the exposure.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE float time_of(const PathState<N>& path, int lane) {
+    if constexpr (scene_kind == SceneKind::any) return path.rays.time[lane];
+    return 0.0f;
+}
+
+template <SceneKind scene_kind>
+REALCAM_INLINE float depth_at(const CameraView& camera, Vec3f position, float time) {
+    if constexpr (scene_kind == SceneKind::any) return depth_from(camera_at(camera, time), position);
+    return depth_from(camera, position);
+}
+
+template <SceneKind scene_kind, int N>
 REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
-    return {path.receiver_position[lane], path.receiver_normal[lane]};
+    return {path.receiver_position[lane], path.receiver_normal[lane], time_of<scene_kind>(path, lane)};
 }
 
 /// Light that the environment sends along the ray of a lane.
-template <int N>
+template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N>& path, int lane) {
     const Vec3f direction = path.rays.direction[lane];
     const float pdf = path.pdf[lane];
-    const float weight =
-        pdf < kDelta ? mis_weight(pdf, environment_light_pdf(scene, receiver_of(path, lane), direction)) : 1.0f;
+    float weight = 1.0f;
+    if (pdf < kDelta)
+        weight = mis_weight(pdf, environment_light_pdf(scene, receiver_of<scene_kind>(path, lane), direction));
     return (weight * path.throughput[lane]) * environment_radiance(scene.environment, direction);
 }
 
 /// Light that the emitter at a hit sends along the ray of a lane.
-template <int N>
+template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& path, int lane, Hit hit,
                                    const SurfacePoint& point) {
     const float pdf = path.pdf[lane];
     float weight = 1.0f;
     if (pdf < kDelta) {
-        const LightReceiver receiver = receiver_of(path, lane);
+        const LightReceiver receiver = receiver_of<scene_kind>(path, lane);
         const float cosine = -dot(path.rays.direction[lane], point.geometric_normal);
         const Vec3f way = point.position - receiver.position;
-        weight = mis_weight(pdf, emitter_light_pdf(scene, receiver, area_light_of(scene, hit), length(way), cosine));
+        weight = mis_weight(
+            pdf, emitter_light_pdf<scene_kind>(scene, receiver, area_light_of(scene, hit), length(way), cosine));
     }
     return (weight * path.throughput[lane]) * point.emission;
 }
@@ -121,11 +136,14 @@ REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightRec
 }  // namespace advance_path_detail
 
 /// Rays from the film through the lens.
-template <LensKind lens_kind, int N>
+template <LensKind lens_kind, SceneKind scene_kind, int N>
 REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block, PathState<N>& path,
                                    PathResults<N>& results) {
     CameraRays<N> camera_rays;
-    generate_rays<lens_kind>(camera, block, camera_rays);
+    if constexpr (scene_kind == SceneKind::any)
+        generate_exposed_rays<lens_kind>(camera, block, camera_rays, path.rays.time);
+    else
+        generate_rays<lens_kind>(camera, block, camera_rays);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         path.rays.origin.set(i, camera_rays.origin[i]);
@@ -162,7 +180,10 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         dimension::first_bounce + static_cast<std::uint32_t>(bounce) * dimension::per_bounce;
     if constexpr (scene_kind == SceneKind::any) {
         number_rays(block, bounce, path.rays);
-        for (int i = 0; i < N; ++i) shadow.number[i] = shadow_ray_number(hash32(path.rays.number[i]));
+        for (int i = 0; i < N; ++i) {
+            shadow.number[i] = shadow_ray_number(hash32(path.rays.number[i]));
+            shadow.time[i] = path.rays.time[i];
+        }
     }
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
@@ -175,22 +196,25 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         if (!path.rays.active[i]) continue;
         const Hit hit = hits[i];
         const Vec3f direction = path.rays.direction[i];
+        const float time = time_of<scene_kind>(path, i);
         const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
         if (hit.triangle == kNoTriangle) {
             path.rays.active[i] = 0;
             if (view.has_environment)
-                results.irradiance.set(i, results.irradiance[i] + clamped(environment_light(view, path, i), limit));
+                results.irradiance.set(
+                    i, results.irradiance[i] + clamped(environment_light<scene_kind>(view, path, i), limit));
             continue;
         }
-        const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction);
+        const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time);
         if constexpr (scene_kind != SceneKind::plain) {
             const Color absorption = path.absorption[i];
             if (!is_black(absorption))
                 path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
         }
         if (!is_black(point.emission))
-            results.irradiance.set(i, results.irradiance[i] + clamped(emitter_light(view, path, i, hit, point), limit));
-        if (bounce == 0) results.depth[i] = dot(camera.position - point.position, camera.backward);
+            results.irradiance.set(
+                i, results.irradiance[i] + clamped(emitter_light<scene_kind>(view, path, i, hit, point), limit));
+        if (bounce == 0) results.depth[i] = depth_at<scene_kind>(camera, point.position, time);
         if (is_past) {
             path.rays.active[i] = 0;
             continue;
@@ -201,7 +225,8 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
             if (darkens[i]) {
                 // What is behind is seen as far as the light here is not hidden. The ray keeps its direction, and so
                 // the density of that.
-                const LightSample light = light_by_illuminance<scene_kind>(view, {point.position, point.normal}, seed);
+                const LightSample light =
+                    light_by_illuminance<scene_kind>(view, {point.position, point.normal, time}, seed);
                 set_shadow_ray(point, light, i, shadow);
                 shadow.active[i] = !is_black(light.irradiance);
                 lit |= shadow.active[i];
@@ -212,7 +237,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
             }
         }
         auto bsdf = make_bsdf<scene_kind>(point, -direction);
-        const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}};
+        const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
         const LightSample light =
             sample_light<scene_kind>(view, receiver, block.random(i, first_dimension + dimension::light), seed);
         const Color lambert_and_narrow = bsdf.eval(light.direction);

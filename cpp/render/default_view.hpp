@@ -86,7 +86,8 @@ inline double free_distance(const AxisCrossings& axis, const BoundingBox& subjec
 
 }  // namespace default_view_detail
 
-/// Sets camera.pose and focuses camera.lens: as asked for, and otherwise so.
+/// Sets camera.pose, where the camera stays, and focuses camera.lens, on the scene as it stands when the shutter opens:
+/// as asked for, and otherwise so.
 /// - subject: the scene without its surroundings (Surroundings): not the wide floor, the sky or what is far away.
 /// - look_at: the middle of the subject's bounding box.
 /// - position: in front of look_at along +z (along -y where up is the z axis), so far away that the subject's box fills
@@ -99,6 +100,8 @@ inline double free_distance(const AxisCrossings& axis, const BoundingBox& subjec
 inline void set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request) {
     using namespace default_view_detail;
     validate(assembly);
+    if (assembly.moves()) return set_view(camera, standing_at(assembly, camera.shutter.opens_s), request);
+    camera.motion.clear();
     const Surroundings subject(assembly);
     const BoundingBox& box = subject.box();
     const LensSystem lens = camera.lens;

@@ -53,6 +53,7 @@ struct MiddleSurface {
     std::uint32_t triangle;  ///< kNoTriangle where there is no surface
     std::uint32_t instance;  ///< kNoInstance: of static geometry
     std::uint32_t material;  ///< in the list of the scene or object that the triangle is a part of
+    Vec3f position;  ///< in the placed scene; where there is no surface, the direction of the ray
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -23,6 +23,7 @@ enum class Layer : std::uint32_t {
     normal_middle,
     object_id,
     material_id,
+    motion,
 };
 
 struct LayerInfo {
@@ -32,7 +33,7 @@ struct LayerInfo {
 };
 
 /// In the order of Layer.
-inline constexpr std::array<LayerInfo, 10> kLayers = {{
+inline constexpr std::array<LayerInfo, 11> kLayers = {{
     {"depth", 1, false},
     {"normal", 3, false},
     {"albedo", 3, false},
@@ -43,6 +44,7 @@ inline constexpr std::array<LayerInfo, 10> kLayers = {{
     {"normal_middle", 3, false},
     {"object_id", 1, true},
     {"material_id", 1, true},
+    {"motion", 2, false},
 }};
 
 constexpr const LayerInfo& info_of(Layer layer) {
@@ -74,7 +76,7 @@ private:
 inline constexpr LayerSet kSampledLayers = {Layer::normal, Layer::albedo, Layer::circle_of_confusion_mm};
 /// Those of the surface in the middle ray of each pixel.
 inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_middle, Layer::object_id,
-                                           Layer::material_id};
+                                           Layer::material_id, Layer::motion};
 
 /// The names of all layers, for messages.
 inline std::string layer_names() {

@@ -1,5 +1,5 @@
 #pragma once
-#include "../camera/generate_rays.hpp"
+#include "../camera/exposed_rays.hpp"
 #include "../math/color.hpp"
 #include "../scene/light_sample.hpp"
 #include "../scene/opacity.hpp"
@@ -13,8 +13,9 @@ struct SceneRays {
     Vec3Lanes<float, N> origin, direction;
     alignas(kLaneAlignment<float, N>) float far[N];  ///< how far along the ray to look, in lengths of the direction
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t active[N];
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];  ///< by which a ray decides at holes; for scenes
-                                                                        ///< of SceneKind::any alone
+    // For scenes of SceneKind::any alone:
+    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];  ///< by which a ray decides at holes
+    alignas(kLaneAlignment<float, N>) float time[N];  ///< share of the exposure (see instance_at.hpp)
 };
 
 /// Numbers the rays of a bounce; those of the camera are bounce 0.

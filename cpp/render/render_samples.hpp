@@ -13,7 +13,7 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
                                       PathResults<N>& results) {
     PathState<N> path;
     probe.enter(RenderStage::lens);
-    begin_paths<lens_kind>(camera, block, path, results);
+    begin_paths<lens_kind, scene_kind>(camera, block, path, results);
     for (int bounce = 0; advance_paths<scene_kind>(view, camera, settings, block, bounce, scene, probe, path, results);)
         ++bounce;
 }

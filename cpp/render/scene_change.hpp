@@ -14,7 +14,8 @@ enum class SceneChange {
 /// `last`: null where there was none.
 inline SceneChange scene_change(const RenderSpaceScene* last, const Assembly& scene, const Camera& camera) {
     if (!last || !lies_near(camera, last->origin_m()) || !last->can_move_to(scene)) return SceneChange::all;
-    return same_transforms(last->assembly(), scene) ? SceneChange::none : SceneChange::transforms;
+    const bool same_time = last->exposure() == camera.exposure() || !scene.moves();
+    return same_time && same_transforms(last->assembly(), scene) ? SceneChange::none : SceneChange::transforms;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -10,7 +10,7 @@ namespace REALCAM_NAMESPACE {
 
 namespace see_layers_detail {
 
-/// Traces the rays that passed to their first surfaces. They have their numbers.
+/// Traces the rays that passed to their first surfaces. They have their numbers and times.
 template <int N, class SceneT>
 REALCAM_HD inline void trace_to_surfaces(const CameraRays<N>& camera_rays, SceneT&& scene, SceneRays<N>& rays,
                                          Hits<N>& hits) {
@@ -22,11 +22,6 @@ REALCAM_HD inline void trace_to_surfaces(const CameraRays<N>& camera_rays, Scene
         rays.active[i] = camera_rays.passed[i];
     }
     scene.intersect(rays, hits);
-}
-
-/// Metres along the axis from the film.
-REALCAM_INLINE float depth_of(const CameraView& camera, Vec3f position) {
-    return dot(camera.position - position, camera.backward);
 }
 
 REALCAM_INLINE float circle_at(const CameraView& camera, float depth_m) {
@@ -43,7 +38,7 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
-    generate_rays(camera, block, camera_rays);
+    generate_exposed_rays(camera, block, camera_rays, rays.time);
     number_rays(block, 0, rays);
     trace_to_surfaces(camera_rays, scene, rays, hits);
     for (int i = 0; i < N; ++i) {
@@ -55,11 +50,12 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
             results.circle_mm[i] = circle_at(camera, kFarAway);
             continue;
         }
-        const SurfacePoint point = surface_point<SceneKind::any>(view, hit, rays.origin[i], rays.direction[i]);
+        const SurfacePoint point =
+            surface_point<SceneKind::any>(view, hit, rays.origin[i], rays.direction[i], rays.time[i]);
         results.met[i] = 1;
         results.normal.set(i, point.normal);
         results.albedo.set(i, albedo_of(point));
-        results.circle_mm[i] = circle_at(camera, depth_of(camera, point.position));
+        results.circle_mm[i] = circle_at(camera, depth_from(camera_at(camera, rays.time[i]), point.position));
     }
 }
 
@@ -71,7 +67,7 @@ REALCAM_HD inline void see_middle_surfaces(const SceneView& view, const CameraVi
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
-    middle_rays(camera, block, camera_rays);
+    middle_rays(camera, block, camera_rays, rays.time);
     for (int i = 0; i < N; ++i) rays.number[i] = kDecidedRay;
     trace_to_surfaces(camera_rays, scene, rays, hits);
     for (int i = 0; i < N; ++i) {
@@ -80,12 +76,15 @@ REALCAM_HD inline void see_middle_surfaces(const SceneView& view, const CameraVi
             {0, 0, 0},
             kNoTriangle,
             kNoInstance,
-            0};
+            0,
+            rays.direction[i]};
         if (!camera_rays.passed[i] || hits.triangle[i] == kNoTriangle) continue;
         const Hit hit = hits[i];
-        const SurfacePoint point = surface_point<SceneKind::any>(view, hit, rays.origin[i], rays.direction[i]);
-        surfaces[i] = {depth_of(camera, point.position), point.normal, hit.triangle, hit.instance,
-                       mesh_of(view, hit.instance).triangles[hit.triangle].material};
+        const SurfacePoint point =
+            surface_point<SceneKind::any>(view, hit, rays.origin[i], rays.direction[i], rays.time[i]);
+        surfaces[i] = {
+            depth_from(camera_at(camera, rays.time[i]), point.position),  point.normal,  hit.triangle, hit.instance,
+            mesh_of(view, hit.instance).triangles[hit.triangle].material, point.position};
     }
 }
 

@@ -17,6 +17,7 @@
 #include "image.hpp"
 #include "layer_film.hpp"
 #include "live_frame.hpp"
+#include "motion_vectors.hpp"
 #include "render_settings.hpp"
 #include "run_with_progress.hpp"
 #include "sample_range.hpp"
@@ -56,8 +57,9 @@ public:
     }
 
     /// What is photographed from now on. A scene with other parts or transforms, a camera with another lens, film,
-    /// model or pose, another seed or number of bounces begin a new picture; exposure time and ISO only develop it
-    /// anew. Throws InputError for what makes no picture, and Cancelled.
+    /// model or pose, another seed or number of bounces begin a new picture, and where something moves another time of
+    /// exposure, too; else exposure time and ISO only develop it anew. Throws InputError for what makes no picture, and
+    /// Cancelled.
     void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
              const KeepGoing& keep_going = {}) {
         const Turn turn(mutex_, keep_going);
@@ -200,6 +202,12 @@ protected:
     /// The surface in the middle ray of each pixel; ends early where it is stopped.
     virtual void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop& stop) = 0;
     virtual std::vector<std::int64_t> count_samples() = 0;
+    /// The camera in the placed scene, with arrays on the host.
+    struct PlacedCamera {
+        CameraView view;
+        Vec3d origin_m;
+    };
+    virtual PlacedCamera placed_camera() const = 0;
     virtual std::size_t frames_in_flight() const = 0;
 
     /// From any thread. A stop stands until it was lowered as often as it was raised.
@@ -257,10 +265,18 @@ private:
         frames_.pop_front();
     }
 
+    /// Where nothing moves it does not matter when the shutter is open.
+    bool is_same_exposure(const Assembly& scene, const Camera& camera) const {
+        return camera.motion == camera_.motion &&
+               ((!scene.moves() && !camera.moves()) ||
+                (camera.shutter == camera_.shutter && camera.exposure_time_s == camera_.exposure_time_s));
+    }
+
     bool is_same_picture(const Assembly& scene, const Camera& camera, const RenderSettings& settings) const {
         return same_parts(scene, scene_) && same_transforms(scene, scene_) && camera.lens == camera_.lens &&
                camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
-               settings.seed == settings_.seed && settings.path() == settings_.path() &&
+               is_same_exposure(scene, camera) && settings.seed == settings_.seed &&
+               settings.path() == settings_.path() &&
                (settings_.layers.has(Layer::variance) || !settings.layers.has(Layer::variance));
     }
 
@@ -331,6 +347,11 @@ private:
         if (wanted.has_any(kSampledLayers) || wanted.has_any(kMiddleLayers)) {
             const SurfaceIds ids(scene_);
             image.layers = developed(layer_film_, wanted, ids);
+            if (wanted.has(Layer::motion)) {
+                const PlacedCamera placed = placed_camera();
+                image.layers.push_back(
+                    motion_vectors(layer_film_.middle, scene_, camera_, placed.view, placed.origin_m));
+            }
             if (wanted.has(Layer::object_id)) image.object_names = ids.object_names();
             if (wanted.has(Layer::material_id)) image.material_names = ids.names_of_materials();
         }

@@ -1,26 +1,47 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "../error.hpp"
-#include "../math/affine.hpp"
+#include "../math/motion.hpp"
 #include "scene.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Where an object is in the scene, or how it moves there. Metres on both sides.
+struct Placement {
+    Affine<double> scene_from_object;  ///< of what moves, at time 0
+    std::shared_ptr<const Motion> motion;  ///< null: it stays where it is
+
+    Placement(const Affine<double>& map = {}) : scene_from_object(map) {}
+    /// The keys are a motion (motion_error).
+    Placement(Motion keys) : scene_from_object(keys.at(0)), motion(std::make_shared<const Motion>(std::move(keys))) {}
+
+    Affine<double> at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
+};
 
 /// An instance of an object: the triangles and point lights of another scene, without its suns and environment.
 struct Instance {
     static constexpr std::ptrdiff_t kNoWhole = -1;
 
     std::shared_ptr<const Scene> object;
-    Affine<double> scene_from_object;  ///< metres on both sides
+    Affine<double> scene_from_object;  ///< see Placement
     std::string name;  ///< for messages, and to find it by
     /// Number of the instance of which this one is a part, and with which it moves. A part comes after its whole.
     std::ptrdiff_t part_of = kNoWhole;
+    std::shared_ptr<const Motion> motion = nullptr;
+
+    Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
+    void put(const Placement& placement) {
+        scene_from_object = placement.scene_from_object;
+        motion = placement.motion;
+    }
 };
 
 /// A scene as static geometry and instances of objects. A value: copies share what is
@@ -40,6 +61,9 @@ struct Assembly {
             if (instance.object->has_local_light()) return true;
         return false;
     }
+    bool moves() const {
+        return std::any_of(instances.begin(), instances.end(), [](const Instance& i) { return i.motion != nullptr; });
+    }
     std::size_t triangle_count() const {
         std::size_t count = static_geometry->triangles.size();
         for (const Instance& instance : instances) count += instance.object->triangles.size();
@@ -55,9 +79,14 @@ inline bool same_parts(const Assembly& a, const Assembly& b) {
     return true;
 }
 
+inline bool same_placement(const Instance& a, const Instance& b) {
+    const bool same_motion = a.motion == b.motion || (a.motion && b.motion && *a.motion == *b.motion);
+    return a.scene_from_object == b.scene_from_object && same_motion;
+}
+
 inline bool same_transforms(const Assembly& a, const Assembly& b) {
     for (std::size_t i = 0; i < a.instances.size(); ++i)
-        if (a.instances[i].scene_from_object != b.instances[i].scene_from_object) return false;
+        if (!same_placement(a.instances[i], b.instances[i])) return false;
     return true;
 }
 
@@ -83,10 +112,29 @@ inline std::string transform_error(const Affine<double>& map) {
     return "";
 }
 
+/// Why keys are no motion for an instance; empty where they are one.
+inline std::string motion_error(const Motion& motion) {
+    const std::size_t keys = motion.times_s.size();
+    if (keys == 0 || keys != motion.transforms.size())
+        return "a motion wants as many transforms as times, one at least";
+    for (std::size_t k = 0; k < keys; ++k) {
+        const std::string key = "key " + std::to_string(k) + " of its motion: ";
+        if (!std::isfinite(motion.times_s[k]) || std::fabs(motion.times_s[k]) > kMostSeconds)
+            return key + "a time must lie within 1e9 s";
+        if (k > 0 && !(motion.times_s[k - 1] < motion.times_s[k])) return key + "the times must rise";
+        if (const std::string why = transform_error(motion.transforms[k]); !why.empty()) return key + why;
+        if ((motion.transforms[0].determinant() < 0) != (motion.transforms[k].determinant() < 0))
+            return key + "all keys must mirror the object, or none; between them it would be flat";
+    }
+    return "";
+}
+
 /// Throws InputError where a transform is none.
 inline void validate_transforms(const Assembly& assembly) {
     for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-        const std::string why = transform_error(assembly.instances[i].scene_from_object);
+        const Instance& instance = assembly.instances[i];
+        const std::string why =
+            instance.motion ? motion_error(*instance.motion) : transform_error(instance.scene_from_object);
         if (!why.empty()) throw InputError(label(assembly, i) + ": " + why);
     }
 }
@@ -111,21 +159,70 @@ Assembly with_static_geometry(Assembly assembly, Change&& change) {
     return assembly;
 }
 
-/// Puts an instance elsewhere, and with it its parts, and theirs.
-inline void move(Assembly& assembly, std::size_t instance, const Affine<double>& scene_from_object) {
-    const InverseAffine<double> back = assembly.instances[instance].scene_from_object.inverse();
+/// The scene as it stands at a time.
+inline Assembly standing_at(Assembly assembly, double time_s) {
+    for (Instance& instance : assembly.instances) {
+        instance.scene_from_object = instance.transform_at(time_s);
+        instance.motion = nullptr;
+    }
+    return assembly;
+}
+
+/// Of a part in the frame of its whole.
+inline Affine<double> whole_from_part(const Affine<double>& scene_from_whole, const Affine<double>& scene_from_part) {
+    const InverseAffine<double> back = scene_from_whole.inverse();
+    return {back.direction(scene_from_part.x), back.direction(scene_from_part.y), back.direction(scene_from_part.z),
+            back.point(scene_from_part.origin)};
+}
+
+/// But for roundings.
+inline bool are_close(const Affine<double>& a, const Affine<double>& b) {
+    constexpr double kRoundings = 1e-9;
+    const double size = length(a.x) + length(a.y) + length(a.z);
+    return length(a.x - b.x) + length(a.y - b.y) + length(a.z - b.z) <= kRoundings * size &&
+           length(a.origin - b.origin) <= kRoundings * (size + length(a.origin));
+}
+
+/// The times of the keys of several motions; null: none.
+inline std::vector<double> all_times(std::initializer_list<const Motion*> motions) {
+    std::vector<double> times;
+    for (const Motion* motion : motions)
+        if (motion) times.insert(times.end(), motion->times_s.begin(), motion->times_s.end());
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
+/// What moves as `at`, a function of the time, says. `times`: of the keys that this wants; none: it stays where it is.
+template <class At>
+Placement placement_by(const std::vector<double>& times, At&& at) {
+    return times.empty() ? Placement(at(0.0)) : Placement(sampled_motion(times, at));
+}
+
+/// Puts an instance elsewhere, or lets it move, and with it its parts, and theirs.
+inline void move(Assembly& assembly, std::size_t instance, const Placement& placement) {
+    const Instance whole = assembly.instances[instance];
     std::vector<bool> moves(assembly.instances.size(), false);
     moves[instance] = true;
     for (std::size_t i = instance + 1; i < assembly.instances.size(); ++i) {
         Instance& part = assembly.instances[i];
         if (part.part_of == Instance::kNoWhole || !moves[static_cast<std::size_t>(part.part_of)]) continue;
         moves[i] = true;
-        const Affine<double>& map = part.scene_from_object;
-        const Affine<double> within = {back.direction(map.x), back.direction(map.y), back.direction(map.z),
-                                       back.point(map.origin)};
-        part.scene_from_object = scene_from_object * within;
+        const auto within = [&](double time) {
+            return whole_from_part(whole.transform_at(time), part.transform_at(time));
+        };
+        // A part that moves with its whole alone has no keys of its own to be kept.
+        const std::vector<double> own = all_times({whole.motion.get(), part.motion.get()});
+        const Affine<double> first = within(own.empty() ? 0.0 : own.front());
+        const bool is_fixed =
+            std::all_of(own.begin(), own.end(), [&](double time) { return are_close(within(time), first); });
+        const std::vector<double> times =
+            is_fixed ? all_times({placement.motion.get()})
+                     : all_times({placement.motion.get(), whole.motion.get(), part.motion.get()});
+        part.put(
+            placement_by(times, [&](double time) { return placement.at(time) * (is_fixed ? first : within(time)); }));
     }
-    assembly.instances[instance].scene_from_object = scene_from_object;
+    assembly.instances[instance].put(placement);
 }
 
 }  // namespace REALCAM_NAMESPACE

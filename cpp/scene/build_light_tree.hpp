@@ -9,28 +9,40 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Built on the host, anew whenever a light moves.
+/// A light, as a leaf of the tree.
+struct LightLeaf {
+    LightNode node;
+    Vec3f middle;
+    std::int32_t light = 0;  ///< its number
+};
+
+/// Built on the host, anew whenever a light is put elsewhere.
 class LightTree {
 public:
+    static LightLeaf leaf(const PointLight& p) {
+        const bool is_spot = p.cos_scale > 0;
+        // Where a spot ends.
+        const float cos_spread = is_spot ? std::clamp(-p.cos_offset / p.cos_scale, 0.0f, 1.0f) : -1.0f;
+        return {{p.position, p.position, p.axis, cos_spread, luminance(p.intensity), 0, !is_spot, -1, 1.0f},
+                p.position};
+    }
+    static LightLeaf leaf(const AreaLight& a) {
+        const Vec3f b = a.corner + a.edge_u, c = a.corner + a.edge_v;
+        return {{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, 1.0f,
+                 a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
+                (1.0f / 3.0f) * (a.corner + b + c)};
+    }
+    /// Makes a leaf hold what another one says of the same light elsewhere.
+    static void widen(LightLeaf& leaf, const LightLeaf& elsewhere) {
+        const float intensity = std::max(leaf.node.intensity, elsewhere.node.intensity);
+        leaf.node = around(leaf.node, elsewhere.node);
+        leaf.node.intensity = intensity;
+        leaf.middle = 0.5f * (leaf.node.low + leaf.node.high);
+    }
+
     LightTree() = default;
-    LightTree(const std::vector<PointLight>& points, const std::vector<AreaLight>& areas, Checkpoint& checkpoint) {
-        std::vector<Leaf> leaves;
-        for (const PointLight& p : points) {
-            const bool is_spot = p.cos_scale > 0;
-            // Where a spot ends.
-            const float cos_spread = is_spot ? std::clamp(-p.cos_offset / p.cos_scale, 0.0f, 1.0f) : -1.0f;
-            leaves.push_back(
-                {{p.position, p.position, p.axis, cos_spread, luminance(p.intensity), 0, !is_spot, -1, 1.0f},
-                 0,
-                 p.position});
-        }
-        for (const AreaLight& a : areas) {
-            const Vec3f b = a.corner + a.edge_u, c = a.corner + a.edge_v;
-            leaves.push_back({{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, 1.0f,
-                               a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
-                              0,
-                              (1.0f / 3.0f) * (a.corner + b + c)});
-        }
+    /// Of the point lights, then the area lights, in the order of their numbers.
+    LightTree(std::vector<LightLeaf> leaves, Checkpoint& checkpoint) {
         for (std::size_t i = 0; i < leaves.size(); ++i) {
             leaves[i].light = static_cast<std::int32_t>(i);
             leaves[i].node.second_child = -1 - leaves[i].light;
@@ -44,12 +56,7 @@ public:
     const std::vector<std::uint64_t>& trails() const { return trails_; }
 
 private:
-    struct Leaf {
-        LightNode node;
-        std::int32_t light;
-        Vec3f middle;
-    };
-    using Leaves = std::vector<Leaf>::iterator;
+    using Leaves = std::vector<LightLeaf>::iterator;
 
     static Vec3f least(Vec3f a, Vec3f b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
     static Vec3f most(Vec3f a, Vec3f b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
@@ -144,13 +151,13 @@ private:
         if (best_axis >= 0) {
             const float from = coordinate(low, best_axis), size = coordinate(high, best_axis) - from;
             const Leaves middle = std::partition(
-                first, last, [&](const Leaf& l) { return bin_of(l, best_axis, from, size, kBins) <= best_bin; });
+                first, last, [&](const LightLeaf& l) { return bin_of(l, best_axis, from, size, kBins) <= best_bin; });
             if (middle != first && middle != last) return middle;
         }
         return first + (last - first) / 2;
     }
 
-    static int bin_of(const Leaf& leaf, int axis, float from, float size, int bins) {
+    static int bin_of(const LightLeaf& leaf, int axis, float from, float size, int bins) {
         const float share = (coordinate(leaf.middle, axis) - from) / size;
         return std::clamp(static_cast<int>(share * static_cast<float>(bins)), 0, bins - 1);
     }

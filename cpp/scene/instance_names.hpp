@@ -40,20 +40,25 @@ inline void make_names_distinct(Assembly& assembly) {
 
 /// Puts an object into a scene. What the object is itself made of becomes its parts, with names of the form name/part.
 /// `names`: those of the assembly, which the new ones are kept apart from.
-inline void add(Assembly& assembly, const Assembly& object, const Affine<double>& scene_from_object,
-                const std::string& name, DistinctNames& names) {
+inline void add(Assembly& assembly, const Assembly& object, const Placement& placement, const std::string& name,
+                DistinctNames& names) {
     const std::vector<Instance> parts = object.instances;  // a copy, because the object may be the assembly itself
     const std::string own = names.take(name);
     std::ptrdiff_t whole = Instance::kNoWhole;
     if (!object.static_geometry->triangles.empty() || !object.static_geometry->points.empty()) {
         whole = std::ssize(assembly.instances);
-        assembly.instances.push_back({object.static_geometry, scene_from_object, own});
+        assembly.instances.push_back({object.static_geometry, placement.scene_from_object, own});
+        assembly.instances.back().motion = placement.motion;
     }
     const std::ptrdiff_t first = std::ssize(assembly.instances);
-    for (const Instance& part : parts)
-        assembly.instances.push_back({part.object, scene_from_object * part.scene_from_object,
-                                      names.take(own + (own.empty() || part.name.empty() ? "" : "/") + part.name),
-                                      part.part_of == Instance::kNoWhole ? whole : first + part.part_of});
+    for (const Instance& part : parts) {
+        Instance placed = part;
+        placed.put(placement_by(all_times({placement.motion.get(), part.motion.get()}),
+                                [&](double time) { return placement.at(time) * part.transform_at(time); }));
+        placed.name = names.take(own + (own.empty() || part.name.empty() ? "" : "/") + part.name);
+        placed.part_of = part.part_of == Instance::kNoWhole ? whole : first + part.part_of;
+        assembly.instances.push_back(std::move(placed));
+    }
 }
 
 }  // namespace REALCAM_NAMESPACE

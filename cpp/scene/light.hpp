@@ -25,6 +25,37 @@ REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& l
     return radiance;
 }
 
+/// Where an area light that may move is at a time.
+REALCAM_INLINE AreaLight area_light_at(const SceneView& scene, const AreaLight& stored, float time) {
+    AreaLight light = stored;
+    if (light.instance == kNoInstance || scene.instances[light.instance].key_count == 0) return light;
+    const InstanceView instance = instance_at(scene, light.instance, time);
+    const MeshView& object = scene.objects[instance.object];
+    const std::uint32_t* corners = object.triangles[light.triangle].vertices;
+    const TrianglePlane& plane = object.planes[light.triangle];
+    const Vec3f corner = object.positions[corners[0]];
+    light.corner = instance.render_from_object.point(corner);
+    light.edge_u = instance.render_from_object.direction(object.positions[corners[1]] - corner);
+    light.edge_v = instance.render_from_object.direction(object.positions[corners[2]] - corner);
+    light.area = 0.5f * length(cross(light.edge_u, light.edge_v));
+    const Vec3f normal = instance.object_from_render.normal_of(plane.normal);
+    const float stretch = 1.0f / length(normal);
+    light.normal = stretch * normal;
+    light.margin = instance_margin(instance, plane.margin, plane.normal, stretch, light.corner);
+    return light;
+}
+
+/// Where a point light that may move is at a time.
+REALCAM_INLINE PointLight point_light_at(const SceneView& scene, const PointLight& stored, float time) {
+    PointLight light = stored;
+    if (light.moves_with < 0) return light;
+    const InstanceView instance = instance_at(scene, static_cast<std::uint32_t>(light.moves_with), time);
+    light.position = instance.render_from_object.point(light.position);
+    const Vec3f axis = instance.render_from_object.direction(light.axis);
+    light.axis = (1.0f / length(axis)) * axis;
+    return light;
+}
+
 /// A point on an area light, drawn evenly.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
@@ -106,11 +137,15 @@ REALCAM_INLINE float environment_light_pdf(const SceneView& scene, LightReceiver
 }
 
 /// Likewise in a direction in which an area light is met, at this distance and with this cosine at it.
+template <SceneKind scene_kind>
 REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, LightReceiver receiver, std::int32_t area_light,
                                        float distance, float cosine) {
+    const AreaLight& light = scene.areas[area_light];
+    float area = light.area;
+    if constexpr (scene_kind == SceneKind::any) area = area_light_at(scene, light, receiver.time).area;
     return LightKinds(scene, receiver).local_probability() *
            light_probability(scene, receiver, scene.point_count + area_light) *
-           area_light_pdf(scene.areas[area_light].area, distance * distance, cosine);
+           area_light_pdf(area, distance * distance, cosine);
 }
 
 /// The area light that a hit on an emitting triangle is on.
@@ -142,8 +177,16 @@ REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver re
         u.x = chosen.fresh;
         probability *= chosen.probability;
         const std::int32_t area = chosen.light - scene.point_count;
-        sample = area < 0 ? sample_point_light(scene.points[chosen.light], receiver.position)
-                          : sample_area_light<scene_kind>(scene, scene.areas[area], receiver.position, u);
+        if constexpr (scene_kind == SceneKind::any) {
+            sample = area < 0
+                         ? sample_point_light(point_light_at(scene, scene.points[chosen.light], receiver.time),
+                                              receiver.position)
+                         : sample_area_light<scene_kind>(scene, area_light_at(scene, scene.areas[area], receiver.time),
+                                                         receiver.position, u);
+        } else {
+            sample = area < 0 ? sample_point_light(scene.points[chosen.light], receiver.position)
+                              : sample_area_light<scene_kind>(scene, scene.areas[area], receiver.position, u);
+        }
     } else {
         u.x -= probability;
         probability = kinds.environment_probability();

@@ -6,10 +6,11 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr float kFarAway = 3.0e38f;
 
-/// Where light is wanted.
+/// Where and when light is wanted.
 struct LightReceiver {
     Vec3f position;
     Vec3f normal;  ///< of the surface, on the side that light can reach; zero: light may come from all sides
+    float time = 0;  ///< share of the exposure; for SceneKind::any alone
 };
 
 /// A direction from which light may come to a receiver.

@@ -42,18 +42,4 @@ REALCAM_INLINE bool stops_ray(const MeshView& mesh, Hit hit, std::uint32_t ray) 
     return unit_float(hash32(hash32(ray, hit.triangle), hit.instance)) < opacity_at(mesh, triangle, hit);
 }
 
-/// For traversal, which asks at each triangle that a ray meets whether it stops there: of surfaces without holes.
-struct NoHoles {
-    static constexpr bool exist = false;
-};
-
-/// Likewise where some have holes.
-struct Holes {
-    static constexpr bool exist = true;
-    const SceneView& scene;
-    std::uint32_t ray;
-
-    REALCAM_INLINE bool stop(Hit hit) const { return stops_ray(mesh_of(scene, hit.instance), hit, ray); }
-};
-
 }  // namespace REALCAM_NAMESPACE

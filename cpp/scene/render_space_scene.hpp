@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "../math/uniform_keys.hpp"
 #include "bounding_box.hpp"
 #include "build_light_tree.hpp"
+#include "light.hpp"
 #include "render_space_mesh.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -19,10 +21,12 @@ namespace REALCAM_NAMESPACE {
 /// its view.
 class RenderSpaceScene {
 public:
-    /// Throws Cancelled where `keep_going` returns false.
-    RenderSpaceScene(Assembly assembly, Vec3d origin_m, const KeepGoing& keep_going = {})
+    /// `exposure`: from when to when it is looked at. Throws Cancelled where `keep_going` returns false, and InputError
+    /// for a motion that is too fast (exposure_keys).
+    RenderSpaceScene(Assembly assembly, Vec3d origin_m, TimeInterval exposure = {}, const KeepGoing& keep_going = {})
         : assembly_(std::move(assembly)),
           origin_(origin_m),
+          exposure_(exposure),
           checkpoint_(keep_going),
           static_geometry_(*assembly_.static_geometry, relative_to(origin_m), LargeTriangles::cut, checkpoint_) {
         std::map<const Scene*, BoundingBox> boxes;
@@ -34,7 +38,7 @@ public:
             if (is_first) add_triangles(box->second, object, {});
             boxes_.push_back(box->second);
             const auto next = static_cast<std::uint32_t>(objects_.size());
-            if (is_large_and_near(boxes_.back(), instance.scene_from_object)) {
+            if (!instance.motion && is_large_and_near(boxes_.back(), instance.scene_from_object)) {
                 add_object(object, relative_to(origin_) * instance.scene_from_object, LargeTriangles::cut);
                 object_of_.push_back(next);
             } else {
@@ -57,9 +61,8 @@ public:
     bool can_move_to(const Assembly& assembly) const {
         if (!same_parts(assembly_, assembly)) return false;
         for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-            const Affine<double>&now = assembly_.instances[i].scene_from_object,
-                  &then = assembly.instances[i].scene_from_object;
-            if (now == then) continue;
+            if (same_placement(assembly_.instances[i], assembly.instances[i])) continue;
+            const Affine<double>& then = assembly.instances[i].scene_from_object;
             if (is_static(i) || is_large_and_near(boxes_[i], then) ||
                 std::fabs(doublings(objects_[object_of_[i]]->frame()) - doublings(then)) > kAlike)
                 return false;
@@ -67,15 +70,17 @@ public:
         return true;
     }
 
-    /// Gives instances other transforms, as can_move_to allows. Their triangles stay what they are, in their own
-    /// frames.
-    void move(const Assembly& assembly) {
+    /// Gives instances other transforms, as can_move_to allows, or looks at them at another time. Their triangles stay
+    /// what they are, in their own frames. Throws InputError as the constructor.
+    void move(const Assembly& assembly, TimeInterval exposure = {}) {
         assembly_ = assembly;
+        exposure_ = exposure;
         update_instances();
     }
 
     SceneView view() const {
         SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, kind_, false, {}};
+        if (moves()) view.kind = SceneKind::any;
         const Scene& scene = *assembly_.static_geometry;
         const Environment& environment = scene.environment;
         view.objects = object_views_.data();
@@ -96,6 +101,7 @@ public:
     InstancesView instances_view() const {
         InstancesView view{};
         view.instances = instances_.data();
+        view.keys = keys_.data();
         view.points = points_.data();
         view.areas = areas_.data();
         const bool has_lights = !light_tree_.nodes().empty();
@@ -103,6 +109,7 @@ public:
         view.light_trails = has_lights ? light_tree_.trails().data() : nullptr;
         view.light_node_count = static_cast<std::int32_t>(light_tree_.nodes().size());
         view.instance_count = static_cast<std::int32_t>(instances_.size());
+        view.key_count = static_cast<std::int32_t>(keys_.size());
         view.point_count = static_cast<std::int32_t>(points_.size());
         view.area_count = static_cast<std::int32_t>(areas_.size());
         return view;
@@ -110,9 +117,13 @@ public:
 
     const Assembly& assembly() const { return assembly_; }
     Vec3d origin_m() const { return origin_; }
+    const TimeInterval& exposure() const { return exposure_; }
+    /// Whether anything moves during the exposure.
+    bool moves() const { return !keys_.empty(); }
     const RenderSpaceMesh& static_geometry() const { return static_geometry_; }
     const std::vector<std::unique_ptr<RenderSpaceMesh>>& objects() const { return objects_; }
     const std::vector<InstanceView>& instances() const { return instances_; }
+    const std::vector<Affine<float>>& keys() const { return keys_; }
 
 private:
     /// Objects of up to this size have float corners that are right to some micrometres, wherever the camera stands.
@@ -150,27 +161,99 @@ private:
     }
     bool is_static(std::size_t instance) const { return static_objects_[object_of_[instance]]; }
 
-    /// From the frame of an instance's object.
-    Affine<double> render_from_object(std::size_t i) const {
+    /// From the frame of an instance's object, whose own coordinates `map` takes into the scene.
+    Affine<double> render_from_object(std::size_t i, const Affine<double>& map) const {
         if (is_static(i)) return {};
         const Affine<double>& frame = objects_[object_of_[i]]->frame();
-        const Affine<double>& map = assembly_.instances[i].scene_from_object;
         const double unit = 1 / frame.x.x;
         return {unit * map.x, unit * map.y, unit * map.z, map.point(-unit * frame.origin) - origin_};
     }
 
     void update_instances() {
         instances_.clear();
+        keys_.clear();
         points_.clear();
         areas_.clear();
+        std::vector<LightLeaf> point_leaves, area_leaves;
         add_lights(static_geometry_, {}, nullptr);
+        add_leaves(0, 0, point_leaves, area_leaves);
         for (std::size_t i = 0; i < assembly_.instances.size(); ++i) {
             checkpoint_.pass();
-            const Affine<double> exact = render_from_object(i);
-            instances_.push_back(instance_view(exact, i));
-            add_lights(*objects_[object_of_[i]], exact, &instances_.back());
+            const std::size_t first_point = points_.size(), first_area = areas_.size();
+            add_instance(i);
+            add_leaves(first_point, first_area, point_leaves, area_leaves);
         }
-        light_tree_ = LightTree(points_, areas_, checkpoint_);
+        point_leaves.insert(point_leaves.end(), area_leaves.begin(), area_leaves.end());
+        light_tree_ = LightTree(std::move(point_leaves), checkpoint_);
+    }
+
+    /// The instance, its keys if it moves, and its lights.
+    void add_instance(std::size_t i) {
+        const Instance& instance = assembly_.instances[i];
+        const RenderSpaceMesh& object = *objects_[object_of_[i]];
+        std::vector<Affine<double>> keys = {instance.scene_from_object};
+        if (instance.motion) keys = exposure_keys(i);
+        for (Affine<double>& key : keys) key = render_from_object(i, key);
+        instances_.push_back(instance_view(keys.front(), i));
+        InstanceView& view = instances_.back();
+        if (keys.size() > 1) {
+            view.first_key = static_cast<std::int32_t>(keys_.size());
+            view.key_count = static_cast<std::int32_t>(keys.size());
+            for (const Affine<double>& key : keys) {
+                keys_.push_back(static_cast<Affine<float>>(key));
+                widen_margins(view, key, i);
+            }
+        }
+        add_lights(object, keys.front(), &view);
+    }
+
+    /// Transforms of an instance at even times of the exposure; one where it does not move meanwhile.
+    std::vector<Affine<double>> exposure_keys(std::size_t i) const {
+        const Motion& motion = *assembly_.instances[i].motion;
+        const BoundingBox& box = boxes_[i];
+        std::vector<Vec3d> corners;
+        for (int corner = 0; corner < 8; ++corner) corners.push_back(box.empty() ? Vec3d{0, 0, 0} : box.corner(corner));
+        const std::optional<int> steps = key_steps(motion, exposure_, corners);
+        if (!steps)
+            throw InputError(label(assembly_, i) + ": turns too fast; in one exposure about 20 turns can be followed");
+        return *steps == 0 ? std::vector{motion.at(exposure_.begin_s)} : uniform_keys(motion, exposure_, *steps);
+    }
+
+    /// Makes margins serve at another key, too. Kernels find the inverse in float: each of its entries is off by some
+    /// roundings of the products of two columns over the volume that the three span.
+    void widen_margins(InstanceView& view, const Affine<double>& key, std::size_t i) const {
+        const double span = length(key.x) * length(key.y) * length(key.z);
+        const auto loss = static_cast<float>(1 + span / std::fabs(key.determinant()));
+        const InstanceView there = instance_view(key, i);
+        const Vec3f margin = loss * there.margin;
+        view.margin = {std::max(view.margin.x, margin.x), std::max(view.margin.y, margin.y),
+                       std::max(view.margin.z, margin.z)};
+        view.reach_margin = std::max(view.reach_margin, there.reach_margin);
+    }
+
+    /// Those of the lights from these numbers on, which are of one instance; of one that moves, around all places.
+    void add_leaves(std::size_t first_point, std::size_t first_area, std::vector<LightLeaf>& points,
+                    std::vector<LightLeaf>& areas) const {
+        const std::size_t points_before = points.size(), areas_before = areas.size();
+        for (std::size_t k = first_point; k < points_.size(); ++k) points.push_back(LightTree::leaf(points_[k]));
+        for (std::size_t k = first_area; k < areas_.size(); ++k) areas.push_back(LightTree::leaf(areas_[k]));
+        if (instances_.empty() || instances_.back().key_count == 0) return;
+        const std::int32_t keys = instances_.back().key_count;
+        const SceneView scene = view();
+        for (std::int32_t key = 0; key < keys; ++key) {
+            const float time = static_cast<float>(key) / static_cast<float>(keys - 1);
+            for (std::size_t k = first_point; k < points_.size(); ++k) {
+                const LightLeaf there = LightTree::leaf(point_light_at(scene, points_[k], time));
+                LightLeaf& leaf = points[points_before + k - first_point];
+                if (key == 0)
+                    leaf = there;
+                else
+                    LightTree::widen(leaf, there);
+            }
+            for (std::size_t k = first_area; k < areas_.size(); ++k)
+                LightTree::widen(areas[areas_before + k - first_area],
+                                 LightTree::leaf(area_light_at(scene, areas_[k], time)));
+        }
     }
 
     InstanceView instance_view(const Affine<double>& exact, std::size_t i) const {
@@ -183,10 +266,10 @@ private:
                               sum(inverse.x.z, inverse.y.z, inverse.z.z)};
         float reach = std::numeric_limits<float>::max();
         if (!is_static(i) && !boxes_[i].empty())
-            reach = kMarginShare * static_cast<float>(length(assembly_.instances[i].scene_from_object.direction(
-                                       boxes_[i].high - boxes_[i].low)));
+            reach = kMarginShare * static_cast<float>(length(
+                                       exact.direction(objects_[object_of_[i]]->frame().direction(boxes_[i].size()))));
         return {map,           static_cast<InverseAffine<float>>(inverse), margin, reach,
-                object_of_[i], static_cast<std::int32_t>(areas_.size())};
+                object_of_[i], static_cast<std::int32_t>(areas_.size()),   0,      0};
     }
 
     void find_kind() {
@@ -215,11 +298,15 @@ private:
     /// The emitters of a mesh where a map from its frame puts them. `instance`: none of static geometry.
     void add_lights(const RenderSpaceMesh& mesh, const Affine<double>& map, const InstanceView* instance) {
         const Scene& scene = mesh.scene();
-        for (const ScenePointLight& p : scene.points)
-            points_.push_back(point_light(p, map.point(mesh.frame().point(p.position_m)),
-                                          map.direction(mesh.frame().direction(p.axis))));
-        const InverseAffine<double> inverse = map.inverse();
         const std::uint32_t number = instance ? static_cast<std::uint32_t>(instances_.size() - 1) : kNoInstance;
+        const bool moves = instance && instance->key_count > 0;
+        for (const ScenePointLight& p : scene.points) {
+            const Vec3d position = mesh.frame().point(p.position_m), axis = mesh.frame().direction(p.axis);
+            points_.push_back(moves ? point_light(p, position, axis)
+                                    : point_light(p, map.point(position), map.direction(axis)));
+            if (moves) points_.back().moves_with = static_cast<std::int32_t>(number);
+        }
+        const InverseAffine<double> inverse = map.inverse();
         for (const std::uint32_t emitter : mesh.emitters()) {
             const Triangle& t = mesh.triangles()[emitter];
             const RenderSpaceMesh::Edges edges = mesh.edges(t);
@@ -239,6 +326,7 @@ private:
 
     Assembly assembly_;
     Vec3d origin_;
+    TimeInterval exposure_;
     Checkpoint checkpoint_;
     RenderSpaceMesh static_geometry_;
     std::vector<BoundingBox> boxes_;  ///< of each instance's object, as it is given
@@ -247,6 +335,7 @@ private:
     std::vector<bool> static_objects_;  ///< of each of them: placed as static geometry is, for one instance
     std::vector<MeshView> object_views_;
     std::vector<InstanceView> instances_;
+    std::vector<Affine<float>> keys_;  ///< of those that move
     std::vector<PointLight> points_;
     std::vector<AreaLight> areas_;
     LightTree light_tree_;

@@ -62,6 +62,7 @@ template <class Copy>
 InstancesView with_copied_arrays(InstancesView view, Copy&& copy) {
     using scene_arrays_detail::replace;
     replace(view.instances, view.instance_count, copy);
+    replace(view.keys, view.key_count, copy);
     replace(view.points, view.point_count, copy);
     replace(view.areas, view.area_count, copy);
     replace(view.light_nodes, view.light_node_count, copy);

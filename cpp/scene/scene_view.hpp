@@ -46,6 +46,8 @@ struct PointLight {
     Color intensity;
     Vec3f axis = {0, 0, 1};
     float cos_scale = 0, cos_offset = 1;
+    std::int32_t moves_with = -1;  ///< instance in whose object's frame position and axis are; below 0: none, which
+                                   ///< does not move
 };
 
 /// A light at infinity: parallel rays.
@@ -56,7 +58,7 @@ struct SunLight {
 
 /// A triangle that emits light.
 struct AreaLight {
-    Vec3f corner, edge_u, edge_v;
+    Vec3f corner, edge_u, edge_v;  ///< of one that moves: at the begin of the exposure (area_light_at)
     Vec3f normal;  ///< unit; light leaves on this side
     std::int32_t is_two_sided;  ///< not 0: and on the other
     Color radiance;
@@ -103,7 +105,7 @@ struct MeshView {
     std::int32_t triangle_count, vertex_count, material_count, texture_count, emitter_count;
 };
 
-/// An instance of an object.
+/// An instance of an object. Of one that moves, transforms are those at the begin of the exposure (instance_at).
 struct InstanceView {
     Affine<float> render_from_object;
     InverseAffine<float> object_from_render;
@@ -111,17 +113,19 @@ struct InstanceView {
     float reach_margin;  ///< and, in the placed scene, for what the object's own coordinates leave, at most
     std::uint32_t object;
     std::int32_t first_area;  ///< area light of the object's first emitter
+    std::int32_t first_key, key_count;  ///< of its motion; 0: it does not move
 };
 
 /// What depends on instance transforms: the instances, and the lights that may move with them.
 struct InstancesView {
     const InstanceView* instances;
+    const Affine<float>* keys;  ///< render_from_object of instances that move, at even times of the exposure
     const PointLight* points;
     const AreaLight* areas;  ///< those of static geometry first, in the order of its emitters
     const LightNode* light_nodes;  ///< null: no point and no area light
     const std::uint64_t* light_trails;  ///< of the point lights, then of the area lights: the turns from the root to
                                         ///< it, 1 for a second child, the first turn in the lowest bit
-    std::int32_t instance_count, point_count, area_count, light_node_count;
+    std::int32_t instance_count, key_count, point_count, area_count, light_node_count;
 };
 
 /// Static geometry's triangles, objects in frames of their own, and lights.

@@ -1,6 +1,6 @@
 #pragma once
 #include "../math/lanes.hpp"
-#include "scene_view.hpp"
+#include "instance_at.hpp"
 #include "texture.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -175,15 +175,13 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
     return select(own < instance.reach_margin, own, instance.reach_margin) + stretch * off * coordinates;
 }
 
-/// Likewise of a whole scene: rays go into the object's frame, with the same distances, and what they find comes back.
+/// Likewise of an instance of a mesh: the ray goes into the object's frame, with the same distances, and what it finds
+/// comes back.
 template <SceneKind scene_kind>
-REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
-    if (hit.instance == kNoInstance)
-        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
-    const InstanceView& instance = scene.instances[hit.instance];
+REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const InstanceView& instance, Hit hit,
+                                          Vec3f ray_origin, Vec3f ray_direction) {
     const InverseAffine<float>& into = instance.object_from_render;
-    SurfacePoint point = surface_point<scene_kind>(scene.objects[instance.object], hit, into.point(ray_origin),
-                                                   into.direction(ray_direction));
+    SurfacePoint point = surface_point<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction));
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);
@@ -192,6 +190,21 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
     point.geometric_normal = stretch * geometric;
     point.normal = normalized(dot(shading, geometric) < 0 ? -shading : shading);
     return point;
+}
+
+/// Likewise of a whole scene, at a time of the exposure.
+template <SceneKind scene_kind>
+REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
+                                          float time) {
+    if (hit.instance == kNoInstance)
+        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
+    const InstanceView& instance = scene.instances[hit.instance];
+    const MeshView& object = scene.objects[instance.object];
+    if constexpr (scene_kind == SceneKind::any) {
+        const InstanceView placed = instance_at(scene, hit.instance, time);
+        return surface_point<scene_kind>(object, placed, hit, ray_origin, ray_direction);
+    }
+    return surface_point<scene_kind>(object, instance, hit, ray_origin, ray_direction);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -178,8 +178,27 @@ Affine<double> transform_of(const ShotTable& table) {
     return map;
 }
 
+Placement placement_of(const ShotTable& table) {
+    Motion motion;
+    for (const ShotTable& key : table.tables("key")) {
+        key.allow({"time_s", "position_m", "rotation_deg", "stretch", "matrix"});
+        motion.times_s.push_back(key.number_wanted("time_s"));
+        motion.transforms.push_back(transform_of(key));
+    }
+    if (motion.times_s.empty()) {
+        const Affine<double> map = transform_of(table);
+        if (const std::string why = transform_error(map); !why.empty()) table.fail(why);
+        return map;
+    }
+    for (const char* other : {"position_m", "rotation_deg", "stretch", "matrix"})
+        if (const toml::node* node = table.find(other))
+            table.fail('"' + std::string(other) + "\" and [[object.key]] exclude each other", node);
+    if (const std::string why = motion_error(motion); !why.empty()) table.fail(why);
+    return motion;
+}
+
 ObjectRequest read_object(const ShotTable& table) {
-    table.allow({"file", "name", "scale", "position_m", "rotation_deg", "stretch", "matrix", "material"});
+    table.allow({"file", "name", "scale", "position_m", "rotation_deg", "stretch", "matrix", "material", "key"});
     ObjectRequest object;
     object.place = table.place();
     object.file = table.path("file");
@@ -188,8 +207,7 @@ ObjectRequest read_object(const ShotTable& table) {
     if (object.name.empty()) object.name = fs::path(object.file).stem().string();
     object.scale = table.number("scale").value_or(1);
     if (!(object.scale > 0)) table.fail("\"scale\" must be a positive number of metres", table.find("scale"));
-    object.scene_from_object = transform_of(table);
-    if (const std::string why = transform_error(object.scene_from_object); !why.empty()) table.fail(why);
+    object.placement = placement_of(table);
     object.material = table.name("material");
     return object;
 }

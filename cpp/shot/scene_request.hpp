@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "../math/affine.hpp"
-#include "../scene/scene.hpp"
+#include "../scene/assembly.hpp"
 
 namespace realcam::shot {
 
@@ -21,7 +20,7 @@ struct MaterialRequest {
 struct ObjectRequest {
     std::string file, name, place;
     double scale = 1;  ///< metres per unit of the file
-    Affine<double> scene_from_object;  ///< metres on both sides
+    Placement placement;
     std::string material;  ///< for all of it; empty: its own
 };
 

@@ -29,6 +29,7 @@ Camera camera_of(const ShotRequest& request) {
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
     camera.model = request.model;
     camera.iso = request.iso;
+    camera.shutter = request.shutter;
     if (request.exposure_time_s) camera.exposure_time_s = *request.exposure_time_s;
     validate(camera);
     if (request.view.focus_distance_m) focused(camera.lens, 1000 * *request.view.focus_distance_m);
@@ -52,7 +53,14 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers) {
 
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene) {
     Shot shot{std::move(scene), std::move(camera)};
-    set_view(shot.camera, shot.scene, request.view);
+    ViewRequest view = request.view;
+    if (!request.motion.empty()) {
+        set_motion(shot.camera, request.motion);
+        const Pose pose = pose_at(shot.camera, shot.camera.shutter.opens_s);
+        view = {pose.position_m, pose.look_at_m, pose.up, request.view.focus_distance_m};
+    }
+    set_view(shot.camera, shot.scene, view);
+    if (!request.motion.empty()) set_motion(shot.camera, request.motion);
     shot.has_daylight = !shot.scene.has_light() && !request.chooses_environment();
     if (shot.has_daylight)
         shot.scene = with_static_geometry(std::move(shot.scene),

@@ -27,11 +27,36 @@ public:
     ShotReader(const toml::table& table, const std::string& path) : table_(table, path) {}
 
     ShotRequest read() const {
-        table_.allow({"format", "scene",       "scale",      "texture",         "environment", "environment_cd_m2",
-                      "lens",   "f_number",    "film_mm",    "resolution",      "position_m",  "look_at_m",
-                      "up",     "focus_m",     "model",      "exposure_time_s", "iso",         "spp",
-                      "seed",   "max_bounces", "tone",       "layers",          "object",      "material",
-                      "light",  "transport",   "clamp_cd_m2"});
+        table_.allow({"format",
+                      "scene",
+                      "scale",
+                      "texture",
+                      "environment",
+                      "environment_cd_m2",
+                      "lens",
+                      "f_number",
+                      "film_mm",
+                      "resolution",
+                      "position_m",
+                      "look_at_m",
+                      "up",
+                      "focus_m",
+                      "model",
+                      "exposure_time_s",
+                      "iso",
+                      "spp",
+                      "seed",
+                      "max_bounces",
+                      "tone",
+                      "layers",
+                      "object",
+                      "material",
+                      "light",
+                      "transport",
+                      "clamp_cd_m2",
+                      "shutter_opens_s",
+                      "readout_time_s",
+                      "pose"});
         if (table_.number("format") != kFormat) table_.fail("format = " + std::to_string(kFormat) + " is wanted");
         ShotRequest shot;
         shot.scene = table_.path("scene");
@@ -71,7 +96,24 @@ private:
         shot.model = table_.named("model", model_named, kModelNames).value_or(shot.model);
         shot.exposure_time_s = table_.number_or_auto("exposure_time_s", "a number of seconds or \"auto\"");
         shot.iso = table_.number("iso").value_or(shot.iso);
+        shot.shutter.opens_s = table_.number("shutter_opens_s").value_or(0);
+        shot.shutter.readout_time_s = table_.number("readout_time_s").value_or(0);
+        read_motion(shot);
         shot.tone = table_.named("tone", tone_named, kToneNames).value_or(shot.tone);
+    }
+
+    void read_motion(ShotRequest& shot) const {
+        for (const ShotTable& key : table_.tables("pose")) {
+            key.allow({"time_s", "position_m", "look_at_m", "up"});
+            shot.motion.push_back({key.number_wanted("time_s"),
+                                   {key.point_wanted("position_m"), key.point_wanted("look_at_m"),
+                                    key.point("up").value_or(shot.view.up)}});
+        }
+        if (shot.motion.empty()) return;
+        for (const char* other : {"position_m", "look_at_m"})
+            if (const toml::node* node = table_.find(other))
+                table_.fail('"' + std::string(other) + "\" and [[pose]] exclude each other", node);
+        table_.checked("pose", [&] { validate(shot.motion); });
     }
 
     void read_settings(RenderSettings& settings) const {

@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
@@ -25,6 +26,8 @@ struct ShotRequest {
     std::optional<std::array<double, 2>> film_mm;
     std::optional<std::array<int, 2>> resolution;
     ViewRequest view;
+    std::vector<PoseKey> motion;  ///< of the camera, in place of position and look_at; empty: it stands still
+    Shutter shutter;
     CameraModel model = CameraModel::full_lens;
     std::optional<double> exposure_time_s;
     double iso = 100;

@@ -47,7 +47,7 @@ private:
                     return std::make_shared<const Scene>(of_one_material(part, material));
                 });
             }
-            add(scene_, object, wanted.scene_from_object, wanted.name, names);
+            add(scene_, object, wanted.placement, wanted.name, names);
         }
     }
 

@@ -63,6 +63,12 @@ public:
         return *v;
     }
 
+    double number_wanted(const char* key) const {
+        const std::optional<double> v = number(key);
+        if (!v) fail('"' + std::string(key) + "\" is missing: a number");
+        return *v;
+    }
+
     /// A number, for all three, or three of them.
     std::optional<Vec3d> number_or_three(const char* key) const {
         const toml::node* node = find(key);

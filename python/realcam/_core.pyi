@@ -14,6 +14,7 @@ _STATE_FORMAT: int
 
 _Path: TypeAlias = str | PathLike[str]
 _Triple: TypeAlias = Sequence[float] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
+_PoseKey: TypeAlias = tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]
 _Material: TypeAlias = float | tuple[float, float] | str | Glass | None
 _Progress: TypeAlias = Callable[[float], bool | None]
 _Layers: TypeAlias = dict[str, NDArray[np.float32] | NDArray[np.uint32]]
@@ -488,6 +489,9 @@ class Camera(_Value):
         exposure_time_s: float = 0.008,
         iso: float = 100.0,
         model: str = "full",
+        shutter_opens_s: float = 0.0,
+        readout_time_s: float = 0.0,
+        motion: Sequence[_PoseKey] = [],
     ) -> None: ...
     def replace(
         self,
@@ -500,6 +504,9 @@ class Camera(_Value):
         exposure_time_s: float | None = None,
         iso: float | None = None,
         model: str | None = None,
+        shutter_opens_s: float | None = None,
+        readout_time_s: float | None = None,
+        motion: Sequence[_PoseKey] | None = None,
     ) -> Camera: ...
     def framing(
         self,
@@ -543,6 +550,16 @@ class Camera(_Value):
     def exposure_time_s(self) -> float: ...
     @property
     def iso(self) -> float: ...
+    @property
+    def shutter_opens_s(self) -> float: ...
+    @property
+    def readout_time_s(self) -> float: ...
+    @property
+    def motion(
+        self,
+    ) -> tuple[
+        tuple[float, tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]], ...
+    ]: ...
     @property
     def model(self) -> str: ...
 
@@ -704,9 +721,14 @@ class Scene(_LargeValue):
     def with_material(self, which: int | str, material: Material) -> Scene: ...
     def with_texture(self, material: int | str, pixels: ArrayLike) -> Scene: ...
     def with_instance(self, object: Scene, scene_from_object: ArrayLike | None = None, *, name: str = "") -> Scene: ...
-    def moved(self, instance: int | str, scene_from_object: ArrayLike) -> Scene: ...
+    def moved(
+        self, instance: int | str, scene_from_object: ArrayLike, times_s: Sequence[float] | None = None
+    ) -> Scene: ...
+    def at_time(self, time_s: float) -> Scene: ...
     @property
     def instances(self) -> tuple[tuple[str, NDArray[np.float64]], ...]: ...
+    @property
+    def motions(self) -> tuple[tuple[tuple[float, ...], NDArray[np.float64]] | None, ...]: ...
     @property
     def triangle_count(self) -> int: ...
     @property

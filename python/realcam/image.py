@@ -20,10 +20,10 @@ class Image:
     pixels: (H, W, 3) float32, exposure in lux seconds, linear Rec. 709, row 0 at the top.
     depth: (H, W) float32, metres along the camera's axis from the film; inf where nothing was met. Mean over the
     samples that met something, by their weight in the exposure.
-    layers: what was asked for by name (docs/layers.md), arrays of (H, W) or (H, W, 3), float32, and uint32 for ids
-    and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked for.
-    transport, clamp_cd_m2: as render had them. denoiser: what has changed the pixels since they were taken; empty:
-    nothing.
+    layers: what was asked for by name (docs/layers.md), arrays of (H, W), (H, W, 2) or (H, W, 3), float32, and uint32
+    for ids and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked
+    for. transport, clamp_cd_m2: as render had them. denoiser: what has changed the pixels since they were taken;
+    empty: nothing.
     """
 
     pixels: np.ndarray

@@ -1,13 +1,9 @@
 // Rays at surfaces with holes: both traversals decide alike, and as often as the opacity says.
 #if defined(REALCAM_HAS_BVH)
 
-#include <atomic>
 #include <cmath>
 
-#include "../../cpp/bvh/scene_bvh.hpp"
-#include "../../cpp/bvh/traverse_scene.hpp"
-#include "../../cpp/embree/embree_scene.hpp"
-#include "../../cpp/embree/packet_scene.hpp"
+#include "both_traversals.hpp"
 #include "bvh_rays.hpp"
 #include "doctest/doctest.h"
 
@@ -40,14 +36,6 @@ Scene holed(const Mesh& mesh) {
     scene.materials[3].opacity_cutoff = 0.5f;
     return scene;
 }
-
-struct EmbreeDevice {
-    RTCDevice device = rtcNewDevice(nullptr);
-    EmbreeDevice() = default;
-    EmbreeDevice(const EmbreeDevice&) = delete;
-    EmbreeDevice& operator=(const EmbreeDevice&) = delete;
-    ~EmbreeDevice() { rtcReleaseDevice(device); }
-};
 
 }  // namespace
 
@@ -91,22 +79,14 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
     for (const bool instanced : {false, true}) {
         CAPTURE(instanced);
         if (!instanced) assembly.instances.clear();
-        const EmbreeDevice embree;
-        const std::atomic<bool> stop{false};
-        const EmbreeScene on_embree(embree.device, assembly, {0, 0, 0}, stop);
-        const RenderSpaceScene placed(assembly, {0, 0, 0});
-        REQUIRE(placed.view().kind == SceneKind::any);
-        const SceneBvh bvh = build_scene_bvh(placed);
-        std::vector<WideBvhView> objects;
-        for (const WideBvh& one : bvh.objects) objects.push_back(one.view());
-        const std::vector<BvhInstance> leaves = bvh_instances(bvh, placed, objects);
-        const SceneBvhView view{bvh.static_geometry.view(), bvh.instances.nodes.data(), leaves.data()};
-        const SceneView scene = placed.view();
+        const BothTraversals both(assembly);
+        const SceneView scene = both.scene();
+        const SceneBvhView view = both.bvh();
+        REQUIRE(scene.kind == SceneKind::any);
 
         constexpr int kLanes = 64, kBlocks = 800;
         int differ = 0, hits = 0, through = 0, wrong_shadows = 0;
-        PacketScene<SceneKind::any> packets{on_embree.handle(), static_cast<std::uint32_t>(assembly.instances.size()),
-                                            RayOrder::incoherent, 0};
+        auto packets = both.packets();
         for (int block = 0; block < kBlocks; ++block) {
             SceneRays<kLanes> rays;
             Hits<kLanes> found;
@@ -118,16 +98,17 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
                 rays.far[i] = kFarAway;
                 rays.active[i] = 1;
                 rays.number[i] = hash32(static_cast<std::uint32_t>(block * kLanes + i));
+                rays.time[i] = 0;
             }
             packets.intersect(rays, found);
             packets.occluded(rays, hidden);
             for (int i = 0; i < kLanes; ++i) {
-                const Holes holes{scene, rays.number[i]};
+                const AnySceneRay scene_ray{scene, rays.number[i], 0};
                 const Vec3f from = rays.origin[i], to = rays.direction[i];
-                const Hit hit = instanced ? closest_hit<true>(view, from, to, kFarAway, holes)
-                                          : closest_hit<false>(view, from, to, kFarAway, holes);
-                const bool any = instanced ? any_hit<true>(view, from, to, kFarAway, holes)
-                                           : any_hit<false>(view, from, to, kFarAway, holes);
+                const Hit hit = instanced ? closest_hit<true>(view, from, to, kFarAway, scene_ray)
+                                          : closest_hit<false>(view, from, to, kFarAway, scene_ray);
+                const bool any = instanced ? any_hit<true>(view, from, to, kFarAway, scene_ray)
+                                           : any_hit<false>(view, from, to, kFarAway, scene_ray);
                 const Hit solid = instanced ? closest_hit<true>(view, from, to, kFarAway)
                                             : closest_hit<false>(view, from, to, kFarAway);
                 hits += hit.triangle != kNoTriangle;
@@ -165,7 +146,7 @@ TEST_CASE("holes: rays pass plates as often as their opacities say") {
     double stopped[kPlates + 1] = {};
     for (std::uint32_t i = 0; i < kRays; ++i) {
         const Hit hit =
-            closest_hit(bvh.static_geometry.view(), {0, 0, 0}, {0, 0, -1}, kFarAway, Holes{view, hash32(i)});
+            closest_hit(bvh.static_geometry.view(), {0, 0, 0}, {0, 0, -1}, kFarAway, AnySceneRay{view, hash32(i), 0});
         stopped[hit.triangle == kNoTriangle ? kPlates : hit.triangle] += 1.0 / kRays;
     }
     double left = 1;

@@ -176,7 +176,7 @@ TEST_CASE("slivers have the normal of their double corners, and points on them l
         // What traversal says of it, with barycentric coordinates as uncertain as float edges make them.
         const double u_share = (0.5 + random.between(-1, 1) * std::min(6e-8 * 6 / thin, 0.3));
         const Hit hit{static_cast<float>(length(p)), 0, static_cast<float>(u_share), 0.0f};
-        const SurfacePoint point = surface_point<SceneKind::any>(view, hit, {0, 0, 0}, static_cast<Vec3f>(to));
+        const SurfacePoint point = surface_point<SceneKind::any>(view, hit, {0, 0, 0}, static_cast<Vec3f>(to), 0);
         place_error = std::max(place_error, length(static_cast<Vec3d>(point.position) - p) / length(p));
         const Vec3f* corner = view.positions;
         const Vec3f area = cross(corner[1] - corner[0], corner[2] - corner[0]);
@@ -199,7 +199,7 @@ TEST_CASE("a ray from afar meets a small triangle where its corners say") {
     const Vec3d expected = 0.5 * a + 0.3 * b + 0.2 * c, from = expected + 1e7 * normalized(Vec3d{0.3, 0.4, 1});
     const Hit hit{1e7f, 0, 0.3f, 0.2f};
     const Vec3f way = static_cast<Vec3f>(normalized(expected - from));
-    const SurfacePoint point = surface_point<SceneKind::any>(placed.view(), hit, static_cast<Vec3f>(from), way);
+    const SurfacePoint point = surface_point<SceneKind::any>(placed.view(), hit, static_cast<Vec3f>(from), way, 0);
     // Float steps are 1 m along such a ray.
     CHECK(length(static_cast<Vec3d>(point.position) - expected) < 8 * 0x1p-24);
 }
@@ -210,7 +210,7 @@ TEST_CASE("triangles without area and corners in one place give finite planes") 
     const RenderSpaceScene placed(scene, {0, 0, 0});
     for (int i = 0; i < 3; ++i) {
         const SurfacePoint point = surface_point<SceneKind::any>(
-            placed.view(), {1, static_cast<std::uint32_t>(i), 0.2f, 0.2f}, {0, 0, 0}, {0, 0, -1});
+            placed.view(), {1, static_cast<std::uint32_t>(i), 0.2f, 0.2f}, {0, 0, 0}, {0, 0, -1}, 0);
         CHECK(std::isfinite(length(point.position) + length(point.normal) + point.self_offset));
         CHECK(std::fabs(length(point.normal) - 1) < 1e-6f);
     }

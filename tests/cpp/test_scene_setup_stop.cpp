@@ -32,7 +32,7 @@ TEST_CASE("a scene of a million triangles: checks, preparation and hierarchy can
     Checkpoint checkpoint(no);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));  // a fast machine has looked through it within 20
     CHECK_THROWS_AS(validate(scene, {}, false, checkpoint), Cancelled);
-    CHECK_THROWS_AS(RenderSpaceScene(Assembly(scene), {0, 0, 0}, no), Cancelled);
+    CHECK_THROWS_AS(RenderSpaceScene(Assembly(scene), {0, 0, 0}, {}, no), Cancelled);
     const RenderSpaceScene placed(Assembly(scene), {0, 0, 0});
     CHECK_THROWS_AS(build_wide_bvh(placed.static_geometry().positions(), placed.static_geometry().triangles(), no),
                     Cancelled);
@@ -43,9 +43,10 @@ TEST_CASE("a million emitters and a large environment can be stopped") {
     scene.materials[0].emission = {1, 1, 1};
     const RenderSpaceScene placed(Assembly(scene), {0, 0, 0});
     const InstancesView lights = placed.instances_view();
-    const std::vector<AreaLight> areas(lights.areas, lights.areas + lights.area_count);
+    std::vector<LightLeaf> leaves;
+    for (std::int32_t i = 0; i < lights.area_count; ++i) leaves.push_back(LightTree::leaf(lights.areas[i]));
     Checkpoint checkpoint(no);
-    CHECK_THROWS_AS(LightTree({}, areas, checkpoint), Cancelled);
+    CHECK_THROWS_AS(LightTree(leaves, checkpoint), Cancelled);
 
     Environment sky;
     sky.width = 4096;

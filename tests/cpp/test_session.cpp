@@ -82,9 +82,10 @@ private:
     }
     void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop&) override {
         notes.push_back("see middle");
-        for (MiddleSurface& surface : film) surface = {1.5f, {0, 0, 1}, 0, kNoInstance, 0};
+        for (MiddleSurface& surface : film) surface = {1.5f, {0, 0, 1}, 0, kNoInstance, 0, {0, 0, -1.5f}};
     }
     std::vector<std::int64_t> count_samples() override { return {samples()}; }
+    PlacedCamera placed_camera() const override { return {}; }
     std::size_t frames_in_flight() const override { return 2; }
     void raise_stop() noexcept override {
         ++raised_;

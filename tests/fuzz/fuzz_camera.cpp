@@ -28,7 +28,8 @@ const std::vector<std::unique_ptr<CameraSetup>>& known_cameras() {
     static const std::vector<std::unique_ptr<CameraSetup>> all = [] {
         std::vector<std::unique_ptr<CameraSetup>> list;
         for (const char* name : {"double-gauss-50mm", "fisheye-6mm-220deg", "mirror-telephoto-500mm", "phone-4mm"}) {
-            Camera camera{io::read_lens(name), {}, {}};
+            Camera camera;
+            camera.lens = io::read_lens(name);
             camera.film.width_mm = camera.lens.film_width;
             camera.film.height_mm = camera.lens.film_height;
             list.push_back(std::make_unique<CameraSetup>(camera, tracer()));

@@ -82,7 +82,7 @@ inline std::string base64(const std::string& bytes) {
 }
 
 /// The buffer of the glTF seed: positions, normals, texture coordinates, joints, weights, indices, sparse indices and
-/// values, inverse bind matrices, and a picture that is none.
+/// values, inverse bind matrices, a picture that is none, and times.
 inline std::string gltf_buffer() {
     Packed data;
     data.add({-1.f, -1.f, 0.f, 1.f, -1.f, 0.f, 1.f, 1.f, 0.f, -1.f, 1.f, 0.f});                    // at 0
@@ -95,6 +95,7 @@ inline std::string gltf_buffer() {
     for (int j = 0; j < 2; ++j)
         data.add({1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, -1.f, 1.f});
     data.bytes += "PICTURE!";                                                                      // 328
+    data.add({0.f, .5f, 1.f, 2.f});                                                                // 336
     return data.bytes;
 }
 
@@ -126,18 +127,19 @@ inline std::string gltf_seed(const std::string& uri) {
 "textures":[{"source":0,"sampler":0},{"source":1}],"samplers":[{}],
 "images":[{"bufferView":8,"mimeType":"image/png"},{"uri":"seed.png"},{"uri":"data:image/png;base64,iVBORw0KGgo="}],
 "cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],
-"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":[{"input":5,"output":0}]}],
+"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},{"sampler":1,"target":{"node":1,"path":"rotation"}}],
+"samplers":[{"input":8,"output":0},{"input":8,"output":4,"interpolation":"STEP"}]}],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0.25],"intensity":40},{"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.5}},{"type":"directional"}]}},
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[-1,-1,0],"max":[1,1,0]},
 {"bufferView":0,"byteOffset":48,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"},
 {"bufferView":2,"componentType":5121,"count":4,"type":"VEC4"},{"bufferView":3,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"},
 {"bufferView":4,"componentType":5123,"count":6,"type":"SCALAR"},
 {"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":2,"indices":{"bufferView":5,"componentType":5123},"values":{"bufferView":6}}},
-{"bufferView":7,"componentType":5126,"count":2,"type":"MAT4"}],
+{"bufferView":7,"componentType":5126,"count":2,"type":"MAT4"},{"bufferView":9,"componentType":5126,"count":4,"type":"SCALAR"}],
 "bufferViews":[{"buffer":0,"byteLength":96,"byteStride":12},{"buffer":0,"byteOffset":96,"byteLength":32},{"buffer":0,"byteOffset":128,"byteLength":16},
 {"buffer":0,"byteOffset":144,"byteLength":16},{"buffer":0,"byteOffset":160,"byteLength":12},{"buffer":0,"byteOffset":172,"byteLength":4},
-{"buffer":0,"byteOffset":176,"byteLength":24},{"buffer":0,"byteOffset":200,"byteLength":128},{"buffer":0,"byteOffset":328,"byteLength":8}],
-"buffers":[{"byteLength":336)" +
+{"buffer":0,"byteOffset":176,"byteLength":24},{"buffer":0,"byteOffset":200,"byteLength":128},{"buffer":0,"byteOffset":328,"byteLength":8},{"buffer":0,"byteOffset":336,"byteLength":16}],
+"buffers":[{"byteLength":352)" +
            uri + "}]}";
 }
 

@@ -91,8 +91,19 @@ def scene_with_holes() -> rc.Scene:
     return scene.with_environment(20).with_instance(scene, place).with_instance(catcher)
 
 
+def scene_with_motion() -> rc.Scene:
+    """The scene with holes, of which copies and lamps go, turn and grow while the shutter is open."""
+    scene = scene_with_holes().with_instance(textured_scene(), np.diag([0.2, 0.2, 0.2, 1]), name="copy")
+    scene = scene.with_instance(frame_scene(spheres=2, boxes=1), name="balls")
+    end = np.array([[0.0, 0, 0.3, 0.8], [0, 0.3, 0, 0.3], [-0.3, 0, 0, -0.5], [0, 0, 0, 1]])
+    scene = scene.moved("copy", [np.diag([0.2, 0.2, 0.2, 1]), end], times_s=[0, 1 / 125])
+    turn = np.array([[0.8, 0, 0.6, -0.3], [0, 1, 0, 0.1], [-0.6, 0, 0.8, 0], [0, 0, 0, 1]])
+    return scene.moved("balls", [np.eye(4), turn, np.eye(4)], times_s=[0, 0.003, 0.02])
+
+
 SCENES = {
     "holes": scene_with_holes,
+    "motion": scene_with_motion,
     "area light": lambda: frame_scene(spheres=20, boxes=20),
     "all kinds": textured_scene,
     "objects": scene_with_objects,
@@ -138,6 +149,19 @@ def test_pictures_agree(scene: str, model: str, bounces: int) -> None:
     lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
     camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), model=model, position=(0, 1, 3), look_at=(0, 0.6, -2))
     hold_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=bounces))
+
+
+@needs_gpu
+@pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
+@pytest.mark.parametrize("scene", ["motion", "all kinds"])
+def test_pictures_of_a_moving_camera_agree(scene: str, model: str) -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
+    keys = [(0, (0, 1, 3), (0, 0.6, -2)), (0.005, (0.1, 1, 3), (0.2, 0.6, -2)), (0.02, (0.1, 1.1, 3), (0, 0.6, -2))]
+    film = rc.Film(36, 24, (120, 80))
+    camera = rc.Camera(lens, film=film, model=model, motion=keys, shutter_opens_s=0.001, readout_time_s=0.01)
+    one, other = pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=1, layers="all")
+    hold_parity(one, other)
+    hold_layer_parity(one, other)
 
 
 @needs_gpu

@@ -315,7 +315,7 @@ def test_what_is_no_place_is_refused() -> None:
         scene.moved(2, np.eye(4))
     with pytest.raises(rc.InputError, match="no instance -1"):
         scene.moved(-1, np.eye(4))
-    with pytest.raises(rc.InputError, match="single matrix"):
+    with pytest.raises(rc.InputError, match="stays where it is has one transform"):
         scene.moved(np.int64(1), [np.eye(4), np.eye(4)])
     with pytest.raises(rc.InputError, match="holds no matrix"):
         GROUND.with_instance(egg, np.zeros((0, 4, 4)))

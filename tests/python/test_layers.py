@@ -24,6 +24,7 @@ ALL = (
     "normal_middle",
     "object_id",
     "material_id",
+    "motion",
 )
 NUMBERS = ("sample_count", "object_id", "material_id")
 THREE = ("normal", "albedo", "variance", "normal_middle")
@@ -62,7 +63,7 @@ def test_every_layer_has_its_shape_and_type(device: str) -> None:
     image = rc.render(two_walls(), camera(), spp=4, layers="all", device=device)
     assert tuple(image.layers) == ALL
     for name, array in image.layers.items():
-        assert array.shape == ((16, 24, 3) if name in THREE else (16, 24)), name
+        assert array.shape == (16, 24) + ((3,) if name in THREE else (2,) if name == "motion" else ()), name
         assert array.dtype == (np.uint32 if name in NUMBERS else np.float32), name
     assert image.layers["depth"] is image.depth
     assert (image.layers["sample_count"] == 4).all()
@@ -83,7 +84,7 @@ def test_a_name_that_is_none() -> None:
         with pytest.raises(rc.InputError, match=r"unknown layer.*all, or some of depth, normal"):
             rc.render(two_walls(), camera(), spp=1, layers=[wrong])
     with pytest.raises(rc.InputError, match="unknown layer"):
-        rc.Session(two_walls(), camera(), layers="motion")
+        rc.Session(two_walls(), camera(), layers="colour")
 
 
 def test_a_slanted_plane(device: str) -> None:

@@ -94,6 +94,7 @@ CHANNELS = {
     "normal_middle": ("NormalMiddle.X", "NormalMiddle.Y", "NormalMiddle.Z"),
     "object_id": ("ObjectId",),
     "material_id": ("MaterialId",),
+    "motion": ("Motion.X", "Motion.Y"),
 }
 
 

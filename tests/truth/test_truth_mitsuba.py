@@ -7,6 +7,7 @@ tests/truth/test_truth_mitsuba.py -m slow` takes enough samples to hold the mean
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -34,9 +35,25 @@ def ours(scene: rc.Scene, taken: rc.Camera, spp: int, seed: int) -> np.ndarray:
     return np.asarray(image.pixels, float) / taken.exposure_time_s
 
 
-def theirs(scene: mi.Scene, sensor: mi.Sensor, falloff: np.ndarray, spp: int, seed: int) -> np.ndarray:
+def mitsuba_scenes(shot: scenes.Shot) -> Callable[[], list[mi.Scene]]:
+    """Of a shot with motion, another one for each 1/16 of the exposure every time, each at a moment by chance."""
+    if not any(part.moves for part in shot.parts):
+        still = [scenes.mitsuba_scene(shot)]
+        return lambda: still
+    rng = np.random.default_rng(1)
+    return lambda: [scenes.mitsuba_scene(shot, (i + rng.random()) / 16) for i in range(16)]
+
+
+def theirs(peers: list[mi.Scene], sensor: mi.Sensor, falloff: np.ndarray, spp: int, seed: int) -> np.ndarray:
     integrator = mi.load_dict({"type": "path", "max_depth": BOUNCES + 2})
-    return np.array(mi.render(scene, sensor=sensor, integrator=integrator, spp=spp, seed=seed), float) * falloff
+    pictures = [
+        np.array(
+            mi.render(scene, sensor=sensor, integrator=integrator, spp=spp // len(peers), seed=len(peers) * seed + i),
+            float,
+        )
+        for i, scene in enumerate(peers)
+    ]
+    return np.mean(pictures, axis=0) * falloff
 
 
 def falloff_of(taken: rc.Camera) -> np.ndarray:
@@ -54,10 +71,10 @@ def compare(name: str, spp: int, rounds: int) -> tuple[float, float]:
     from mitsuba_scene import sensor as mitsuba_sensor
 
     shot, taken = scenes.SHOTS[name](), camera()
-    mine, peer = scenes.realcam_scene(shot), scenes.mitsuba_scene(shot)
+    mine, peers = scenes.realcam_scene(shot), mitsuba_scenes(shot)
     sensor, falloff = mi.load_dict(mitsuba_sensor("perspective", taken)), falloff_of(taken)
     a = np.array([blocks(ours(mine, taken, spp, seed)) for seed in range(rounds)])
-    b = np.array([blocks(theirs(peer, sensor, falloff, spp, seed)) for seed in range(rounds)])
+    b = np.array([blocks(theirs(peers(), sensor, falloff, spp, seed)) for seed in range(rounds)])
     variance = (a.var(axis=0, ddof=1) + b.var(axis=0, ddof=1)) / rounds
     # Where nothing is noise (a sky, a lamp), what float32 rounds.
     error = np.sqrt(variance + (1e-4 * a.mean()) ** 2)

@@ -1,0 +1,42 @@
+#pragma once
+#include "generate_rays.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Rays of an exposure during which something moves: each has a time of its own, as a share of the exposure, and goes
+// out from where the camera is then.
+
+/// `within(lane)`: share of the time for which its pixel is exposed.
+template <int N, class Within>
+REALCAM_INLINE void set_times(const CameraView& camera, const SampleBlock<N>& block, float (&times)[N],
+                              Within&& within) {
+    for (int i = 0; i < N; ++i)
+        times[i] = static_cast<float>(block.row[i]) * camera.row_time + camera.exposed_time * within(i);
+}
+
+/// Takes rays along that were made for the camera at the begin of the exposure.
+template <int N>
+REALCAM_INLINE void move_rays(const CameraView& camera, const float (&times)[N], CameraRays<N>& rays) {
+    if (camera.key_count == 0) return;
+    for (int i = 0; i < N; ++i) {
+        const CameraPlacement then = camera_at(camera, times[i]);
+        const auto turned = [&](Vec3f v) {
+            return dot(v, camera.right) * then.right + dot(v, camera.up) * then.up +
+                   dot(v, camera.backward) * then.backward;
+        };
+        rays.origin.set(i, then.position + turned(rays.origin[i] - camera.position));
+        rays.direction.set(i, turned(rays.direction[i]));
+    }
+}
+
+/// generate_rays, at times that are stratified over the exposure of each pixel.
+template <LensKind lens_kind = LensKind::any, int N>
+REALCAM_HD inline void generate_exposed_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
+                                             float (&times)[N]) {
+    generate_rays<lens_kind>(camera, block, rays);
+    const bool moves = camera.exposed_time > 0.0f;
+    set_times(camera, block, times, [&](int i) { return moves ? block.random(i, dimension::time).x : 0.0f; });
+    move_rays(camera, times, rays);
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,52 @@
+#pragma once
+#include "quaternion.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The linear part of a map as a rotation after a stretch along three axes (and a mirror, where the map is one).
+struct PolarDecomposition {
+    Quaternion rotation;
+    Affine<double> stretch;
+};
+
+/// Of a map whose determinant is not 0, by Newton's iteration with scaling (Higham 1986).
+inline PolarDecomposition polar_decomposition(const Affine<double>& map) {
+    Affine<double> r = {map.x, map.y, map.z, {0, 0, 0}};
+    if (map.determinant() < 0) r = {-map.x, -map.y, -map.z, {0, 0, 0}};
+    for (int i = 0; i < 64; ++i) {
+        const double inverse = 1 / r.determinant();
+        const Affine<double> back = {inverse * cross(r.y, r.z),
+                                     inverse * cross(r.z, r.x),
+                                     inverse * cross(r.x, r.y),
+                                     {0, 0, 0}};  // the inverse, transposed
+        const auto size = [](const Affine<double>& m) { return dot(m.x, m.x) + dot(m.y, m.y) + dot(m.z, m.z); };
+        const double scale = std::sqrt(std::sqrt(size(back) / size(r)));
+        const Affine<double> last = r;
+        r.x = 0.5 * (scale * r.x + (1 / scale) * back.x);
+        r.y = 0.5 * (scale * r.y + (1 / scale) * back.y);
+        r.z = 0.5 * (scale * r.z + (1 / scale) * back.z);
+        const Affine<double> step = {r.x - last.x, r.y - last.y, r.z - last.z, {0, 0, 0}};
+        if (size(step) < 1e-30) break;
+    }
+    const Quaternion q = quaternion_of(r);
+    const Affine<double> turned = rotation({-q.v, q.w});
+    return {q, {turned.direction(map.x), turned.direction(map.y), turned.direction(map.z), {0, 0, 0}}};
+}
+
+/// At a share of the way from one map to another, which mirror both or neither: rotations by the shorter way at an even
+/// pace, stretch and shift evenly (Shoemake and Duff 1992).
+inline Affine<double> interpolated(const Affine<double>& a, const Affine<double>& b, double share) {
+    const auto between = [&](Vec3d u, Vec3d v) { return (1 - share) * u + share * v; };
+    const Vec3d origin = between(a.origin, b.origin);
+    if (a.x == b.x && a.y == b.y && a.z == b.z) return {a.x, a.y, a.z, origin};
+    const PolarDecomposition from = polar_decomposition(a), to = polar_decomposition(b);
+    const Affine<double> stretch = {between(from.stretch.x, to.stretch.x),
+                                    between(from.stretch.y, to.stretch.y),
+                                    between(from.stretch.z, to.stretch.z),
+                                    {0, 0, 0}};
+    Affine<double> map = rotation(slerp(from.rotation, to.rotation, share)) * stretch;
+    map.origin = origin;
+    return map;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,82 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "interpolate_affine.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Times beyond are refused: a double tells a tenth of a microsecond from the next up to here.
+inline constexpr double kMostSeconds = 1e9;
+
+/// From when to when something is looked at, in seconds of the scene.
+struct TimeInterval {
+    double begin_s = 0, end_s = 0;
+
+    bool operator==(const TimeInterval&) const = default;
+    double at(double share) const { return begin_s + share * (end_s - begin_s); }
+};
+
+/// A transform that changes with time, by keys. Between two of them it is interpolated (see `interpolated`): a turn
+/// goes the shorter way. Before the first and after the last nothing moves.
+struct Motion {
+    std::vector<double> times_s;  ///< rising
+    std::vector<Affine<double>> transforms;  ///< one for each
+
+    bool operator==(const Motion&) const = default;
+
+    Affine<double> at(double time_s) const {
+        const auto next = std::upper_bound(times_s.begin(), times_s.end(), time_s);
+        if (next == times_s.begin()) return transforms.front();
+        const auto i = static_cast<std::size_t>(next - times_s.begin()) - 1;
+        if (next == times_s.end() || time_s == times_s[i]) return transforms[i];
+        return interpolated(transforms[i], transforms[i + 1], (time_s - times_s[i]) / (times_s[i + 1] - times_s[i]));
+    }
+
+    /// The keys within an interval, without its ends.
+    std::vector<double> times_within(const TimeInterval& interval) const {
+        return {std::upper_bound(times_s.begin(), times_s.end(), interval.begin_s),
+                std::lower_bound(times_s.begin(), times_s.end(), std::max(interval.begin_s, interval.end_s))};
+    }
+};
+
+/// A motion by keys at the given times and at as many between them as the interpolation wants, to be what `at` is: a
+/// function of the time. For what moves with something else, and goes along arcs where that turns.
+template <class At>
+Motion sampled_motion(const std::vector<double>& times_s, At&& at) {
+    constexpr int kMostHalvings = 8;
+    constexpr double kClose = 1e-5;  // of the axes' lengths, and of the way: a hundredth of what key_steps grants
+    Motion motion;
+    const auto add = [&](double time, const Affine<double>& map) {
+        motion.times_s.push_back(time);
+        motion.transforms.push_back(map);
+    };
+    const auto is_close = [&](const Affine<double>& a, const Affine<double>& b, const Affine<double>& from) {
+        const double axes = length(a.x) + length(a.y) + length(a.z);
+        const double off = length(a.x - b.x) + length(a.y - b.y) + length(a.z - b.z);
+        return off <= kClose * axes && length(a.origin - b.origin) <= kClose * (length(a.origin - from.origin) + axes);
+    };
+    const auto halve = [&](auto&& self, double begin, const Affine<double>& first, double end,
+                           const Affine<double>& last, int depth) -> void {
+        const double middle = 0.5 * (begin + end);
+        const Affine<double> there = at(middle);
+        if (depth < kMostHalvings && middle > begin && middle < end &&
+            !is_close(there, interpolated(first, last, 0.5), first)) {
+            self(self, begin, first, middle, there, depth + 1);
+            self(self, middle, there, end, last, depth + 1);
+        } else {
+            add(end, last);
+        }
+    };
+    for (std::size_t i = 0; i < times_s.size(); ++i) {
+        const Affine<double> map = at(times_s[i]);
+        if (i == 0)
+            add(times_s[0], map);
+        else
+            halve(halve, times_s[i - 1], Affine<double>(motion.transforms.back()), times_s[i], map, 0);
+    }
+    return motion;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,27 @@
+#pragma once
+#include "../math/key_interval.hpp"
+#include "scene_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Where things are that move while the shutter is open. Times are shares of the exposure, from 0 to 1. Between the
+// keys, which are at even times, the entries of a transform change evenly, as in Embree.
+
+REALCAM_INLINE Affine<float> transform_at(const Affine<float>* keys, std::int32_t count, float time) {
+    const KeyInterval at = key_interval(time, count);
+    const Affine<float>&a = keys[at.first], &b = keys[at.first + 1];
+    const auto between = [&](Vec3f u, Vec3f v) { return (1.0f - at.share) * u + at.share * v; };
+    return {between(a.x, b.x), between(a.y, b.y), between(a.z, b.z), between(a.origin, b.origin)};
+}
+
+/// With the transforms of a time.
+REALCAM_INLINE InstanceView instance_at(const SceneView& scene, std::uint32_t number, float time) {
+    InstanceView instance = scene.instances[number];
+    if (instance.key_count > 0) {
+        instance.render_from_object = transform_at(scene.keys + instance.first_key, instance.key_count, time);
+        instance.object_from_render = instance.render_from_object.inverse();
+    }
+    return instance;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,177 @@
+"""Animations of glTF files: how their nodes move, by the formulas of the format (glTF 2.0, appendix C)."""
+
+from __future__ import annotations
+
+import base64
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import realcam as rc
+
+
+class Gltf:
+    """A file with one triangle and nodes that show it."""
+
+    def __init__(self) -> None:
+        self.data = b""
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+        self.nodes: list[dict[str, Any]] = []
+        self.samplers: list[dict[str, Any]] = []
+        self.channels: list[dict[str, Any]] = []
+        self.triangle = self.array(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]), "VEC3")
+
+    def array(self, numbers: object, kind: str) -> int:
+        raw = np.asarray(numbers, np.float32)
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": raw.nbytes})
+        count = raw.size // {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[kind]
+        self.accessors.append({"bufferView": len(self.views) - 1, "componentType": 5126, "count": count, "type": kind})
+        self.data += raw.tobytes()
+        return len(self.accessors) - 1
+
+    def node(self, name: str, **keys: Any) -> int:
+        self.nodes.append({"name": name, "mesh": 0, **keys})
+        return len(self.nodes) - 1
+
+    def animate(self, node: int, path: str, times: object, values: object, interpolation: str = "LINEAR") -> None:
+        kind = "VEC4" if path == "rotation" else "VEC3"
+        sampler = {"input": self.array(times, "SCALAR"), "output": self.array(values, kind)}
+        self.samplers.append({**sampler, "interpolation": interpolation})
+        self.channels.append({"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}})
+
+    def load(self, folder: Path, **options: Any) -> rc.Scene:
+        uri = "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()
+        file = {
+            "asset": {"version": "2.0"},
+            "buffers": [{"byteLength": len(self.data), "uri": uri}],
+            "bufferViews": self.views,
+            "accessors": self.accessors,
+            "meshes": [{"primitives": [{"attributes": {"POSITION": self.triangle}}]}],
+            "nodes": self.nodes,
+            "animations": [{"name": "walk", "samplers": self.samplers, "channels": self.channels}],
+        }
+        path = folder / "animated.gltf"
+        path.write_text(json.dumps(file))
+        return rc.Scene.load(path, **options)
+
+
+def about_y(angle: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[0, 0] = matrix[2, 2] = np.cos(angle)
+    matrix[0, 2], matrix[2, 0] = np.sin(angle), -np.sin(angle)
+    return matrix
+
+
+def shifted(*shift: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, 3] = shift
+    return matrix
+
+
+def at(scene: rc.Scene, name: str, time: float) -> np.ndarray:
+    return dict(scene.at_time(time).instances)[name]
+
+
+def test_translation_rotation_and_scale_by_keys(tmp_path: Path) -> None:
+    gltf = Gltf()
+    ball = gltf.node("ball", translation=[7, 7, 7])
+    gltf.animate(ball, "translation", [1, 2, 4], [[0, 0, 0], [1, 0, 0], [1, 4, 0]])
+    gltf.animate(ball, "rotation", [1, 3], [[0, 0, 0, 1], [0, np.sin(0.6), 0, np.cos(0.6)]])
+    gltf.animate(ball, "scale", [1, 2], [[1, 1, 1], [3, 2, 1]])
+    scene = gltf.load(tmp_path, scale=0.5)
+    for time in np.linspace(0, 5, 41):
+        place = [np.interp(time, [1, 2, 4], column) for column in ([0, 1, 1], [0, 0, 4], [0, 0, 0])]
+        size = [np.interp(time, [1, 2], [1, s]) for s in (3, 2, 1)]
+        turn = about_y(np.interp(time, [1, 3], [0, 1.2]))
+        expected = shifted(*(0.5 * np.array(place))) @ turn @ np.diag([*size, 1])
+        np.testing.assert_allclose(at(scene, "ball", time), expected, atol=1e-6)
+
+
+def test_steps_and_splines(tmp_path: Path) -> None:
+    gltf = Gltf()
+    flag, swing = gltf.node("flag"), gltf.node("swing")
+    gltf.animate(flag, "translation", [0, 1, 2], [[0, 0, 0], [1, 0, 0], [5, 0, 0]], "STEP")
+    rows = [[[0, 0, 0], [0, 0, 0], [0, 3, 0]], [[0, -1, 0], [2, 1, 0], [0, 0, 0]]]  # tangent, value, tangent
+    gltf.animate(swing, "translation", [0, 2], rows, "CUBICSPLINE")
+    scene = gltf.load(tmp_path)
+    assert [at(scene, "flag", t)[0, 3] for t in (0.0, 0.5, 0.999, 1.0, 1.5, 2.0, 3.0)] == pytest.approx(
+        [0, 0, 0, 1, 1, 5, 5], abs=1e-9
+    )
+    for t in np.linspace(0, 1, 21):
+        x = 2 * (3 * t**2 - 2 * t**3)
+        y = 2 * 3 * (t**3 - 2 * t**2 + t) + (3 * t**2 - 2 * t**3) + 2 * -1 * (t**3 - t**2)
+        # Keys stand as dense as a millionth of the way of each wants, or 128 to a segment: chords of 1/128 of it.
+        np.testing.assert_allclose(at(scene, "swing", 2 * t)[:2, 3], [x, y], atol=2e-4)
+
+
+def test_nodes_move_with_those_above_them(tmp_path: Path) -> None:
+    gltf = Gltf()
+    wheel = gltf.node("wheel", translation=[2, 0, 0])
+    lamp = gltf.node("lamp", translation=[0, 1, 0])
+    car = gltf.node("car", children=[wheel, lamp])
+    gltf.node("street")
+    gltf.animate(car, "rotation", [0, 1], [[0, 0, 0, 1], [0, np.sin(0.75), 0, np.cos(0.75)]])
+    gltf.animate(wheel, "rotation", [0, 1], [[0, 0, 0, 1], [0, np.sin(1), 0, np.cos(1)]])
+    scene = gltf.load(tmp_path)
+    assert [name for name, _ in scene.instances] == ["car", "wheel"]
+    assert scene.triangle_count == 4
+    for t in np.linspace(0, 1, 11):
+        np.testing.assert_allclose(at(scene, "car", t), about_y(1.5 * t), atol=1e-6)
+        np.testing.assert_allclose(
+            at(scene, "wheel", t), about_y(1.5 * t) @ shifted(2, 0, 0) @ about_y(2 * t), atol=1e-4
+        )
+    parked = scene.moved("car", shifted(0, 0, 9))
+    np.testing.assert_allclose(at(parked, "wheel", 0.5), shifted(0, 0, 9) @ shifted(2, 0, 0) @ about_y(1), atol=1e-4)
+    named = gltf.load(tmp_path, objects=["lamp"])
+    assert [name for name, _ in named.instances] == ["car", "wheel", "lamp"]
+    np.testing.assert_allclose(at(named, "lamp", 0.5), about_y(0.75) @ shifted(0, 1, 0), atol=1e-4)
+
+
+def test_keys_that_change_nothing_make_no_object(tmp_path: Path) -> None:
+    gltf = Gltf()
+    node = gltf.node("box")
+    gltf.animate(node, "translation", [0, 1], [[1, 2, 3]] * 2)
+    gltf.animate(node, "scale", [0, 1], [[0, 0, 0], [1, 1, 1], [0, 0, 0]] * 2, "CUBICSPLINE")
+    scene = gltf.load(tmp_path)
+    assert scene.instances == ()
+    assert scene.bounds_m == ((1, 2, 3), (2, 3, 3))
+
+
+def test_what_is_not_played_is_said(tmp_path: Path) -> None:
+    gltf = Gltf()
+    node = gltf.node("box")
+    gltf.node("fixed", matrix=np.eye(4).ravel().tolist())
+    gltf.animate(node, "scale", [0, 1], [[1, 1, 1], [0, 0, 0]])
+    gltf.animate(1, "translation", [0, 1], [[0, 0, 0], [1, 0, 0]])
+    gltf.channels.append({"sampler": 0, "target": {"node": 0, "path": "weights"}})
+    scene = gltf.load(tmp_path)
+    warnings = "\n".join(scene.warnings)
+    assert 'animation 0 "walk": 1 channels change the weights' in warnings
+    assert "1 channels animate nodes that have a matrix" in warnings
+    # Scaled to nothing at its end: it stands as it does at time 0.
+    assert scene.motions == (None,)
+    np.testing.assert_array_equal(at(scene, "box", 1), np.eye(4))
+
+
+@pytest.mark.parametrize(
+    ("times", "values", "interpolation", "wanted"),
+    [
+        ([0, 0], [[0, 0, 0]] * 2, "LINEAR", "channel 0: its times must rise"),
+        ([0, np.nan], [[0, 0, 0]] * 2, "LINEAR", "a time must lie within 1e9 s"),
+        ([0, 1], [[0, 0, 0]] * 3, "LINEAR", "has 2 times and 3 values; 1 for each"),
+        ([0, 1], [[0, 0, 0]] * 2, "CUBICSPLINE", "has 2 times and 2 values; 3 for each"),
+        ([0, 1], [[0, np.inf, 0]] * 2, "LINEAR", "not finite"),
+        ([0, 1], [[0, 0, 0]] * 2, "SWING", 'its interpolation is "SWING"; LINEAR, STEP or CUBICSPLINE'),
+        ([], [], "LINEAR", "has 0 times"),
+    ],
+)
+def test_keys_that_are_none_are_refused(
+    tmp_path: Path, times: list[float], values: list[list[float]], interpolation: str, wanted: str
+) -> None:
+    gltf = Gltf()
+    gltf.animate(gltf.node("box"), "translation", times, values, interpolation)
+    with pytest.raises(rc.SceneFileError, match=wanted):
+        gltf.load(tmp_path)
