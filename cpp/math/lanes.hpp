@@ -24,6 +24,18 @@ struct Vec3Lanes {
     }
 };
 
+/// Likewise of pairs.
+template <class T, int N>
+struct Vec2Lanes {
+    alignas(kLaneAlignment<T, N>) T x[N], y[N];
+
+    REALCAM_INLINE Vec2<T> operator[](int lane) const { return {x[lane], y[lane]}; }
+    REALCAM_INLINE void set(int lane, Vec2<T> v) {
+        x[lane] = v.x;
+        y[lane] = v.y;
+    }
+};
+
 /// a where the condition holds, else b; both are always computed, so that a lane loop stays free of branches.
 template <class T>
 REALCAM_INLINE constexpr T select(bool condition, T a, T b) {

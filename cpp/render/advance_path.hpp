@@ -114,6 +114,13 @@ REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& p
     return (weight * path.throughput[lane]) * point.emission;
 }
 
+/// Numbers for all lanes, also for those that have no use for them: so the loop becomes vector code.
+template <int N>
+REALCAM_INLINE void draw(const SampleBlock<N>& block, std::uint32_t dimension, Vec2Lanes<float, N>& numbers) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) numbers.set(i, block.random(i, dimension));
+}
+
 /// A sample of one of the lights, by the illuminance that each would bring if nothing stood in between: one of eight
 /// that sample_light draws, by its share of what they bring (resampling, Talbot et al. 2005), or of up to 64 where
 /// those were all behind the surface. Black: no light.
@@ -131,6 +138,53 @@ REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightRec
         if (random() * sum < illuminance) chosen = light;
     }
     return chosen;
+}
+
+/// What the paths of a block have met, on their way from one surface to the next.
+template <int N>
+struct Surfaces {
+    SurfacePoint points[N];
+    std::int32_t scatters[N];  ///< 1 where the path goes on from here
+    Vec3Lanes<float, N> position, normal;  ///< of the points that are there
+};
+
+/// Collects what comes along the rays, from emitters that they have met or from the environment, and makes the points
+/// ready from which paths go on.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camera, const PathSettings& settings,
+                                  int bounce, const Hits<N>& hits, PathState<N>& path, PathResults<N>& results,
+                                  Surfaces<N>& surfaces) {
+    for (int i = 0; i < N; ++i) {
+        surfaces.scatters[i] = 0;
+        surfaces.position.set(i, {0, 0, 0});
+        surfaces.normal.set(i, {0, 0, 1});
+        if (!path.rays.active[i]) continue;
+        path.rays.active[i] = 0;
+        const Hit hit = hits[i];
+        const Vec3f direction = path.rays.direction[i];
+        const float time = time_of<scene_kind>(path, i);
+        const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
+        if (hit.triangle == kNoTriangle) {
+            if (view.has_environment)
+                results.irradiance.set(
+                    i, results.irradiance[i] + clamped(environment_light<scene_kind>(view, path, i), limit));
+            continue;
+        }
+        SurfacePoint& point = surfaces.points[i];
+        point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time);
+        surfaces.position.set(i, point.position);
+        surfaces.normal.set(i, point.normal);
+        if constexpr (scene_kind != SceneKind::plain) {
+            const Color absorption = path.absorption[i];
+            if (!is_black(absorption))
+                path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
+        }
+        if (!is_black(point.emission))
+            results.irradiance.set(
+                i, results.irradiance[i] + clamped(emitter_light<scene_kind>(view, path, i, hit, point), limit));
+        if (bounce == 0) results.depth[i] = depth_at<scene_kind>(camera, point.position, time);
+        surfaces.scatters[i] = bounce <= settings.max_bounces;
+    }
 }
 
 }  // namespace advance_path_detail
@@ -173,6 +227,9 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     SceneRays<N> shadow;
     Hits<N> hits;
     ColorLanes<N> unshadowed;
+    Surfaces<N> surfaces;
+    Vec2Lanes<float, N> light_numbers, scatter_numbers;
+    alignas(kLaneAlignment<float, N>) float local_light[N];
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
     std::int32_t darkens[N] = {};  // surfaces that show nothing but shadows
 
@@ -188,37 +245,25 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
+    meet_surfaces<scene_kind>(view, camera, settings, bounce, hits, path, results, surfaces);
+    draw(block, first_dimension + dimension::light, light_numbers);
+    draw(block, first_dimension + dimension::scatter, scatter_numbers);
+    if (scene_kind == SceneKind::plain && view.light_node_count > 0) {
+        const LightNode all_lights = view.light_nodes[0];
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i)
+            local_light[i] = light_importance(all_lights, {surfaces.position[i], surfaces.normal[i]});
+    }
     // After the last bounce, one more ray looks for the light that narrow lobes show.
-    const bool is_last = bounce == settings.max_bounces, is_past = bounce > settings.max_bounces;
+    const bool is_last = bounce == settings.max_bounces;
     int alive = 0, lit = 0;
     for (int i = 0; i < N; ++i) {
         shadow.active[i] = 0;
-        if (!path.rays.active[i]) continue;
-        const Hit hit = hits[i];
+        if (!surfaces.scatters[i]) continue;
+        const SurfacePoint& point = surfaces.points[i];
         const Vec3f direction = path.rays.direction[i];
         const float time = time_of<scene_kind>(path, i);
         const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
-        if (hit.triangle == kNoTriangle) {
-            path.rays.active[i] = 0;
-            if (view.has_environment)
-                results.irradiance.set(
-                    i, results.irradiance[i] + clamped(environment_light<scene_kind>(view, path, i), limit));
-            continue;
-        }
-        const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time);
-        if constexpr (scene_kind != SceneKind::plain) {
-            const Color absorption = path.absorption[i];
-            if (!is_black(absorption))
-                path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
-        }
-        if (!is_black(point.emission))
-            results.irradiance.set(
-                i, results.irradiance[i] + clamped(emitter_light<scene_kind>(view, path, i, hit, point), limit));
-        if (bounce == 0) results.depth[i] = depth_at<scene_kind>(camera, point.position, time);
-        if (is_past) {
-            path.rays.active[i] = 0;
-            continue;
-        }
         const std::uint32_t seed = hash32(block.stream[i] ^ block.sample[i], first_dimension);
         if constexpr (scene_kind == SceneKind::any) {
             darkens[i] = point.material->only_shadows;
@@ -232,14 +277,17 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
                 lit |= shadow.active[i];
                 unshadowed.set(i, {0, 0, 0});
                 path.rays.origin.set(i, ray_start(point, direction));
-                alive = 1;
+                path.rays.active[i] = alive = 1;
                 continue;
             }
         }
         auto bsdf = make_bsdf<scene_kind>(point, -direction);
         const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
-        const LightSample light =
-            sample_light<scene_kind>(view, receiver, block.random(i, first_dimension + dimension::light), seed);
+        const auto kinds = [&] {
+            if constexpr (scene_kind == SceneKind::plain) return LightKinds(view, receiver, local_light[i]);
+            return LightKinds(view, receiver);
+        };
+        const LightSample light = sample_light<scene_kind>(view, receiver, kinds(), light_numbers[i], seed);
         const Color lambert_and_narrow = bsdf.eval(light.direction);
         const bool goes_on = !is_last && settings.transport == LightTransport::paths;
         // Where only narrow lobes send out a ray, Lambert's lobe sees light samples alone.
@@ -252,7 +300,8 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
             else
                 bsdf.keep_narrow_lobes();
             const Color narrow = bsdf.eval(light.direction);
-            seen = lambert_and_narrow - narrow + mis_weight(light.pdf, bsdf.pdf(light.direction)) * narrow;
+            seen = lambert_and_narrow;
+            if (!is_black(narrow)) seen += (mis_weight(light.pdf, bsdf.pdf(light.direction)) - 1.0f) * narrow;
         }
         seen *= path.throughput[i] * light.irradiance;
         set_shadow_ray(point, light, i, shadow);
@@ -260,7 +309,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         lit |= shadow.active[i];
         unshadowed.set(i, clamped(seen, limit));
 
-        const BsdfSample next = bsdf.sample(block.random(i, first_dimension + dimension::scatter), unit_float(seed));
+        const BsdfSample next = bsdf.sample(scatter_numbers[i], unit_float(seed));
         const Color throughput = path.throughput[i] * next.weight;
         path.throughput.set(i, throughput);
         path.rays.origin.set(i, ray_start(point, next.direction));

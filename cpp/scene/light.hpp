@@ -91,13 +91,18 @@ REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f pos
 /// in between, and for one half alike, because much may stand in between.
 class LightKinds {
 public:
-    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver) : scene_(scene), receiver_(receiver) {
+    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver)
+        : LightKinds(scene, receiver, local_importance(scene, receiver)) {}
+
+    /// `local`: local_importance of the receiver, for those who have found it for many at once.
+    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver, float local)
+        : scene_(scene), receiver_(receiver) {
         const int count = has_local() + scene.sun_count + scene.has_environment;
         const auto kinds = static_cast<float>(count);
         local_ = environment_ = scale_ = 0.0f;
         even_ = 1.0f;
         if (count < 2) return;
-        local_ = has_local() ? light_importance(scene.light_nodes[0], receiver) : 0.0f;
+        local_ = local;
         environment_ = scene.has_environment ? 3.141592654f * scene.environment.mean_luminance : 0.0f;
         float sum = local_ + environment_;
         for (int i = 0; i < scene.sun_count; ++i) sum += sun(i);
@@ -105,6 +110,11 @@ public:
         const bool is_useful = sum > 0.0f && sum < 1e30f;
         even_ = kinds > 0.0f ? (is_useful ? kEven : 1.0f) / kinds : 0.0f;
         scale_ = is_useful ? (1.0f - kEven) / sum : 0.0f;
+    }
+
+    /// Of all point and area lights together.
+    REALCAM_INLINE static float local_importance(const SceneView& scene, LightReceiver receiver) {
+        return scene.light_node_count > 0 ? light_importance(scene.light_nodes[0], receiver) : 0.0f;
     }
 
     REALCAM_INLINE bool has_local() const { return scene_.light_node_count > 0; }
@@ -163,8 +173,8 @@ REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
 /// Chooses one light, and a place on it. One pair of numbers does both, so that what is even over a pixel's samples is
 /// even over each light. `seed` as in choose_light.
 template <SceneKind scene_kind>
-REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
-    const LightKinds kinds(scene, receiver);
+REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
+                                        Vec2f u, std::uint32_t seed) {
     LightSample sample{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     float probability = kinds.local_probability();
     const auto rescale = [&] {
@@ -214,6 +224,11 @@ REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver re
     sample.irradiance = {bounded(all.r), bounded(all.g), bounded(all.b)};
     sample.pdf *= probability;
     return sample;
+}
+
+template <SceneKind scene_kind>
+REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
+    return sample_light<scene_kind>(scene, receiver, LightKinds(scene, receiver), u, seed);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -9,29 +9,26 @@ namespace REALCAM_NAMESPACE {
 
 /// Cosine of the difference of two angles between 0 and pi, or 1 where the second is larger.
 REALCAM_INLINE float cosine_of_rest(float cos_a, float cos_b) {
-    if (cos_a >= cos_b) return 1.0f;
-    return cos_a * cos_b + sqrt_or_zero(1.0f - cos_a * cos_a) * sqrt_or_zero(1.0f - cos_b * cos_b);
+    const float rest = cos_a * cos_b + sqrt_or_zero(1.0f - cos_a * cos_a) * sqrt_or_zero(1.0f - cos_b * cos_b);
+    return select(cos_a >= cos_b, 1.0f, rest);
 }
 
-/// About the illuminance, in lux, that a node's lights can bring to a receiver; 0 where none of them can shine on it.
+/// Without branches, so that it becomes vector code for many receivers. About the illuminance, in lux, that a node's
+/// lights can bring to a receiver; 0 where none of them can shine on it.
 REALCAM_INLINE float light_importance(const LightNode& node, LightReceiver receiver) {
     const Vec3f middle = 0.5f * (node.low + node.high), half = node.high - middle;
     const Vec3f way = receiver.position - middle;
     const float squared = dot(way, way), radius2 = dot(half, half);
     // Of the angle in which the bounds appear; from inside, lights are in all directions.
-    const float cos_bounds = squared > radius2 ? std::sqrt(1.0f - radius2 / squared) : -1.0f;
-    const float inverse = 1.0f / std::sqrt(squared > 1e-30f ? squared : 1e-30f);
-    float cosines = 1.0f;
-    if (node.is_isotropic == 0) {
-        const float cos_axis = inverse * dot(node.axis, way);
-        const float cos_emitted = cosine_of_rest(cosine_of_rest(cos_axis, node.cos_spread), cos_bounds);
-        cosines = cos_emitted > 0.0f ? cos_emitted : 0.0f;
-    }
-    if (dot(receiver.normal, receiver.normal) > 0.0f) {
-        const float cos_received = cosine_of_rest(-inverse * dot(receiver.normal, way), cos_bounds);
-        cosines *= cos_received > 0.0f ? cos_received : 0.0f;
-    }
-    return node.intensity * cosines / (squared > radius2 ? squared : radius2);
+    const float cos_bounds = select(squared > radius2, sqrt_or_zero(1.0f - radius2 / squared), -1.0f);
+    const float inverse = 1.0f / std::sqrt(select(squared > 1e-30f, squared, 1e-30f));
+    const float cos_axis = inverse * dot(node.axis, way);
+    const float cos_emitted = cosine_of_rest(cosine_of_rest(cos_axis, node.cos_spread), cos_bounds);
+    const float cos_received = cosine_of_rest(-inverse * dot(receiver.normal, way), cos_bounds);
+    const float emitted = select(node.is_isotropic != 0, 1.0f, select(cos_emitted > 0.0f, cos_emitted, 0.0f));
+    const float received =
+        select(dot(receiver.normal, receiver.normal) > 0.0f, select(cos_received > 0.0f, cos_received, 0.0f), 1.0f);
+    return node.intensity * emitted * received / select(squared > radius2, squared, radius2);
 }
 
 /// Probability of the first of two children. Neither is ever left out: bounds and receiver are rounded.
