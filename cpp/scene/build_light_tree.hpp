@@ -13,7 +13,9 @@ namespace REALCAM_NAMESPACE {
 class LightTree {
 public:
     LightTree() = default;
-    LightTree(const std::vector<PointLight>& points, const std::vector<AreaLight>& areas, Checkpoint& checkpoint) {
+    /// `area_means`: what maps make of the luminance of each area light; empty: none has one.
+    LightTree(const std::vector<PointLight>& points, const std::vector<AreaLight>& areas, Checkpoint& checkpoint,
+              const std::vector<float>& area_means = {}) {
         std::vector<Leaf> leaves;
         for (const PointLight& p : points) {
             const bool is_spot = p.cos_scale > 0;
@@ -24,10 +26,12 @@ public:
                  0,
                  p.position});
         }
-        for (const AreaLight& a : areas) {
+        for (std::size_t i = 0; i < areas.size(); ++i) {
+            const AreaLight& a = areas[i];
+            const float mean = area_means.empty() ? 1.0f : area_means[i];
             const Vec3f b = a.corner + a.edge_u, c = a.corner + a.edge_v;
             leaves.push_back({{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, 1.0f,
-                               a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
+                               mean * a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
                               0,
                               (1.0f / 3.0f) * (a.corner + b + c)});
         }

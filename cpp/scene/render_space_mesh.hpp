@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "emission_mean.hpp"
 #include "light_tables.hpp"
 #include "scene.hpp"
 #include "split_triangles.hpp"
@@ -30,6 +31,7 @@ public:
         add_planes(checkpoint);
         for (std::uint32_t i = 0; i < triangles().size(); ++i)
             if (scene.materials[triangles()[i].material].emits()) emitters_.push_back(i);
+        emission_means_ = REALCAM_NAMESPACE::emission_means(view(), checkpoint);
     }
 
     MeshView view() const {
@@ -60,6 +62,8 @@ public:
     const std::vector<TrianglePlane>& planes() const { return planes_; }
     /// Those of the triangles that give light.
     const std::vector<std::uint32_t>& emitters() const { return emitters_; }
+    /// What maps make of their luminance.
+    const std::vector<float>& emission_means() const { return emission_means_; }
 
     bool has_holes() const {
         const auto& materials = scene_.materials;
@@ -119,6 +123,7 @@ private:
     std::vector<Vec3f> positions_;
     std::vector<TrianglePlane> planes_;
     std::vector<std::uint32_t> emitters_;
+    std::vector<float> emission_means_;
     std::vector<TextureView> textures_;
 };
 

@@ -163,6 +163,7 @@ private:
         instances_.clear();
         points_.clear();
         areas_.clear();
+        area_means_.clear();
         add_lights(static_geometry_, {}, nullptr);
         for (std::size_t i = 0; i < assembly_.instances.size(); ++i) {
             checkpoint_.pass();
@@ -170,7 +171,7 @@ private:
             instances_.push_back(instance_view(exact, i));
             add_lights(*objects_[object_of_[i]], exact, &instances_.back());
         }
-        light_tree_ = LightTree(points_, areas_, checkpoint_);
+        light_tree_ = LightTree(points_, areas_, checkpoint_, area_means_);
     }
 
     InstanceView instance_view(const Affine<double>& exact, std::size_t i) const {
@@ -220,6 +221,7 @@ private:
                                           map.direction(mesh.frame().direction(p.axis))));
         const InverseAffine<double> inverse = map.inverse();
         const std::uint32_t number = instance ? static_cast<std::uint32_t>(instances_.size() - 1) : kNoInstance;
+        area_means_.insert(area_means_.end(), mesh.emission_means().begin(), mesh.emission_means().end());
         for (const std::uint32_t emitter : mesh.emitters()) {
             const Triangle& t = mesh.triangles()[emitter];
             const RenderSpaceMesh::Edges edges = mesh.edges(t);
@@ -249,6 +251,7 @@ private:
     std::vector<InstanceView> instances_;
     std::vector<PointLight> points_;
     std::vector<AreaLight> areas_;
+    std::vector<float> area_means_;  ///< what maps make of their luminance
     LightTree light_tree_;
     SceneKind kind_ = SceneKind::plain;
     EnvironmentTables environment_;

@@ -45,7 +45,8 @@ struct SurfacePoint {
     float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
     bool is_front;      ///< the ray came from the side of the triangle's normal
     Color specular;  ///< this and what follows: where materials are not plain
-    float metallic, roughness;
+    float metallic, roughness, shininess, transmission, specular_weight, clearcoat, clearcoat_roughness;
+    Vec3f coat_normal;  ///< of the clear coat, where there is one
 };
 
 REALCAM_INLINE float largest_coordinate(Vec3f p) {
@@ -94,17 +95,15 @@ REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference&
     return sample_texture(mesh.textures[reference.texture], transformed(reference, uv));
 }
 
-/// The shading normal that a normal map gives. `normal`: without it.
-REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangle, const Material& material,
-                                   const SurfaceUv& uv, Vec3f normal) {
-    const Color texel = texture_color(mesh, material.normal_texture, uv.at);
-    const Vec3f bump = {material.normal_scale * (2.0f * texel.r - 1.0f),
-                        material.normal_scale * (2.0f * texel.g - 1.0f), 2.0f * texel.b - 1.0f};
+/// The shading normal that a normal map gives. `normal`: without it; `scale`: of the map's x and y.
+REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangle, const TextureReference& map,
+                                   float scale, const SurfaceUv& uv, Vec3f normal) {
+    const Color texel = texture_color(mesh, map, uv.at);
+    const Vec3f bump = {scale * (2.0f * texel.r - 1.0f), scale * (2.0f * texel.g - 1.0f), 2.0f * texel.b - 1.0f};
     // The direction in which the texture's u grows (its v: upwards, as glTF's tangent space has it).
     const Vec3f p = mesh.positions[triangle.vertices[0]], to_second = mesh.positions[triangle.vertices[1]] - p,
                 to_third = mesh.positions[triangle.vertices[2]] - p;
     const Vec3f along_u = {uv.along_u.x, uv.along_u.y, 0}, along_v = {uv.along_v.x, uv.along_v.y, 0};
-    const TextureReference& map = material.normal_texture;
     const float u1 = dot(map.to_u, along_u), u2 = dot(map.to_u, along_v), v1 = dot(map.to_v, along_u),
                 v2 = dot(map.to_v, along_v);
     const float turn = u1 * v2 - u2 * v1;
@@ -140,10 +139,22 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
         if (n2 > 0) point.normal = (1.0f / std::sqrt(n2)) * n;
     }
     if constexpr (scene_kind != SceneKind::plain) {
-        if (material.normal_texture.texture >= 0 && mesh.uvs) {
-            const Vec3f outer = dot(point.normal, plane.normal) < 0 ? -point.normal : point.normal;
-            point.normal = mapped_normal(mesh, triangle, material, uv, outer);
+        const auto mapped = [&](const TextureReference& map, float scale, Vec3f normal) {
+            if (map.texture < 0 || !mesh.uvs) return normal;
+            const Vec3f outer = dot(normal, plane.normal) < 0 ? -normal : normal;
+            return mapped_normal(mesh, triangle, map, scale, uv, outer);
+        };
+        point.clearcoat = material.clearcoat;
+        point.coat_normal = point.normal;
+        if (point.clearcoat > 0.0f) {
+            point.clearcoat *= texture_color(mesh, material.clearcoat_texture, uv.at).r;
+            point.clearcoat_roughness =
+                material.clearcoat_roughness * texture_color(mesh, material.clearcoat_roughness_texture, uv.at).g;
+            point.coat_normal =
+                mapped(material.clearcoat_normal_texture, material.clearcoat_normal_scale, point.normal);
+            if (dot(point.coat_normal, point.geometric_normal) < 0) point.coat_normal = -point.coat_normal;
         }
+        point.normal = mapped(material.normal_texture, material.normal_scale, point.normal);
     }
     // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
     if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
@@ -158,6 +169,14 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
         point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at);
         point.roughness = material.roughness * rough_metal.g;
         point.metallic = material.metallic * rough_metal.b;
+        point.shininess = material.shininess * rough_metal.g;
+        point.transmission = material.transmission;
+        if (point.transmission > 0.0f)
+            point.transmission *= texture_color(mesh, material.transmission_texture, uv.at).r;
+        point.specular_weight = material.specular_weight;
+        const TextureReference& weights = material.specular_weight_texture;
+        if (weights.texture >= 0 && mesh.uvs)
+            point.specular_weight *= sample_texture_alpha(mesh.textures[weights.texture], transformed(weights, uv.at));
     }
     point.self_offset = plane.margin;
     return point;
@@ -191,6 +210,10 @@ REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f
     point.self_offset = instance_margin(instance, point.self_offset, point.geometric_normal, stretch, point.position);
     point.geometric_normal = stretch * geometric;
     point.normal = normalized(dot(shading, geometric) < 0 ? -shading : shading);
+    if constexpr (scene_kind != SceneKind::plain) {
+        const Vec3f coat = into.normal_of(point.coat_normal);
+        point.coat_normal = normalized(dot(coat, geometric) < 0 ? -coat : coat);
+    }
     return point;
 }
 
