@@ -74,6 +74,18 @@ REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
     return {path.receiver_position[lane], path.receiver_normal[lane]};
 }
 
+/// Behind the dimensions of all random numbers.
+inline constexpr std::uint32_t kFootprintSalt = 0x20000;
+
+/// Of a ray from the film.
+template <int N>
+REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBlock<N>& block, int lane) {
+    const float pixel = 2.0f * camera.film_half_width / static_cast<float>(camera.width);
+    const auto number = static_cast<float>(block.sample[lane]) + 1.0f;
+    return {pixel / (camera.thin.image_distance * std::sqrt(number)),
+            unit_float(hash32(block.stream[lane] ^ block.sample[lane], kFootprintSalt))};
+}
+
 /// Light that the environment sends along the ray of a lane.
 template <int N>
 REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N>& path, int lane) {
@@ -182,7 +194,11 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
                 results.irradiance.set(i, results.irradiance[i] + clamped(environment_light(view, path, i), limit));
             continue;
         }
-        const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction);
+        Footprint footprint;
+        if constexpr (scene_kind != SceneKind::plain) {
+            if (bounce == 0) footprint = film_footprint(camera, block, i);
+        }
+        const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, footprint);
         if constexpr (scene_kind != SceneKind::plain) {
             const Color absorption = path.absorption[i];
             if (!is_black(absorption))

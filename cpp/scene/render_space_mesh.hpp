@@ -8,6 +8,7 @@
 #include "scene.hpp"
 #include "split_triangles.hpp"
 #include "surface_point.hpp"
+#include "texture_levels.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -64,6 +65,22 @@ public:
     const std::vector<std::uint32_t>& emitters() const { return emitters_; }
     /// What maps make of their luminance.
     const std::vector<float>& emission_means() const { return emission_means_; }
+
+    /// Makes the coarser levels of colours, for which the mean of a part is what is seen of it; not of directions, of
+    /// roughness and of coverage, for which it is not. Views made before do not have them.
+    void add_texture_levels(Checkpoint& checkpoint) {
+        levels_.resize(textures_.size());
+        for (const Material& material : scene_.materials) {
+            for (const auto member :
+                 {&Material::diffuse_texture, &Material::specular_texture, &Material::emission_texture}) {
+                const std::int32_t number = (material.*member).texture;
+                if (number < 0) continue;
+                TextureView& texture = textures_[static_cast<std::size_t>(number)];
+                if (texture.coarse_levels == 0)
+                    levels_[static_cast<std::size_t>(number)] = coarser_levels(texture, checkpoint);
+            }
+        }
+    }
 
     bool has_holes() const {
         const auto& materials = scene_.materials;
@@ -125,6 +142,7 @@ private:
     std::vector<std::uint32_t> emitters_;
     std::vector<float> emission_means_;
     std::vector<TextureView> textures_;
+    std::vector<TextureLevels> levels_;  ///< of each of them; empty: none
 };
 
 }  // namespace REALCAM_NAMESPACE

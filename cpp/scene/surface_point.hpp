@@ -89,10 +89,58 @@ REALCAM_INLINE Vec2f transformed(const TextureReference& reference, Vec2f uv) {
     return {dot(reference.to_u, place), dot(reference.to_v, place)};
 }
 
+/// How much of a surface one ray stands for, for textures of colours. Of the film that is a pixel over the samples up
+/// to this one, since all of them together are a pixel: so the first are without shimmer, and the mean of many is as
+/// sharp as the texture. Not the circle of a lens that is out of focus: its rays meet the surface in many places
+/// already, and a texture of their width would be blurred twice.
+struct Footprint {
+    float spread = 0;  ///< width over distance, across the ray; 0: a point
+    float chance = 0;  ///< 0..1, by which one of two levels is taken
+};
+
+/// A footprint on the texture coordinates of a triangle.
+struct UvFootprint {
+    float area = 0;  ///< in units of the square of the coordinates
+    float chance = 0;
+};
+
+REALCAM_INLINE UvFootprint uv_footprint(const MeshView& mesh, const Triangle& triangle, const SurfaceUv& uv, Hit hit,
+                                        Vec3f normal, Vec3f ray_direction, Footprint footprint) {
+    const Vec3f a = mesh.positions[triangle.vertices[0]];
+    const Vec3f twice = cross(mesh.positions[triangle.vertices[1]] - a, mesh.positions[triangle.vertices[2]] - a);
+    const float twice_area = length(twice), way = length(ray_direction);
+    const float twice_uv = std::fabs(uv.along_u.x * uv.along_v.y - uv.along_u.y * uv.along_v.x);
+    // At grazing incidence it is long; no longer than a hundred times its width.
+    const float cosine = std::fabs(dot(normal, ray_direction)) / way;
+    const float width = footprint.spread * hit.distance * way;
+    const float area = width * width / (cosine > 0.01f ? cosine : 0.01f) * (twice_uv / twice_area);
+    return {area < 1e30f ? area : 0.0f, footprint.chance};
+}
+
+/// The level of a texture whose texels have the footprint's area, or the next finer one, by chance: the mean of both is
+/// what lies between them (Pharr et al. 2024).
+REALCAM_INLINE TextureView level_for(const TextureView& texture, const TextureReference& reference,
+                                     UvFootprint footprint) {
+    if (!(footprint.area > 0.0f) || texture.coarse_levels == 0) return texture;
+    const float stretch = std::fabs(reference.to_u.x * reference.to_v.y - reference.to_u.y * reference.to_v.x);
+    const float texels =
+        footprint.area * stretch * static_cast<float>(texture.width) * static_cast<float>(texture.height);
+    if (!(texels > 1.0f)) return texture;
+    return level_of(texture, static_cast<int>(0.5f * std::log2(texels < 1e30f ? texels : 1e30f) + footprint.chance));
+}
+
 /// White where there is no texture.
 REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv) {
     if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
     return sample_texture(mesh.textures[reference.texture], transformed(reference, uv));
+}
+
+/// Likewise of a part of the surface.
+REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv,
+                                   UvFootprint footprint) {
+    if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
+    const TextureView level = level_for(mesh.textures[reference.texture], reference, footprint);
+    return sample_texture(level, transformed(reference, uv));
 }
 
 /// The shading normal that a normal map gives. `normal`: without it; `scale`: of the map's x and y.
@@ -119,7 +167,8 @@ REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangl
 }
 
 template <SceneKind scene_kind>
-REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
+REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
+                                          Footprint footprint = {}) {
     const Triangle triangle = mesh.triangles[hit.triangle];
     const TrianglePlane plane = mesh.planes[hit.triangle];
     const std::uint32_t* corner = triangle.vertices;
@@ -160,13 +209,18 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
     point.material = &material;
     point.diffuse = material.diffuse;
-    if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
     point.emission = point.is_front ? material.emission : Color{0, 0, 0};
-    if constexpr (scene_kind != SceneKind::plain) {
+    if constexpr (scene_kind == SceneKind::plain) {
+        if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
+    } else {
+        const UvFootprint seen = footprint.spread > 0.0f && mesh.uvs
+                                     ? uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint)
+                                     : UvFootprint{};
+        point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at, seen);
         if (material.emits_on_both_sides) point.emission = material.emission;
-        point.emission *= texture_color(mesh, material.emission_texture, uv.at);
+        point.emission *= texture_color(mesh, material.emission_texture, uv.at, seen);
         const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
-        point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at);
+        point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at, seen);
         point.roughness = material.roughness * rough_metal.g;
         point.metallic = material.metallic * rough_metal.b;
         point.shininess = material.shininess * rough_metal.g;
@@ -196,13 +250,15 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
 
 /// Likewise of a whole scene: rays go into the object's frame, with the same distances, and what they find comes back.
 template <SceneKind scene_kind>
-REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
+REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
+                                          Footprint footprint = {}) {
     if (hit.instance == kNoInstance)
-        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
+        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction,
+                                         footprint);
     const InstanceView& instance = scene.instances[hit.instance];
     const InverseAffine<float>& into = instance.object_from_render;
     SurfacePoint point = surface_point<scene_kind>(scene.objects[instance.object], hit, into.point(ray_origin),
-                                                   into.direction(ray_direction));
+                                                   into.direction(ray_direction), footprint);
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);

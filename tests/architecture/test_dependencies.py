@@ -115,6 +115,7 @@ HOST_ONLY = {
     "scene/scene_arrays.hpp",
     "scene/scene_checks.hpp",
     "scene/split_triangles.hpp",
+    "scene/texture_levels.hpp",
 }
 
 NOT_IN_CORE = {

@@ -69,7 +69,7 @@ TEST_CASE("heights become normals by central differences, across the edges") {
     for (int i = 0; i < kHeight; ++i) {
         const auto wanted = [&](int length, double at) {
             const double slope = scale * 0.25 * std::cos(kTurn * at / length) * std::sin(kTurn / length);
-            return Vec3d{-slope, 0, 1} * (1 / std::sqrt(1 + slope * slope));
+            return (1 / std::sqrt(1 + slope * slope)) * Vec3d{-slope, 0, 1};
         };
         const Vec3d a = wanted(kWidth, i), b = wanted(kHeight, -i);
         // A rounding of heights near 1, times the scale, and that of the code.
