@@ -3,9 +3,15 @@
     python tools/make_ggx_tables.py
 
 By Gauss-Legendre quadrature over the visible facets (Heitz 2018), so that what is integrated, G2/G1 (E) and G2/G1
-times Schlick's (1 - cos)^5 (B), is smooth. Rows: 32 square roots of alpha, evenly from that of 0.001 to 1. Columns: 48
-cube roots of the cosine, evenly from 0 to 1, because E has a dip at cosines of about alpha. Averages: over the
-cosines, weighted by them.
+times Schlick's (1 - cos)^5 (B), is smooth. Rows: 32 square roots of alpha, evenly from that of 0.001 to 1.
+
+E, 48 columns: directions by the cosine they have once the surface is stretched until its facets are those of alpha 1.
+How much of the facets hide each other depends on that cosine alone, so that the dip of E at cosines of about alpha
+stands in the same column in each row, and the rows between two can be had by mixing them. Evenly by its power 2/3, for
+what happens near 0. B / E, 48 columns: square roots of the cosine itself, on which Schlick's term depends.
+
+Averages: over the cosines, weighted by them. Of E what it lacks of 1, over alpha^2, with which it grows on smooth
+surfaces; between the rows it is no straight line.
 """
 
 from pathlib import Path
@@ -17,13 +23,21 @@ SMOOTHEST = 0.001
 NODES = 96
 
 
+def stretched(cosine: np.ndarray, alpha: float) -> np.ndarray:
+    return cosine / np.sqrt(cosine**2 + alpha**2 * (1 - cosine**2))
+
+
+def unstretched(z: np.ndarray, alpha: float) -> np.ndarray:
+    return alpha * z / np.sqrt(1 - z**2 + (alpha * z) ** 2)
+
+
 def visible_facets(w: np.ndarray, alpha: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Facet normals that w sees, as the unit square is mapped on them: spherical caps, Dupuy and Benyoub 2023."""
-    stretched = np.array([alpha * w[0], 0.0, w[2]])
-    stretched /= np.linalg.norm(stretched)
-    z = (1 - u) * (1 + stretched[2]) - stretched[2]
+    s = np.array([alpha * w[0], 0.0, w[2]])
+    s /= np.linalg.norm(s)
+    z = (1 - u) * (1 + s[2]) - s[2]
     radius = np.sqrt(np.maximum(0, 1 - z * z))
-    h = np.stack([radius * np.cos(2 * np.pi * v) + stretched[0], radius * np.sin(2 * np.pi * v), z + stretched[2]])
+    h = np.stack([radius * np.cos(2 * np.pi * v) + s[0], radius * np.sin(2 * np.pi * v), z + s[2]])
     h[:2] *= alpha
     return h / np.linalg.norm(h, axis=0)
 
@@ -34,7 +48,7 @@ def smith_lambda(z: np.ndarray, alpha: float) -> np.ndarray:
 
 def albedos(cosine: float, alpha: float) -> tuple[float, float]:
     """E and B for one direction of view."""
-    cosine = max(cosine, 1e-5)
+    cosine = max(cosine, 1e-5 * alpha)
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     u, v = np.meshgrid((nodes + 1) / 2, (nodes + 1) / 4, indexing="ij")  # half of the turn: the rest is its mirror
     weight = np.outer(weights, weights) / 4
@@ -49,7 +63,7 @@ def albedos(cosine: float, alpha: float) -> tuple[float, float]:
 
 
 def averages(alpha: float) -> tuple[float, float]:
-    nodes, weights = np.polynomial.legendre.leggauss(64)
+    nodes, weights = np.polynomial.legendre.leggauss(256)
     roots, weights = (nodes + 1) / 2, weights / 2  # over the cosine's cube root, where E is smoother
     values = np.array([albedos(r**3, alpha) for r in roots])
     density = 2 * roots**3 * 3 * roots**2 * weights
@@ -63,8 +77,10 @@ def text_of(name: str, values: list[float]) -> str:
 
 def main() -> None:
     alphas = np.linspace(np.sqrt(SMOOTHEST), 1, ROWS) ** 2
-    cosines = np.linspace(0, 1, COLUMNS) ** 3
-    table = [albedos(c, a) for a in alphas for c in cosines]
+    columns = np.linspace(0, 1, COLUMNS)
+    everything = [albedos(unstretched(z, a), a)[0] for a in alphas for z in columns**1.5]
+    # At grazing incidence the ratio is 1, and the quadrature 0 / 0.
+    seen = [albedos(c, a) for a in alphas for c in np.maximum(columns, 1e-3) ** 2]
     means = [averages(a) for a in alphas]
     Path("cpp/scene/ggx_tables.hpp").write_text(
         "#pragma once\n"
@@ -72,11 +88,11 @@ def main() -> None:
         "// device each need an array of their own (ggx_albedo.hpp).\n"
         "// clang-format off\n\n"
         f"#define REALCAM_GGX_ROWS {ROWS}\n#define REALCAM_GGX_COLUMNS {COLUMNS}\n\n"
-        + text_of("REALCAM_GGX_ALBEDO", [e for e, _ in table])
+        + text_of("REALCAM_GGX_ALBEDO", everything)
         + "\n"
-        + text_of("REALCAM_GGX_SCHLICK", [b for _, b in table])
+        + text_of("REALCAM_GGX_SCHLICK", [b / e for e, b in seen])
         + "\n"
-        + text_of("REALCAM_GGX_MEAN_ALBEDO", [e for e, _ in means])
+        + text_of("REALCAM_GGX_MEAN_LOSS", [(1 - e) / a**2 for (e, _), a in zip(means, alphas, strict=True)])
         + "\n"
         + text_of("REALCAM_GGX_MEAN_SCHLICK", [b for _, b in means])
         + "\n// clang-format on\n"

@@ -71,6 +71,7 @@ struct Common {
     float opacity, opacity_cutoff;
     py::object opacity_texture;
     bool double_sided;
+    py::object transmission_texture, specular_texture;
 };
 
 PythonMaterial common(const std::string& name, const Common& from) {
@@ -88,6 +89,8 @@ PythonMaterial common(const std::string& name, const Common& from) {
     m.values.opacity_cutoff = from.opacity_cutoff;
     set_texture(m, &Material::opacity_texture, from.opacity_texture);
     m.values.emits_on_both_sides = from.double_sided;
+    set_texture(m, &Material::transmission_texture, from.transmission_texture);
+    set_texture(m, &Material::specular_texture, from.specular_texture);
     return m;
 }
 
@@ -96,9 +99,11 @@ PythonMaterial make_material(const Colour& diffuse, const Colour& specular, floa
                              float transmission, float ior, const Colour& filter, const Colour& absorption, bool thin,
                              const py::object& specular_texture, const py::object& emission_texture,
                              const py::object& normal_map, float normal_scale, float opacity, float opacity_cutoff,
-                             const py::object& opacity_texture, bool double_sided, bool shadow_catcher) {
-    PythonMaterial m = common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission,
-                                     absorption, thin, opacity, opacity_cutoff, opacity_texture, double_sided});
+                             const py::object& opacity_texture, bool double_sided, bool shadow_catcher,
+                             const py::object& shininess_texture, const py::object& transmission_texture) {
+    PythonMaterial m =
+        common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission, absorption, thin,
+                      opacity, opacity_cutoff, opacity_texture, double_sided, transmission_texture, specular_texture});
     m.values.only_shadows = shadow_catcher;
     m.values.diffuse = rgb(diffuse);
     m.values.specular = rgb(specular);
@@ -107,7 +112,7 @@ PythonMaterial make_material(const Colour& diffuse, const Colour& specular, floa
     m.values.fresnel = fresnel ? FresnelTerm::physical : FresnelTerm::none;
     m.values.filter = rgb(filter);
     set_texture(m, &Material::diffuse_texture, texture);
-    set_texture(m, &Material::specular_texture, specular_texture);
+    set_texture(m, &Material::metallic_roughness_texture, shininess_texture);
     return m;
 }
 
@@ -118,9 +123,14 @@ PythonMaterial make_metallic_roughness(const Colour& base_color, float metallic,
                                        float clearcoat_roughness, const Colour& emission,
                                        const py::object& emission_texture, const py::object& normal_map,
                                        float normal_scale, const std::string& name, float opacity, float opacity_cutoff,
-                                       const py::object& opacity_texture, bool double_sided) {
-    PythonMaterial m = common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission,
-                                     absorption, thin, opacity, opacity_cutoff, opacity_texture, double_sided});
+                                       const py::object& opacity_texture, bool double_sided,
+                                       const py::object& specular_texture, const py::object& specular_weight_texture,
+                                       const py::object& transmission_texture, const py::object& clearcoat_texture,
+                                       const py::object& clearcoat_roughness_texture,
+                                       const py::object& clearcoat_normal_map, float clearcoat_normal_scale) {
+    PythonMaterial m =
+        common(name, {emission, normal_map, emission_texture, normal_scale, ior, transmission, absorption, thin,
+                      opacity, opacity_cutoff, opacity_texture, double_sided, transmission_texture, specular_texture});
     m.values.model = MaterialModel::metallic_roughness;
     m.values.diffuse = rgb(base_color);
     m.values.metallic = metallic;
@@ -131,6 +141,11 @@ PythonMaterial make_metallic_roughness(const Colour& base_color, float metallic,
     m.values.clearcoat_roughness = clearcoat_roughness;
     set_texture(m, &Material::diffuse_texture, texture);
     set_texture(m, &Material::metallic_roughness_texture, metallic_roughness_texture);
+    set_texture(m, &Material::specular_weight_texture, specular_weight_texture);
+    set_texture(m, &Material::clearcoat_texture, clearcoat_texture);
+    set_texture(m, &Material::clearcoat_roughness_texture, clearcoat_roughness_texture);
+    set_texture(m, &Material::clearcoat_normal_texture, clearcoat_normal_map);
+    m.values.clearcoat_normal_scale = clearcoat_normal_scale;
     return m;
 }
 
@@ -241,6 +256,7 @@ void bind_material(py::module_& m) {
              "thin"_a = false, "specular_texture"_a = py::none(), "emission_texture"_a = py::none(),
              "normal_map"_a = py::none(), "normal_scale"_a = 1.0f, "opacity"_a = 1.0f, "opacity_cutoff"_a = 0.0f,
              "opacity_texture"_a = py::none(), "double_sided"_a = false, "shadow_catcher"_a = false,
+             "shininess_texture"_a = py::none(), "transmission_texture"_a = py::none(),
              "Wavefront's material (MTL). diffuse, specular: reflectance of Lambert's and of Phong's lobe; shininess:\n"
              "Phong exponent; emission: radiance in cd/m^2, on the side from which the corners run counter-clockwise;\n"
              "mirror: reflectance as a mirror, at normal incidence; fresnel: whether it grows towards grazing\n"
@@ -251,9 +267,10 @@ void bind_material(py::module_& m) {
              "texture, specular_texture, emission_texture: what diffuse, specular and emission are multiplied by,\n"
              "(H, W) grey, (H, W, 3) or (H, W, 4), sRGB codes, row 0 at v = 1: whole numbers from 0 to 255, or "
              "fractions\n"
-             "from 0 to 1 that are rounded to such codes. Colours are taken as they are, whatever the fourth channel\n"
+             "from 0 to 1, which are kept as floats. Colours are taken as they are, whatever the fourth channel\n"
              "(alpha) says. normal_map: directions in tangent space, in the same way but linear; normal_scale: of\n"
-             "their x and y. name: to find it by in Scene.materials.\n"
+             "their x and y. shininess_texture (its green channel) and transmission_texture (red): what those are\n"
+             "multiplied by, linear. name: to find it by in Scene.materials.\n"
              "opacity, times opacity_texture (its fourth channel, or the mean of fewer, linear): share of the surface\n"
              "that is there; through the rest light goes as if there were nothing, shadows included. With an\n"
              "opacity_cutoff above 0 there is all of it where that product reaches the cutoff, and nothing elsewhere.\n"
@@ -269,14 +286,20 @@ void bind_material(py::module_& m) {
             "thin"_a = false, "clearcoat"_a = 0.0f, "clearcoat_roughness"_a = 0.0f, "emission"_a = black,
             "emission_texture"_a = py::none(), "normal_map"_a = py::none(), "normal_scale"_a = 1.0f, "name"_a = "",
             "opacity"_a = 1.0f, "opacity_cutoff"_a = 0.0f, "opacity_texture"_a = py::none(), "double_sided"_a = false,
+            "specular_texture"_a = py::none(), "specular_weight_texture"_a = py::none(),
+            "transmission_texture"_a = py::none(), "clearcoat_texture"_a = py::none(),
+            "clearcoat_roughness_texture"_a = py::none(), "clearcoat_normal_map"_a = py::none(),
+            "clearcoat_normal_scale"_a = 1.0f,
             "glTF's material: GGX microfacets of alpha = roughness^2 on a metal, on a dielectric over a diffuse base,\n"
             "or, for the share transmission of it, on a border that lets light through; all between 0 and 1.\n"
             "base_color, times texture: the metal's reflectance, the diffuse one, or the tint of what passes. ior: of\n"
             "the dielectric; specular_color, specular_weight: what its reflection is multiplied by.\n"
             "metallic_roughness_texture: roughness in green and metallic in blue, linear, times the numbers.\n"
-            "clearcoat: share of a second, colourless layer of index 1.5 above all. absorption, thin, emission, "
-            "opacity\n"
-            "and the other textures as in Material(). Raises InputError.")
+            "clearcoat: share of a second, colourless layer of index 1.5 above all, which has the mesh's normals, or\n"
+            "those of clearcoat_normal_map. specular_texture: colours that specular_color is multiplied by; linear,\n"
+            "and of one channel: specular_weight_texture (the fourth, or the mean of fewer), clearcoat_texture and\n"
+            "transmission_texture (red), clearcoat_roughness_texture (green). absorption, thin, emission, opacity and\n"
+            "the other textures as in Material(). Raises InputError.")
         .def("replace", &changed, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
              "shininess"_a = py::none(), "emission"_a = py::none(), "texture"_a = py::ellipsis(), "name"_a = py::none(),
              "metallic"_a = py::none(), "roughness"_a = py::none(), "transmission"_a = py::none(), "ior"_a = py::none(),
@@ -308,6 +331,7 @@ void bind_material(py::module_& m) {
         .def_property_readonly("clearcoat", number_property(&Material::clearcoat))
         .def_property_readonly("clearcoat_roughness", number_property(&Material::clearcoat_roughness))
         .def_property_readonly("normal_scale", number_property(&Material::normal_scale))
+        .def_property_readonly("clearcoat_normal_scale", number_property(&Material::clearcoat_normal_scale))
         .def_property_readonly("opacity", number_property(&Material::opacity))
         .def_property_readonly("opacity_cutoff", number_property(&Material::opacity_cutoff))
         .def_property_readonly("shadow_catcher", [](const PythonMaterial& p) { return p.values.only_shadows != 0; })
@@ -317,7 +341,13 @@ void bind_material(py::module_& m) {
                                "(H, W, 4), read-only: uint8 codes, or float32 of linear light; None: none.")
         .def_property_readonly("specular_texture", texture_property(&Material::specular_texture))
         .def_property_readonly("emission_texture", texture_property(&Material::emission_texture))
-        .def_property_readonly("metallic_roughness_texture", texture_property(&Material::metallic_roughness_texture))
+        .def_property_readonly("metallic_roughness_texture", texture_property(&Material::metallic_roughness_texture),
+                               "Of Wavefront's material: the shininess_texture.")
+        .def_property_readonly("transmission_texture", texture_property(&Material::transmission_texture))
+        .def_property_readonly("specular_weight_texture", texture_property(&Material::specular_weight_texture))
+        .def_property_readonly("clearcoat_texture", texture_property(&Material::clearcoat_texture))
+        .def_property_readonly("clearcoat_roughness_texture", texture_property(&Material::clearcoat_roughness_texture))
+        .def_property_readonly("clearcoat_normal_map", texture_property(&Material::clearcoat_normal_texture))
         .def_property_readonly("opacity_texture", texture_property(&Material::opacity_texture))
         .def_property_readonly("normal_map", texture_property(&Material::normal_texture))
         .def_property_readonly("name", [](const PythonMaterial& p) { return text_from(p.name); })

@@ -33,22 +33,35 @@ void drop_unused_textures(Scene& scene) {
         }
 }
 
-/// (H, W, C), of bytes.
-InputArray<std::uint8_t> codes_from(const py::array& pixels) {
+bool holds_fractions(const py::array& pixels) {
     const char kind = pixels.dtype().kind();
     if (kind != 'i' && kind != 'u' && kind != 'f')
         throw InputError("a texture must hold numbers: whole ones from 0 to 255, or fractions from 0 to 1");
+    return kind == 'f';
+}
+
+void check_range(const py::array& pixels) {
+    const bool are_fractions = holds_fractions(pixels);
     const double least = pixels.attr("min")().cast<double>(), most = pixels.attr("max")().cast<double>();
-    const double white = kind == 'f' ? 1 : 255;
-    if (!(least >= 0 && most <= white)) {
-        const auto text = [](double v) { return py::repr(py::float_(v)).cast<std::string>(); };
-        throw InputError("the texture's numbers lie between " + text(least) + " and " + text(most) +
-                         (kind == 'f' ? "; fractions from 0 (black) to 1 (white)" : "; whole numbers from 0 to 255") +
-                         " are wanted");
+    if (least >= 0 && most <= (are_fractions ? 1 : 255)) return;
+    const auto text = [](double v) { return py::repr(py::float_(v)).cast<std::string>(); };
+    throw InputError("the texture's numbers lie between " + text(least) + " and " + text(most) +
+                     (are_fractions ? "; fractions from 0 (black) to 1 (white)" : "; whole numbers from 0 to 255") +
+                     " are wanted");
+}
+
+/// Some rows of (H, W, C) as red, green, blue and alpha, each through `decode(value, channel)`.
+template <class Value, class Decode>
+void append_rgba(std::vector<Value>& rgba, const py::array& band, py::ssize_t channels, Value white, io::TextureUse use,
+                 Decode&& decode) {
+    const InputArray<Value> values(band);
+    for (py::ssize_t i = 0; i < values.size(); i += channels) {
+        const Value* p = values.data() + i;
+        const Value r = p[0], g = p[channels < 3 ? 0 : 1], b = p[channels < 3 ? 0 : 2];
+        const auto mean = static_cast<Value>((r + g + b) / 3);
+        const Value alpha = channels == 4 ? p[3] : use == io::TextureUse::opacity ? mean : white;
+        rgba.insert(rgba.end(), {decode(r), decode(g), decode(b), alpha});
     }
-    if (kind != 'f') return InputArray<std::uint8_t>(pixels);
-    const py::object scaled = pixels.attr("__mul__")(255);
-    return InputArray<std::uint8_t>(scaled.attr("round")());
 }
 
 }  // namespace
@@ -90,20 +103,23 @@ std::shared_ptr<const Texture> texture_from(const py::object& object, io::Textur
     texture->encoding = use == io::TextureUse::colour ? TextureEncoding::srgb : TextureEncoding::linear;
     texture->width = static_cast<std::int32_t>(pixels.shape(1));
     texture->height = static_cast<std::int32_t>(pixels.shape(0));
-    texture->rgba.reserve(static_cast<std::size_t>(4 * pixels.size() / channels));
+    const bool is_float = holds_fractions(pixels), is_encoded = is_float && use == io::TextureUse::colour;
+    const auto count = static_cast<std::size_t>(4 * pixels.size() / channels);
+    if (is_float)
+        texture->linear_rgba.reserve(count);
+    else
+        texture->rgba.reserve(count);
     // Some rows at a time: little memory, and Ctrl-C is heard in between.
     const py::ssize_t rows = std::max<py::ssize_t>(1, (py::ssize_t{1} << 20) / (channels * pixels.shape(1)));
     for (py::ssize_t row = 0; row < pixels.shape(0); row += rows) {
         heed_signals();
         const py::array band = pixels[py::slice(row, std::min(row + rows, pixels.shape(0)), 1)];
-        const InputArray<std::uint8_t> codes = codes_from(band);
-        for (py::ssize_t i = 0; i < codes.size(); i += channels) {
-            const std::uint8_t* p = codes.data() + i;
-            const std::uint8_t r = p[0], g = p[channels < 3 ? 0 : 1], b = p[channels < 3 ? 0 : 2];
-            const auto mean = static_cast<std::uint8_t>((r + g + b) / 3);
-            const std::uint8_t alpha = channels == 4 ? p[3] : use == io::TextureUse::opacity ? mean : 255;
-            texture->rgba.insert(texture->rgba.end(), {r, g, b, alpha});
-        }
+        check_range(band);
+        if (is_float)
+            append_rgba<float>(texture->linear_rgba, band, channels, 1.0f, use,
+                               [&](float v) { return is_encoded ? io::linear_of_srgb(v) : v; });
+        else
+            append_rgba<std::uint8_t>(texture->rgba, band, channels, 255, use, [](std::uint8_t v) { return v; });
     }
     return texture;
 }

@@ -82,12 +82,14 @@ namespace members_detail {
 
 template <class M>
 auto of_material(M& m) {
-    static_assert(count<Material>() == 28, "name what was added");
+    static_assert(count<Material>() == 34, "name what was added");
     return std::tie(m.model, m.diffuse, m.specular, m.emission, m.emits_on_both_sides, m.opacity, m.opacity_cutoff,
                     m.only_shadows, m.opacity_texture, m.diffuse_texture, m.specular_texture, m.emission_texture, m.ior,
                     m.transmission, m.filter, m.absorption, m.is_thin, m.shininess, m.mirror, m.fresnel, m.metallic,
                     m.roughness, m.specular_weight, m.clearcoat, m.clearcoat_roughness, m.metallic_roughness_texture,
-                    m.normal_texture, m.normal_scale);
+                    m.normal_texture, m.normal_scale, m.transmission_texture, m.specular_weight_texture,
+                    m.clearcoat_texture, m.clearcoat_roughness_texture, m.clearcoat_normal_texture,
+                    m.clearcoat_normal_scale);
 }
 
 }  // namespace members_detail

@@ -21,15 +21,17 @@ struct DecodedImage {
     bool is_linear = false;
 };
 
-/// Data are numbers, such as a roughness or a direction, which no file encodes for a screen. Opacity is in the fourth
-/// channel, or where a picture has none, or white alone there, in the mean of the others.
+/// Data are numbers, such as a roughness or a direction, which no file encodes for a screen. Opacity (and what else has
+/// the fourth channel) is there, or where a picture has none, or white alone there, in the mean of the others.
 enum class TextureUse { colour, data, opacity };
 
 /// What the picture for a property of a material is used for.
 inline TextureUse use_of(TextureReference Material::* property) {
-    if (property == &Material::opacity_texture) return TextureUse::opacity;
-    const bool is_data = property == &Material::normal_texture || property == &Material::metallic_roughness_texture;
-    return is_data ? TextureUse::data : TextureUse::colour;
+    if (property == &Material::opacity_texture || property == &Material::specular_weight_texture)
+        return TextureUse::opacity;
+    const bool is_colour = property == &Material::diffuse_texture || property == &Material::specular_texture ||
+                           property == &Material::emission_texture;
+    return is_colour ? TextureUse::colour : TextureUse::data;
 }
 
 /// Whether the colours of a picture have to be decoded (IEC 61966-2-1) to become linear; its alpha is always linear.

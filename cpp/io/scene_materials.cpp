@@ -37,7 +37,7 @@ private:
         set_color(from.Kd, from.map_Kd);
         set_emission(color_of(from.Ke), from.map_Ke);
         set_normal_map(from.norm, 1);
-        if (from.bump) warn("has a bump map of heights, which is not modelled; a normal map (norm) is");
+        set_bump_map(from);
         if (from.Pr || from.Pm) {
             set_mtl_metallic_roughness(from);
         } else {
@@ -53,9 +53,24 @@ private:
         material_.clearcoat = from.Pc;
         material_.clearcoat_roughness = from.Pcr;
         material_.ior = from.Ni.value_or(1.5f);
-        if (from.map_Pr || from.map_Pm)
-            warn("has maps of roughness or metallic, which are modelled in glTF files only");
+        if (from.map_Pr || from.map_Pm) set_roughness_and_metallic(from.map_Pr, from.map_Pm);
         set_dissolve(from);
+    }
+
+    /// Heights in texels, times -bm. A normal map says the same more exactly.
+    void set_bump_map(const MtlMaterial& from) {
+        if (!from.bump || from.bm == 0) return;
+        if (from.norm) return warn("has a bump map beside a normal map (norm), which alone counts");
+        if (const auto found = textures_.find_heights(from.bump, from.bm)) material_.normal_texture = *found;
+    }
+
+    void set_roughness_and_metallic(const FileTexture& roughness, const FileTexture& metallic) {
+        if (roughness && metallic && roughness.transform != metallic.transform)
+            warn(
+                "has maps of roughness and metallic that lie differently on the surface; both lie as that of "
+                "roughness");
+        if (const auto found = textures_.find_roughness_and_metallic(roughness, metallic))
+            material_.metallic_roughness_texture = *found;
     }
 
     // The format's table of illumination models. In 3 to 9 highlights are what mirrors show of the lights, so that
@@ -77,7 +92,7 @@ private:
                 material_.specular = color_of(from.Ks);
                 set_specular_map(from.map_Ks);
                 material_.shininess = from.Ns;
-                if (from.map_Ns) warn("has a map of Ns, which is not modelled");
+                if (from.map_Ns) set_roughness_and_metallic(from.map_Ns, {});  // green, which shininess reads, too
                 set_dissolve(from);
         }
     }
@@ -168,22 +183,23 @@ private:
     void set_metallic_roughness(const GltfMaterial& from) {
         material_.metallic = from.metallic_factor;
         material_.roughness = from.roughness_factor;
-        if (from.metallic_roughness_texture) {
-            const SceneTextures::Found found = textures_.find(from.metallic_roughness_texture, TextureUse::data);
-            if (!found.is_stand_in) material_.metallic_roughness_texture = found.reference;
-        }
+        set_map(&Material::metallic_roughness_texture, from.metallic_roughness_texture, TextureUse::data);
         material_.ior = from.ior;
         material_.specular = color_of(from.specular.color_factor);
         material_.specular_weight = from.specular.factor;
         set_specular_map(from.specular.color_texture);
-        if (from.specular.texture) warn("has a map of its specular factor, which is not modelled");
+        set_map(&Material::specular_weight_texture, from.specular.texture, TextureUse::data);
         set_gltf_transmission(from);
     }
 
     void set_gltf_transmission(const GltfMaterial& from) {
         if (!(from.transmission.factor > 0)) return;
         material_.transmission = from.transmission.factor;
-        if (from.transmission.texture) warn("has a map of its transmission, which is not modelled");
+        set_map(&Material::transmission_texture, from.transmission.texture, TextureUse::data);
+        if (from.volume.thickness_texture)
+            warn(
+                "has a map of its thickness, which the surface itself says here: light goes as far as to its other "
+                "side");
         material_.is_thin = from.volume.thickness_factor > 0 ? 0 : 1;
         // KHR_materials_volume: what is left of white light after attenuationDistance.
         const double distance_m = static_cast<double>(from.volume.attenuation_distance) * scale_;
@@ -199,8 +215,11 @@ private:
     void set_clearcoat(const GltfClearcoat& from) {
         material_.clearcoat = from.factor;
         material_.clearcoat_roughness = from.roughness_factor;
-        if (from.factor > 0 && (from.texture || from.roughness_texture || from.normal_texture))
-            warn("has maps of its clear coat, which are not modelled");
+        if (!(from.factor > 0)) return;
+        set_map(&Material::clearcoat_texture, from.texture, TextureUse::data);
+        set_map(&Material::clearcoat_roughness_texture, from.roughness_texture, TextureUse::data);
+        set_map(&Material::clearcoat_normal_texture, from.normal_texture, TextureUse::data);
+        material_.clearcoat_normal_scale = from.normal_scale;
     }
 
     // Reflectances at normal incidence in place of an index: an index of 0 has that of 1, which `specular` weakens.
@@ -209,7 +228,12 @@ private:
         material_.roughness = 1 - from.glossiness_factor;
         material_.ior = 0;
         material_.specular = unit_range(from.specular_factor);
-        if (from.specular_glossiness_texture) warn("has a map of specular and glossiness, which is not modelled");
+        if (!from.specular_glossiness_texture) return;
+        set_specular_map(from.specular_glossiness_texture);
+        const auto found = textures_.find_glossiness(from.specular_glossiness_texture, from.glossiness_factor);
+        if (!found) return;
+        material_.metallic_roughness_texture = *found;
+        material_.roughness = 1;
     }
 
     void set_color(Vec3f factor, const FileTexture& texture) {
@@ -220,25 +244,23 @@ private:
         if (found.is_stand_in) material_.diffuse = {1, 1, 1};  // it has to be seen
     }
 
-    void set_specular_map(const FileTexture& map) {
+    /// One that cannot be had counts as white.
+    void set_map(TextureReference Material::* member, const FileTexture& map, TextureUse use) {
         if (!map) return;
-        const SceneTextures::Found found = textures_.find(map, TextureUse::colour);
-        if (!found.is_stand_in) material_.specular_texture = found.reference;
+        const SceneTextures::Found found = textures_.find(map, use);
+        if (!found.is_stand_in) material_.*member = found.reference;
     }
 
+    void set_specular_map(const FileTexture& map) { set_map(&Material::specular_texture, map, TextureUse::colour); }
+
     void set_normal_map(const FileTexture& map, float scale) {
-        if (!map) return;
-        const SceneTextures::Found found = textures_.find(map, TextureUse::data);
-        if (found.is_stand_in) return;
-        material_.normal_texture = found.reference;
-        material_.normal_scale = scale;
+        set_map(&Material::normal_texture, map, TextureUse::data);
+        if (material_.normal_texture.texture >= 0) material_.normal_scale = scale;
     }
 
     void set_emission(Color emission, const FileTexture& map) {
         material_.emission = emission;
-        if (!map || is_black(emission)) return;
-        const SceneTextures::Found found = textures_.find(map, TextureUse::colour);
-        if (!found.is_stand_in) material_.emission_texture = found.reference;
+        if (!is_black(emission)) set_map(&Material::emission_texture, map, TextureUse::colour);
     }
 
     Scene& scene_;

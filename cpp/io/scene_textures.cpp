@@ -6,6 +6,7 @@
 
 #include "../error.hpp"
 #include "file_beside.hpp"
+#include "made_textures.hpp"
 #include "printable.hpp"
 #include "regular_file.hpp"
 
@@ -68,11 +69,59 @@ SceneTextures::Added SceneTextures::add(std::int32_t picture, TextureUse use) {
         scene_.warnings.back() += "; a checker in magenta and black stands in";
         image = checker();
     }
-    scene_.textures.push_back(
-        texture_of(std::move(*image), use, printable(file_.pictures[static_cast<std::size_t>(picture)].name)));
-    const Texture& texture = scene_.textures.back();
-    check_memory(texture.rgba.size() + sizeof(float) * texture.linear_rgba.size());
+    keep(texture_of(std::move(*image), use, name_of(picture)));
     return added_[key] = added;
+}
+
+std::string SceneTextures::name_of(std::int32_t picture) const {
+    return printable(file_.pictures[static_cast<std::size_t>(picture)].name);
+}
+
+std::int32_t SceneTextures::keep(Texture texture) {
+    scene_.textures.push_back(std::move(texture));
+    const Texture& kept = scene_.textures.back();
+    check_memory(kept.rgba.size() + sizeof(float) * kept.linear_rgba.size());
+    return static_cast<std::int32_t>(scene_.textures.size()) - 1;
+}
+
+template <class Make>
+std::optional<std::int32_t> SceneTextures::made(const MadeKey& key, Make&& make) {
+    if (const auto known = made_.find(key); known != made_.end()) return known->second;
+    std::optional<DecodedImage> images[2];
+    const std::int32_t pictures[2] = {std::get<1>(key), std::get<2>(key)};
+    std::optional<std::int32_t>& out = made_[key];
+    for (const std::size_t i : {0, 1}) {
+        if (pictures[i] < 0) continue;
+        images[i] = decode(pictures[i]);
+        if (images[i]) continue;
+        scene_.warnings.back() += "; it is left out";
+        return out;
+    }
+    return out = keep(make(images[0] ? &*images[0] : nullptr, images[1] ? &*images[1] : nullptr));
+}
+
+std::optional<TextureReference> SceneTextures::find_heights(const FileTexture& texture, float scale) {
+    const auto number = made({Made::normals, texture.picture, -1, scale}, [&](const DecodedImage* heights, auto) {
+        return normals_of_heights(*heights, scale, name_of(texture.picture));
+    });
+    return number ? std::optional(texture.transform.of(*number)) : std::nullopt;
+}
+
+std::optional<TextureReference> SceneTextures::find_roughness_and_metallic(const FileTexture& roughness,
+                                                                           const FileTexture& metallic) {
+    const FileTexture& first = roughness ? roughness : metallic;
+    const auto number = made({Made::roughness_and_metallic, roughness.picture, metallic.picture, 0},
+                             [&](const DecodedImage* r, const DecodedImage* m) {
+                                 return roughness_and_metallic(r, m, name_of(first.picture));
+                             });
+    return number ? std::optional(first.transform.of(*number)) : std::nullopt;
+}
+
+std::optional<TextureReference> SceneTextures::find_glossiness(const FileTexture& texture, float factor) {
+    const auto number = made({Made::roughness, texture.picture, -1, factor}, [&](const DecodedImage* image, auto) {
+        return roughness_of_glossiness(*image, factor, name_of(texture.picture));
+    });
+    return number ? std::optional(texture.transform.of(*number)) : std::nullopt;
 }
 
 /// A dozen pictures of 33 kB may each be decoded to a gigabyte. A render holds them once more, in its copy of the

@@ -87,6 +87,18 @@ REALCAM_INLINE LightReceiver receiver_of(const PathState<N>& path, int lane) {
     return {path.receiver_position[lane], path.receiver_normal[lane], time_of<scene_kind>(path, lane)};
 }
 
+/// Behind the dimensions of all random numbers.
+inline constexpr std::uint32_t kFootprintSalt = 0x40000;
+
+/// Of a ray from the film.
+template <int N>
+REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBlock<N>& block, int lane) {
+    const float pixel = 2.0f * camera.film_half_width / static_cast<float>(camera.width);
+    const auto number = static_cast<float>(block.sample[lane]) + 1.0f;
+    const float width = pixel / camera.thin.image_distance;
+    return {width * width / number, unit_float(hash32(block.stream[lane] ^ block.sample[lane], kFootprintSalt))};
+}
+
 /// Light that the environment sends along the ray of a lane.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N>& path, int lane) {
@@ -114,12 +126,28 @@ REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& p
     return (weight * path.throughput[lane]) * point.emission;
 }
 
-/// Numbers for all lanes, also for those that have no use for them: so the loop becomes vector code.
+/// The numbers of a dimension: for many lanes all at once, which is vector code, also for those that have no use for
+/// them. A GPU's thread draws them when it wants them, because it has no registers in which to keep them.
 template <int N>
-REALCAM_INLINE void draw(const SampleBlock<N>& block, std::uint32_t dimension, Vec2Lanes<float, N>& numbers) {
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) numbers.set(i, block.random(i, dimension));
-}
+class Numbers {
+public:
+    REALCAM_INLINE Numbers(const SampleBlock<N>& block, std::uint32_t dimension)
+        : block_(block), dimension_(dimension) {
+        if constexpr (N > 1) {
+            REALCAM_LANES
+            for (int i = 0; i < N; ++i) kept_.set(i, block.random(i, dimension));
+        }
+    }
+    REALCAM_INLINE Vec2f operator[](int lane) const {
+        if constexpr (N > 1) return kept_[lane];
+        return block_.random(lane, dimension_);
+    }
+
+private:
+    const SampleBlock<N>& block_;
+    std::uint32_t dimension_;
+    Vec2Lanes<float, N> kept_;
+};
 
 /// A sample of one of the lights, by the illuminance that each would bring if nothing stood in between: one of eight
 /// that sample_light draws, by its share of what they bring (resampling, Talbot et al. 2005), or of up to 64 where
@@ -145,19 +173,47 @@ template <int N>
 struct Surfaces {
     SurfacePoint points[N];
     std::int32_t scatters[N];  ///< 1 where the path goes on from here
-    Vec3Lanes<float, N> position, normal;  ///< of the points that are there
+};
+
+/// The LightKinds of surfaces. In plain scenes, whose surfaces are all opaque, what they share is found for all lanes
+/// at once; a GPU's thread finds it when it is wanted.
+template <SceneKind scene_kind, int N>
+class SurfaceLightKinds {
+public:
+    REALCAM_INLINE SurfaceLightKinds(const SceneView& scene, const Surfaces<N>& surfaces) : scene_(scene) {
+        if constexpr (kForAll) {
+            if (scene.light_node_count == 0) return;
+            Vec3Lanes<float, N> position, normal;
+            for (int i = 0; i < N; ++i) {
+                const bool is_there = surfaces.scatters[i] != 0;
+                position.set(i, is_there ? surfaces.points[i].position : Vec3f{0, 0, 0});
+                normal.set(i, is_there ? surfaces.points[i].normal : Vec3f{0, 0, 1});
+            }
+            const LightNode all = scene.light_nodes[0];
+            REALCAM_LANES
+            for (int i = 0; i < N; ++i) local_[i] = light_importance(all, {position[i], normal[i]});
+        }
+    }
+    REALCAM_INLINE LightKinds at(int lane, LightReceiver receiver) const {
+        if constexpr (kForAll) return LightKinds(scene_, receiver, scene_.light_node_count > 0 ? local_[lane] : 0.0f);
+        return LightKinds(scene_, receiver);
+    }
+
+private:
+    static constexpr bool kForAll = scene_kind == SceneKind::plain && N > 1;
+
+    const SceneView& scene_;
+    alignas(kLaneAlignment<float, N>) float local_[kForAll ? N : 1];
 };
 
 /// Collects what comes along the rays, from emitters that they have met or from the environment, and makes the points
 /// ready from which paths go on.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camera, const PathSettings& settings,
-                                  int bounce, const Hits<N>& hits, PathState<N>& path, PathResults<N>& results,
-                                  Surfaces<N>& surfaces) {
+                                  const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,
+                                  PathResults<N>& results, Surfaces<N>& surfaces) {
     for (int i = 0; i < N; ++i) {
         surfaces.scatters[i] = 0;
-        surfaces.position.set(i, {0, 0, 0});
-        surfaces.normal.set(i, {0, 0, 1});
         if (!path.rays.active[i]) continue;
         path.rays.active[i] = 0;
         const Hit hit = hits[i];
@@ -170,10 +226,12 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
                     i, results.irradiance[i] + clamped(environment_light<scene_kind>(view, path, i), limit));
             continue;
         }
+        Footprint footprint;
+        if constexpr (scene_kind != SceneKind::plain) {
+            if (bounce == 0) footprint = film_footprint(camera, block, i);
+        }
         SurfacePoint& point = surfaces.points[i];
-        point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time);
-        surfaces.position.set(i, point.position);
-        surfaces.normal.set(i, point.normal);
+        point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time, footprint);
         if constexpr (scene_kind != SceneKind::plain) {
             const Color absorption = path.absorption[i];
             if (!is_black(absorption))
@@ -228,8 +286,6 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     Hits<N> hits;
     ColorLanes<N> unshadowed;
     Surfaces<N> surfaces;
-    Vec2Lanes<float, N> light_numbers, scatter_numbers;
-    alignas(kLaneAlignment<float, N>) float local_light[N];
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
     std::int32_t darkens[N] = {};  // surfaces that show nothing but shadows
 
@@ -245,15 +301,13 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
-    meet_surfaces<scene_kind>(view, camera, settings, bounce, hits, path, results, surfaces);
-    draw(block, first_dimension + dimension::light, light_numbers);
-    draw(block, first_dimension + dimension::scatter, scatter_numbers);
-    if (scene_kind == SceneKind::plain && view.light_node_count > 0) {
-        const LightNode all_lights = view.light_nodes[0];
-        REALCAM_LANES
-        for (int i = 0; i < N; ++i)
-            local_light[i] = light_importance(all_lights, {surfaces.position[i], surfaces.normal[i]});
+    meet_surfaces<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
+    if constexpr (N == 1) {  // else the compiler keeps in registers what only paths that go on need
+        if (!surfaces.scatters[0]) return false;
     }
+    const Numbers<N> light_numbers(block, first_dimension + dimension::light),
+        scatter_numbers(block, first_dimension + dimension::scatter);
+    const SurfaceLightKinds<scene_kind, N> kinds(view, surfaces);
     // After the last bounce, one more ray looks for the light that narrow lobes show.
     const bool is_last = bounce == settings.max_bounces;
     int alive = 0, lit = 0;
@@ -283,11 +337,8 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
         }
         auto bsdf = make_bsdf<scene_kind>(point, -direction);
         const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
-        const auto kinds = [&] {
-            if constexpr (scene_kind == SceneKind::plain) return LightKinds(view, receiver, local_light[i]);
-            return LightKinds(view, receiver);
-        };
-        const LightSample light = sample_light<scene_kind>(view, receiver, kinds(), light_numbers[i], seed);
+        const LightSample light =
+            sample_light<scene_kind>(view, receiver, kinds.at(i, receiver), light_numbers[i], seed);
         const Color lambert_and_narrow = bsdf.eval(light.direction);
         const bool goes_on = !is_last && settings.transport == LightTransport::paths;
         // Where only narrow lobes send out a ray, Lambert's lobe sees light samples alone.

@@ -1,4 +1,5 @@
 #pragma once
+#include "coat_loss.hpp"
 #include "dielectric_border.hpp"
 #include "microfacet_reflection.hpp"
 #include "phong_lobe.hpp"
@@ -24,6 +25,7 @@ public:
     DielectricBorder border;
     float coat_weight = 0;  ///< share of the surface that `coat` covers
     MicrofacetReflection coat;
+    HalfTurn coat_turn;  ///< into the frame of the coat's own normal
 
     REALCAM_INLINE Bsdf(Vec3f normal, Vec3f geometric_normal_, Vec3f to_eye)
         : frame(normal), geometric_normal(geometric_normal_), eye(frame.to_local(to_eye)) {}
@@ -35,18 +37,20 @@ public:
         left_to_eye_ = grey(1.0f) - above_diffuse.albedo(specular.to_eye);
         diffuse_ = diffuse;
         if (is_layered_) diffuse_ = through_coat_ * diffuse * left_to_eye_ / mean_left();
+        // Of a coat with a normal of its own no table says what is lost.
+        if (coat_weight > 0.0f && !specular.is_smooth() && coat_turn.is_none()) prepare_lost_under_coat();
         choose_lobes();
     }
 
     REALCAM_INLINE bool is_opaque() const { return !(border.weight > 0.0f); }
     /// Leaves Lambert's lobe out.
     REALCAM_INLINE void keep_narrow_lobes() {
-        diffuse = diffuse_ = {0, 0, 0};
+        diffuse = diffuse_ = lost_under_coat_ = {0, 0, 0};
         choose_lobes();
     }
     /// Leaves out all but mirrors and smooth borders.
     REALCAM_INLINE void keep_mirrors() {
-        diffuse = diffuse_ = phong = {0, 0, 0};
+        diffuse = diffuse_ = phong = lost_under_coat_ = {0, 0, 0};
         if (!specular.is_smooth()) specular_weight = 0.0f;
         if (!coat.is_smooth()) coat_weight = 0.0f;
         if (!border.is_smooth()) border.weight = 0.0f;
@@ -58,16 +62,20 @@ public:
         const Vec3f light = frame.to_local(to_light);
         if (!is_possible(light, to_light)) return {0, 0, 0};
         if (light.z < 0.0f) return through_coat_ * border.eval(eye, light);
-        const float in = coat_weight > 0.0f ? through_coat(coat.facets_at(light.z)) : 1.0f;
+        const Vec3f coat_light = coat_weight > 0.0f ? coat_turn(light) : light;
+        const float in = coat_weight > 0.0f && coat_light.z > 0.0f ? through_coat(coat.facets_at(coat_light.z)) : 1.0f;
         Color value = (0.3183098862f * light.z) * diffuse_;
         if (is_layered_) value *= in * left_at(light.z);
         // What comes back as by a mirror meets the coat at the same angle twice, and what is reflected between the two
-        // is not lost: the share of one passage. Of two angles the lesser, so that nothing is gained.
+        // is not lost: the share of one passage. Of two angles the lesser, so that nothing is gained. What is lost by
+        // that comes back in a lobe of its own, as that of several reflections in MicrofacetReflection does.
         const float coated = through_coat_ < in ? through_coat_ : in;
         value += (coated * phong_value(eye, shininess, light)) * phong;
         if (share_[2] > 0.0f) value += (coated * specular_weight) * specular.eval(eye, light);
-        if (border.weight > 0.0f) value += coated * border.eval(eye, light);
-        if (coat_weight > 0.0f) value += coat_weight * coat.eval(eye, light);
+        if (!is_black(lost_under_coat_)) value += light.z * lost_under_coat(light.z) * lost_under_coat_;
+        // As below, where the coat is met on the eye's side alone.
+        if (border.weight > 0.0f) value += through_coat_ * border.eval(eye, light);
+        if (coat_weight > 0.0f && coat_light.z > 0.0f) value += coat_weight * coat.eval(coat_turn(eye), coat_light);
         return value;
     }
 
@@ -80,7 +88,8 @@ public:
         if (share_[1] > 0.0f) density += share_[1] * phong_pdf({-eye.x, -eye.y, eye.z}, shininess, light);
         if (share_[2] > 0.0f) density += share_[2] * specular.pdf(eye, light);
         if (share_[3] > 0.0f) density += share_[3] * border.pdf(eye, light);
-        if (share_[5] > 0.0f) density += share_[5] * coat.pdf(eye, light);
+        if (share_[5] > 0.0f && coat_turn(light).z > 0.0f)
+            density += share_[5] * coat.pdf(coat_turn(eye), coat_turn(light));
         return density;
     }
 
@@ -116,7 +125,7 @@ public:
             }
             case 4: return delta({-eye.x, -eye.y, eye.z}, (1.0f / share) * mirror);
             default:
-                light = coat.sample(eye, u);
+                light = coat_turn(coat.sample(coat_turn(eye), u));
                 if (coat.is_smooth()) return delta(light, (coat_weight / share) * coat.albedo_to_eye());
         }
         // Facets may reflect light below the surface, where it would meet them again.
@@ -128,6 +137,38 @@ public:
     }
 
 private:
+    // Gauss's rule of six points for the integral over the squares of cosines, which weights them by themselves.
+    static constexpr int kGaussPoints = 6;
+    struct GaussPoint {
+        float cosine, weight;
+    };
+    REALCAM_INLINE static GaussPoint gauss_point(int i) {
+        constexpr float kSquares[kGaussPoints] = {0.03376524f, 0.16939531f, 0.38069041f,
+                                                  0.61930959f, 0.83060469f, 0.96623476f};
+        constexpr float kWeights[kGaussPoints] = {0.08566225f, 0.18038079f, 0.23395697f,
+                                                  0.23395697f, 0.18038079f, 0.08566225f};
+        return {std::sqrt(kSquares[i]), kWeights[i]};
+    }
+
+    /// Of what a surface that reflects all loses at a cosine, what this one does.
+    REALCAM_INLINE Color lost_under_coat(float cosine) const {
+        return coat_loss(cosine, coat.alpha, specular.alpha) * specular.reflectance.albedo(specular.facets_at(cosine));
+    }
+    REALCAM_HD void prepare_lost_under_coat() {
+        const float mean = coat_mean_loss(coat.alpha, specular.alpha);
+        if (!(mean > 1e-6f)) return;
+        // The table's mean, times a mean of the reflectances in which the rule's errors cancel for the most part.
+        Color coloured{0, 0, 0};
+        float white = 0.0f;
+        for (int i = 0; i < kGaussPoints; ++i) {
+            const GaussPoint p = gauss_point(i);
+            coloured += p.weight * lost_under_coat(p.cosine);
+            white += p.weight * coat_loss(p.cosine, coat.alpha, specular.alpha);
+        }
+        const Color to_eye = (coat_weight * specular_weight) * lost_under_coat(eye.z);
+        lost_under_coat_ = 0.3183098862f * to_eye / at_least((mean / white) * coloured, 1e-8f);
+        lost_share_ = largest(to_eye);
+    }
     REALCAM_INLINE float through_coat(GgxAlbedo facets) const {
         return coat_weight > 0.0f ? 1.0f - coat_weight * coat.reflectance.albedo(facets).r : 1.0f;
     }
@@ -138,19 +179,16 @@ private:
     /// What coat and specular lobe leave of light from everywhere: diffuse light over this is lost nowhere else.
     REALCAM_HD Color mean_left() const {
         if (!(coat_weight > 0.0f)) return at_least(grey(1.0f) - above_diffuse.albedo(specular.mean));
-        // Gauss's rule of four points for the integral over the squares of cosines, which weights them by themselves.
-        constexpr float kSquares[4] = {0.06943184f, 0.33000948f, 0.66999052f, 0.93056816f};
-        constexpr float kWeights[4] = {0.17392742f, 0.32607258f, 0.32607258f, 0.17392742f};
         Color sum{0, 0, 0};
-        for (int i = 0; i < 4; ++i) {
-            const float cosine = std::sqrt(kSquares[i]);
-            sum += (kWeights[i] * through_coat(coat.facets_at(cosine))) * left_at(cosine);
+        for (int i = 0; i < kGaussPoints; ++i) {
+            const GaussPoint p = gauss_point(i);
+            sum += (p.weight * through_coat(coat.facets_at(p.cosine))) * left_at(p.cosine);
         }
         return at_least(sum);
     }
     /// A divisor.
-    REALCAM_INLINE static Color at_least(Color c) {
-        const auto held = [](float v) { return v > 1e-4f ? v : 1e-4f; };
+    REALCAM_INLINE static Color at_least(Color c, float least = 1e-4f) {
+        const auto held = [=](float v) { return v > least ? v : least; };
         return {held(c.r), held(c.g), held(c.b)};
     }
 
@@ -167,6 +205,7 @@ private:
 
     REALCAM_INLINE void choose_lobes() {
         share_[0] = through_coat_ * largest(diffuse * left_to_eye_);
+        if (!is_black(lost_under_coat_)) share_[0] += lost_share_;
         share_[1] = through_coat_ * largest(phong);
         share_[2] = through_coat_ * specular_weight * largest(specular.albedo_to_eye());
         share_[3] = through_coat_ * border.weight;
@@ -181,8 +220,11 @@ private:
     bool is_layered_;
     Color left_to_eye_;  ///< of the light, by the specular lobe
     Color diffuse_;  ///< reflectance, times what depends on the direction of view alone
+    Color lost_under_coat_ = {0, 0, 0};  ///< on the way to the eye, over the mean
+    float lost_share_ = 0;
     float through_coat_;
-    float share_[6];  ///< probabilities of diffuse, phong, specular, border, mirror, coat
+    float
+        share_[6];  ///< probabilities of diffuse and what is lost under the coat, phong, specular, border, mirror, coat
     float total_;
 };
 

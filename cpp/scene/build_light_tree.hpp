@@ -26,10 +26,11 @@ public:
         return {{p.position, p.position, p.axis, cos_spread, luminance(p.intensity), 0, !is_spot, -1, 1.0f},
                 p.position};
     }
-    static LightLeaf leaf(const AreaLight& a) {
+    /// `mean`: what a map makes of its luminance.
+    static LightLeaf leaf(const AreaLight& a, float mean) {
         const Vec3f b = a.corner + a.edge_u, c = a.corner + a.edge_v;
         return {{least(a.corner, least(b, c)), most(a.corner, most(b, c)), a.normal, 1.0f,
-                 a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
+                 mean * a.area * luminance(a.radiance), 0, a.is_two_sided, -1, 1.0f},
                 (1.0f / 3.0f) * (a.corner + b + c)};
     }
     /// Makes a leaf hold what another one says of the same light elsewhere.

@@ -1,31 +1,41 @@
 #pragma once
+#include "border_loss.hpp"
 #include "fresnel.hpp"
-#include "ggx_albedo.hpp"
 #include "scattering.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// A border that reflects one part of the light and lets the other through: smooth, or rough by GGX microfacets (Walter
 /// et al. 2007). In local coordinates, with `eye` above the surface. Radiance is that of the side on which it is: on
-/// entering a medium it grows by the index squared. What a film's facets lose by a single reflection or passage comes
-/// back on both sides alike, as in MicrofacetReflection; a medium's border loses it.
+/// entering a medium it grows by the index squared. What facets lose by a single reflection or passage comes back in a
+/// lobe on each side (after Kulla and Conty 2017): light that has met several facets has forgotten from where it came,
+/// so that it leaves to the two sides in one ratio, whatever the eye's. That makes the lobes reciprocal.
 struct DielectricBorder {
     float weight = 0;  ///< all that it does is multiplied by this; 0: there is none
     Color filter = {1, 1, 1};  ///< of what passes
     float eta = 1;  ///< index below over index above
-    float alpha = 0;  ///< below kSmoothAlpha: smooth
+    float alpha = 0;  ///< below kSmoothAlpha: smooth; so are borders of an index near 1
     float fixed_reflectance = -1;  ///< at any angle; negative: Fresnel's
     bool is_thin = false;  ///< a film: what passes goes on straight
-    float found_at_eye = 1;  ///< of light from there, what single reflections and passages of a film find
-    float lost = 0;  ///< the mean of what they lose
+    float found_at_eye = 1;  ///< of light from there, what single reflections and passages find
+    float below_share = 0.5f;  ///< of what they lose, what leaves below
+    float lost = 0;  ///< what they lose of light from everywhere on both sides, each by its index squared
+    float critical = 0;  ///< cosine of the critical angle
 
     REALCAM_INLINE bool is_smooth() const { return alpha < kSmoothAlpha; }
 
-    /// Called when alpha is set.
-    REALCAM_INLINE void prepare(float eye_cosine) {
-        if (is_smooth() || !is_thin) return;
-        found_at_eye = ggx_albedo(eye_cosine, alpha).all;
-        lost = 1.0f - ggx_mean_albedo(alpha).all;
+    /// Called when eta and alpha are set.
+    REALCAM_HD void prepare(float eye_cosine) {
+        const float index = eta > 1.0f ? eta : 1.0f / eta;
+        // Facets bend light by less than three degrees there, and not at all for an index of 1, while one facet alone
+        // would let nothing pass straight on.
+        if (!is_thin && index < kLeastRoughIndex) alpha = 0.0f;
+        if (is_smooth()) return;
+        critical = std::sqrt(1.0f - 1.0f / (index * index));
+        const float above = mean_lost(false), below = eta * eta * mean_lost(true);
+        lost = is_thin ? 2.0f * above : above + below;
+        if (!is_thin && lost > 0.0f) below_share = below / lost;
+        found_at_eye = 1.0f - lost_at(false, eye_cosine);
     }
 
     REALCAM_INLINE float reflectance(float cosine) const {
@@ -56,46 +66,26 @@ struct DielectricBorder {
     /// BSDF times cosine.
     REALCAM_INLINE Color eval(Vec3f eye, Vec3f light) const {
         if (is_smooth() || light.z == 0.0f) return {0, 0, 0};
-        const Vec3f h = facet(eye, light);
-        const float c = dot(eye, h);
-        if (!(c > 0.0f)) return {0, 0, 0};
-        const float reflected = reflectance(c);
-        const Vec3f upper = is_thin ? Vec3f{light.x, light.y, std::fabs(light.z)} : light;
-        if (!is_thin && light.z < 0.0f) {
-            const float d = dot(light, h), way = c + eta * d;
-            if (!(d < 0.0f) || way == 0.0f) return {0, 0, 0};
-            const float both = ggx_visible_to_both(eye, light, alpha);
-            const float value = (1.0f - reflected) * ggx_density(h, alpha) * both * c * -d / (eye.z * way * way);
-            return (weight * value) * filter;
-        }
-        const float shape = ggx_density(h, alpha) * ggx_visible_to_both(eye, upper, alpha) / (4.0f * eye.z);
-        const float several = weight * 0.5f * facets_again(std::fabs(light.z));
-        return light.z > 0.0f ? grey(weight * shape * reflected + several)
-                              : (weight * shape * (1.0f - reflected) + several) * filter;
+        const float value = weight * (once(eye, light) + several(light.z));
+        return light.z > 0.0f ? grey(value) : value * filter;
     }
 
     /// Density of sample, per steradian.
     REALCAM_INLINE float pdf(Vec3f eye, Vec3f light) const {
         if (is_smooth() || light.z == 0.0f) return 0.0f;
-        const Vec3f h = facet(eye, light);
-        const float c = dot(eye, h);
-        if (!(c > 0.0f)) return 0.0f;
-        const float reflected = reflectance(c), facets = ggx_pdf(eye, h, alpha);
-        if (!is_thin && light.z < 0.0f) {
-            const float d = dot(light, h), way = c + eta * d;
-            if (!(d < 0.0f) || way == 0.0f) return 0.0f;
-            return (1.0f - reflected) * facets * eta * eta * -d / (way * way);
-        }
-        return found_at_eye * (light.z > 0.0f ? reflected : 1.0f - reflected) * facets / (4.0f * c) +
-               (1.0f - found_at_eye) * kSpherePdf;
+        const float side = light.z > 0.0f ? 1.0f - below_share : below_share;
+        return found_at_eye * pdf_once(eye, light) + (1.0f - found_at_eye) * side * (2.0f * kSpherePdf);
     }
 
     /// `choice`: of reflection or passage. The weight and density are those of a smooth border; rough ones have eval
     /// and pdf. Black where the light would meet the facets again: that is left out.
     REALCAM_INLINE BsdfSample sample(Vec3f eye, Vec2f u, float choice) const {
         if (u.x >= found_at_eye) {
+            // Evenly, because on smooth surfaces it is at grazing incidence that light is lost.
             const float fresh = (u.x - found_at_eye) / (1.0f - found_at_eye);
-            return {sample_sphere({fresh < 1.0f ? fresh : 1.0f, u.y}), grey(1.0f), kDelta, false};
+            const Vec3f above = sample_sphere({fresh < 1.0f ? 0.5f * fresh : 0.5f, u.y});
+            if (!(choice < below_share)) return {above, grey(1.0f), kDelta, false};
+            return {{above.x, above.y, -above.z}, filter, kDelta, !is_thin};
         }
         const Vec3f h = is_smooth() ? Vec3f{0, 0, 1} : sample_ggx(eye, alpha, {u.x / found_at_eye, u.y});
         const float c = dot(eye, h), reflected = reflectance(c);
@@ -111,10 +101,48 @@ struct DielectricBorder {
     }
 
 private:
-    /// Of light that meets several facets of a film: value times cosine, for both sides together.
-    REALCAM_INLINE float facets_again(float cosine) const {
+    /// By one facet: BSDF times cosine, less weight and filter.
+    REALCAM_INLINE float once(Vec3f eye, Vec3f light) const {
+        const Vec3f h = facet(eye, light);
+        const float c = dot(eye, h);
+        if (!(c > 0.0f)) return 0.0f;
+        const float reflected = reflectance(c);
+        const Vec3f upper = is_thin ? Vec3f{light.x, light.y, std::fabs(light.z)} : light;
+        const float both = ggx_density(h, alpha) * ggx_visible_to_both(eye, upper, alpha);
+        if (is_thin || light.z > 0.0f) return both * (light.z > 0.0f ? reflected : 1.0f - reflected) / (4.0f * eye.z);
+        const float d = dot(light, h), way = c + eta * d;
+        if (!(d < 0.0f) || way == 0.0f) return 0.0f;
+        return (1.0f - reflected) * both * c * -d / (eye.z * way * way);
+    }
+
+    REALCAM_INLINE float pdf_once(Vec3f eye, Vec3f light) const {
+        const Vec3f h = facet(eye, light);
+        const float c = dot(eye, h);
+        if (!(c > 0.0f)) return 0.0f;
+        const float reflected = reflectance(c), facets = ggx_pdf(eye, h, alpha);
+        if (is_thin || light.z > 0.0f) return (light.z > 0.0f ? reflected : 1.0f - reflected) * facets / (4.0f * c);
+        const float d = dot(light, h), way = c + eta * d;
+        if (!(d < 0.0f) || way == 0.0f) return 0.0f;
+        return (1.0f - reflected) * facets * eta * eta * -d / (way * way);
+    }
+
+    /// Likewise by several. Below, the index squared by which more light goes there is that by which radiance shrinks
+    /// on its way to the eye.
+    REALCAM_INLINE float several(float light_z) const {
         if (!(lost > 1e-6f)) return 0.0f;
-        return (1.0f - found_at_eye) * (1.0f - ggx_albedo(cosine, alpha).all) * 0.3183098862f * cosine / lost;
+        const float cosine = std::fabs(light_z);
+        return (1.0f - found_at_eye) * lost_at(light_z < 0.0f, cosine) * 0.3183098862f * cosine / lost;
+    }
+
+    REALCAM_INLINE BorderSide side_of(bool is_below) const {
+        return (eta > 1.0f) == is_below ? BorderSide::inside : BorderSide::outside;
+    }
+    REALCAM_INLINE float lost_at(bool is_below, float cosine) const {
+        const float found = ggx_albedo(cosine, alpha).all;
+        return is_thin ? 1.0f - found : border_loss(side_of(is_below), cosine, alpha, critical, found);
+    }
+    REALCAM_INLINE float mean_lost(bool is_below) const {
+        return is_thin ? 1.0f - ggx_mean_albedo(alpha).all : border_mean_loss(side_of(is_below), alpha, critical);
     }
 };
 

@@ -31,17 +31,24 @@ REALCAM_INLINE TablePlace table_place(float position, int count) {
     return {held, select(fraction < 0.0f, 0.0f, select(fraction > 1.0f, 1.0f, fraction))};
 }
 
-REALCAM_INLINE TablePlace row_of(float alpha) {
+REALCAM_INLINE TablePlace row_of(float alpha, int rows = kRows) {
     constexpr float kSmoothest = 0.0316227766f;  // the square root of kSmoothAlpha
-    return table_place((std::sqrt(alpha) - kSmoothest) / (1.0f - kSmoothest), kRows);
+    return table_place((std::sqrt(alpha) - kSmoothest) / (1.0f - kSmoothest), rows);
+}
+
+/// By the cosine on a surface that is stretched until its facets are those of alpha 1, to the power 2/3.
+REALCAM_INLINE TablePlace column_of(float cosine, float alpha) {
+    const float sine2 = 1.0f - cosine * cosine;
+    const float root = std::cbrt(cosine / std::sqrt(cosine * cosine + alpha * alpha * (sine2 > 0.0f ? sine2 : 0.0f)));
+    return table_place(root * root, kColumns);
 }
 
 REALCAM_INLINE float between(float a, float b, float fraction) {
     return a + fraction * (b - a);
 }
 
-REALCAM_INLINE float read_table(const float* table, TablePlace row, TablePlace column) {
-    const float *upper = table + row.index * kColumns + column.index, *lower = upper + kColumns;
+REALCAM_INLINE float read_table(const float* table, TablePlace row, TablePlace column, int columns = kColumns) {
+    const float *upper = table + row.index * columns + column.index, *lower = upper + columns;
     return between(between(upper[0], upper[1], column.fraction), between(lower[0], lower[1], column.fraction),
                    row.fraction);
 }
@@ -52,20 +59,22 @@ REALCAM_INLINE float read_table(const float* table, TablePlace row, TablePlace c
 REALCAM_HD inline GgxAlbedo ggx_albedo(float cosine, float alpha) {
     using namespace ggx_albedo_detail;
     static constexpr float kAll[] = {REALCAM_GGX_ALBEDO};
-    static constexpr float kGrazing[] = {REALCAM_GGX_SCHLICK};
-    static_assert(sizeof kAll == sizeof(float) * kRows * kColumns && sizeof kGrazing == sizeof kAll);
-    const TablePlace row = row_of(alpha), column = table_place(std::cbrt(cosine), kColumns);
-    return {read_table(kAll, row, column), read_table(kGrazing, row, column)};
+    static constexpr float kGrazingOfAll[] = {REALCAM_GGX_SCHLICK};
+    static_assert(sizeof kAll == sizeof(float) * kRows * kColumns && sizeof kGrazingOfAll == sizeof kAll);
+    const TablePlace row = row_of(alpha);
+    const float all = read_table(kAll, row, column_of(cosine, alpha));
+    return {all, all * read_table(kGrazingOfAll, row, table_place(std::sqrt(cosine), kColumns))};
 }
 
 /// Over all directions of view, weighted by their cosines.
 REALCAM_HD inline GgxAlbedo ggx_mean_albedo(float alpha) {
     using namespace ggx_albedo_detail;
-    static constexpr float kAll[] = {REALCAM_GGX_MEAN_ALBEDO};
+    static constexpr float kLoss[] = {REALCAM_GGX_MEAN_LOSS};  // over alpha^2
     static constexpr float kGrazing[] = {REALCAM_GGX_MEAN_SCHLICK};
     const TablePlace row = row_of(alpha);
     const int i = row.index;
-    return {between(kAll[i], kAll[i + 1], row.fraction), between(kGrazing[i], kGrazing[i + 1], row.fraction)};
+    return {1.0f - alpha * alpha * between(kLoss[i], kLoss[i + 1], row.fraction),
+            between(kGrazing[i], kGrazing[i + 1], row.fraction)};
 }
 
 }  // namespace REALCAM_NAMESPACE

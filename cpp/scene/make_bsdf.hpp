@@ -49,12 +49,12 @@ REALCAM_INLINE DielectricBorder border_of(const SurfacePoint& point, float weigh
 
 REALCAM_INLINE void add_phong(Bsdf& bsdf, const SurfacePoint& point) {
     const Material& m = *point.material;
-    const float opaque = 1.0f - m.transmission;
+    const float opaque = 1.0f - point.transmission;
     bsdf.diffuse = opaque * point.diffuse;
     bsdf.phong = opaque * point.specular;
-    bsdf.shininess = m.shininess;
-    if (m.transmission > 0.0f) {
-        bsdf.border = border_of(point, m.transmission, m.filter, 0.0f, bsdf.eye.z);
+    bsdf.shininess = point.shininess;
+    if (point.transmission > 0.0f) {
+        bsdf.border = border_of(point, point.transmission, m.filter, 0.0f, bsdf.eye.z);
         if (m.fresnel == FresnelTerm::none) bsdf.border.fixed_reflectance = unit_range(largest(m.mirror));
     } else if (!is_black(m.mirror)) {
         if (m.fresnel == FresnelTerm::none) {
@@ -72,26 +72,27 @@ REALCAM_INLINE void add_phong(Bsdf& bsdf, const SurfacePoint& point) {
 
 // glTF 2.0, appendix B, with its extensions. The dielectric and the metal share one specular lobe, because Schlick's
 // term is linear in its two reflectances.
-REALCAM_INLINE void add_metallic_roughness(Bsdf& bsdf, const SurfacePoint& point) {
+REALCAM_INLINE void add_metallic_roughness(Bsdf& bsdf, const SurfacePoint& point, Vec3f to_eye) {
     const Material& m = *point.material;
     const Color base = unit_range(point.diffuse);
     const float metallic = unit_range(point.metallic), alpha = alpha_of(point.roughness);
-    const float passing = (1.0f - metallic) * m.transmission, opaque = 1.0f - passing;
+    const float passing = (1.0f - metallic) * point.transmission, opaque = 1.0f - passing;
     if (passing > 0.0f) bsdf.border = border_of(point, passing, base, alpha, bsdf.eye.z);
     if (opaque > 0.0f) {
         const float metal = metallic / opaque;
         bsdf.specular = MicrofacetReflection(alpha, bsdf.eye.z);
         const float lost = bsdf.specular.lost;
-        const Color f0 = unit_range((m.specular_weight * normal_reflectance(m.ior)) * point.specular);
-        const auto dielectric = FacetReflectance::between(f0, m.specular_weight, lost);
+        const Color f0 = unit_range((point.specular_weight * normal_reflectance(m.ior)) * point.specular);
+        const auto dielectric = FacetReflectance::between(f0, point.specular_weight, lost);
         bsdf.specular.reflectance = mix(dielectric, FacetReflectance::between(base, 1.0f, lost), metal);
         bsdf.specular_weight = opaque;
         bsdf.above_diffuse = dielectric;
         bsdf.diffuse = (opaque * (1.0f - metal)) * base;
     }
-    if (m.clearcoat > 0.0f) {
-        bsdf.coat_weight = unit_range(m.clearcoat);
-        bsdf.coat = MicrofacetReflection(alpha_of(m.clearcoat_roughness), bsdf.eye.z);
+    if (point.clearcoat > 0.0f) {
+        bsdf.coat_weight = unit_range(point.clearcoat);
+        bsdf.coat_turn = HalfTurn(bsdf.frame.to_local(visible_normal(point.coat_normal, to_eye)));
+        bsdf.coat = MicrofacetReflection(alpha_of(point.clearcoat_roughness), bsdf.coat_turn(bsdf.eye).z);
         bsdf.coat.reflectance = FacetReflectance::between(grey(0.04f), 1.0f, bsdf.coat.lost);
     }
 }
@@ -110,7 +111,7 @@ REALCAM_INLINE auto make_bsdf(const SurfacePoint& point, Vec3f to_eye) {
         if (point.material->model == MaterialModel::phong)
             add_phong(bsdf, point);
         else
-            add_metallic_roughness(bsdf, point);
+            add_metallic_roughness(bsdf, point, to_eye);
         bsdf.prepare();
         return bsdf;
     }

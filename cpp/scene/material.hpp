@@ -45,10 +45,19 @@ struct Material {
     float metallic = 0, roughness = 1;
     float specular_weight = 1;  ///< of the dielectric's reflection, at any angle
     float clearcoat = 0, clearcoat_roughness = 0;
-    TextureReference metallic_roughness_texture;  ///< roughness in green, metallic in blue, linear
+    TextureReference metallic_roughness_texture;  ///< roughness in green, metallic in blue, linear; phong: in green
+                                                  ///< what shininess is multiplied by
 
     TextureReference normal_texture;  ///< tangent space, linear
     float normal_scale = 1;
+
+    // Seldom there, and read only where the number that they multiply is not 0. Linear.
+    TextureReference transmission_texture;  ///< red
+    TextureReference specular_weight_texture;  ///< alpha
+    TextureReference clearcoat_texture;  ///< red
+    TextureReference clearcoat_roughness_texture;  ///< green
+    TextureReference clearcoat_normal_texture;  ///< tangent space; without one the coat has the mesh's normals
+    float clearcoat_normal_scale = 1;
 
     constexpr bool operator==(const Material&) const = default;
 
@@ -56,16 +65,20 @@ struct Material {
     /// Lambert's and Phong's lobe on an opaque surface, emission on one side, and no textures but for diffuse.
     constexpr bool is_plain() const {
         return model == MaterialModel::phong && transmission == 0 && is_black(mirror) && normal_texture.texture < 0 &&
-               specular_texture.texture < 0 && emission_texture.texture < 0 && !has_holes() && emits_on_both_sides == 0;
+               specular_texture.texture < 0 && emission_texture.texture < 0 && metallic_roughness_texture.texture < 0 &&
+               !has_holes() && emits_on_both_sides == 0;
     }
     /// Whether some rays that meet the surface go on as if it were not there.
     constexpr bool has_holes() const { return opacity < 1 || opacity_texture.texture >= 0 || only_shadows != 0; }
 };
 
-inline constexpr std::array<TextureReference Material::*, 6> kMaterialTextures = {
-    &Material::diffuse_texture,  &Material::specular_texture,
-    &Material::emission_texture, &Material::metallic_roughness_texture,
-    &Material::normal_texture,   &Material::opacity_texture};
+inline constexpr std::array<TextureReference Material::*, 11> kMaterialTextures = {
+    &Material::diffuse_texture,         &Material::specular_texture,
+    &Material::emission_texture,        &Material::metallic_roughness_texture,
+    &Material::normal_texture,          &Material::opacity_texture,
+    &Material::transmission_texture,    &Material::specular_weight_texture,
+    &Material::clearcoat_texture,       &Material::clearcoat_roughness_texture,
+    &Material::clearcoat_normal_texture};
 
 /// What a scene asks of the kernels: code for more than is there would cost speed.
 enum class SceneKind : std::int32_t {

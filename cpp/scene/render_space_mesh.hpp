@@ -3,10 +3,12 @@
 #include <cmath>
 #include <vector>
 
+#include "emission_mean.hpp"
 #include "light_tables.hpp"
 #include "scene.hpp"
 #include "split_triangles.hpp"
 #include "surface_point.hpp"
+#include "texture_levels.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -30,6 +32,7 @@ public:
         add_planes(checkpoint);
         for (std::uint32_t i = 0; i < triangles().size(); ++i)
             if (scene.materials[triangles()[i].material].emits()) emitters_.push_back(i);
+        emission_means_ = REALCAM_NAMESPACE::emission_means(view(), checkpoint);
     }
 
     MeshView view() const {
@@ -60,6 +63,24 @@ public:
     const std::vector<TrianglePlane>& planes() const { return planes_; }
     /// Those of the triangles that give light.
     const std::vector<std::uint32_t>& emitters() const { return emitters_; }
+    /// What maps make of their luminance.
+    const std::vector<float>& emission_means() const { return emission_means_; }
+
+    /// Makes the coarser levels of colours, for which the mean of a part is what is seen of it; not of directions, of
+    /// roughness and of coverage, for which it is not. Views made before do not have them.
+    void add_texture_levels(Checkpoint& checkpoint) {
+        levels_.resize(textures_.size());
+        for (const Material& material : scene_.materials) {
+            for (const auto member :
+                 {&Material::diffuse_texture, &Material::specular_texture, &Material::emission_texture}) {
+                const std::int32_t number = (material.*member).texture;
+                if (number < 0) continue;
+                TextureView& texture = textures_[static_cast<std::size_t>(number)];
+                if (texture.coarse_levels == 0)
+                    levels_[static_cast<std::size_t>(number)] = coarser_levels(texture, checkpoint);
+            }
+        }
+    }
 
     bool has_holes() const {
         const auto& materials = scene_.materials;
@@ -119,7 +140,9 @@ private:
     std::vector<Vec3f> positions_;
     std::vector<TrianglePlane> planes_;
     std::vector<std::uint32_t> emitters_;
+    std::vector<float> emission_means_;
     std::vector<TextureView> textures_;
+    std::vector<TextureLevels> levels_;  ///< of each of them; empty: none
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -49,10 +49,14 @@ public:
                 object_of_.push_back(found->second);
             }
         }
+        find_kind();
+        if (kind_ != SceneKind::plain) {  // whose kernels read the finest level alone
+            static_geometry_.add_texture_levels(checkpoint_);
+            for (const auto& object : objects_) object->add_texture_levels(checkpoint_);
+        }
         for (const auto& object : objects_) object_views_.push_back(object->view());
         const Environment& environment = assembly_.static_geometry->environment;
         environment_ = environment_tables(environment, checkpoint_);
-        find_kind();
         update_instances();
         checkpoint_ = Checkpoint();
     }
@@ -174,6 +178,7 @@ private:
         keys_.clear();
         points_.clear();
         areas_.clear();
+        area_means_.clear();
         std::vector<LightLeaf> point_leaves, area_leaves;
         add_lights(static_geometry_, {}, nullptr);
         add_leaves(0, 0, point_leaves, area_leaves);
@@ -236,7 +241,8 @@ private:
                     std::vector<LightLeaf>& areas) const {
         const std::size_t points_before = points.size(), areas_before = areas.size();
         for (std::size_t k = first_point; k < points_.size(); ++k) points.push_back(LightTree::leaf(points_[k]));
-        for (std::size_t k = first_area; k < areas_.size(); ++k) areas.push_back(LightTree::leaf(areas_[k]));
+        for (std::size_t k = first_area; k < areas_.size(); ++k)
+            areas.push_back(LightTree::leaf(areas_[k], area_means_[k]));
         if (instances_.empty() || instances_.back().key_count == 0) return;
         const std::int32_t keys = instances_.back().key_count;
         const SceneView scene = view();
@@ -252,7 +258,7 @@ private:
             }
             for (std::size_t k = first_area; k < areas_.size(); ++k)
                 LightTree::widen(areas[areas_before + k - first_area],
-                                 LightTree::leaf(area_light_at(scene, areas_[k], time)));
+                                 LightTree::leaf(area_light_at(scene, areas_[k], time), area_means_[k]));
         }
     }
 
@@ -307,6 +313,7 @@ private:
             if (moves) points_.back().moves_with = static_cast<std::int32_t>(number);
         }
         const InverseAffine<double> inverse = map.inverse();
+        area_means_.insert(area_means_.end(), mesh.emission_means().begin(), mesh.emission_means().end());
         for (const std::uint32_t emitter : mesh.emitters()) {
             const Triangle& t = mesh.triangles()[emitter];
             const RenderSpaceMesh::Edges edges = mesh.edges(t);
@@ -338,6 +345,7 @@ private:
     std::vector<Affine<float>> keys_;  ///< of those that move
     std::vector<PointLight> points_;
     std::vector<AreaLight> areas_;
+    std::vector<float> area_means_;  ///< what maps make of their luminance
     LightTree light_tree_;
     SceneKind kind_ = SceneKind::plain;
     EnvironmentTables environment_;

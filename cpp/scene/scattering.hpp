@@ -24,4 +24,20 @@ struct ShadingFrame {
     REALCAM_INLINE Vec3f to_world(Vec3f v) const { return v.x * x + v.y * y + v.z * z; }
 };
 
+/// Half a turn that takes another normal to z, and z to it: directions in the frame of one are then in that of the
+/// other. About which axis does not matter to what scatters alike all around.
+struct HalfTurn {
+    Vec3f normal = {0, 0, 1};  ///< unit, above the surface
+
+    HalfTurn() = default;
+    REALCAM_INLINE explicit HalfTurn(Vec3f n) : normal(n) {}
+
+    REALCAM_INLINE bool is_none() const { return normal.x == 0.0f && normal.y == 0.0f; }
+    REALCAM_INLINE Vec3f operator()(Vec3f v) const {
+        if (is_none()) return v;
+        const Vec3f axis = {normal.x, normal.y, normal.z + 1.0f};
+        return (dot(axis, v) / axis.z) * axis - v;  // axis . axis = 2 axis.z
+    }
+};
+
 }  // namespace REALCAM_NAMESPACE

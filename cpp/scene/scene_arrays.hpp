@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "scene_view.hpp"
+#include "texture.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -25,6 +25,11 @@ MeshView with_copied_arrays(MeshView view, Copy&& copy) {
         const std::int64_t texels = std::int64_t{texture.width} * texture.height;
         replace(texture.rgba, 4 * texels, copy);
         replace(texture.linear_rgba, 4 * texels, copy);
+        const std::int64_t coarse = coarse_texels(texture);
+        if (texture.coarse_levels > 0 && texture.rgba)
+            replace(texture.coarse_rgba, 4 * coarse, copy);
+        else if (texture.coarse_levels > 0)
+            replace(texture.coarse_linear_rgba, 4 * coarse, copy);
     }
     view.textures = textures.data();
     replace(view.textures, view.texture_count, copy);

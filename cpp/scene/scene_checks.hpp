@@ -147,7 +147,8 @@ private:
                 require(share >= 0 && share <= 1, "material", i,
                         "transmission, metallic, roughness, specular weight, clearcoat and its roughness, opacity and "
                         "its cutoff must lie between 0 and 1");
-            require(std::isfinite(m.normal_scale), "material", i, "the normal map's scale must be finite");
+            require(std::isfinite(m.normal_scale) && std::isfinite(m.clearcoat_normal_scale), "material", i,
+                    "the normal map's scale must be finite");
             for (const auto member : kMaterialTextures) check_reference(m.*member, i, textures);
         }
     }

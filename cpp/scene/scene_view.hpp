@@ -37,6 +37,11 @@ struct TextureView {
     const float* linear_rgba;
     std::int32_t width, height;
     TextureEncoding encoding;  ///< of the codes
+    /// Its coarser levels, one after the other (texture_levels.hpp): of each the width and height are half those of the
+    /// one before, rounded down, and 1 at least.
+    const std::uint8_t* coarse_rgba = nullptr;
+    const float* coarse_linear_rgba = nullptr;
+    std::int32_t coarse_levels = 0;
 };
 
 /// Intensity times (cos_scale c + cos_offset)^2, that sum kept between 0 and 1, at the cosine c of the angle to the
@@ -52,7 +57,7 @@ struct PointLight {
 
 /// A light at infinity: parallel rays.
 struct SunLight {
-    Vec3f direction;    ///< of travel, unit
+    Vec3f direction;  ///< of travel, unit
     Color illuminance;  ///< on a plane that it meets at a right angle
 };
 
@@ -62,17 +67,17 @@ struct AreaLight {
     Vec3f normal;  ///< unit; light leaves on this side
     std::int32_t is_two_sided;  ///< not 0: and on the other
     Color radiance;
-    float area;      ///< square metres
-    float margin;    ///< see TrianglePlane
+    float area;  ///< square metres
+    float margin;  ///< see TrianglePlane
     std::uint32_t triangle, instance;  ///< where a ray meets it (see Hit)
 };
 
 /// Light from infinity all around: constant, or a latitude-longitude image (row 0 up, +y; the middle column -z).
 struct EnvironmentView {
     Color constant;
-    const Color* pixels;          ///< null: constant
-    const float* marginal_cdf;    ///< height + 1 values, for importance sampling (math/cdf.hpp)
-    const float* conditional_cdf; ///< height rows of width + 1 values
+    const Color* pixels;  ///< null: constant
+    const float* marginal_cdf;  ///< height + 1 values, for importance sampling (math/cdf.hpp)
+    const float* conditional_cdf;  ///< height rows of width + 1 values
     std::int32_t width, height;
     float mean_luminance;  ///< over all directions
 };
@@ -80,10 +85,10 @@ struct EnvironmentView {
 /// Part of a tree over all point and area lights, from which one is chosen by what it may contribute to a point
 /// (Conty Estevez and Kulla 2018). The first child of a node follows it.
 struct alignas(16) LightNode {
-    Vec3f low, high;            ///< bounds of the lights
-    Vec3f axis;                 ///< middle of the normals of area lights
-    float cos_spread;           ///< of the angle about it in which all normals lie; -1: all directions
-    float intensity;            ///< luminous, along the normal, of all of them, cd
+    Vec3f low, high;  ///< bounds of the lights
+    Vec3f axis;  ///< middle of the normals of area lights
+    float cos_spread;  ///< of the angle about it in which all normals lie; -1: all directions
+    float intensity;  ///< luminous, along the normal, of all of them, cd
     std::int32_t second_child;  ///< below 0: a leaf, of the light -1 - second_child
     std::int32_t is_isotropic;  ///< not 0: light leaves in all directions alike
     std::int32_t partner;  ///< of a leaf: a second light in the same plane, such as a rectangle's other half; or -1

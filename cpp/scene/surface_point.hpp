@@ -45,7 +45,8 @@ struct SurfacePoint {
     float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
     bool is_front;      ///< the ray came from the side of the triangle's normal
     Color specular;  ///< this and what follows: where materials are not plain
-    float metallic, roughness;
+    float metallic, roughness, shininess, transmission, specular_weight, clearcoat, clearcoat_roughness;
+    Vec3f coat_normal;  ///< of the clear coat, where there is one
 };
 
 REALCAM_INLINE float largest_coordinate(Vec3f p) {
@@ -88,23 +89,70 @@ REALCAM_INLINE Vec2f transformed(const TextureReference& reference, Vec2f uv) {
     return {dot(reference.to_u, place), dot(reference.to_v, place)};
 }
 
+/// How much of a surface one ray stands for, for textures of colours. Of the film that is a pixel over the samples up
+/// to this one, since all of them together are a pixel: so the first are without shimmer, and the mean of many is as
+/// sharp as the texture. Not the circle of a lens that is out of focus: its rays meet the surface in many places
+/// already, and a texture of their width would be blurred twice.
+struct Footprint {
+    float area = 0;    ///< across the ray, over the square of the distance; 0: a point
+    float chance = 0;  ///< 0..1, by which one of two levels is taken
+};
+
+/// A footprint on the texture coordinates of a triangle.
+struct UvFootprint {
+    float area = 0;  ///< in units of the square of the coordinates
+    float chance = 0;
+};
+
+/// In the frame of an object the ray's direction is no unit vector, and areas are others: for that the footprint's area
+/// has been divided by the determinant of the object's transform. What that does to the normal cancels.
+REALCAM_INLINE UvFootprint uv_footprint(const MeshView& mesh, const Triangle& triangle, const SurfaceUv& uv, Hit hit,
+                                        Vec3f normal, Vec3f ray_direction, Footprint footprint) {
+    const Vec3f a = mesh.positions[triangle.vertices[0]];
+    const Vec3f twice = cross(mesh.positions[triangle.vertices[1]] - a, mesh.positions[triangle.vertices[2]] - a);
+    const float twice_uv = std::fabs(uv.along_u.x * uv.along_v.y - uv.along_u.y * uv.along_v.x);
+    // At grazing incidence it is long; no longer than a hundred times its width.
+    const float across = std::fabs(dot(normal, ray_direction)), least = 0.01f * length(ray_direction);
+    const float on_surface = footprint.area * hit.distance * hit.distance / (across > least ? across : least);
+    const float area = on_surface * twice_uv / length(twice);
+    return {area < 1e30f ? area : 0.0f, footprint.chance};
+}
+
+/// The level of a texture whose texels have the footprint's area, or the next finer one, by chance: the mean of both is
+/// what lies between them (Pharr et al. 2024).
+REALCAM_INLINE TextureView level_for(const TextureView& texture, const TextureReference& reference,
+                                     UvFootprint footprint) {
+    if (!(footprint.area > 0.0f) || texture.coarse_levels == 0) return texture;
+    const float stretch = std::fabs(reference.to_u.x * reference.to_v.y - reference.to_u.y * reference.to_v.x);
+    const float texels =
+        footprint.area * stretch * static_cast<float>(texture.width) * static_cast<float>(texture.height);
+    if (!(texels > 1.0f)) return texture;
+    return level_of(texture, static_cast<int>(0.5f * std::log2(texels < 1e30f ? texels : 1e30f) + footprint.chance));
+}
+
 /// White where there is no texture.
 REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv) {
     if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
     return sample_texture(mesh.textures[reference.texture], transformed(reference, uv));
 }
 
-/// The shading normal that a normal map gives. `normal`: without it.
-REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangle, const Material& material,
-                                   const SurfaceUv& uv, Vec3f normal) {
-    const Color texel = texture_color(mesh, material.normal_texture, uv.at);
-    const Vec3f bump = {material.normal_scale * (2.0f * texel.r - 1.0f),
-                        material.normal_scale * (2.0f * texel.g - 1.0f), 2.0f * texel.b - 1.0f};
+/// Likewise of a part of the surface.
+REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv,
+                                   UvFootprint footprint) {
+    if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
+    const TextureView level = level_for(mesh.textures[reference.texture], reference, footprint);
+    return sample_texture(level, transformed(reference, uv));
+}
+
+/// The shading normal that a normal map gives. `normal`: without it; `scale`: of the map's x and y.
+REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangle, const TextureReference& map,
+                                   float scale, const SurfaceUv& uv, Vec3f normal) {
+    const Color texel = texture_color(mesh, map, uv.at);
+    const Vec3f bump = {scale * (2.0f * texel.r - 1.0f), scale * (2.0f * texel.g - 1.0f), 2.0f * texel.b - 1.0f};
     // The direction in which the texture's u grows (its v: upwards, as glTF's tangent space has it).
     const Vec3f p = mesh.positions[triangle.vertices[0]], to_second = mesh.positions[triangle.vertices[1]] - p,
                 to_third = mesh.positions[triangle.vertices[2]] - p;
     const Vec3f along_u = {uv.along_u.x, uv.along_u.y, 0}, along_v = {uv.along_v.x, uv.along_v.y, 0};
-    const TextureReference& map = material.normal_texture;
     const float u1 = dot(map.to_u, along_u), u2 = dot(map.to_u, along_v), v1 = dot(map.to_v, along_u),
                 v2 = dot(map.to_v, along_v);
     const float turn = u1 * v2 - u2 * v1;
@@ -120,7 +168,8 @@ REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangl
 }
 
 template <SceneKind scene_kind>
-REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction) {
+REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
+                                          Footprint footprint = {}) {
     const Triangle triangle = mesh.triangles[hit.triangle];
     const TrianglePlane plane = mesh.planes[hit.triangle];
     const std::uint32_t* corner = triangle.vertices;
@@ -140,24 +189,49 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
         if (n2 > 0) point.normal = (1.0f / std::sqrt(n2)) * n;
     }
     if constexpr (scene_kind != SceneKind::plain) {
-        if (material.normal_texture.texture >= 0 && mesh.uvs) {
-            const Vec3f outer = dot(point.normal, plane.normal) < 0 ? -point.normal : point.normal;
-            point.normal = mapped_normal(mesh, triangle, material, uv, outer);
+        const auto mapped = [&](const TextureReference& map, float scale, Vec3f normal) {
+            if (map.texture < 0 || !mesh.uvs) return normal;
+            const Vec3f outer = dot(normal, plane.normal) < 0 ? -normal : normal;
+            return mapped_normal(mesh, triangle, map, scale, uv, outer);
+        };
+        point.clearcoat = material.clearcoat;
+        point.coat_normal = point.normal;
+        if (point.clearcoat > 0.0f) {
+            point.clearcoat *= texture_color(mesh, material.clearcoat_texture, uv.at).r;
+            point.clearcoat_roughness =
+                material.clearcoat_roughness * texture_color(mesh, material.clearcoat_roughness_texture, uv.at).g;
+            point.coat_normal =
+                mapped(material.clearcoat_normal_texture, material.clearcoat_normal_scale, point.normal);
+            if (dot(point.coat_normal, point.geometric_normal) < 0) point.coat_normal = -point.coat_normal;
         }
+        point.normal = mapped(material.normal_texture, material.normal_scale, point.normal);
     }
     // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
     if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
     point.material = &material;
     point.diffuse = material.diffuse;
-    if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
     point.emission = point.is_front ? material.emission : Color{0, 0, 0};
-    if constexpr (scene_kind != SceneKind::plain) {
+    if constexpr (scene_kind == SceneKind::plain) {
+        if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
+    } else {
+        const UvFootprint seen = footprint.area > 0.0f && mesh.uvs
+                                     ? uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint)
+                                     : UvFootprint{};
+        point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at, seen);
         if (material.emits_on_both_sides) point.emission = material.emission;
-        point.emission *= texture_color(mesh, material.emission_texture, uv.at);
+        point.emission *= texture_color(mesh, material.emission_texture, uv.at, seen);
         const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
-        point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at);
+        point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at, seen);
         point.roughness = material.roughness * rough_metal.g;
         point.metallic = material.metallic * rough_metal.b;
+        point.shininess = material.shininess * rough_metal.g;
+        point.transmission = material.transmission;
+        if (point.transmission > 0.0f)
+            point.transmission *= texture_color(mesh, material.transmission_texture, uv.at).r;
+        point.specular_weight = material.specular_weight;
+        const TextureReference& weights = material.specular_weight_texture;
+        if (weights.texture >= 0 && mesh.uvs)
+            point.specular_weight *= sample_texture_alpha(mesh.textures[weights.texture], transformed(weights, uv.at));
     }
     point.self_offset = plane.margin;
     return point;
@@ -179,9 +253,12 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
 /// comes back.
 template <SceneKind scene_kind>
 REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const InstanceView& instance, Hit hit,
-                                          Vec3f ray_origin, Vec3f ray_direction) {
+                                          Vec3f ray_origin, Vec3f ray_direction, Footprint footprint) {
     const InverseAffine<float>& into = instance.object_from_render;
-    SurfacePoint point = surface_point<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction));
+    if constexpr (scene_kind != SceneKind::plain)
+        footprint.area /= std::fabs(instance.render_from_object.determinant());
+    SurfacePoint point =
+        surface_point<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction), footprint);
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);
@@ -189,22 +266,27 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const Instance
     point.self_offset = instance_margin(instance, point.self_offset, point.geometric_normal, stretch, point.position);
     point.geometric_normal = stretch * geometric;
     point.normal = normalized(dot(shading, geometric) < 0 ? -shading : shading);
+    if constexpr (scene_kind != SceneKind::plain) {
+        const Vec3f coat = into.normal_of(point.coat_normal);
+        point.coat_normal = normalized(dot(coat, geometric) < 0 ? -coat : coat);
+    }
     return point;
 }
 
 /// Likewise of a whole scene, at a time of the exposure.
 template <SceneKind scene_kind>
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
-                                          float time) {
+                                          float time, Footprint footprint = {}) {
     if (hit.instance == kNoInstance)
-        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction);
+        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction,
+                                         footprint);
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& object = scene.objects[instance.object];
     if constexpr (scene_kind == SceneKind::any) {
         const InstanceView placed = instance_at(scene, hit.instance, time);
-        return surface_point<scene_kind>(object, placed, hit, ray_origin, ray_direction);
+        return surface_point<scene_kind>(object, placed, hit, ray_origin, ray_direction, footprint);
     }
-    return surface_point<scene_kind>(object, instance, hit, ray_origin, ray_direction);
+    return surface_point<scene_kind>(object, instance, hit, ray_origin, ray_direction, footprint);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -34,6 +34,41 @@ REALCAM_INLINE float texel_alpha(const TextureView& texture, int column, int row
     return texture.rgba ? static_cast<float>(texture.rgba[at]) * (1.0f / 255.0f) : texture.linear_rgba[at];
 }
 
+/// Of a width or height, that of the next coarser level.
+REALCAM_INLINE std::int32_t half_size(std::int32_t size) {
+    return size > 1 ? size / 2 : 1;
+}
+
+/// Texels of all coarser levels together.
+REALCAM_INLINE std::int64_t coarse_texels(const TextureView& texture) {
+    std::int64_t sum = 0;
+    std::int32_t width = texture.width, height = texture.height;
+    for (int i = 0; i < texture.coarse_levels; ++i) {
+        width = half_size(width);
+        height = half_size(height);
+        sum += std::int64_t{width} * height;
+    }
+    return sum;
+}
+
+/// A level of its own: 0 is the texture itself, and what lies beyond the coarsest is that.
+REALCAM_INLINE TextureView level_of(TextureView texture, int level) {
+    std::int64_t before = 0, texels = 0;
+    const int last = level < texture.coarse_levels ? level : texture.coarse_levels;
+    if (last <= 0) return texture;
+    for (int i = 0; i < last; ++i) {
+        before += texels;
+        texture.width = half_size(texture.width);
+        texture.height = half_size(texture.height);
+        texels = std::int64_t{texture.width} * texture.height;
+    }
+    if (texture.rgba)
+        texture.rgba = texture.coarse_rgba + 4 * before;
+    else
+        texture.linear_rgba = texture.coarse_linear_rgba + 4 * before;
+    return texture;
+}
+
 /// The four texels about a point, and where between them it lies.
 struct TextureSpot {
     int column, row;    ///< of the upper left one

@@ -64,11 +64,30 @@ public:
 
 private:
     void read_phong() {
-        table_.allow(
-            {"model",          "diffuse",         "specular",   "shininess",        "mirror",   "fresnel",
-             "filter",         "shadow_catcher",  "texture",    "specular_texture", "emission", "emission_texture",
-             "double_sided",   "transmission",    "ior",        "absorption",       "thin",     "opacity",
-             "opacity_cutoff", "opacity_texture", "normal_map", "normal_scale"});
+        table_.allow({"model",
+                      "diffuse",
+                      "specular",
+                      "shininess",
+                      "mirror",
+                      "fresnel",
+                      "filter",
+                      "shadow_catcher",
+                      "texture",
+                      "specular_texture",
+                      "emission",
+                      "emission_texture",
+                      "double_sided",
+                      "transmission",
+                      "ior",
+                      "absorption",
+                      "thin",
+                      "opacity",
+                      "opacity_cutoff",
+                      "opacity_texture",
+                      "normal_map",
+                      "normal_scale",
+                      "shininess_texture",
+                      "transmission_texture"});
         color("diffuse", m_.diffuse);
         color("specular", m_.specular);
         number("shininess", m_.shininess);
@@ -76,7 +95,7 @@ private:
         if (table_.find("fresnel") && !table_.flag("fresnel")) m_.fresnel = FresnelTerm::none;
         color("filter", m_.filter);
         m_.only_shadows = table_.flag("shadow_catcher");
-        texture("specular_texture", &Material::specular_texture);
+        texture("shininess_texture", &Material::metallic_roughness_texture);
     }
 
     void read_metallic_roughness() {
@@ -101,7 +120,14 @@ private:
                       "opacity_cutoff",
                       "opacity_texture",
                       "normal_map",
-                      "normal_scale"});
+                      "normal_scale",
+                      "specular_texture",
+                      "specular_weight_texture",
+                      "transmission_texture",
+                      "clearcoat_texture",
+                      "clearcoat_roughness_texture",
+                      "clearcoat_normal_map",
+                      "clearcoat_normal_scale"});
         m_.diffuse = m_.specular = {1, 1, 1};
         color("base_color", m_.diffuse);
         number("metallic", m_.metallic);
@@ -111,6 +137,11 @@ private:
         number("clearcoat", m_.clearcoat);
         number("clearcoat_roughness", m_.clearcoat_roughness);
         texture("metallic_roughness_texture", &Material::metallic_roughness_texture);
+        texture("specular_weight_texture", &Material::specular_weight_texture);
+        texture("clearcoat_texture", &Material::clearcoat_texture);
+        texture("clearcoat_roughness_texture", &Material::clearcoat_roughness_texture);
+        texture("clearcoat_normal_map", &Material::clearcoat_normal_texture);
+        number("clearcoat_normal_scale", m_.clearcoat_normal_scale);
     }
 
     void read_common() {
@@ -119,6 +150,8 @@ private:
         texture("emission_texture", &Material::emission_texture);
         m_.emits_on_both_sides = table_.flag("double_sided");
         number("transmission", m_.transmission);
+        texture("transmission_texture", &Material::transmission_texture);
+        texture("specular_texture", &Material::specular_texture);
         number("ior", m_.ior);
         color("absorption", m_.absorption);
         m_.is_thin = table_.flag("thin");

@@ -590,6 +590,8 @@ class Material(_Value):
         opacity_texture: ArrayLike | None = None,
         double_sided: bool = False,
         shadow_catcher: bool = False,
+        shininess_texture: ArrayLike | None = None,
+        transmission_texture: ArrayLike | None = None,
     ) -> None: ...
     @staticmethod
     def metallic_roughness(
@@ -616,6 +618,13 @@ class Material(_Value):
         opacity_cutoff: float = 0.0,
         opacity_texture: ArrayLike | None = None,
         double_sided: bool = False,
+        specular_texture: ArrayLike | None = None,
+        specular_weight_texture: ArrayLike | None = None,
+        transmission_texture: ArrayLike | None = None,
+        clearcoat_texture: ArrayLike | None = None,
+        clearcoat_roughness_texture: ArrayLike | None = None,
+        clearcoat_normal_map: ArrayLike | None = None,
+        clearcoat_normal_scale: float = 1.0,
     ) -> Material: ...
     def replace(
         self,
@@ -669,6 +678,8 @@ class Material(_Value):
     @property
     def normal_scale(self) -> float: ...
     @property
+    def clearcoat_normal_scale(self) -> float: ...
+    @property
     def opacity(self) -> float: ...
     @property
     def opacity_cutoff(self) -> float: ...
@@ -684,6 +695,16 @@ class Material(_Value):
     def emission_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
     @property
     def metallic_roughness_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    @property
+    def transmission_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    @property
+    def specular_weight_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    @property
+    def clearcoat_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    @property
+    def clearcoat_roughness_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
+    @property
+    def clearcoat_normal_map(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
     @property
     def opacity_texture(self) -> NDArray[np.uint8] | NDArray[np.float32] | None: ...
     @property

@@ -109,6 +109,7 @@ HOST_ONLY = {
     "scene/assembly.hpp",
     "scene/bounding_box.hpp",
     "scene/build_light_tree.hpp",
+    "scene/emission_mean.hpp",
     "scene/instance_names.hpp",
     "scene/light_tables.hpp",
     "scene/material_names.hpp",
@@ -118,6 +119,7 @@ HOST_ONLY = {
     "scene/scene_arrays.hpp",
     "scene/scene_checks.hpp",
     "scene/split_triangles.hpp",
+    "scene/texture_levels.hpp",
 }
 
 NOT_IN_CORE = {

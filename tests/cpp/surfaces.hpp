@@ -25,6 +25,12 @@ inline SurfacePoint point_on(const Surface& surface) {
     point.specular = m.specular;
     point.metallic = m.metallic;
     point.roughness = m.roughness;
+    point.shininess = m.shininess;
+    point.transmission = m.transmission;
+    point.specular_weight = m.specular_weight;
+    point.clearcoat = m.clearcoat;
+    point.clearcoat_roughness = m.clearcoat_roughness;
+    point.coat_normal = point.normal;
     point.is_front = surface.is_front;
     return point;
 }

@@ -44,7 +44,7 @@ TEST_CASE("a million emitters and a large environment can be stopped") {
     const RenderSpaceScene placed(Assembly(scene), {0, 0, 0});
     const InstancesView lights = placed.instances_view();
     std::vector<LightLeaf> leaves;
-    for (std::int32_t i = 0; i < lights.area_count; ++i) leaves.push_back(LightTree::leaf(lights.areas[i]));
+    for (std::int32_t i = 0; i < lights.area_count; ++i) leaves.push_back(LightTree::leaf(lights.areas[i], 1));
     Checkpoint checkpoint(no);
     CHECK_THROWS_AS(LightTree(leaves, checkpoint), Cancelled);
 

@@ -105,11 +105,8 @@ SAME = {
     "rgba": np.dstack([CODES] * 3 + [np.full((2, 2), 255)]).astype(np.uint8),
     "int64": CODES,
     "lists": CODES.tolist(),
-    "float64": CODES / 255,
-    "float32": (CODES / 255).astype(np.float32),
-    "float16": (CODES / 255).astype(np.float16),
-    "not contiguous": np.asfortranarray(CODES / 255),
     "big-endian": CODES.astype(">i4"),
+    "not contiguous": np.asfortranarray(CODES),
 }
 
 
@@ -122,10 +119,22 @@ def test_a_texture_is_what_its_array_says(what: str) -> None:
     assert wall([WOOD]).with_texture(0, SAME[what]) == wall([WOOD]).with_texture(0, SAME["rgba"])
 
 
-def test_fractions_are_rounded_to_codes() -> None:
-    texture = rc.Material(texture=[[0.9, 0.5 / 255 - 1e-6, 0.5 / 255 + 1e-6]]).texture
-    assert texture is not None
-    assert texture[0, :, 0].tolist() == [230, 0, 1]  # 0.9 x 255 = 229.5; numpy rounds halves to the even one
+FRACTIONS = {
+    "float64": CODES / 255,
+    "float32": (CODES / 255).astype(np.float32),
+    "float16": (CODES / 255).astype(np.float16),
+    "not contiguous": np.asfortranarray(CODES / 255),
+}
+
+
+@pytest.mark.parametrize("what", FRACTIONS)
+def test_fractions_are_the_same_colours(what: str) -> None:
+    texture = rc.Material(texture=FRACTIONS[what]).texture
+    assert texture is not None and texture.dtype == np.float32
+    v = np.asarray(FRACTIONS[what], float)
+    linear = np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4)
+    np.testing.assert_allclose(texture[..., :3], linear[..., None].repeat(3, 2), rtol=1e-6)
+    assert (texture[..., 3] == 1).all()
 
 
 def test_colours_stay_as_given_whatever_alpha_says() -> None:

@@ -149,7 +149,7 @@ def test_a_camera_that_passes_a_scene_sees_what_a_scene_does_that_passes_it(devi
 
 
 def moving_lamps(kind: str) -> tuple[rc.Scene, str]:
-    dark = scene_of(quad((0, 0, 0), 1e-3))
+    dark = scene_of(quad((0, 20, 0), 1e-3))  # a light in the plane of a triangle would be hidden along it
     if kind == "area":
         lamp = scene_of(quad((0, 0, 0), 0.3, up=(0, 0, 1), emission=(3000, 2000, 1000)))
     elif kind == "point":
@@ -207,8 +207,8 @@ def test_a_session_begins_anew_where_the_time_matters(device: str) -> None:
     session.add(4)
     late = session.image().pixels
     direct = rc.render(moving, cam.replace(shutter_opens_s=0.4), spp=4, device=device).pixels
-    assert np.array_equal(late, direct)
-    assert not np.array_equal(late, early)
+    np.testing.assert_allclose(late, direct, rtol=1e-6)  # a GPU adds the same samples in another order
+    assert np.abs(late - early).max() > 0.1 * early.mean()
 
 
 @pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])
@@ -242,8 +242,8 @@ def test_motion_vectors_lead_from_where_a_thing_was_to_where_it_will_be(device: 
         if len(vectors) < 60:
             continue
         compared += 1
-        # Middles of some hundred pixels with ragged edges: a tenth of a pixel. A card's middle in perspective is not the
-        # middle of its picture, by half a pixel times the change of its size, 5%.
+        # Middles of some hundred pixels with ragged edges: a tenth of a pixel. In perspective a card's middle is not
+        # the middle of its picture, by half a pixel times the change of its size, 5%.
         np.testing.assert_allclose(vectors.mean(axis=0), last[i] - first[i], atol=0.2)
     assert compared >= 12
     assert (motion["motion"][motion["object_id"] == 0] == 0).all()

@@ -1,0 +1,45 @@
+#pragma once
+#include "ggx_albedo.hpp"
+#include "loss_tables.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// What a rough metal that reflects all loses under a coat, if of the coat's two transmittances, towards the eye and
+// towards the light, the lesser counts; by a table (tools/make_loss_tables.py). For a coat of weight 1; the loss grows
+// in proportion.
+
+namespace coat_loss_detail {
+
+using ggx_albedo_detail::between;
+using ggx_albedo_detail::read_table;
+using ggx_albedo_detail::table_place;
+using ggx_albedo_detail::TablePlace;
+
+inline constexpr int kCoatLayers = REALCAM_COAT_LAYERS, kCoatRows = REALCAM_COAT_ROWS,
+                     kCoatColumns = REALCAM_COAT_COLUMNS;
+
+}  // namespace coat_loss_detail
+
+/// Seen at this cosine.
+REALCAM_HD inline float coat_loss(float cosine, float coat_alpha, float metal_alpha) {
+    using namespace coat_loss_detail;
+    static constexpr float kLoss[] = {REALCAM_COAT_LOSS};
+    static_assert(sizeof kLoss == sizeof(float) * kCoatLayers * kCoatRows * kCoatColumns);
+    const TablePlace layer = table_place(std::sqrt(coat_alpha), kCoatLayers),
+                     row = table_place(std::sqrt(metal_alpha), kCoatRows),
+                     column = table_place(std::sqrt(cosine), kCoatColumns);
+    const float* upper = kLoss + layer.index * kCoatRows * kCoatColumns;
+    return between(read_table(upper, row, column, kCoatColumns),
+                   read_table(upper + kCoatRows * kCoatColumns, row, column, kCoatColumns), layer.fraction);
+}
+
+/// Over all directions, weighted by their cosines.
+REALCAM_HD inline float coat_mean_loss(float coat_alpha, float metal_alpha) {
+    using namespace coat_loss_detail;
+    static constexpr float kLoss[] = {REALCAM_COAT_MEAN_LOSS};
+    static_assert(sizeof kLoss == sizeof(float) * kCoatLayers * kCoatRows);
+    return read_table(kLoss, table_place(std::sqrt(coat_alpha), kCoatLayers),
+                      table_place(std::sqrt(metal_alpha), kCoatRows), kCoatRows);
+}
+
+}  // namespace REALCAM_NAMESPACE

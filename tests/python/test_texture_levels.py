@@ -1,0 +1,103 @@
+"""Textures from afar: what one sample stands for is a mean of many texels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from . import scenes
+
+SQUARES = ((np.arange(256)[:, None] // 16 + np.arange(256)[None] // 16) % 2 * 255).astype(np.uint8)
+FINE = ((np.arange(256)[:, None] + np.arange(256)[None]) % 2 * 255).astype(np.uint8)
+
+
+def floor(texture: np.ndarray, *, levels: bool, **material: object) -> rc.Scene:
+    """A plane 1 m below the camera, to 2 km, with tiles of 4 m. Scenes of Lambert's lobe alone have no levels."""
+    corners, _ = scenes.quad((0, -1, -1000), 2000, 1000, up=(0, 0, -1))
+    uvs = np.array([[0, 0], [1000, 0], [1000, 500], [0, 500]], float)
+    m = rc.Material(diffuse=(1, 1, 1), texture=texture, double_sided=levels, **material)  # type: ignore[arg-type]
+    return rc.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], uvs=uvs, materials=[m]).with_environment(1.0)
+
+
+def rms(a: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(a**2)))
+
+
+def camera(model: str = "pinhole") -> rc.Camera:
+    film = rc.Film(24, 16, (96, 64))
+    lens = rc.Lens.load("double-gauss-50mm").focused(3.0)
+    return rc.Camera(lens, film=film, exposure_time_s=1, model=model)
+
+
+def test_the_error_of_few_samples_is_smaller_and_that_of_many_not_larger() -> None:
+    taken = camera()
+    truth = scenes.radiance(floor(SQUARES, levels=False), taken, spp=1024)[..., 0]
+    below = slice(34, 64)  # of the horizon
+    for spp, most in ((1, 0.75), (4, 0.8), (64, 1.0)):
+        with_levels, without = (
+            rms((scenes.radiance(floor(SQUARES, levels=on), taken, spp=spp)[..., 0] - truth)[below])
+            for on in (True, False)
+        )
+        assert with_levels < most * without, spp
+
+
+def test_the_horizon_does_not_shimmer() -> None:
+    """Rows in which a pixel covers many squares, at one sample: they are grey, where they were black and white."""
+    taken = camera()
+    rows = slice(33, 36)
+    grey = scenes.radiance(floor(SQUARES, levels=True), taken, spp=1)[rows, :, 0]
+    assert rms(grey - 0.5) < 0.1
+    assert rms(scenes.radiance(floor(SQUARES, levels=False), taken, spp=1)[rows, :, 0] - 0.5) > 0.4
+
+
+@pytest.mark.parametrize("spp", [1, 16])
+def test_levels_are_means_of_light(spp: int) -> None:
+    """Squares of one texel; the mean of their codes would be 0.21."""
+    picture = scenes.radiance(floor(FINE, levels=True), camera(), spp=spp)[34:50, :, 0]
+    assert picture.mean() == pytest.approx(0.5, abs=0.01)
+
+
+def test_coverage_stays_what_it_is() -> None:
+    """Maps of opacity have no levels: through half of the floor the sky is seen, whatever the distance."""
+    alpha = np.full((256, 256, 4), 255, np.uint8)
+    alpha[..., 3] = FINE
+    scene = floor(np.zeros((2, 2), np.uint8), levels=True, opacity_texture=alpha)
+    picture = scenes.radiance(scene, camera(), spp=64)[34:, :, 0]
+    assert picture.mean() == pytest.approx(0.5, abs=0.01)
+    cut = floor(np.zeros((2, 2), np.uint8), levels=True, opacity_texture=alpha, opacity_cutoff=0.5)
+    assert scenes.radiance(cut, camera(), spp=64)[34:, :, 0].mean() == pytest.approx(0.5, abs=0.05)
+
+
+def test_out_of_focus_a_texture_is_blurred_by_the_lens_alone() -> None:
+    """By the same amount with levels and without: what the lens makes of squares nearby, out of focus."""
+    taken = camera("thin")
+    pictures = [scenes.radiance(floor(SQUARES, levels=on), taken, spp=1024)[50:, :, 0] for on in (True, False)]
+    # The noise of 1024 samples of squares of contrast 1.
+    assert rms(pictures[0] - pictures[1]) < 0.02
+    assert pictures[0].std() == pytest.approx(pictures[1].std(), rel=0.02)
+
+
+def test_a_stretched_instance_has_the_levels_of_its_triangles() -> None:
+    """What a footprint is in the frame of an object that is 40 times as long there."""
+    card = scenes.quad((0, 0, 0), 1, diffuse=1.0)
+    lying = np.array([[1, 0, 0, 0], [0, 0, 1, -1], [0, -1, 0, -6], [0, 0, 0, 1.0]])
+    material = rc.Material.metallic_roughness(base_color=(1, 1, 1), roughness=0.9)
+    corners = card[0]
+
+    def floor_of(points: np.ndarray) -> rc.Scene:
+        made = rc.Scene.from_arrays(
+            points, [[0, 1, 2], [0, 2, 3]], uvs=[[0, 0], [2, 0], [2, 0.2], [0, 0.2]], materials=[material]
+        )
+        return made.with_texture(0, np.random.default_rng(3).integers(0, 255, (256, 256, 4), dtype=np.uint8))
+
+    place = lying @ np.diag([40.0, 5.0, 0.5, 1.0])
+    placed = corners @ place[:3, :3].T + place[:3, 3]
+    behind = scenes.scene_of(scenes.quad((0, 0, 9), 1)).with_environment(1.0)
+    taken = rc.Camera(rc.Lens.load("double-gauss-50mm").focused(5), film=rc.Film(36, 24, (60, 40)), model="pinhole")
+    one = rc.render(behind.with_instance(floor_of(corners), place), taken, spp=4, device="cpu").pixels
+    other = rc.render(behind.with_instance(floor_of(placed)), taken, spp=4, device="cpu").pixels
+    # The same samples; a level is chosen by chance, and next to none changes by a rounding.
+    differ = np.abs(one - other).max(axis=2) > 1e-3 * other.max()
+    assert one.std() > 0.1 * one.mean()
+    assert differ.mean() < 0.01
