@@ -32,7 +32,9 @@ def rows(results: dict, peer: dict) -> list[tuple[str, str, str]]:
     for model, rate in paths["giga_paths_per_second"].items():
         peer_rate = peer.get("paths", {}).get({"pinhole": "perspective", "thin": "thinlens"}.get(model, ""))
         add(f"camera and shadow ray, {model}, 1920 x 1280 x 256", rate, "G paths/s", peer_rate)
-    add("the same, full lens over thin lens, time", paths["full_over_thin"], "")
+    for bounces, rate in paths["giga_rays_per_second_by_bounces"].items():
+        add(f"rays of all kinds, full lens, up to {bounces} bounces", rate, "G rays/s")
+    add("camera and shadow ray, full lens over thin lens, time", paths["full_over_thin"], "")
     add("lens rays alone over the whole, time", paths["lens_share"], "")
     for change, rate in results["gpu-frames"]["frames_per_second"].items():
         add(f"live view, 640 x 640 x 20, {change} changes", rate, "frames/s")

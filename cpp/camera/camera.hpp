@@ -118,9 +118,8 @@ inline void validate(const Pose& pose) {
 inline void validate(const std::vector<PoseKey>& motion) {
     for (std::size_t k = 0; k < motion.size(); ++k) {
         const std::string key = "key " + std::to_string(k) + " of the camera's motion: ";
-        const double time = motion[k].time_s;
-        if (!(std::fabs(time) <= kMostSeconds)) throw InputError(key + "a time must lie within 1e9 s");
-        if (k > 0 && !(motion[k - 1].time_s < time)) throw InputError(key + "the times must rise");
+        const std::string time = key_time_error(motion[k].time_s, k > 0 ? &motion[k - 1].time_s : nullptr);
+        if (!time.empty()) throw InputError(key + time);
         try {
             validate(motion[k].pose);
         } catch (const InputError& error) {

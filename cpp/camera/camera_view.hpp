@@ -63,10 +63,9 @@ REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
     if (camera.key_count == 0) return camera;
     const KeyInterval at = key_interval(time, camera.key_count);
     const CameraPlacement &a = camera.keys[at.first], &b = camera.keys[at.first + 1];
-    const auto between = [&](Vec3f u, Vec3f v) { return (1.0f - at.share) * u + at.share * v; };
-    const Vec3f backward = normalized(between(a.backward, b.backward)), right = between(a.right, b.right);
+    const Vec3f backward = normalized(mix(a.backward, b.backward, at.share)), right = mix(a.right, b.right, at.share);
     const Vec3f across = normalized(right - dot(right, backward) * backward);
-    return {camera.position + between(a.position, b.position), across, cross(backward, across), backward};
+    return {camera.position + mix(a.position, b.position, at.share), across, cross(backward, across), backward};
 }
 
 /// Of a point along the camera's axis from the film, metres.

@@ -20,7 +20,6 @@ void DeviceScene::set_instances(const RenderSpaceScene& scene, const SceneBvh& b
     instance_arrays_.restart();
     const auto copy = [&](const auto* from, std::size_t count) { return instance_arrays_.copy(from, count, stream); };
     static_cast<InstancesView&>(view_) = with_copied_arrays(scene.instances_view(), copy);
-    view_.kind = scene.view().kind;
     const std::vector<BvhInstance> leaves = bvh_instances(bvh, scene, objects_);
     bvh_.nodes = copy(bvh.instances.nodes.data(), bvh.instances.nodes.size());
     bvh_.instances = copy(leaves.data(), leaves.size());

@@ -133,8 +133,7 @@ Placement SceneObjects::placement(std::uint32_t node, const Affine<double>& tran
         place.origin = scale_ * place.origin;
         return place;
     }
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    times = sorted_once(std::move(times));
     Motion keys;
     for (const double time : times) {
         keys.times_s.push_back(time);

@@ -36,7 +36,7 @@ public:
     }
 
     /// Refuses keys that the format does not know: a misspelt one must not be ignored in silence.
-    void allow(std::initializer_list<std::string_view> keys) const {
+    void allow(const std::vector<std::string_view>& keys) const {
         for (const auto& [key, node] : table_) {
             bool known = false;
             for (std::string_view allowed : keys) known |= key.str() == allowed;

@@ -60,6 +60,12 @@ struct Affine {
         return c;
     }
 
+    /// Entry by entry.
+    friend REALCAM_INLINE Affine mix(const Affine& a, const Affine& b, T share_of_b) {
+        return {mix(a.x, b.x, share_of_b), mix(a.y, b.y, share_of_b), mix(a.z, b.z, share_of_b),
+                mix(a.origin, b.origin, share_of_b)};
+    }
+
     template <class U>
     REALCAM_INLINE explicit operator Affine<U>() const {
         return {static_cast<Vec3<U>>(x), static_cast<Vec3<U>>(y), static_cast<Vec3<U>>(z),

@@ -36,15 +36,10 @@ inline PolarDecomposition polar_decomposition(const Affine<double>& map) {
 /// At a share of the way from one map to another, which mirror both or neither: rotations by the shorter way at an even
 /// pace, stretch and shift evenly (Shoemake and Duff 1992).
 inline Affine<double> interpolated(const Affine<double>& a, const Affine<double>& b, double share) {
-    const auto between = [&](Vec3d u, Vec3d v) { return (1 - share) * u + share * v; };
-    const Vec3d origin = between(a.origin, b.origin);
+    const Vec3d origin = mix(a.origin, b.origin, share);
     if (a.x == b.x && a.y == b.y && a.z == b.z) return {a.x, a.y, a.z, origin};
     const PolarDecomposition from = polar_decomposition(a), to = polar_decomposition(b);
-    const Affine<double> stretch = {between(from.stretch.x, to.stretch.x),
-                                    between(from.stretch.y, to.stretch.y),
-                                    between(from.stretch.z, to.stretch.z),
-                                    {0, 0, 0}};
-    Affine<double> map = rotation(slerp(from.rotation, to.rotation, share)) * stretch;
+    Affine<double> map = rotation(slerp(from.rotation, to.rotation, share)) * mix(from.stretch, to.stretch, share);
     map.origin = origin;
     return map;
 }

@@ -1,6 +1,8 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "interpolate_affine.hpp"
@@ -40,6 +42,19 @@ struct Motion {
                 std::lower_bound(times_s.begin(), times_s.end(), std::max(interval.begin_s, interval.end_s))};
     }
 };
+
+/// In rising order, each once.
+inline std::vector<double> sorted_once(std::vector<double> times) {
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
+/// What is wrong with the time of the key after one at `last` (null: it is the first); empty: nothing.
+inline std::string key_time_error(double time_s, const double* last) {
+    if (!(std::fabs(time_s) <= kMostSeconds)) return "a time must lie within 1e9 s";
+    return last && !(*last < time_s) ? "the times must rise" : "";
+}
 
 /// A motion by keys at the given times and at as many between them as the interpolation wants, to be what `at` is: a
 /// function of the time. For what moves with something else, and goes along arcs where that turns.

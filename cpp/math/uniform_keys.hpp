@@ -54,10 +54,7 @@ inline std::optional<int> key_steps(const Motion& motion, const TimeInterval& in
             const double place = (times[i] - interval.begin_s) / (interval.end_s - interval.begin_s) * steps;
             const auto k = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, steps - 1.0));
             const double share = place - static_cast<double>(k);
-            const auto between = [&](Vec3d u, Vec3d v) { return (1 - share) * u + share * v; };
-            const Affine<double>&a = keys[k], &b = keys[k + 1];
-            most = std::max(most, farthest(path[i], {between(a.x, b.x), between(a.y, b.y), between(a.z, b.z),
-                                                     between(a.origin, b.origin)}));
+            most = std::max(most, farthest(path[i], mix(keys[k], keys[k + 1], share)));
         }
         if (most <= wanted) return steps;
         if (steps == kMostKeySteps) return std::nullopt;

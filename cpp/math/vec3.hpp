@@ -59,6 +59,11 @@ template <class T>
 REALCAM_INLINE constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// At a share of the way from a to b.
+template <class T>
+REALCAM_INLINE constexpr Vec3<T> mix(Vec3<T> a, Vec3<T> b, T share_of_b) {
+    return (T(1) - share_of_b) * a + share_of_b * b;
+}
 template <class T>
 REALCAM_INLINE T length(Vec3<T> a) {
     return std::sqrt(dot(a, a));

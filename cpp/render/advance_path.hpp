@@ -182,7 +182,7 @@ class SurfaceLightKinds {
 public:
     REALCAM_INLINE SurfaceLightKinds(const SceneView& scene, const Surfaces<N>& surfaces) : scene_(scene) {
         if constexpr (kForAll) {
-            if (scene.light_node_count == 0) return;
+            if (scene.light_node_count == 0 || LightKinds::count_of(scene) < 2) return;
             Vec3Lanes<float, N> position, normal;
             for (int i = 0; i < N; ++i) {
                 const bool is_there = surfaces.scatters[i] != 0;
@@ -195,7 +195,7 @@ public:
         }
     }
     REALCAM_INLINE LightKinds at(int lane, LightReceiver receiver) const {
-        if constexpr (kForAll) return LightKinds(scene_, receiver, scene_.light_node_count > 0 ? local_[lane] : 0.0f);
+        if constexpr (kForAll) return LightKinds(scene_, receiver, [&] { return local_[lane]; });
         return LightKinds(scene_, receiver);
     }
 

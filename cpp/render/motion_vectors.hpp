@@ -64,8 +64,9 @@ inline LayerImage motion_vectors(const std::vector<MiddleSurface>& film, const A
     std::optional<PictureMap> map;
     if (anything_moves) map.emplace(placed_camera);
     const auto width = static_cast<std::size_t>(camera.film.width);
+    std::optional<RowMotion> motion;  // one for all rows where they are exposed together
     for (std::size_t row = 0; row * width < film.size(); ++row) {
-        RowMotion motion(scene, camera, static_cast<int>(row));
+        if (!motion || camera.shutter.readout_time_s > 0) motion.emplace(scene, camera, static_cast<int>(row));
         for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
             const MiddleSurface& seen = film[i];
             const bool is_surface = seen.triangle != kNoTriangle, is_dark = std::isnan(seen.depth);
@@ -74,8 +75,8 @@ inline LayerImage motion_vectors(const std::vector<MiddleSurface>& film, const A
             if (!is_dark && !(anything_moves && may_move)) continue;
             const Vec3d place = static_cast<Vec3d>(seen.position);
             const auto pixel_at = [&](RowMotion::When when) {
-                return is_surface ? map->pixel_of(motion.point(place + origin_m, seen.instance, when), false)
-                                  : map->pixel_of(motion.direction(place, when), true);
+                return is_surface ? map->pixel_of(motion->point(place + origin_m, seen.instance, when), false)
+                                  : map->pixel_of(motion->direction(place, when), true);
             };
             std::optional<Vec2<double>> from, to;
             if (!is_dark) from = pixel_at(RowMotion::begin), to = pixel_at(RowMotion::end);

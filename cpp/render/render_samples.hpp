@@ -5,8 +5,8 @@ namespace REALCAM_NAMESPACE {
 
 /// Takes one block of samples from the film, through the lens, to the scene and its lights: the whole path.
 ///
-/// `lens_kind`: any, or the lens's own; `set`: any, or the scene's own. SceneT and Probe as in advance_paths. A GPU
-/// thread runs this with N = 1.
+/// `lens_kind`: any, or the lens's own; `scene_kind`: any, or the scene's own. SceneT and Probe as in advance_paths. A
+/// GPU thread runs this with N = 1.
 template <LensKind lens_kind, SceneKind scene_kind, int N, class SceneT, class Probe>
 REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                       const SampleBlock<N>& block, SceneT&& scene, Probe&& probe,

@@ -119,9 +119,8 @@ inline std::string motion_error(const Motion& motion) {
         return "a motion wants as many transforms as times, one at least";
     for (std::size_t k = 0; k < keys; ++k) {
         const std::string key = "key " + std::to_string(k) + " of its motion: ";
-        if (!std::isfinite(motion.times_s[k]) || std::fabs(motion.times_s[k]) > kMostSeconds)
-            return key + "a time must lie within 1e9 s";
-        if (k > 0 && !(motion.times_s[k - 1] < motion.times_s[k])) return key + "the times must rise";
+        const std::string time = key_time_error(motion.times_s[k], k > 0 ? &motion.times_s[k - 1] : nullptr);
+        if (!time.empty()) return key + time;
         if (const std::string why = transform_error(motion.transforms[k]); !why.empty()) return key + why;
         if ((motion.transforms[0].determinant() < 0) != (motion.transforms[k].determinant() < 0))
             return key + "all keys must mirror the object, or none; between them it would be flat";
@@ -188,9 +187,7 @@ inline std::vector<double> all_times(std::initializer_list<const Motion*> motion
     std::vector<double> times;
     for (const Motion* motion : motions)
         if (motion) times.insert(times.end(), motion->times_s.begin(), motion->times_s.end());
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
-    return times;
+    return sorted_once(std::move(times));
 }
 
 /// What moves as `at`, a function of the time, says. `times`: of the keys that this wants; none: it stays where it is.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../checkpoint.hpp"
+#include "code_light.hpp"
 #include "surface_point.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -17,17 +18,12 @@ namespace emission_mean_detail {
 /// Of all texels, linear.
 inline Color mean_of(const TextureView& texture) {
     const std::size_t texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
-    std::array<double, 256> light{};
-    for (int code = 0; code < 256; ++code)
-        light[static_cast<std::size_t>(code)] =
-            texture.encoding == TextureEncoding::srgb
-                ? static_cast<double>(srgb_to_linear(static_cast<std::uint8_t>(code)))
-                : code / 255.0;
+    const std::array<float, 256> light = light_of_codes(texture.encoding);
     std::array<double, 3> sum{};
     for (std::size_t i = 0; i < texels; ++i)
         for (std::size_t c = 0; c < 3; ++c)
             sum[c] +=
-                texture.rgba ? light[texture.rgba[4 * i + c]] : static_cast<double>(texture.linear_rgba[4 * i + c]);
+                static_cast<double>(texture.rgba ? light[texture.rgba[4 * i + c]] : texture.linear_rgba[4 * i + c]);
     const double share = 1.0 / static_cast<double>(texels);
     return {static_cast<float>(share * sum[0]), static_cast<float>(share * sum[1]), static_cast<float>(share * sum[2])};
 }

@@ -9,9 +9,7 @@ namespace REALCAM_NAMESPACE {
 
 REALCAM_INLINE Affine<float> transform_at(const Affine<float>* keys, std::int32_t count, float time) {
     const KeyInterval at = key_interval(time, count);
-    const Affine<float>&a = keys[at.first], &b = keys[at.first + 1];
-    const auto between = [&](Vec3f u, Vec3f v) { return (1.0f - at.share) * u + at.share * v; };
-    return {between(a.x, b.x), between(a.y, b.y), between(a.z, b.z), between(a.origin, b.origin)};
+    return mix(keys[at.first], keys[at.first + 1], at.share);
 }
 
 /// With the transforms of a time.

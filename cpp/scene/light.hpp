@@ -92,17 +92,18 @@ REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f pos
 class LightKinds {
 public:
     REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver)
-        : LightKinds(scene, receiver, local_importance(scene, receiver)) {}
+        : LightKinds(scene, receiver, [&] { return light_importance(scene.light_nodes[0], receiver); }) {}
 
-    /// `local`: local_importance of the receiver, for those who have found it for many at once.
-    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver, float local)
+    /// `local()`: the importance of the tree's root for the receiver, for those who have found it for many at once.
+    template <class Local>
+    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver, Local&& local)
         : scene_(scene), receiver_(receiver) {
-        const int count = has_local() + scene.sun_count + scene.has_environment;
+        const int count = count_of(scene);
         const auto kinds = static_cast<float>(count);
         local_ = environment_ = scale_ = 0.0f;
         even_ = 1.0f;
         if (count < 2) return;
-        local_ = local;
+        local_ = has_local() ? local() : 0.0f;
         environment_ = scene.has_environment ? 3.141592654f * scene.environment.mean_luminance : 0.0f;
         float sum = local_ + environment_;
         for (int i = 0; i < scene.sun_count; ++i) sum += sun(i);
@@ -112,9 +113,9 @@ public:
         scale_ = is_useful ? (1.0f - kEven) / sum : 0.0f;
     }
 
-    /// Of all point and area lights together.
-    REALCAM_INLINE static float local_importance(const SceneView& scene, LightReceiver receiver) {
-        return scene.light_node_count > 0 ? light_importance(scene.light_nodes[0], receiver) : 0.0f;
+    /// With fewer than two nobody asks for importances.
+    REALCAM_INLINE static int count_of(const SceneView& scene) {
+        return (scene.light_node_count > 0) + scene.sun_count + scene.has_environment;
     }
 
     REALCAM_INLINE bool has_local() const { return scene_.light_node_count > 0; }

@@ -83,8 +83,7 @@ public:
     }
 
     SceneView view() const {
-        SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, kind_, false, {}};
-        if (moves()) view.kind = SceneKind::any;
+        SceneView view{static_geometry_.view(), instances_view(), nullptr, nullptr, 0, 0, false, {}};
         const Scene& scene = *assembly_.static_geometry;
         const Environment& environment = scene.environment;
         view.objects = object_views_.data();
@@ -104,6 +103,7 @@ public:
 
     InstancesView instances_view() const {
         InstancesView view{};
+        view.kind = moves() ? SceneKind::any : kind_;
         view.instances = instances_.data();
         view.keys = keys_.data();
         view.points = points_.data();
@@ -347,7 +347,7 @@ private:
     std::vector<AreaLight> areas_;
     std::vector<float> area_means_;  ///< what maps make of their luminance
     LightTree light_tree_;
-    SceneKind kind_ = SceneKind::plain;
+    SceneKind kind_ = SceneKind::plain;  ///< as long as nothing moves
     EnvironmentTables environment_;
 };
 

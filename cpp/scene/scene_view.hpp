@@ -121,8 +121,9 @@ struct InstanceView {
     std::int32_t first_key, key_count;  ///< of its motion; 0: it does not move
 };
 
-/// What depends on instance transforms: the instances, and the lights that may move with them.
+/// What depends on instance transforms: the instances, the lights that may move with them, and whether anything moves.
 struct InstancesView {
+    SceneKind kind;
     const InstanceView* instances;
     const Affine<float>* keys;  ///< render_from_object of instances that move, at even times of the exposure
     const PointLight* points;
@@ -138,7 +139,6 @@ struct SceneView : MeshView, InstancesView {
     const MeshView* objects;
     const SunLight* suns;
     std::int32_t object_count, sun_count;
-    SceneKind kind;
     bool has_environment;
     EnvironmentView environment;
 };

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../checkpoint.hpp"
-#include "texture.hpp"
+#include "code_light.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -24,11 +24,8 @@ namespace texture_levels_detail {
 /// Means of light, as floats: sRGB codes are decoded first, since the mean of codes is too dark.
 class Averaging {
 public:
-    Averaging(const TextureView& texture, Checkpoint& checkpoint) : texture_(texture), checkpoint_(checkpoint) {
-        for (int code = 0; code < 256; ++code)
-            light_[static_cast<std::size_t>(code)] = texture.encoding == TextureEncoding::srgb
-                                                         ? srgb_to_linear(static_cast<std::uint8_t>(code))
-                                                         : static_cast<float>(code) * (1.0f / 255.0f);
+    Averaging(const TextureView& texture, Checkpoint& checkpoint)
+        : texture_(texture), checkpoint_(checkpoint), light_(light_of_codes(texture.encoding)) {
         if (texture.rgba) {
             // Codes by light; 4096 steps of a square root keep dark codes apart.
             for (std::size_t i = 0; i < codes_.size(); ++i) codes_[i] = exact_code(light_at(i));
@@ -97,7 +94,7 @@ private:
 
     const TextureView& texture_;
     Checkpoint& checkpoint_;
-    std::array<float, 256> light_{};
+    std::array<float, 256> light_;
     std::array<std::uint8_t, kSteps + 1> codes_{};
 };
 

@@ -63,31 +63,18 @@ public:
     }
 
 private:
+    /// These keys, and those of both models.
+    void allow(std::vector<std::string_view> keys) const {
+        for (const char* common : {"model", "texture", "emission", "emission_texture", "double_sided", "transmission",
+                                   "transmission_texture", "ior", "absorption", "thin", "opacity", "opacity_cutoff",
+                                   "opacity_texture", "normal_map", "normal_scale"})
+            keys.emplace_back(common);
+        table_.allow(keys);
+    }
+
     void read_phong() {
-        table_.allow({"model",
-                      "diffuse",
-                      "specular",
-                      "shininess",
-                      "mirror",
-                      "fresnel",
-                      "filter",
-                      "shadow_catcher",
-                      "texture",
-                      "specular_texture",
-                      "emission",
-                      "emission_texture",
-                      "double_sided",
-                      "transmission",
-                      "ior",
-                      "absorption",
-                      "thin",
-                      "opacity",
-                      "opacity_cutoff",
-                      "opacity_texture",
-                      "normal_map",
-                      "normal_scale",
-                      "shininess_texture",
-                      "transmission_texture"});
+        allow({"diffuse", "specular", "specular_texture", "shininess", "shininess_texture", "mirror", "fresnel",
+               "filter", "shadow_catcher"});
         color("diffuse", m_.diffuse);
         color("specular", m_.specular);
         number("shininess", m_.shininess);
@@ -99,35 +86,9 @@ private:
     }
 
     void read_metallic_roughness() {
-        table_.allow({"model",
-                      "base_color",
-                      "metallic",
-                      "roughness",
-                      "specular_color",
-                      "specular_weight",
-                      "clearcoat",
-                      "clearcoat_roughness",
-                      "metallic_roughness_texture",
-                      "texture",
-                      "emission",
-                      "emission_texture",
-                      "double_sided",
-                      "transmission",
-                      "ior",
-                      "absorption",
-                      "thin",
-                      "opacity",
-                      "opacity_cutoff",
-                      "opacity_texture",
-                      "normal_map",
-                      "normal_scale",
-                      "specular_texture",
-                      "specular_weight_texture",
-                      "transmission_texture",
-                      "clearcoat_texture",
-                      "clearcoat_roughness_texture",
-                      "clearcoat_normal_map",
-                      "clearcoat_normal_scale"});
+        allow({"base_color", "metallic", "roughness", "metallic_roughness_texture", "specular_color",
+               "specular_texture", "specular_weight", "specular_weight_texture", "clearcoat", "clearcoat_texture",
+               "clearcoat_roughness", "clearcoat_roughness_texture", "clearcoat_normal_map", "clearcoat_normal_scale"});
         m_.diffuse = m_.specular = {1, 1, 1};
         color("base_color", m_.diffuse);
         number("metallic", m_.metallic);

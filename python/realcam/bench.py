@@ -234,7 +234,7 @@ def gpu_hits(threads: int) -> Result:
 
 
 def gpu_paths(threads: int) -> Result:
-    """Camera ray and shadow ray, 256 samples of 1920 x 1280 pixels: paths per second by camera model."""
+    """256 samples of 1920 x 1280 pixels: paths of a camera and a shadow ray by camera model, rays by bounces."""
     del threads
     scene = _gpu_scene()
     seconds: dict[str, list[float]] = {}
@@ -244,10 +244,15 @@ def gpu_paths(threads: int) -> Result:
             seconds.setdefault(model, []).append(stats.seconds - stats.setup_seconds)
     paths = 256 * 1920 * 1280
     best = {model: min(times) for model, times in seconds.items()}
+    rays = {}
+    for bounces in (1, 4, 8):
+        runs = [render(scene, gpu_camera(), spp=64, max_bounces=bounces, device="cuda").stats for _ in range(3)]
+        rays[str(bounces)] = _giga(max(run.scene_rays / (run.seconds - run.setup_seconds) for run in runs))
     lens_alone = paths / _core._gpu_lens_ray_rates(gpu_camera(), "cuda")["generated"]
     return {
         "triangles": scene.triangle_count,
         "giga_paths_per_second": {model: _giga(paths / s) for model, s in best.items()},
+        "giga_rays_per_second_by_bounces": rays,
         "full_over_thin": round(best["full"] / best["thin"], 3),
         "lens_share": round(lens_alone / best["full"], 3),
     }

@@ -109,6 +109,7 @@ HOST_ONLY = {
     "scene/assembly.hpp",
     "scene/bounding_box.hpp",
     "scene/build_light_tree.hpp",
+    "scene/code_light.hpp",
     "scene/emission_mean.hpp",
     "scene/instance_names.hpp",
     "scene/light_tables.hpp",

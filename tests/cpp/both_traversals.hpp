@@ -7,6 +7,7 @@
 #include "../../cpp/bvh/traverse_scene.hpp"
 #include "../../cpp/embree/embree_scene.hpp"
 #include "../../cpp/embree/packet_scene.hpp"
+#include "bvh_rays.hpp"
 
 namespace realcam::test {
 
@@ -48,5 +49,21 @@ private:
     std::vector<WideBvhView> objects_;
     std::vector<BvhInstance> leaves_;
 };
+
+/// Rays from around a scene of some 10 m into it, at a time; `number(lane)` of each.
+template <int N, class Number>
+SceneRays<N> drawn_rays(BvhDraw& draw, float time, Number&& number) {
+    SceneRays<N> rays;
+    for (int i = 0; i < N; ++i) {
+        const Vec3f from = draw.in_cube(25);
+        rays.origin.set(i, from);
+        rays.direction.set(i, normalized(draw.in_cube(12) - from));
+        rays.far[i] = kFarAway;
+        rays.active[i] = 1;
+        rays.number[i] = number(i);
+        rays.time[i] = time;
+    }
+    return rays;
+}
 
 }  // namespace realcam::test

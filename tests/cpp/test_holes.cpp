@@ -88,18 +88,10 @@ TEST_CASE("holes: Embree's filter and the wide BVH stop a ray at the same triang
         int differ = 0, hits = 0, through = 0, wrong_shadows = 0;
         auto packets = both.packets();
         for (int block = 0; block < kBlocks; ++block) {
-            SceneRays<kLanes> rays;
+            const auto rays = drawn_rays<kLanes>(
+                draw, 0, [=](int i) { return hash32(static_cast<std::uint32_t>(block * kLanes + i)); });
             Hits<kLanes> found;
             std::int32_t hidden[kLanes];
-            for (int i = 0; i < kLanes; ++i) {
-                const Vec3f from = draw.in_cube(25);
-                rays.origin.set(i, from);
-                rays.direction.set(i, normalized(draw.in_cube(12) - from));
-                rays.far[i] = kFarAway;
-                rays.active[i] = 1;
-                rays.number[i] = hash32(static_cast<std::uint32_t>(block * kLanes + i));
-                rays.time[i] = 0;
-            }
             packets.intersect(rays, found);
             packets.occluded(rays, hidden);
             for (int i = 0; i < kLanes; ++i) {

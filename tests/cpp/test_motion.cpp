@@ -119,18 +119,9 @@ TEST_CASE("motion: both traversals meet the same, and what stands there at the t
         int hits = 0, on_moving = 0, differ = 0, stands_elsewhere = 0, wrong_shadows = 0;
         double worst_normal = 0, worst_place = 0;
         for (int block = 0; block < kBlocks; ++block) {
-            SceneRays<kLanes> rays;
+            const auto rays = drawn_rays<kLanes>(draw, static_cast<float>(time), [](int) { return 2u; });
             Hits<kLanes> found;
             std::int32_t hidden[kLanes];
-            for (int i = 0; i < kLanes; ++i) {
-                const Vec3f from = draw.in_cube(25);
-                rays.origin.set(i, from);
-                rays.direction.set(i, normalized(draw.in_cube(12) - from));
-                rays.far[i] = kFarAway;
-                rays.active[i] = 1;
-                rays.number[i] = 2;
-                rays.time[i] = static_cast<float>(time);
-            }
             packets.intersect(rays, found);
             packets.occluded(rays, hidden);
             for (int i = 0; i < kLanes; ++i) {
