@@ -8,6 +8,7 @@
 #include "../devices/devices.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/free_memory.hpp"
+#include "../render/effect_names.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
 #include "../shot/shot.hpp"
@@ -68,12 +69,14 @@ public:
         if (shot.has_daylight)
             say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
                 "cd/m^2");
+        for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens))
+            say("warning: " + notice);
         // Until here nothing is on disk, and a signal may simply end the program.
         const Interrupt interrupt;
         const Image image = expose(*session, shot, request);
         write(image, shot, request);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        std::fputs(summary(shot, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
+        std::fputs(summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
     }
 
 private:

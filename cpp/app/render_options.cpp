@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "../render/effect_names.hpp"
 #include "../shot/names.hpp"
 #include "../shot/shot_file.hpp"
 #include "values.hpp"
@@ -57,15 +58,20 @@ bool is_exr(const std::string& path) {
            (suffix[3] | 0x20) == 'r';
 }
 
+/// Between commas.
+std::vector<std::string> words_in(const std::string& text) {
+    std::vector<std::string> names;
+    std::istringstream words(text);
+    for (std::string name; std::getline(words, name, ',');) names.push_back(name);
+    return names;
+}
+
 void read_layer_words(const RenderWords& w, RenderSettings& settings) {
     const bool has_place = std::any_of(w.outputs.begin(), w.outputs.end(), is_exr);
     if (!w.layers.empty()) {
         if (!has_place) throw InputError("--layers: layers are written to .exr, and no --output is one");
-        std::vector<std::string> names;
-        std::istringstream words(w.layers);
-        for (std::string name; std::getline(words, name, ',');) names.push_back(name);
         try {
-            settings.layers = layers_named(names);
+            settings.layers = layers_named(words_in(w.layers));
         } catch (const InputError& error) {
             throw InputError("--layers: " + std::string(error.what()));
         }
@@ -88,6 +94,12 @@ void read_settings_words(const RenderWords& w, RenderSettings& settings) {
         if (!transport) throw InputError(std::string("--transport: ") + shot::kTransportNames + " is wanted");
         settings.transport = *transport;
     }
+    try {
+        if (!w.effects.empty()) settings.effects = effects_named(words_in(w.effects));
+    } catch (const InputError& error) {
+        throw InputError("--effects: " + std::string(error.what()));
+    }
+    if (!w.illuminant.empty()) settings.illuminant = Illuminant::parse(w.illuminant);
     if (!w.clamp.empty()) settings.clamp = static_cast<float>(parse_number("--clamp", w.clamp));
     validate(settings);
 }
@@ -144,6 +156,10 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     option("--tone", w.tone, "Tone mapping of .png: film (soft highlights) or linear (clipped) [film]", "CURVE");
     option("--layers", w.layers,
            "Also write to .exr, separated by commas: all, or some of " + layer_names() + " [none]", "NAMES");
+    option("--effects", w.effects, "What else is simulated, separated by commas: " + effect_names() + " [none]",
+           "NAMES");
+    option("--illuminant", w.illuminant,
+           "Of dispersion, the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]", "SPECTRUM");
     option("--threads", w.threads, "0: all [0]", "N");
     option("--device", w.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1 [auto]", "DEVICE");
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");

@@ -11,7 +11,7 @@ namespace realcam::app {
 struct RenderWords {
     std::string scene, lens, film, resolution, position, look_at, up, focus, f_number, exposure_time, shutter_opens,
         readout_time, iso, model, scale, environment, tone, spp, seed, max_bounces, transport, clamp, threads, layers,
-        device = "auto";
+        effects, illuminant, device = "auto";
     std::vector<std::string> outputs;
     bool verbose = false;
 };

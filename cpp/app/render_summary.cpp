@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "../io/image_metadata.hpp"
+#include "../render/effect_names.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
@@ -24,8 +25,8 @@ std::string million(double count, double seconds) {
 
 }  // namespace
 
-std::string summary(const shot::Shot& shot, const Image& image, const std::vector<std::string>& pictures,
-                    double seconds, bool verbose) {
+std::string summary(const shot::Shot& shot, const RenderSettings& settings, const Image& image,
+                    const std::vector<std::string>& pictures, double seconds, bool verbose) {
     const Camera& camera = shot.camera;
     const LensSystem& lens = camera.lens;
     const Film& film = camera.film;
@@ -48,6 +49,13 @@ std::string summary(const shot::Shot& shot, const Image& image, const std::vecto
                      std::to_string(image.spp) + " samples");
     line("exposure", exposure_text(camera.exposure_time_s) + ", ISO " + short_number(camera.iso) +
                          (shot.is_metered ? " (metered: the average lands on middle grey)" : ""));
+    const std::vector<std::string> effects = names_of(settings.effects);
+    if (!effects.empty()) {
+        std::string names;
+        for (const std::string& name : effects) names += (names.empty() ? "" : ", ") + name;
+        const auto light = settings.dispersed_light();
+        line("effects", names + (light ? ", illuminant " + light->text() : ""));
+    }
     if (verbose) {
         const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;
         const auto count = [](std::uint64_t n) { return static_cast<double>(n); };

@@ -9,7 +9,7 @@ namespace realcam::app {
 
 /// What was photographed, and how long it took, some lines. `seconds`: wall clock of everything. `verbose`: also rays
 /// per second, and where the time went.
-std::string summary(const shot::Shot& shot, const Image& image, const std::vector<std::string>& pictures,
-                    double seconds, bool verbose);
+std::string summary(const shot::Shot& shot, const RenderSettings& settings, const Image& image,
+                    const std::vector<std::string>& pictures, double seconds, bool verbose);
 
 }  // namespace realcam::app

@@ -9,6 +9,7 @@
 
 #include "../camera/develop.hpp"
 #include "../devices/devices.hpp"
+#include "../render/effect_names.hpp"
 #include "../render/take_picture.hpp"
 #include "../shot/names.hpp"
 #include "arrays.hpp"
@@ -50,6 +51,11 @@ LightTransport transport_from(const std::string& name) {
     throw InputError("unknown transport \"" + name + "\"; " + shot::kTransportNames + " is wanted");
 }
 
+std::optional<Illuminant> illuminant_from(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    return Illuminant::parse(text);
+}
+
 std::uint32_t seed_from(std::int64_t seed) {
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     return static_cast<std::uint32_t>(seed);
@@ -83,9 +89,17 @@ namespace {
 
 py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::string& device, std::int64_t seed,
                  int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
-                 const std::vector<std::string>& layers, const py::object& progress) {
-    const RenderSettings settings{spp,         seed_from(seed),     max_bounces, threads, transport_from(transport),
-                                  clamp_cd_m2, layers_named(layers)};
+                 const std::vector<std::string>& layers, const std::vector<std::string>& effects,
+                 const std::string& illuminant, const py::object& progress) {
+    const RenderSettings settings{spp,
+                                  seed_from(seed),
+                                  max_bounces,
+                                  threads,
+                                  transport_from(transport),
+                                  clamp_cd_m2,
+                                  layers_named(layers),
+                                  effects_named(effects),
+                                  illuminant_from(illuminant)};
     Session& session = session_for(device);
     const Progress report = progress_of(progress);
     Image image;
@@ -131,7 +145,23 @@ void bind_render(py::module_& m) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
     m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "transport"_a,
-          "clamp_cd_m2"_a, "threads"_a, "layers"_a, "progress"_a);
+          "clamp_cd_m2"_a, "threads"_a, "layers"_a, "effects"_a, "illuminant"_a, "progress"_a);
+    m.def(
+        "_effect_notices",
+        [](const LensSystem& lens, const std::vector<std::string>& effects) {
+            return effect_notices(effects_named(effects), lens);
+        },
+        "lens"_a, "effects"_a);
+    m.def(
+        "effects",
+        [] {
+            std::vector<std::string> lines;
+            for (const EffectInfo& effect : kEffects) lines.push_back(std::string(effect.name) + ": " + effect.line);
+            return lines;
+        },
+        "What can be simulated besides, a line each: the name for effects=..., a colon and a blank, and what it is "
+        "and\n"
+        "needs of lens, scene and camera.");
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");

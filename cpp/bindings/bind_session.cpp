@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "../devices/devices.hpp"
+#include "../render/effect_names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "picture.hpp"
@@ -19,9 +20,17 @@ class PythonSession {
 public:
     PythonSession(const Assembly& scene, const Camera& camera, const std::string& device, std::int64_t seed,
                   int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
-                  const std::vector<std::string>& layers)
-        : settings_{1,           seed_from(seed),     max_bounces, threads, transport_from(transport),
-                    clamp_cd_m2, layers_named(layers)} {
+                  const std::vector<std::string>& layers, const std::vector<std::string>& effects,
+                  const std::string& illuminant)
+        : settings_{1,
+                    seed_from(seed),
+                    max_bounces,
+                    threads,
+                    transport_from(transport),
+                    clamp_cd_m2,
+                    layers_named(layers),
+                    effects_named(effects),
+                    illuminant_from(illuminant)} {
         {
             const Unlocked unlocked;
             session_ = make_session(device);
@@ -84,9 +93,9 @@ private:
 void bind_session(py::module_& m) {
     py::class_<PythonSession>(m, "_Session")
         .def(py::init<const Assembly&, const Camera&, const std::string&, std::int64_t, int, const std::string&, float,
-                      int, const std::vector<std::string>&>(),
+                      int, const std::vector<std::string>&, const std::vector<std::string>&, const std::string&>(),
              "scene"_a, "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "transport"_a, "clamp_cd_m2"_a, "threads"_a,
-             "layers"_a)
+             "layers"_a, "effects"_a, "illuminant"_a)
         .def("set", &PythonSession::set, "scene"_a, "camera"_a)
         .def("add", &PythonSession::add, "spp"_a)
         .def("picture", &PythonSession::picture)

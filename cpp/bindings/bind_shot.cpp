@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "../io/image_metadata.hpp"
+#include "../render/effect_names.hpp"
 #include "../shot/shot_file.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"
@@ -28,13 +29,22 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
     return py::make_tuple(shot.scene, shot.camera, settings.spp, settings.seed, settings.max_bounces,
                           request.tone == ToneCurve::film ? "film" : "linear",
                           py::tuple(py::cast(names_of(settings.layers))), io::name_of(settings.transport),
-                          settings.clamp);
+                          settings.clamp, py::tuple(py::cast(names_of(settings.effects))),
+                          settings.illuminant ? settings.illuminant->text() : std::string());
 }
 
 py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::string& transport, float clamp_cd_m2,
-                  const std::string& denoiser) {
+                  const std::vector<std::string>& effects, const std::string& illuminant, const std::string& denoiser) {
     py::dict entries;
-    io::ImageMetadata metadata = io::metadata_of(camera, {spp, seed, 0, 0, transport_from(transport), clamp_cd_m2});
+    io::ImageMetadata metadata = io::metadata_of(camera, {spp,
+                                                          seed,
+                                                          0,
+                                                          0,
+                                                          transport_from(transport),
+                                                          clamp_cd_m2,
+                                                          {},
+                                                          effects_named(effects),
+                                                          illuminant_from(illuminant)});
     metadata.denoiser = denoiser;
     for (const auto& [name, value] : metadata.entries()) entries[py::str(name)] = value;
     return entries;
@@ -44,7 +54,8 @@ py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::
 
 void bind_shot(py::module_& m) {
     m.def("_read_shot", &read_shot, "path"_a, "device"_a, "progress"_a);
-    m.def("_metadata", &metadata, "camera"_a, "spp"_a, "seed"_a, "transport"_a, "clamp_cd_m2"_a, "denoiser"_a);
+    m.def("_metadata", &metadata, "camera"_a, "spp"_a, "seed"_a, "transport"_a, "clamp_cd_m2"_a, "effects"_a,
+          "illuminant"_a, "denoiser"_a);
 }
 
 }  // namespace realcam::bindings

@@ -52,6 +52,9 @@ Session& session_for(const std::string& device);
 /// "film" or "linear". Throws InputError.
 ToneCurve tone_curve_from(const std::string& name);
 
+/// The illuminant of a text (Illuminant::parse), none of an empty one. Throws InputError.
+std::optional<Illuminant> illuminant_from(const std::string& text);
+
 /// "paths" or "whitted". Throws InputError.
 LightTransport transport_from(const std::string& name);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "../optics/focus.hpp"
 #include "../optics/pupil.hpp"
 #include "camera_view.hpp"
+#include "film_spectrum.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -322,16 +324,19 @@ class CameraSetup {
 public:
     /// Throws InputError, also for a camera that turns too fast for the exposure. `tracer`: see Pupil. `last`: a set-up
     /// whose pupil is taken over if it is the same one: finding it is most of the work, and a camera that only moves
-    /// keeps it.
-    explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr)
+    /// keeps it. `illuminant`: of a picture with dispersion; none: all light has the lens's design wavelength.
+    explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr,
+                         const std::optional<Illuminant>& illuminant = {})
         : camera_(validated(camera)), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
+        if (illuminant) set_wavelengths(*illuminant);
         const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
         for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
-        if (last && last->has_pupil_of(camera))
+        if (last && last->has_pupil_of(camera, pupil_wavelengths_))
             pupil_ = last->pupil_;
         else if (camera.model == CameraModel::full_lens)
-            pupil_ = std::make_shared<const Pupil>(
-                camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm), std::move(tracer));
+            pupil_ = std::make_shared<const Pupil>(camera.lens,
+                                                   0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm),
+                                                   std::move(tracer), pupil_wavelengths_);
         if (!pupil_) {
             camera_detail::validate_ideal(camera.lens, camera.model);
             return;
@@ -371,6 +376,14 @@ public:
         if (!pupil_) view.axis_irradiance = static_cast<float>(axis_irradiance(lens));
         if (pupil_) view.pupil = pupil_->view();
         view.lens = path_.view();
+        if (spectrum_) {
+            view.dispersion = {spectrum_->cells().data(),
+                               static_cast<int>(spectrum_->cells().size()),
+                               variable_over(spectrum_->range()),
+                               to_scene_.data(),
+                               to_film_.data(),
+                               film_path_->view().surfaces};
+        }
         set_times(view, scene_moves);
         return view;
     }
@@ -382,6 +395,19 @@ private:
     static const Camera& validated(const Camera& camera) {
         validate(camera);
         return camera;
+    }
+
+    /// Rays of the shortest and of the longest wavelength leave the lens farthest apart.
+    void set_wavelengths(const Illuminant& illuminant) {
+        spectrum_.emplace(illuminant);
+        const WavelengthRange range = spectrum_->range();
+        check_dispersion(camera_.lens, range);
+        to_scene_ = index_cubics(camera_.lens, LightDirection::to_scene, range);
+        to_film_ = index_cubics(camera_.lens, LightDirection::to_film, range);
+        film_path_.emplace(camera_.lens, LightDirection::to_film, camera_.lens.wavelength_nm);
+        pupil_wavelengths_ = {std::clamp(camera_.lens.wavelength_nm, range.first, range.last)};
+        for (const double end : {range.first, range.last})
+            if (end != pupil_wavelengths_.front()) pupil_wavelengths_.push_back(end);
     }
 
     static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
@@ -398,14 +424,19 @@ private:
         view.exposed_time = static_cast<float>(camera_.exposure_time_s / all);
     }
 
-    bool has_pupil_of(const Camera& camera) const {
+    bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths) const {
         return pupil_ && camera.model == CameraModel::full_lens && camera_.lens == camera.lens &&
-               camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm;
+               camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm &&
+               pupil_wavelengths_ == wavelengths;
     }
 
     Camera camera_;
     LensPath<float> path_;
     std::vector<CameraPlacement> keys_;  ///< positions relative to the first
+    std::optional<FilmSpectrum> spectrum_;  ///< of a picture with dispersion, as what follows
+    std::vector<IndexCubic> to_scene_, to_film_;
+    std::optional<LensPath<float>> film_path_;
+    std::vector<double> pupil_wavelengths_;
     std::shared_ptr<const Pupil> pupil_;
 };
 

@@ -5,6 +5,7 @@
 #include "../optics/lens_view.hpp"
 #include "../optics/pupil_view.hpp"
 #include "circle_of_confusion.hpp"
+#include "dispersion_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -55,6 +56,7 @@ struct CameraView : CameraPlacement {
     float exposed_time;  ///< for which each is exposed
     const CameraPlacement* keys;  ///< of a camera that moves, at even times; positions relative to its own
     int key_count;
+    DispersionView dispersion;
 };
 
 /// The camera at a time of the exposure. Between two keys its axes are interpolated, and made unit and right-angled
@@ -81,6 +83,10 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     };
     move(view.lens.surfaces, view.lens.count);
     move(view.keys, view.key_count);
+    move(view.dispersion.to_scene, view.lens.count);
+    move(view.dispersion.to_film, view.lens.count);
+    move(view.dispersion.film_surfaces, view.lens.count);
+    move(view.dispersion.cells, view.dispersion.cell_count);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
     return view;

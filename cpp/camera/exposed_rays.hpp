@@ -29,14 +29,21 @@ REALCAM_INLINE void move_rays(const CameraView& camera, const float (&times)[N],
     }
 }
 
-/// generate_rays, at times that are stratified over the exposure of each pixel.
+/// Gives rays times that are stratified over the exposure of each pixel.
+template <int N>
+REALCAM_HD inline void expose_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
+                                   float (&times)[N]) {
+    const bool moves = camera.exposed_time > 0.0f;
+    set_times(camera, block, times, [&](int i) { return moves ? block.random(i, dimension::time).x : 0.0f; });
+    move_rays(camera, times, rays);
+}
+
+/// generate_rays, at such times.
 template <LensKind lens_kind = LensKind::any, int N>
 REALCAM_HD inline void generate_exposed_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                              float (&times)[N]) {
     generate_rays<lens_kind>(camera, block, rays);
-    const bool moves = camera.exposed_time > 0.0f;
-    set_times(camera, block, times, [&](int i) { return moves ? block.random(i, dimension::time).x : 0.0f; });
-    move_rays(camera, times, rays);
+    expose_rays(camera, block, rays, times);
 }
 
 }  // namespace REALCAM_NAMESPACE

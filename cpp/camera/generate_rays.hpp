@@ -32,7 +32,7 @@ namespace dimension {
 inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
 /// For the end of long paths, far behind those of the last bounce.
 inline constexpr std::uint32_t roulette = 0x10000;
-/// Of the time, for which most samples have no use.
+/// Of the time, for which most samples have no use; its second number is the wavelength's.
 inline constexpr std::uint32_t time = 0x20000;
 
 /// The first of a bounce.
@@ -115,9 +115,10 @@ REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const Sampl
     }
 }
 
-template <LensKind lens_kind, int N>
-REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
-    LensRays<float, N> inside;
+/// Rays from film and pupil, in front of the last surface.
+template <int N>
+REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, LensRays<float, N>& inside,
+                                    CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec2f film = film_point(camera, block.column[i], block.row[i], block.random(i, dimension::film));
@@ -132,7 +133,11 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
         rays.sampled[i] = select(rays.weight[i] > 0.0f, block.used[i], 0);
         inside.status[i] = select(rays.sampled[i] == 0, static_cast<int>(RayStatus::vignetted), 0);
     }
-    trace_lens<lens_kind>(camera.lens, inside);
+}
+
+/// Those that have left the lens, in the scene.
+template <int N>
+REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<float, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
@@ -140,6 +145,14 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
         place_ray(camera, rays, i, {inside.origin[i], normalized(inside.direction[i]), rays.weight[i]}, passed);
         rays.passed[i] = select(passed, 1, 0);
     }
+}
+
+template <LensKind lens_kind, int N>
+REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+    LensRays<float, N> inside;
+    start_lens_rays(camera, block, inside, rays);
+    trace_lens<lens_kind>(camera.lens, inside);
+    place_lens_rays(camera, inside, rays);
 }
 
 /// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the

@@ -45,9 +45,9 @@ public:
     }
 
 private:
-    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings&, const KeepGoing& keep_going,
-                 OwnStop& stop) override {
-        setup_ = last_setup_.make(camera, tracer_);
+    void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                 const KeepGoing& keep_going, OwnStop& stop) override {
+        setup_ = last_setup_.make(camera, tracer_, settings.dispersed_light());
         const auto place = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
             run_heeding(place, keep_going, stop);

@@ -32,15 +32,16 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
     if (i < pixels) sums[i] += other[i];
 }
 
+template <int effects>
 RenderKernel kernel_for(SceneKind scene_kind, LensKind lens_kind, bool instanced, bool timed) {
     const auto of_kind = [&]<SceneKind known>() {
-        return lens_kind == LensKind::plain ? render_kernel_of<LensKind::plain, known>(instanced, timed)
-                                            : render_kernel_of<LensKind::any, known>(instanced, timed);
+        return lens_kind == LensKind::plain ? render_kernel_of<LensKind::plain, known, effects>(instanced, timed)
+                                            : render_kernel_of<LensKind::any, known, effects>(instanced, timed);
     };
     switch (scene_kind) {
-        case SceneKind::plain: return of_kind.operator()<SceneKind::plain>();
-        case SceneKind::opaque: return of_kind.operator()<SceneKind::opaque>();
-        default: return of_kind.operator()<SceneKind::any>();
+        case SceneKind::plain: return of_kind.template operator()<SceneKind::plain>();
+        case SceneKind::opaque: return of_kind.template operator()<SceneKind::opaque>();
+        default: return of_kind.template operator()<SceneKind::any>();
     }
 }
 
@@ -57,7 +58,9 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
     const bool instanced = job.scene.instance_count > 0;
-    const RenderKernel kernel = kernel_for(kind_of(job.scene, job.camera), job.camera.lens.kind, instanced, timed);
+    const auto choose =
+        job.camera.dispersion.cell_count > 0 ? kernel_for<number_of(kDispersion)> : kernel_for<number_of(kNoEffects)>;
+    const RenderKernel kernel = choose(kind_of(job.scene, job.camera), job.camera.lens.kind, instanced, timed);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }

@@ -48,9 +48,10 @@ struct StageClock {
     }
 };
 
-template <LensKind lens_kind, SceneKind scene_kind, bool instanced, class Clock>
+template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
+    constexpr Effects effects = kCompiledEffects[effects_number];
     const WarpTiles tiles(lanes_per_pixel);
     const int lane = threadIdx.x % kWarpSize;
     const auto [column, row] = tiles.pixel_of(thread_index(), job.camera.width);
@@ -74,7 +75,8 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         for (; s < job.sample_count; s += static_cast<std::uint32_t>(tiles.lanes)) {
             if (*job.stop) break;
             block.sample[0] = job.first_sample + s;
-            render_samples<lens_kind, scene_kind>(job.scene, job.camera, job.path, block, scene, clock, results);
+            render_samples<lens_kind, scene_kind, effects>(job.scene, job.camera, job.path, block, scene, clock,
+                                                           results);
             sum.add(results, 0);
             if (job.adds_squares) {
                 PixelSum added{};
@@ -108,14 +110,16 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
 
 }  // namespace render_kernel_detail
 
-/// The kernel for a kind of lens and of scene. `instanced`: whether there is anything but static geometry; `timed`:
-/// whether it counts clocks.
-template <LensKind lens_kind, SceneKind scene_kind>
+/// The kernel for a kind of lens and of scene, and a set of effects by its number. `instanced`: whether there is
+/// anything but static geometry; `timed`: whether it counts clocks.
+template <LensKind lens_kind, SceneKind scene_kind, int effects = number_of(kNoEffects)>
 RenderKernel render_kernel_of(bool instanced, bool timed) {
     using namespace render_kernel_detail;
     if (instanced)
-        return timed ? render<lens_kind, scene_kind, true, StageClock> : render<lens_kind, scene_kind, true, NoClock>;
-    return timed ? render<lens_kind, scene_kind, false, StageClock> : render<lens_kind, scene_kind, false, NoClock>;
+        return timed ? render<lens_kind, scene_kind, effects, true, StageClock>
+                     : render<lens_kind, scene_kind, effects, true, NoClock>;
+    return timed ? render<lens_kind, scene_kind, effects, false, StageClock>
+                 : render<lens_kind, scene_kind, effects, false, NoClock>;
 }
 
 extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::plain>(bool, bool);
@@ -124,5 +128,11 @@ extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::any>(b
 extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::plain>(bool, bool);
 extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::opaque>(bool, bool);
 extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::any>(bool, bool);
+extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::plain, number_of(kDispersion)>(bool, bool);
+extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::opaque, number_of(kDispersion)>(bool, bool);
+extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::any, number_of(kDispersion)>(bool, bool);
+extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::plain, number_of(kDispersion)>(bool, bool);
+extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::opaque, number_of(kDispersion)>(bool, bool);
+extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::any, number_of(kDispersion)>(bool, bool);
 
 }  // namespace realcam

@@ -56,7 +56,7 @@ private:
                  const KeepGoing& keep_going, OwnStop& stop) override {
         const auto work = [&] {
             arena(settings).execute([&] {
-                setup_ = last_setup_.make(camera, fast_pupil_tracer());
+                setup_ = last_setup_.make(camera, fast_pupil_tracer(), settings.dispersed_light());
                 place(scene, camera);
                 camera_view_ = setup_->view(scene_->placed().origin_m(), scene_->placed().moves());
             });

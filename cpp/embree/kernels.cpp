@@ -99,7 +99,7 @@ PacketScene<scene_kind> packet_scene_of(const realcam_tile& tile, const SceneVie
             RayOrder::coherent, 0};
 }
 
-template <SceneKind scene_kind>
+template <SceneKind scene_kind, Effects effects>
 void render_tile_of(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const PathSettings settings = *static_cast<const PathSettings*>(tile->path_settings);
@@ -110,7 +110,7 @@ void render_tile_of(realcam_tile* tile) {
     PacketScene<scene_kind> scene = packet_scene_of<scene_kind>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
-        render_samples<LensKind::any, scene_kind>(view, camera, settings, block, scene, clock, results);
+        render_samples<LensKind::any, scene_kind, effects>(view, camera, settings, block, scene, clock, results);
         for (int k = 0; k < lanes;) {
             const int pixel = place[k];
             PixelSum sum = sums[pixel];  // in registers while the samples are the same pixel's
@@ -134,13 +134,19 @@ void render_tile_of(realcam_tile* tile) {
     tile->scene_rays += scene.rays_traced;
 }
 
-void render_tile(realcam_tile* tile) {
+template <Effects effects>
+void render_tile_with(realcam_tile* tile) {
     switch (
         kind_of(*static_cast<const SceneView*>(tile->scene_view), *static_cast<const CameraView*>(tile->camera_view))) {
-        case SceneKind::plain: return render_tile_of<SceneKind::plain>(tile);
-        case SceneKind::opaque: return render_tile_of<SceneKind::opaque>(tile);
-        case SceneKind::any: return render_tile_of<SceneKind::any>(tile);
+        case SceneKind::plain: return render_tile_of<SceneKind::plain, effects>(tile);
+        case SceneKind::opaque: return render_tile_of<SceneKind::opaque, effects>(tile);
+        case SceneKind::any: return render_tile_of<SceneKind::any, effects>(tile);
     }
+}
+
+void render_tile(realcam_tile* tile) {
+    const bool disperses = static_cast<const CameraView*>(tile->camera_view)->dispersion.cell_count > 0;
+    return disperses ? render_tile_with<kDispersion>(tile) : render_tile_with<kNoEffects>(tile);
 }
 
 void see_layers_of_tile(realcam_tile* tile) {

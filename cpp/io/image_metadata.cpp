@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "../render/effect_names.hpp"
+
 namespace realcam::io {
 namespace {
 
@@ -45,6 +47,9 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.spp = settings.spp;
     metadata.transport = settings.transport;
     metadata.clamp_cd_m2 = static_cast<double>(settings.clamp);
+    for (const std::string& name : names_of(settings.effects))
+        metadata.effects += (metadata.effects.empty() ? "" : ",") + name;
+    if (const auto light = settings.dispersed_light()) metadata.illuminant = light->text();
     return metadata;
 }
 
@@ -66,6 +71,8 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
     if (shutter_opens_s != 0) entries.emplace_back("realcam:shutter_opens_s", number(shutter_opens_s));
     if (readout_time_s > 0) entries.emplace_back("realcam:readout_time_s", number(readout_time_s));
     if (clamp_cd_m2 > 0) entries.emplace_back("realcam:clamp_cd_m2", number(clamp_cd_m2));
+    if (!effects.empty()) entries.emplace_back("realcam:effects", effects);
+    if (!illuminant.empty()) entries.emplace_back("realcam:illuminant", illuminant);
     if (!denoiser.empty()) entries.emplace_back("realcam:denoiser", denoiser);
     return entries;
 }

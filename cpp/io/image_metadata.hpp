@@ -24,6 +24,7 @@ struct ImageMetadata {
     int spp = 0;
     LightTransport transport = LightTransport::paths;
     double clamp_cd_m2 = 0;
+    std::string effects, illuminant;  ///< names with commas, and as it was written; empty: none
     std::string denoiser;  ///< what has changed the exposure since it was taken; empty: nothing
 
     /// Names "realcam:..." and values, as they go into every format.

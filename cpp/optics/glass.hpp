@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,6 +88,18 @@ public:
         double n = 0;
         for (std::size_t i = coefficients_.size(); i-- > 0;) n = n * per_um2(wavelength_nm) + coefficients_[i];
         return n;
+    }
+
+    /// Whether it is the same at all wavelengths, as far as is known.
+    bool has_one_index() const {
+        if (formula_ == Formula::table) return points_.size() == 1;
+        return formula_ == Formula::cauchy &&
+               std::all_of(coefficients_.begin() + 1, coefficients_.end(), [](double b) { return b == 0; });
+    }
+    /// The first and the last wavelength at which it is known, nm: of a table, those of its points; formulas have none.
+    std::pair<double, double> known_nm() const {
+        if (formula_ != Formula::table || points_.size() == 1) return {0, std::numeric_limits<double>::infinity()};
+        return {points_.front().wavelength_nm, points_.back().wavelength_nm};
     }
 
     bool is_air() const { return formula_ == Formula::cauchy && coefficients_ == std::vector<double>{1.0}; }

@@ -2,6 +2,7 @@
 #include <type_traits>
 
 #include "asphere.hpp"
+#include "index_cubic.hpp"
 #include "lens_view.hpp"
 #include "ray_status.hpp"
 #include "refraction.hpp"
@@ -39,12 +40,12 @@ inline constexpr T kFarthest = T(1e18);
 
 /// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
 template <LensKind lens_kind, class T, int N, class Record>
-REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record, int lane,
-                                  Vec3<T> o, Vec3<T> p, SurfaceHit<T> hit, int failure) {
+REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, T squared_index_change, LensRays<T, N>& rays,
+                                  Record& record, int lane, Vec3<T> o, Vec3<T> p, SurfaceHit<T> hit, int failure) {
     const Vec3<T> at = o + hit.parameter * p;
     const T r2 = at.x * at.x + at.y * at.y;
     const Refraction<T> refracted =
-        refract(p, hit.normal, hit.along_normal, surface.squared_index_change, surface.direction_sign_out);
+        refract(p, hit.normal, hit.along_normal, squared_index_change, surface.direction_sign_out);
 
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
@@ -70,20 +71,22 @@ REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, LensRays<T, N>&
     }
 }
 
-template <LensKind lens_kind, class T, int N, class Record>
-REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record) {
+template <LensKind lens_kind, class T, int N, class Change, class Record>
+REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, Change&& change, LensRays<T, N>& rays,
+                                    Record& record) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
         o.z -= surface.shift;
         const SurfaceHit<T> hit = intersect_sphere(o, p, surface.curvature, surface.direction_sign_in);
-        cross_surface<lens_kind>(surface, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
+        cross_surface<lens_kind>(surface, change(i), rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
-template <class T, int N, class Record>
-REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record) {
+template <class T, int N, class Change, class Record>
+REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, Change&& change, LensRays<T, N>& rays,
+                                   Record& record) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         Vec3<T> o = rays.origin[i];
@@ -93,12 +96,14 @@ REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, LensRays<T, N>
         SurfaceHit<T> hit =
             intersect_conic(o + approach * p, p, surface.curvature, surface.conic_factor, surface.direction_sign_in);
         hit.parameter += approach;
-        cross_surface<LensKind::any>(surface, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
+        cross_surface<LensKind::any>(surface, change(i), rays, record, i, o, p, hit,
+                                     static_cast<int>(RayStatus::missed));
     }
 }
 
-template <class T, int N, class Record>
-REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, LensRays<T, N>& rays, Record& record) {
+template <class T, int N, class Change, class Record>
+REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, Change&& change, LensRays<T, N>& rays,
+                                     Record& record) {
     AsphereSearch<T, N> search;
     alignas(kLaneAlignment<T, N>) T outside[N];
     int ended = 0, uncertain = 0;
@@ -143,7 +148,7 @@ REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, LensRays<T, 
         // Without a bracket both are NaN.
         const int failure =
             select(slack < T(0), static_cast<int>(RayStatus::no_convergence), static_cast<int>(RayStatus::missed));
-        cross_surface<LensKind::any>(surface, rays, record, i, o, p, hit, failure);
+        cross_surface<LensKind::any>(surface, change(i), rays, record, i, o, p, hit, failure);
     }
 }
 
@@ -177,18 +182,20 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
 /// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
 /// vertex of the last one; directions are optical ones in the lens frame, before and after (LensPath::entry_index).
 /// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
-/// loops into vector code. `lens_kind`: any, or the lens's own.
-template <LensKind lens_kind = LensKind::any, class T, int N, class Record = NoRecord>
-REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {}) {
+/// loops into vector code. `lens_kind`: any, or the lens's own. `media`: OneWavelength or ManyWavelengths.
+template <LensKind lens_kind = LensKind::any, class T, int N, class Record = NoRecord, class Media = OneWavelength>
+REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
+                                  const Media& media = {}) {
     for (int k = 0; k < lens.count; ++k) {
         const SurfaceView<T> surface = lens.surfaces[k];  // a copy: lane stores cannot alias it
+        const auto change = media.at(surface, k);
         if (lens_kind == LensKind::plain) {
-            cross_sphere<lens_kind>(surface, rays, record);
+            cross_sphere<lens_kind>(surface, change, rays, record);
         } else {
             switch (surface.kind) {
-                case SurfaceShape::sphere: cross_sphere<lens_kind>(surface, rays, record); break;
-                case SurfaceShape::conic: cross_conic(surface, rays, record); break;
-                case SurfaceShape::asphere: cross_asphere(surface, rays, record); break;
+                case SurfaceShape::sphere: cross_sphere<lens_kind>(surface, change, rays, record); break;
+                case SurfaceShape::conic: cross_conic(surface, change, rays, record); break;
+                case SurfaceShape::asphere: cross_asphere(surface, change, rays, record); break;
             }
             if (surface.has_blades) cross_iris(lens.iris, rays);
         }

@@ -24,8 +24,10 @@ public:
                                        OutlineSearch::most_blocks(6 * kRows) + 256 * kRows;
 
     /// `film_radius` in mm: the film point furthest from the axis. Throws InputError where it is no positive length.
-    Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = {})
-        : search_(lens, std::move(tracer)), image_radius_(film_radius * (1 + 1e-6)) {
+    /// The pupil holds what passes at any of the wavelengths; none: the lens's design wavelength.
+    Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = {},
+          const std::vector<double>& wavelengths_nm = {})
+        : search_(lens, std::move(tracer), wavelengths_nm), image_radius_(film_radius * (1 + 1e-6)) {
         if (!(film_radius > 0) || !(film_radius <= kLongest))
             throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
         find_nodes();

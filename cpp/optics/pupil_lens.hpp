@@ -32,12 +32,15 @@ class PupilLens {
 public:
     static constexpr int kBlock = PupilTracer::kBlock;
 
-    PupilLens(const LensSystem& lens, PupilTracer tracer)
+    /// `wavelengths_nm`: at any of which a ray may leave the lens; none: the design wavelength.
+    PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {})
         : lens_(round_iris(lens)),
-          path_(lens_, LightDirection::to_scene, lens.wavelength_nm),
+          path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front()),
           tracer_(std::move(tracer)),
           has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
                                     [](const Surface& surface) { return surface.is_asphere(); })) {
+        for (std::size_t i = 1; i < wavelengths_nm.size(); ++i)
+            others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i]);
         const LensView<float> all = path_.view();
         surfaces_to_stop_.assign(all.surfaces, all.surfaces + all.count - lens_.stop_index());
         surfaces_to_stop_.back().rim_squared = std::numeric_limits<float>::max();
@@ -51,6 +54,11 @@ public:
         trace(path_.view(), from, rays);
         REALCAM_LANES
         for (int i = 0; i < kBlock; ++i) passes[i] = rays.status[i] == 0;
+        for (const LensPath<float>& other : others_) {
+            trace(other.view(), from, rays);
+            REALCAM_LANES
+            for (int i = 0; i < kBlock; ++i) passes[i] |= rays.status[i] == 0;
+        }
     }
 
     /// To the plane of the stop, whose rim stops none.
@@ -120,6 +128,7 @@ private:
 
     LensSystem lens_;
     LensPath<float> path_;
+    std::vector<LensPath<float>> others_;  ///< of other wavelengths
     PupilTracer tracer_;
     std::vector<SurfaceView<float>> surfaces_to_stop_;
     bool has_aspheres_;

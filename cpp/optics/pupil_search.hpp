@@ -15,7 +15,8 @@ public:
     /// Of one look: two searches of six levels, 11 blocks each, of 5 more, and of 17 growths.
     static constexpr int kMostBlocks = 2 * (6 * 11 + 5 + 17 * 6);
 
-    PupilSearch(const LensSystem& lens, PupilTracer tracer) : lens_(lens, std::move(tracer)) {}
+    PupilSearch(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {})
+        : lens_(lens, std::move(tracer), wavelengths_nm) {}
 
     const PupilLens& lens() const { return lens_; }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <type_traits>
 
+#include "../camera/dispersed_rays.hpp"
 #include "scatter_plain_paths.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -35,14 +36,15 @@ REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
 }  // namespace advance_path_detail
 
 /// Rays from the film through the lens.
-template <LensKind lens_kind, SceneKind scene_kind, int N>
-REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block, PathState<N>& path,
-                                   PathResults<N>& results) {
+template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N>
+REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block,
+                                   PathStateWith<N, effects>& path, PathResults<N>& results) {
     CameraRays<N> camera_rays;
-    if constexpr (scene_kind == SceneKind::any)
-        generate_exposed_rays<lens_kind>(camera, block, camera_rays, path.rays.time);
+    if constexpr (effects.dispersion)
+        generate_dispersed_rays<lens_kind>(camera, block, path.wavelength_nm, path.place, path.shares, camera_rays);
     else
         generate_rays<lens_kind>(camera, block, camera_rays);
+    if constexpr (scene_kind == SceneKind::any) expose_rays(camera, block, camera_rays, path.rays.time);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         path.rays.origin.set(i, camera_rays.origin[i]);

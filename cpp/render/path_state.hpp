@@ -1,9 +1,12 @@
 #pragma once
+#include <type_traits>
+
 #include "../camera/exposed_rays.hpp"
 #include "../math/color.hpp"
 #include "../scene/light_sample.hpp"
 #include "../scene/opacity.hpp"
 #include "../scene/scattering.hpp"
+#include "effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -46,5 +49,17 @@ struct PathState {
     Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< of the surface that the ray left (LightReceiver)
     ColorLanes<N> absorption;  ///< of the medium that the ray is in, per metre
 };
+
+/// The same, of samples that each have a wavelength.
+template <int N>
+struct DispersedPathState : PathState<N> {
+    alignas(kLaneAlignment<float, N>) float wavelength_nm[N];
+    alignas(kLaneAlignment<float, N>) float place[N];  ///< of the wavelengths for which the sample
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t shares[N];  ///< counts (film_color)
+};
+
+/// What paths with these effects carry.
+template <int N, Effects effects>
+using PathStateWith = std::conditional_t<effects.dispersion, DispersedPathState<N>, PathState<N>>;
 
 }  // namespace REALCAM_NAMESPACE

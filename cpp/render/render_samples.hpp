@@ -7,15 +7,19 @@ namespace REALCAM_NAMESPACE {
 ///
 /// `lens_kind`: any, or the lens's own; `scene_kind`: any, or the scene's own. SceneT and Probe as in advance_paths. A
 /// GPU thread runs this with N = 1.
-template <LensKind lens_kind, SceneKind scene_kind, int N, class SceneT, class Probe>
+template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N, class SceneT, class Probe>
 REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                       const SampleBlock<N>& block, SceneT&& scene, Probe&& probe,
                                       PathResults<N>& results) {
-    PathState<N> path;
+    PathStateWith<N, effects> path;
     probe.enter(RenderStage::lens);
-    begin_paths<lens_kind, scene_kind>(camera, block, path, results);
+    begin_paths<lens_kind, scene_kind, effects>(camera, block, path, results);
     for (int bounce = 0; advance_paths<scene_kind>(view, camera, settings, block, bounce, scene, probe, path, results);)
         ++bounce;
+    if constexpr (effects.dispersion)
+        for (int i = 0; i < N; ++i)
+            results.irradiance.set(i,
+                                   film_color(camera.dispersion, path.place[i], path.shares[i], results.irradiance[i]));
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,9 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
-#include "../error.hpp"
-#include "../platform.hpp"
+#include "../camera/camera.hpp"
+#include "effects.hpp"
 #include "layers.hpp"
 #include "path_settings.hpp"
 
@@ -19,7 +20,13 @@ struct RenderSettings {
     LightTransport transport = LightTransport::paths;
     float clamp = 0;  ///< see PathSettings
     LayerSet layers = {};
+    Effects effects = {};
+    std::optional<Illuminant> illuminant = {};  ///< of the effect dispersion; none: D65, the white of RGB
 
+    /// The light of a picture with dispersion; nothing without.
+    std::optional<Illuminant> dispersed_light() const {
+        return effects.dispersion ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
+    }
     PathSettings path() const { return {max_bounces, transport, clamp}; }
 };
 
@@ -36,6 +43,14 @@ inline void validate(const RenderSettings& settings) {
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
+    if (settings.illuminant && !settings.effects.dispersion)
+        throw InputError("illuminant belongs to the effect dispersion, which is not switched on");
+}
+
+/// Throws InputError where the camera cannot have an effect of the settings.
+inline void validate_effects(const RenderSettings& settings, const Camera& camera) {
+    if (settings.effects.dispersion && camera.model != CameraModel::full_lens)
+        throw InputError("dispersion: the camera's model is an ideal lens; the model full is wanted");
 }
 
 }  // namespace REALCAM_NAMESPACE

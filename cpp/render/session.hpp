@@ -251,6 +251,7 @@ private:
                    const KeepGoing& keep_going) {
         validate(settings);
         validate(camera);
+        validate_effects(settings, camera);
         checks_.check(scene, {}, keep_going);
     }
 
@@ -276,7 +277,8 @@ private:
         return same_parts(scene, scene_) && same_transforms(scene, scene_) && camera.lens == camera_.lens &&
                camera.film == camera_.film && camera.pose == camera_.pose && camera.model == camera_.model &&
                is_same_exposure(scene, camera) && settings.seed == settings_.seed &&
-               settings.path() == settings_.path() &&
+               settings.path() == settings_.path() && settings.effects == settings_.effects &&
+               settings.illuminant == settings_.illuminant &&
                (settings_.layers.has(Layer::variance) || !settings.layers.has(Layer::variance));
     }
 

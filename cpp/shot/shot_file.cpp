@@ -9,6 +9,7 @@
 #include "../error.hpp"
 #include "../io/printable.hpp"
 #include "../io/readable_file.hpp"
+#include "../render/effect_names.hpp"
 #include "names.hpp"
 #include "read_scene_request.hpp"
 
@@ -49,6 +50,8 @@ public:
                       "max_bounces",
                       "tone",
                       "layers",
+                      "effects",
+                      "illuminant",
                       "object",
                       "material",
                       "light",
@@ -126,9 +129,38 @@ private:
         read("max_bounces", settings.max_bounces);
         settings.transport = table_.named("transport", transport_named, kTransportNames).value_or(settings.transport);
         settings.clamp = static_cast<float>(table_.number("clamp_cd_m2").value_or(0));
+        const std::vector<std::string> effects = table_.texts("effects");
+        table_.checked("effects", [&] { settings.effects = effects_named(effects); });
+        table_.checked("illuminant", [&] { settings.illuminant = read_illuminant(); });
+        if (settings.illuminant && !settings.effects.dispersion)
+            table_.fail("illuminant belongs to the effect dispersion, which is not switched on",
+                        table_.find("illuminant"));
         table_.checked(settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(settings); });
         const std::vector<std::string> layers = table_.texts("layers");
         table_.checked("layers", [&] { settings.layers = layers_named(layers); });
+    }
+
+    /// A name, a wavelength, or [wavelength, power] of each point of a table.
+    std::optional<Illuminant> read_illuminant() const {
+        const toml::node* node = table_.find("illuminant");
+        if (!node) return std::nullopt;
+        if (node->is_string()) return Illuminant::parse(table_.text("illuminant"));
+        if (node->is_number()) return Illuminant::line(*table_.number("illuminant"));
+        std::vector<SpectrumPoint> points;
+        if (const toml::array* pairs = node->as_array()) {
+            for (const toml::node& item : *pairs) {
+                const toml::array* pair = item.as_array();
+                if (!pair || pair->size() != 2 || !(*pair)[0].is_number() || !(*pair)[1].is_number()) {
+                    points.clear();
+                    break;
+                }
+                points.push_back({(*pair)[0].value_or(0.0), (*pair)[1].value_or(0.0)});
+            }
+        }
+        if (points.empty())
+            throw InputError(std::string("illuminant: ") + Illuminant::kWanted +
+                             " is wanted; in a shot file a table is [[400, 0.5], [550, 1], [700, 0.2]]");
+        return Illuminant::table(std::move(points));
     }
 
     ShotTable table_;

@@ -41,6 +41,7 @@ from ._core import (
     Wavefront,
     __version__,
     devices,
+    effects,
     lens_names,
 )
 from .image import Image
@@ -88,6 +89,7 @@ __all__ = [
     "Wavefront",
     "__version__",
     "devices",
+    "effects",
     "lens_names",
     "read_environment",
     "render",

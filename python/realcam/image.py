@@ -22,8 +22,8 @@ class Image:
     samples that met something, by their weight in the exposure.
     layers: what was asked for by name (docs/layers.md), arrays of (H, W), (H, W, 2) or (H, W, 3), float32, and uint32
     for ids and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked
-    for. transport, clamp_cd_m2: as render had them. denoiser: what has changed the pixels since they were taken;
-    empty: nothing.
+    for. transport, clamp_cd_m2, effects, illuminant: as render had them. denoiser: what has changed the pixels since
+    they were taken; empty: nothing.
     """
 
     pixels: np.ndarray
@@ -37,6 +37,8 @@ class Image:
     material_names: tuple[str, ...] = ()
     transport: str = "paths"
     clamp_cd_m2: float = 0.0
+    effects: tuple[str, ...] = ()
+    illuminant: str = ""
     denoiser: str = ""
 
     def __eq__(self, other: object) -> bool:
@@ -95,7 +97,14 @@ class Image:
     def metadata(self) -> dict[str, str]:
         """Names ("realcam:...") and values of what is written into picture files."""
         entries: dict[str, str] = _core._metadata(
-            self.camera, self.spp, self.seed, self.transport, self.clamp_cd_m2, self.denoiser
+            self.camera,
+            self.spp,
+            self.seed,
+            self.transport,
+            self.clamp_cd_m2,
+            list(self.effects),
+            self.illuminant,
+            self.denoiser,
         )
         return entries
 
@@ -106,7 +115,14 @@ def layer_names(layers: str | Iterable[str]) -> list[str]:
 
 
 def image_of(
-    picture: tuple[Any, ...], camera: Camera, spp: int, seed: int, transport: str, clamp_cd_m2: float
+    picture: tuple[Any, ...],
+    camera: Camera,
+    spp: int,
+    seed: int,
+    transport: str,
+    clamp_cd_m2: float,
+    effects: Iterable[str] = (),
+    illuminant: str = "",
 ) -> Image:
     """What the core gives as a picture."""
     pixels, depth, stats, layers, object_names, material_names = picture
@@ -122,4 +138,6 @@ def image_of(
         material_names=material_names,
         transport=transport,
         clamp_cd_m2=clamp_cd_m2,
+        effects=tuple(effects),
+        illuminant=illuminant,
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 
 from . import _core
 from ._core import Camera, Scene
+from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
 
 ProgressCallback = Callable[[float], bool | None]
@@ -22,6 +23,13 @@ def warn_of_no_light(scene: Scene) -> None:
         )
 
 
+def warn_of_effects(camera: Camera, effects: list[str]) -> None:
+    """Of what the lens cannot give of them; where the caller's caller stands."""
+    if isinstance(camera, Camera):
+        for notice in _core._effect_notices(camera.lens, effects):
+            warnings.warn(notice, stacklevel=3)
+
+
 def render(
     scene: Scene,
     camera: Camera,
@@ -34,6 +42,8 @@ def render(
     clamp_cd_m2: float = 0.0,
     threads: int = 0,
     layers: str | Iterable[str] = (),
+    effects: str | Iterable[str] = (),
+    illuminant: Illuminant | None = None,
     progress: bool | ProgressCallback = False,
 ) -> Image:
     """Photographs a scene: every sample is a ray from the film, through the lens, to the scene and its lights.
@@ -43,19 +53,36 @@ def render(
     clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
     too dark; 0: never. threads: 0 for all.
     layers: names of what else Image.layers is to hold, or "all" (docs/layers.md).
+    effects: names of what else is simulated (rc.effects() lists them; docs/dispersion.md). Warns of what the lens
+    cannot give of them. illuminant: of dispersion, the spectrum of all light: "D65", "A", "FL2", a wavelength in nm, or
+    (wavelength_nm, power) pairs; None: D65.
     progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
     0 to 1, and stops the render where it returns False. Warns of a scene without light.
 
     Raises InputError, SceneFileError, DeviceError; Cancelled where progress stopped it; KeyboardInterrupt on Ctrl-C.
     """
     warn_of_no_light(scene)
+    wanted, light = effect_list(effects), illuminant_text(illuminant)
+    warn_of_effects(camera, wanted)
 
     def taken(callback: ProgressCallback | None) -> Image:
         names = layer_names(layers)
         picture = _core._render(
-            scene, camera, spp, device, seed, max_bounces, transport, clamp_cd_m2, threads, names, callback
+            scene,
+            camera,
+            spp,
+            device,
+            seed,
+            max_bounces,
+            transport,
+            clamp_cd_m2,
+            threads,
+            names,
+            wanted,
+            light,
+            callback,
         )
-        return image_of(picture, camera, spp, seed, transport, clamp_cd_m2)
+        return image_of(picture, camera, spp, seed, transport, clamp_cd_m2, wanted, light)
 
     if progress is not True:
         return taken(progress or None)

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Camera, Scene
+from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
-from .render import warn_of_no_light
+from .render import warn_of_effects, warn_of_no_light
 
 
 class Session:
@@ -20,10 +21,10 @@ class Session:
     while not good_enough(session.image()):
         session.add(16)
 
-    device, seed, max_bounces, transport, clamp_cd_m2, threads and layers are those of render; add() after add() takes
-    the samples that one render of as many would take. Threads take turns, and cancel() ends the turn of another. Raises
-    InputError, SceneFileError and DeviceError; after one of these the picture begins anew. Warns of a scene without
-    light.
+    device, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects and illuminant are those of render;
+    add() after add() takes the samples that one render of as many would take. Threads take turns, and cancel() ends
+    the turn of another. Raises InputError, SceneFileError and DeviceError; after one of these the picture begins anew.
+    Warns of a scene without light.
     """
 
     def __init__(
@@ -38,11 +39,26 @@ class Session:
         clamp_cd_m2: float = 0.0,
         threads: int = 0,
         layers: str | Iterable[str] = (),
+        effects: str | Iterable[str] = (),
+        illuminant: Illuminant | None = None,
     ) -> None:
         self._seed, self._transport, self._clamp_cd_m2 = seed, transport, clamp_cd_m2
-        names = layer_names(layers)
-        self._core = _core._Session(scene, camera, device, seed, max_bounces, transport, clamp_cd_m2, threads, names)
+        self._effects, self._illuminant = effect_list(effects), illuminant_text(illuminant)
+        self._core = _core._Session(
+            scene,
+            camera,
+            device,
+            seed,
+            max_bounces,
+            transport,
+            clamp_cd_m2,
+            threads,
+            layer_names(layers),
+            self._effects,
+            self._illuminant,
+        )
         warn_of_no_light(scene)
+        warn_of_effects(camera, self._effects)
 
     @property
     def scene(self) -> Scene:
@@ -81,7 +97,16 @@ class Session:
         """
         picture = self._core.picture()
         spp = round(float(self.samples.mean()))
-        return image_of(picture, self.camera, spp, self._seed, self._transport, self._clamp_cd_m2)
+        return image_of(
+            picture,
+            self.camera,
+            spp,
+            self._seed,
+            self._transport,
+            self._clamp_cd_m2,
+            self._effects,
+            self._illuminant,
+        )
 
     @property
     def samples(self) -> NDArray[np.int64]:

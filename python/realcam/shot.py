@@ -28,6 +28,8 @@ class Shot:
     layers: tuple[str, ...] = ()
     transport: str = "paths"
     clamp_cd_m2: float = 0.0
+    effects: tuple[str, ...] = ()
+    illuminant: str = ""
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, device: str = "auto") -> Shot:
@@ -42,4 +44,5 @@ class Shot:
         """Takes the photograph: realcam.render with the shot's own settings."""
         settings: dict[str, Any] = {"spp": self.spp, "seed": self.seed, "max_bounces": self.max_bounces}
         settings |= {"layers": self.layers, "transport": self.transport, "clamp_cd_m2": self.clamp_cd_m2}
+        settings |= {"effects": self.effects, "illuminant": self.illuminant or None}
         return render(self.scene, self.camera, **settings, device=device, threads=threads, progress=progress)

@@ -125,9 +125,10 @@ def hold_parity(a: rc.Image, b: rc.Image) -> None:
     # Every ray that one sends through the lens, the other sends too; decisions at its rims may differ by rounding.
     assert a.stats.sampled_rays == b.stats.sampled_rays
     assert abs(a.stats.passed_rays - b.stats.passed_rays) <= 1 + 1e-5 * a.stats.sampled_rays
-    # Depth is a mean over the samples that met something.
+    # Depth is a mean over the samples that met something. One that passes an edge changes it also where what lies behind
+    # is as bright as the edge.
     met = np.isfinite(a.depth) & np.isfinite(b.depth) & kept
-    np.testing.assert_allclose(b.depth[met], a.depth[met], rtol=1e-3)
+    assert (~np.isclose(b.depth[met], a.depth[met], rtol=1e-3, atol=0)).mean() <= ASTRAY_SHARE
 
 
 def hold_layer_parity(a: rc.Image, b: rc.Image) -> None:
@@ -228,3 +229,27 @@ def test_several_gpus_take_the_same_picture() -> None:
     np.testing.assert_allclose(both.pixels, one.pixels, rtol=3e-7)
     assert both.stats.sampled_rays == one.stats.sampled_rays
     assert both.stats.scene_rays == one.stats.scene_rays
+
+
+@needs_gpu
+@pytest.mark.parametrize("scene", SCENES)
+def test_pictures_of_a_spectral_line_agree(scene: str) -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (120, 80)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    settings: dict[str, Any] = {"effects": ["dispersion"], "illuminant": 450}
+    hold_parity(*pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=32, seed=5, max_bounces=1, **settings))
+
+
+@needs_gpu
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "phone-4mm"])
+def test_pictures_with_dispersion_agree(scene: str, name: str) -> None:
+    """A ray that is taken back to the border of its pixel may end on either side of it: some thousandths of the samples
+    count for other wavelengths."""
+    lens = rc.Lens.load(name).focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(*lens.film_mm, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    one, other = pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=256, max_bounces=1, effects=["dispersion"])
+    a, b = one.pixels.astype(float), other.pixels.astype(float)
+    assert one.stats.sampled_rays == other.stats.sampled_rays
+    np.testing.assert_allclose(b.mean(axis=(0, 1)), a.mean(axis=(0, 1)), rtol=1e-3)
+    assert np.sqrt(((a - b) ** 2).mean() / (a**2).mean()) <= 2e-2

@@ -1,0 +1,58 @@
+#pragma once
+#include <cstdint>
+
+#include "../math/color.hpp"
+#include "../optics/index_cubic.hpp"
+#include "../optics/lens_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// How many wavelengths a ray through the scene may count for: its own, and others at even steps through the cells.
+inline constexpr int kSharedWavelengths = 3;
+
+/// Wavelengths from one to another, of which all such cells are drawn alike.
+struct WavelengthCell {
+    float first_nm, last_nm;
+    float film[9];  ///< from a scene's colour to the film's, 3 x 3, row by row: its mean over the cells is the identity
+};
+
+/// The wavelengths of a picture. Without dispersion there are no cells.
+struct DispersionView {
+    const WavelengthCell* cells;
+    int cell_count;  ///< a multiple of kSharedWavelengths, or 1
+    WavelengthVariable variable;
+    const IndexCubic *to_scene, *to_film;  ///< of the lens's surfaces, in the order in which light meets them
+    const SurfaceView<float>* film_surfaces;  ///< of the lens, on the light's way to the film
+};
+
+/// Wavelengths are drawn evenly over the cells: this one is the same share of its cell as the place's.
+REALCAM_INLINE float wavelength_at(const DispersionView& view, float place) {
+    const auto cell = static_cast<std::int32_t>(place);
+    const float share = place - static_cast<float>(cell);
+    const WavelengthCell& in = view.cells[cell];
+    return in.first_nm + share * (in.last_nm - in.first_nm);
+}
+
+/// `step` steps further from a place, and from the last cell on to the first.
+REALCAM_INLINE float shared_place(const DispersionView& view, float place, int step) {
+    const auto cells = static_cast<float>(view.cell_count);
+    const float at = place + static_cast<float>(step * (view.cell_count / kSharedWavelengths));
+    return at < cells ? at : at - cells;
+}
+
+/// What light of a scene's colour is on the film where it has the wavelengths of the place's cell, or, in equal parts,
+/// of those steps from it of which `shares` has the bit.
+REALCAM_INLINE Color film_color(const DispersionView& view, float place, std::int32_t shares, Color scene) {
+    Color sum = {0, 0, 0};
+    float count = 0.0f;
+    for (int step = 0; step < kSharedWavelengths; ++step) {
+        if (!(shares >> step & 1)) continue;
+        const float (&m)[9] = view.cells[static_cast<std::int32_t>(shared_place(view, place, step))].film;
+        sum += Color{m[0] * scene.r + m[1] * scene.g + m[2] * scene.b, m[3] * scene.r + m[4] * scene.g + m[5] * scene.b,
+                     m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
+        count += 1.0f;
+    }
+    return (1.0f / count) * sum;
+}
+
+}  // namespace REALCAM_NAMESPACE

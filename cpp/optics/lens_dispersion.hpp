@@ -1,0 +1,114 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "index_cubic.hpp"
+#include "lens_path.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Wavelengths from one to another, nm.
+struct WavelengthRange {
+    double first, last;
+
+    bool operator==(const WavelengthRange&) const = default;
+};
+
+inline WavelengthVariable variable_over(WavelengthRange range) {
+    const auto pole = static_cast<double>(WavelengthVariable::kPole_nm);
+    const double low = 1 / (range.last - pole), high = 1 / (range.first - pole);
+    if (!(high - low > 1e-9)) return {0, 0};
+    return {static_cast<float>(2 / (high - low)), static_cast<float>(-(high + low) / (high - low))};
+}
+
+/// The surfaces, from 1, whose glass has one refractive index for all wavelengths.
+inline std::vector<int> surfaces_with_one_index(const LensSystem& lens) {
+    std::vector<int> found;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const Surface& surface = lens.surfaces[i];
+        if (surface.type == SurfaceType::refracting && !surface.material.is_air() && surface.material.has_one_index())
+            found.push_back(static_cast<int>(i) + 1);
+    }
+    return found;
+}
+
+namespace lens_dispersion_detail {
+
+inline std::string nm_text(double wavelength) {
+    std::string text = std::to_string(std::round(10 * wavelength) / 10);
+    text.erase(text.find_last_not_of('0') + 1);
+    return text.back() == '.' ? text.substr(0, text.size() - 1) : text;
+}
+
+/// Cubic of x in [-1, 1] through a function that is known at Chebyshev's nodes: the first terms of its series.
+template <std::size_t N>
+IndexCubic cubic_of(const std::array<double, N>& nodes, const std::array<double, N>& values) {
+    double series[4] = {0, 0, 0, 0};
+    for (std::size_t j = 0; j < N; ++j) {
+        const double x = nodes[j];
+        const double polynomial[4] = {0.5, x, 2 * x * x - 1, (4 * x * x - 3) * x};
+        for (int m = 0; m < 4; ++m) series[m] += 2.0 / static_cast<double>(N) * polynomial[m] * values[j];
+    }
+    return {{static_cast<float>(series[0] - series[2]), static_cast<float>(series[1] - 3 * series[3]),
+             static_cast<float>(2 * series[2]), static_cast<float>(4 * series[3])}};
+}
+
+}  // namespace lens_dispersion_detail
+
+/// Throws InputError where a glass is not known at all of these wavelengths, or the film lies in one that disperses:
+/// directions on the film are then another measure at each wavelength.
+inline void check_dispersion(const LensSystem& lens, WavelengthRange range) {
+    using lens_dispersion_detail::nm_text;
+    const Glass* last = nullptr;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        if (lens.surfaces[i].type != SurfaceType::refracting) continue;
+        const Glass& glass = lens.surfaces[i].material;
+        last = &glass;
+        if (glass.has_one_index()) continue;
+        const std::string which = "the glass of surface " + std::to_string(i + 1) +
+                                  (glass.label.empty() ? "" : " (" + glass.label + ")") + " of " + lens.name;
+        const auto [first_known, last_known] = glass.known_nm();
+        if (range.first < first_known - 0.05 || range.last > last_known + 0.05)
+            throw InputError("dispersion: " + which + " is known from " + nm_text(first_known) + " to " +
+                             nm_text(last_known) + " nm; " + nm_text(range.first) + " to " + nm_text(range.last) +
+                             " nm are wanted");
+    }
+    if (last && !last->has_one_index())
+        throw InputError("dispersion: the film of " + lens.name +
+                         " lies in glass; a lens with air behind its last surface is wanted");
+}
+
+/// What the surfaces do to light on its way to the film or the scene, in the order in which it meets them. Throws
+/// InputError where a glass has no index.
+inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction, WavelengthRange range) {
+    constexpr std::size_t kNodes = 16;
+    const WavelengthVariable variable = variable_over(range);
+    std::array<double, kNodes> nodes{};
+    std::vector<std::vector<double>> indices;
+    for (std::size_t j = 0; j < kNodes; ++j) {
+        nodes[j] = std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / static_cast<double>(kNodes));
+        const double scale = static_cast<double>(variable.scale);
+        const double wavelength = scale > 0 ? static_cast<double>(WavelengthVariable::kPole_nm) +
+                                                  scale / (nodes[j] - static_cast<double>(variable.offset))
+                                            : range.first;
+        indices.push_back(lens.indices(wavelength));
+    }
+    std::vector<IndexCubic> cubics;
+    const std::size_t count = lens.surfaces.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const bool to_film = direction == LightDirection::to_film;
+        const std::size_t before = to_film ? k : count - k, after = to_film ? k + 1 : count - k - 1;
+        std::array<double, kNodes> change{};
+        for (std::size_t j = 0; j < kNodes; ++j) {
+            const double n = indices[j][before], behind = indices[j][after];
+            change[j] = (behind - n) * (behind + n) / (n * n);
+        }
+        cubics.push_back(lens_dispersion_detail::cubic_of(nodes, change));
+    }
+    return cubics;
+}
+
+}  // namespace REALCAM_NAMESPACE

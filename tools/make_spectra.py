@@ -1,0 +1,68 @@
+"""Writes cpp/camera/spectra.hpp: the spectra that dispersion works with, every 5 nm from 380 to 780.
+
+Needs colour-science (pip install colour-science), for its tables alone: the CIE 1931 observer, the CIE illuminants
+D65, A and FL2, and the basis of Mallett and Yuksel, "Spectral Primary Decomposition for Rendering with sRGB
+Reflectance" (EGSR 2019).
+
+    python tools/make_spectra.py && clang-format -i cpp/camera/spectra.hpp
+"""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+warnings.simplefilter("ignore")
+
+import colour  # noqa: E402
+from colour.recovery import MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019 as BASIS  # noqa: E402
+
+TARGET = Path(__file__).resolve().parents[1] / "cpp/camera/spectra.hpp"
+WAVELENGTHS_NM = np.arange(380, 781, 5)
+HEAD = """#pragma once
+#include <array>
+
+#include "../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Written by tools/make_spectra.py from the tables of colour-science; do not edit by hand.
+
+inline constexpr double kFirstWavelength_nm = 380, kLastWavelength_nm = 780, kSpectrumStep_nm = 5;
+
+/// Values every 5 nm from 380 to 780, linear in between.
+using VisibleSpectrum = std::array<double, 81>;
+
+"""
+
+
+def table(name: str, comment: str, values: np.ndarray) -> str:
+    numbers = ", ".join(f"{float(v):.9g}" for v in values)
+    return f"/// {comment}\ninline constexpr VisibleSpectrum {name} = {{{numbers}}};\n"
+
+
+def row(values: np.ndarray, wavelengths: np.ndarray) -> np.ndarray:
+    """Those at WAVELENGTHS_NM, all of which the source has."""
+    places = {int(w): i for i, w in enumerate(wavelengths)}
+    return np.array([values[places[int(w)]] for w in WAVELENGTHS_NM])
+
+
+def main() -> None:
+    observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+    text = HEAD
+    for i, name in enumerate(("X", "Y", "Z")):
+        values = row(observer.values[:, i], observer.wavelengths)
+        text += table(f"kObserver{name}", f"CIE 1931 2 degree observer, {'xyz'[i]}.", values)
+    for name in ("D65", "A", "FL2"):
+        illuminant = colour.SDS_ILLUMINANTS[name]
+        text += table(
+            f"kIlluminant{name}", f"CIE illuminant {name}, relative.", row(illuminant.values, illuminant.wavelengths)
+        )
+    for i, name in enumerate(("Red", "Green", "Blue")):
+        values = row(BASIS.values[:, i], BASIS.wavelengths)
+        text += table(f"kBasis{name}", f"What a reflectance has of linear sRGB's {name.lower()}, by Mallett.", values)
+    TARGET.write_text(text + "\n}  // namespace REALCAM_NAMESPACE\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
