@@ -34,6 +34,11 @@ inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce
 inline constexpr std::uint32_t roulette = 0x10000;
 /// Of the time, for which most samples have no use; its second number is the wavelength's.
 inline constexpr std::uint32_t time = 0x20000;
+
+/// The first of a bounce.
+REALCAM_INLINE constexpr std::uint32_t of_bounce(int bounce) {
+    return first_bounce + static_cast<std::uint32_t>(bounce) * per_bounce;
+}
 }  // namespace dimension
 
 /// Rays in scene axes, metres, relative to the origin of the placed scene.

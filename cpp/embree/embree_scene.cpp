@@ -51,23 +51,20 @@ EmbreeScene::OwnScene EmbreeScene::build(const RenderSpaceMesh& mesh) {
         return scene;
     }
     const OwnGeometry geometry(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE));
-    auto* vertices = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                                                 RTC_FORMAT_FLOAT3, sizeof(Vec3f), positions.size()));
-    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
-    if (vertices && corners) {
-        std::copy(positions.begin(), positions.end(), vertices);
-        for (std::size_t i = 0; i < triangles.size(); ++i) std::copy_n(triangles[i].vertices, 3, corners + 3 * i);
-        if (mesh.has_holes()) {
-            with_holes_.push_back({mesh.view(), static_cast<std::uint32_t>(placed_.instances().size())});
-            rtcSetGeometryUserData(geometry.get(), &with_holes_.back());
-            rtcSetGeometryIntersectFilterFunction(geometry.get(), let_through);
-            rtcSetGeometryOccludedFilterFunction(geometry.get(), let_through);
-        }
-        rtcCommitGeometry(geometry.get());
-        rtcAttachGeometry(scene.get(), geometry.get());
-        commit(scene);
+    // Embree reads the mesh's own arrays, which it does not write.
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                               sizeof(Vec3f), positions.size());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                               sizeof(Triangle), triangles.size());
+    if (mesh.has_holes()) {
+        with_holes_.push_back({mesh.view(), static_cast<std::uint32_t>(placed_.instances().size())});
+        rtcSetGeometryUserData(geometry.get(), &with_holes_.back());
+        rtcSetGeometryIntersectFilterFunction(geometry.get(), let_through);
+        rtcSetGeometryOccludedFilterFunction(geometry.get(), let_through);
     }
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(scene.get(), geometry.get());
+    commit(scene);
     check();
     return scene;
 }

@@ -111,11 +111,19 @@ void render_tile_of(realcam_tile* tile) {
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
         render_samples<LensKind::any, scene_kind, effects>(view, camera, settings, block, scene, clock, results);
-        for (int k = 0; k < lanes; ++k) {
-            sums[place[k]].add(results, k);
-            tile->sampled_rays += static_cast<std::uint64_t>(results.sampled[k]);
-            tile->passed_rays += static_cast<std::uint64_t>(results.passed[k]);
+        for (int k = 0; k < lanes;) {
+            const int pixel = place[k];
+            PixelSum sum = sums[pixel];  // in registers while the samples are the same pixel's
+            for (; k < lanes && place[k] == pixel; ++k) sum.add(results, k);
+            sums[pixel] = sum;
         }
+        std::int32_t sampled = 0, passed = 0;
+        for (int k = 0; k < lanes; ++k) {
+            sampled += results.sampled[k];
+            passed += results.passed[k];
+        }
+        tile->sampled_rays += static_cast<std::uint64_t>(sampled);
+        tile->passed_rays += static_cast<std::uint64_t>(passed);
         if (tile->adds_squares)
             for (int k = 0; k < lanes; ++k) sums[place[k]].add_squares(results, k);
     });

@@ -56,23 +56,40 @@ REALCAM_INLINE PointLight point_light_at(const SceneView& scene, const PointLigh
     return light;
 }
 
+/// The way from a position to a place on an area light.
+struct WayToLight {
+    Vec3f direction;  ///< unit
+    float distance, reach;  ///< as LightSample's
+    float cosine;  ///< between the way back and the light's normal; above 0 where the light shines this way
+    float pdf;  ///< per steradian, of a place that was drawn evenly
+};
+
+/// `u`: barycentric. Without branches, so that it becomes vector code. Where the position lies on the light, the cosine
+/// is no number.
+REALCAM_INLINE WayToLight way_to(const AreaLight& light, bool on_both_sides, Vec3f position, Vec2f u) {
+    const Vec3f way = light.corner + u.x * light.edge_u + u.y * light.edge_v - position;
+    const float squared = dot(way, way), distance = std::sqrt(squared);
+    const Vec3f direction = (1.0f / distance) * way;
+    const float on_side = -dot(direction, light.normal);
+    const float cosine = select(on_both_sides, std::fabs(on_side), on_side);
+    const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);
+    return {direction, distance, reach, cosine, area_light_pdf(light.area, squared, cosine)};
+}
+
+/// Barycentric coordinates of a place on a triangle, drawn evenly.
+REALCAM_INLINE Vec2f sample_triangle(Vec2f u) {
+    const float root = std::sqrt(u.x);
+    return {root * (1.0f - u.y), root * u.y};
+}
+
 /// A point on an area light, drawn evenly.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_area_light(const SceneView& scene, const AreaLight& light, Vec3f position, Vec2f u) {
-    const float root = std::sqrt(u.x), along_u = root * (1.0f - u.y), along_v = root * u.y;
-    const Vec3f on_light = light.corner + along_u * light.edge_u + along_v * light.edge_v;
-    const Vec3f to_light = on_light - position;
-    const float squared = dot(to_light, to_light);
-    const float distance = std::sqrt(squared);
-    const Vec3f direction = (1.0f / distance) * to_light;
-    const float on_side = -dot(direction, light.normal);
-    const float cosine = scene_kind != SceneKind::plain && light.is_two_sided ? std::fabs(on_side) : on_side;
-    // Also where the point lies on the light, and the direction has no value.
-    if (!(cosine > 0.0f)) return {light.normal, distance, 1.0f, {0, 0, 0}, kDelta};
-    const float reach = 1.0f - (light.margin + kMarginShare * distance) / (cosine * distance);
-    const float pdf = area_light_pdf(light.area, squared, cosine);
-    return {direction, distance, reach, (1.0f / pdf) * emitted_radiance<scene_kind>(scene, light, along_u, along_v),
-            pdf};
+    const Vec2f place = sample_triangle(u);
+    const WayToLight way = way_to(light, scene_kind != SceneKind::plain && light.is_two_sided, position, place);
+    if (!(way.cosine > 0.0f)) return {light.normal, way.distance, 1.0f, {0, 0, 0}, kDelta};
+    return {way.direction, way.distance, way.reach,
+            (1.0f / way.pdf) * emitted_radiance<scene_kind>(scene, light, place.x, place.y), way.pdf};
 }
 
 REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f position) {
@@ -87,63 +104,73 @@ REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f pos
     return {direction, distance, reach, (share * share / squared) * light.intensity, kDelta};
 }
 
-/// Probabilities of the kinds of light at a receiver: about the illuminance that each can bring there if nothing stands
-/// in between, and for one half alike, because much may stand in between.
-class LightKinds {
-public:
-    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver)
-        : LightKinds(scene, receiver, [&] { return light_importance(scene.light_nodes[0], receiver); }) {}
+/// Of which the probabilities of kinds of light are made: a share that each of them has, and one by its importance.
+struct LightShares {
+    float even, scale;
 
-    /// `local()`: the importance of the tree's root for the receiver, for those who have found it for many at once.
-    template <class Local>
-    REALCAM_INLINE LightKinds(const SceneView& scene, LightReceiver receiver, Local&& local)
-        : scene_(scene), receiver_(receiver) {
-        const int count = count_of(scene);
-        const auto kinds = static_cast<float>(count);
-        local_ = environment_ = scale_ = 0.0f;
-        even_ = 1.0f;
-        if (count < 2) return;
-        local_ = has_local() ? local() : 0.0f;
-        environment_ = scene.has_environment ? 3.141592654f * scene.environment.mean_luminance : 0.0f;
-        float sum = local_ + environment_;
-        for (int i = 0; i < scene.sun_count; ++i) sum += sun(i);
-        // No estimate, or one that float cannot hold: all alike.
-        const bool is_useful = sum > 0.0f && sum < 1e30f;
-        even_ = kinds > 0.0f ? (is_useful ? kEven : 1.0f) / kinds : 0.0f;
-        scale_ = is_useful ? (1.0f - kEven) / sum : 0.0f;
+    REALCAM_INLINE float probability(float importance) const {
+        return select(scale > 0.0f, even + scale * importance, even);
     }
-
-    /// With fewer than two nobody asks for importances.
-    REALCAM_INLINE static int count_of(const SceneView& scene) {
-        return (scene.light_node_count > 0) + scene.sun_count + scene.has_environment;
-    }
-
-    REALCAM_INLINE bool has_local() const { return scene_.light_node_count > 0; }
-    /// Of point and area lights, together.
-    REALCAM_INLINE float local_probability() const { return has_local() ? scaled(local_) : 0.0f; }
-    REALCAM_INLINE float environment_probability() const {
-        return scene_.has_environment ? scaled(environment_) : 0.0f;
-    }
-    REALCAM_INLINE float sun_probability(int i) const { return scaled(sun(i)); }
-
-private:
-    static constexpr float kEven = 0.5f;
-
-    REALCAM_INLINE float sun(int i) const {
-        const Vec3f n = receiver_.normal;
-        const float cosine = dot(n, n) > 0.0f ? -dot(n, scene_.suns[i].direction) : 1.0f;
-        return cosine > 0.0f ? cosine * luminance(scene_.suns[i].illuminance) : 0.0f;
-    }
-    REALCAM_INLINE float scaled(float importance) const { return scale_ > 0.0f ? even_ + scale_ * importance : even_; }
-
-    const SceneView& scene_;
-    LightReceiver receiver_;
-    float local_, environment_, even_, scale_;
 };
+
+/// `count`: kinds of light, at least one; `sum`: of their importances.
+REALCAM_INLINE LightShares light_shares(float count, float sum) {
+    constexpr float kEven = 0.5f;
+    // No estimate, or one that float cannot hold: all alike.
+    const bool is_useful = (sum > 0.0f) & (sum < 1e30f);
+    // Not by 0 even where the result is thrown away: a GPU takes many instructions for that.
+    return {select(is_useful, kEven, 1.0f) / count,
+            select(is_useful, (1.0f - kEven) / select(is_useful, sum, 1.0f), 0.0f)};
+}
+
+/// The importance of an environment: the illuminance on a plane that sees half of it.
+REALCAM_INLINE float environment_importance(const SceneView& scene) {
+    return scene.has_environment ? 3.141592654f * scene.environment.mean_luminance : 0.0f;
+}
+
+REALCAM_INLINE float sun_importance(const SunLight& sun, Vec3f normal) {
+    const float cosine = select(dot(normal, normal) > 0.0f, -dot(normal, sun.direction), 1.0f);
+    return select(cosine > 0.0f, cosine * luminance(sun.illuminance), 0.0f);
+}
+
+/// What is known of the kinds of light at a receiver, to choose one of them: about the illuminance that each can bring
+/// there if nothing stands in between, and for one half alike, because much may stand in between.
+struct LightKinds {
+    LightShares shares;
+    float local_probability;  ///< of point and area lights, together
+    float environment_probability;
+
+    REALCAM_INLINE float sun_probability(const SunLight& sun, Vec3f normal) const {
+        return shares.probability(select(shares.scale > 0.0f, sun_importance(sun, normal), 0.0f));
+    }
+};
+
+REALCAM_INLINE int count_light_kinds(const SceneView& scene) {
+    return (scene.light_node_count > 0) + scene.sun_count + scene.has_environment;
+}
+
+/// `local`, `suns`: importances of all point and area lights, and of all suns; 0 where there is but one kind. Becomes
+/// vector code for many receivers.
+REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, float local, float suns) {
+    const int count = count_light_kinds(scene);
+    const float sky = count > 1 ? environment_importance(scene) : 0.0f;
+    const LightShares shares = light_shares(static_cast<float>(count), local + sky + suns);
+    return {shares, scene.light_node_count > 0 ? shares.probability(local) : 0.0f,
+            scene.has_environment ? shares.probability(sky) : 0.0f};
+}
+
+REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, LightReceiver receiver) {
+    float local = 0.0f, suns = 0.0f;
+    if (count_light_kinds(scene) > 1) {
+        if (scene.light_node_count > 0) local = light_importance(scene.light_nodes[0], receiver);
+        for (int i = 0; i < scene.sun_count; ++i) suns += sun_importance(scene.suns[i], receiver.normal);
+    }
+    return light_kinds(scene, local, suns);
+}
 
 /// Density per steradian of sample_light in a direction in which the environment is seen.
 REALCAM_INLINE float environment_light_pdf(const SceneView& scene, LightReceiver receiver, Vec3f direction) {
-    return LightKinds(scene, receiver).environment_probability() *
+    return light_kinds(scene, receiver).environment_probability *
            environment_pdf(scene.environment, receiver.normal, direction);
 }
 
@@ -154,7 +181,7 @@ REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, LightReceiver rec
     const AreaLight& light = scene.areas[area_light];
     float area = light.area;
     if constexpr (scene_kind == SceneKind::any) area = area_light_at(scene, light, receiver.time).area;
-    return LightKinds(scene, receiver).local_probability() *
+    return light_kinds(scene, receiver).local_probability *
            light_probability(scene, receiver, scene.point_count + area_light) *
            area_light_pdf(area, distance * distance, cosine);
 }
@@ -171,13 +198,21 @@ REALCAM_INLINE std::int32_t area_light_of(const SceneView& scene, Hit hit) {
     return first + (is_static ? 0 : scene.instances[hit.instance].first_area);
 }
 
-/// Chooses one light, and a place on it. One pair of numbers does both, so that what is even over a pixel's samples is
-/// even over each light. `seed` as in choose_light.
-template <SceneKind scene_kind>
-REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
-                                        Vec2f u, std::uint32_t seed) {
-    LightSample sample{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
-    float probability = kinds.local_probability();
+enum class LightKind : std::int32_t { point, area, environment, sun };
+
+/// One light of all.
+struct LightPick {
+    LightKind kind;
+    std::int32_t index;  ///< among those of its kind
+    float probability;
+    Vec2f u;  ///< random numbers for a place on it
+};
+
+/// Chooses one light. One pair of numbers does that and chooses a place on it, so that what is even over a pixel's
+/// samples is even over each light. `seed` as in choose_light.
+REALCAM_INLINE LightPick pick_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds, Vec2f u,
+                                    std::uint32_t seed) {
+    float probability = kinds.local_probability;
     const auto rescale = [&] {
         const float fresh = u.x / probability;
         u.x = fresh < 0x1.fffffep-1f ? fresh : 0x1.fffffep-1f;
@@ -185,51 +220,70 @@ REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver re
     if (u.x < probability) {
         rescale();
         const LightChoice chosen = choose_light(scene, receiver, u.x, seed);
-        u.x = chosen.fresh;
-        probability *= chosen.probability;
         const std::int32_t area = chosen.light - scene.point_count;
-        if constexpr (scene_kind == SceneKind::any) {
-            sample = area < 0
-                         ? sample_point_light(point_light_at(scene, scene.points[chosen.light], receiver.time),
-                                              receiver.position)
-                         : sample_area_light<scene_kind>(scene, area_light_at(scene, scene.areas[area], receiver.time),
-                                                         receiver.position, u);
-        } else {
-            sample = area < 0 ? sample_point_light(scene.points[chosen.light], receiver.position)
-                              : sample_area_light<scene_kind>(scene, scene.areas[area], receiver.position, u);
-        }
-    } else {
-        u.x -= probability;
-        probability = kinds.environment_probability();
-        if (u.x < probability) {
-            rescale();
-            sample = sample_environment(scene.environment, receiver.normal, u);
-        } else {
-            for (int i = 0; i < scene.sun_count; ++i) {
-                u.x -= probability;
-                probability = kinds.sun_probability(i);
-                // The last one also where roundings have left nothing to it.
-                if (u.x < probability || i + 1 == scene.sun_count) {
-                    sample.direction = -scene.suns[i].direction;
-                    sample.irradiance = scene.suns[i].illuminance;
-                    break;
-                }
-            }
-        }
+        return {area < 0 ? LightKind::point : LightKind::area,
+                area < 0 ? chosen.light : area,
+                probability * chosen.probability,
+                {chosen.fresh, u.y}};
     }
-    if (!(probability > 0.0f)) return sample;
-    // One over the squared distance has no bound. Lights end at 1e30; what a narrow lobe and the film's sums make of
-    // this is still finite.
-    const auto bounded = [](float v) { return v < 1e28f ? v : 1e28f; };
-    const Color all = (1.0f / probability) * sample.irradiance;
-    sample.irradiance = {bounded(all.r), bounded(all.g), bounded(all.b)};
-    sample.pdf *= probability;
+    u.x -= probability;
+    probability = kinds.environment_probability;
+    if (u.x < probability) {
+        rescale();
+        return {LightKind::environment, 0, probability, u};
+    }
+    for (int i = 0; i < scene.sun_count; ++i) {
+        u.x -= probability;
+        probability = kinds.sun_probability(scene.suns[i], receiver.normal);
+        // The last one also where roundings have left nothing to it.
+        if (u.x < probability || i + 1 == scene.sun_count) return {LightKind::sun, i, probability, u};
+    }
+    return {LightKind::environment, 0, 0.0f, u};
+}
+
+/// One over the squared distance has no bound. Lights end at 1e30; what a narrow lobe and the film's sums make of this
+/// is still finite.
+REALCAM_INLINE Color bounded_light(Color c) {
+    const auto bounded = [](float v) { return select(v < 1e28f, v, 1e28f); };
+    return {bounded(c.r), bounded(c.g), bounded(c.b)};
+}
+
+/// A place on the light that was picked, as if there were no other.
+template <SceneKind scene_kind>
+REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver receiver, const LightPick& pick) {
+    switch (pick.kind) {
+        case LightKind::point:
+            if constexpr (scene_kind == SceneKind::any)
+                return sample_point_light(point_light_at(scene, scene.points[pick.index], receiver.time),
+                                          receiver.position);
+            return sample_point_light(scene.points[pick.index], receiver.position);
+        case LightKind::area:
+            if constexpr (scene_kind == SceneKind::any)
+                return sample_area_light<scene_kind>(
+                    scene, area_light_at(scene, scene.areas[pick.index], receiver.time), receiver.position, pick.u);
+            return sample_area_light<scene_kind>(scene, scene.areas[pick.index], receiver.position, pick.u);
+        case LightKind::environment: return sample_environment(scene.environment, receiver.normal, pick.u);
+        case LightKind::sun: break;
+    }
+    const SunLight& sun = scene.suns[pick.index];
+    return {-sun.direction, kFarAway, 1.0f, sun.illuminance, kDelta};
+}
+
+/// Chooses one light, and a place on it.
+template <SceneKind scene_kind>
+REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
+                                        Vec2f u, std::uint32_t seed) {
+    const LightPick pick = pick_light(scene, receiver, kinds, u, seed);
+    if (!(pick.probability > 0.0f)) return {{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
+    LightSample sample = sample_picked<scene_kind>(scene, receiver, pick);
+    sample.irradiance = bounded_light((1.0f / pick.probability) * sample.irradiance);
+    sample.pdf *= pick.probability;
     return sample;
 }
 
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
-    return sample_light<scene_kind>(scene, receiver, LightKinds(scene, receiver), u, seed);
+    return sample_light<scene_kind>(scene, receiver, light_kinds(scene, receiver), u, seed);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -19,7 +19,7 @@ public:
     /// `frame`: from that of the scene.
     RenderSpaceMesh(const Scene& scene, const Affine<double>& frame, LargeTriangles large, Checkpoint& checkpoint)
         : scene_(scene), frame_(frame), split_(scene, frame, large, checkpoint) {
-        positions_.reserve(split_.position_count());
+        positions_.reserve(split_.position_count() + 1);
         for (std::size_t i = 0; i < split_.position_count(); ++i) {
             checkpoint.pass();
             positions_.push_back(static_cast<Vec3f>(split_.position(i)));
@@ -56,6 +56,7 @@ public:
 
     const Scene& scene() const { return scene_; }
     const Affine<double>& frame() const { return frame_; }
+    /// With room for one more, because Embree reads 16 bytes of each.
     const std::vector<Vec3f>& positions() const { return positions_; }
     /// The scene's, of which those that are large and near are in pieces.
     const std::vector<Triangle>& triangles() const { return split_.triangles(); }

@@ -34,15 +34,19 @@ REALCAM_INLINE const MeshView& mesh_of(const SceneView& scene, std::uint32_t ins
     return scene.objects[scene.instances[instance].object];
 }
 
-/// A point on a surface, turned to the side from which the ray came.
-struct SurfacePoint {
+/// A place on a surface, turned to the side from which the ray came.
+struct SurfacePlace {
     Vec3f position;
     Vec3f geometric_normal;
+    float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
+};
+
+/// A place, and what is there.
+struct SurfacePoint : SurfacePlace {
     Vec3f normal;  ///< interpolated
     const Material* material;
     Color diffuse;      ///< the material's, times its texture
     Color emission;     ///< radiance towards the ray's origin
-    float self_offset;  ///< how far off the surface the next ray must start, so as not to meet it again
     bool is_front;      ///< the ray came from the side of the triangle's normal
     Color specular;  ///< this and what follows: where materials are not plain
     float metallic, roughness, shininess, transmission, specular_weight, clearcoat, clearcoat_roughness;

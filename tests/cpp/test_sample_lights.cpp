@@ -181,10 +181,11 @@ TEST_CASE("kinds of light are chosen with the probabilities of LightKinds, which
     for (const Vec3f normal : {Vec3f{0, 1, 0}, Vec3f{0, 0, -1}, Vec3f{0, -1, 0}, Vec3f{0, 0, 0}}) {
         const LightReceiver receiver{{0.2f, 0, 0.1f}, normal};
         const SceneView view = placed.view();
-        const LightKinds kinds(view, receiver);
-        const std::vector<double> share = {
-            static_cast<double>(kinds.local_probability()), static_cast<double>(kinds.environment_probability()),
-            static_cast<double>(kinds.sun_probability(0)), static_cast<double>(kinds.sun_probability(1))};
+        const LightKinds kinds = light_kinds(view, receiver);
+        const std::vector<double> share = {static_cast<double>(kinds.local_probability),
+                                           static_cast<double>(kinds.environment_probability),
+                                           static_cast<double>(kinds.sun_probability(view.suns[0], normal)),
+                                           static_cast<double>(kinds.sun_probability(view.suns[1], normal))};
         CHECK(share[0] + share[1] + share[2] + share[3] == doctest::Approx(1).epsilon(1e-6));
         std::vector<double> expected, counts(4);
         for (const double s : share) expected.push_back(s * kSamples);

@@ -1,0 +1,79 @@
+#pragma once
+#include "plain_light_samples.hpp"
+#include "scatter_paths.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+namespace scatter_plain_paths_detail {
+
+/// Light and the next ray for Lambert's lobe, as scatter_path finds them for one path. `goes_on`: at compile time,
+/// because gcc makes no vector code of a loop that asks for it.
+template <bool goes_on, int N>
+REALCAM_INLINE void scatter_lambert(const PathSettings& settings, int bounce, const PlainSurfaces<N>& surfaces,
+                                    const LightSamples<N>& lights, const PathNumbers<N>& u, PathState<N>& path,
+                                    ShadowRays<N>& shadow) {
+    const float clamp = bounce > 0 ? settings.clamp : 0.0f;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec3f position = surfaces.position[i], geometric = surfaces.geometric_normal[i];
+        const SurfacePlace place = {position, geometric, surfaces.self_offset[i]};
+        const Vec3f normal = surfaces.normal[i];
+        LightSample light = lights[i];
+        const float density = cosine_pdf(normal, light.direction);
+        const bool is_seen = (surfaces.scatters[i] != 0) & (dot(place.geometric_normal, light.direction) > 0.0f);
+        const float weight = goes_on ? mis_weight(light.pdf, density) : 1.0f;
+        const Color seen = (weight * density) * surfaces.diffuse[i] * path.throughput[i] * light.irradiance;
+        shadow.set(i, place, light, clamped(select(is_seen, seen, Color{0, 0, 0}), clamp * path.weight[i]));
+    }
+    if (!goes_on) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) path.rays.active[i] = 0;
+        return;
+    }
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec3f position = surfaces.position[i], geometric = surfaces.geometric_normal[i];
+        const SurfacePlace place = {position, geometric, surfaces.self_offset[i]};
+        const Vec3f normal = surfaces.normal[i], direction = sample_cosine(normal, u[i]);
+        const float density = cosine_pdf(normal, direction);
+        const float above = select(density > 0.0f, dot(geometric, direction), 0.0f);
+        const Color throughput = path.throughput[i] * surfaces.diffuse[i];
+        path.rays.active[i] = select(above > 0.0f, select(is_black(throughput), 0, surfaces.scatters[i]), 0);
+        path.throughput.set(i, throughput);
+        path.rays.origin.set(i, ray_start(place, direction));
+        path.rays.direction.set(i, direction);
+        path.pdf[i] = density;
+        path.receiver_position.set(i, place.position);
+        path.receiver_normal.set(i, normal);
+    }
+}
+
+}  // namespace scatter_plain_paths_detail
+
+/// scatter_paths for a plain scene and many lanes: Lambert's lobe, which most surfaces have alone, as vector code.
+template <int N>
+REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSettings& settings,
+                                        const SampleBlock<N>& block, int bounce, const PlainSurfaces<N>& surfaces,
+                                        PathState<N>& path, ShadowRays<N>& shadow) {
+    using namespace scatter_plain_paths_detail;
+    const std::uint32_t first_dimension = dimension::of_bounce(bounce);
+    const auto seed = [&](int i) { return hash32(block.stream[i] ^ block.sample[i], first_dimension); };
+    LightSamples<N> lights;
+    sample_lights(view, surfaces, PathNumbers<N>(block, first_dimension + dimension::light), seed, lights);
+    const PathNumbers<N> u(block, first_dimension + dimension::scatter);
+    if (!surfaces.has_phong) {
+        const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
+        return goes_on ? scatter_lambert<true>(settings, bounce, surfaces, lights, u, path, shadow)
+                       : scatter_lambert<false>(settings, bounce, surfaces, lights, u, path, shadow);
+    }
+    for (int i = 0; i < N; ++i) {
+        shadow.rays.active[i] = 0;
+        if (!surfaces.scatters[i]) continue;
+        PlainBsdf bsdf{surfaces.normal[i], surfaces.geometric_normal[i], -path.rays.direction[i], surfaces.diffuse[i],
+                       surfaces.phong[i],  surfaces.shininess[i]};
+        scatter_path(settings, bounce, i, surfaces.place(i), {surfaces.position[i], surfaces.normal[i]}, bsdf,
+                     lights[i], u, unit_float(seed(i)), path, shadow);
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

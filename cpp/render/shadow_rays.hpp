@@ -1,0 +1,34 @@
+#pragma once
+#include "../scene/surface_point.hpp"
+#include "path_state.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Where a ray starts so as not to meet its own surface again: on the side to which it goes.
+REALCAM_INLINE Vec3f ray_start(const SurfacePlace& place, Vec3f direction) {
+    const float offset = select(dot(place.geometric_normal, direction) < 0.0f, -place.self_offset, place.self_offset);
+    return place.position + offset * place.geometric_normal;
+}
+
+/// The rays that test whether lights are hidden.
+template <int N>
+struct ShadowRays {
+    SceneRays<N> rays;
+    ColorLanes<N> unshadowed;  ///< what comes along them to the film if nothing is in the way
+
+    /// `seen`: of the light, by the film. Without branches, so that it becomes vector code.
+    REALCAM_INLINE void set(int lane, const SurfacePlace& place, const LightSample& light, Color seen) {
+        const Vec3f start = ray_start(place, light.direction);
+        // To a light that is near, from the start, so that its distance is 1: it may be as near as the offset. The ray
+        // stops short of the light, which is itself in the scene.
+        const bool is_near = light.distance < kFarAway;
+        const Vec3f way = light.distance * light.direction - (start - place.position);
+        rays.origin.set(lane, start);
+        rays.direction.set(lane, select(is_near, way, light.direction));
+        rays.far[lane] = select(is_near, select(light.reach > 0.0f, light.reach, 0.0f), kFarAway);
+        rays.active[lane] = is_black(seen) ? 0 : 1;
+        unshadowed.set(lane, seen);
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE
