@@ -46,19 +46,28 @@ ToneCurve tone_curve_from(const std::string& name) {
     throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
 }
 
+namespace {
+
 LightTransport transport_from(const std::string& name) {
     if (const auto transport = shot::transport_named(name)) return *transport;
     throw InputError("unknown transport \"" + name + "\"; " + shot::kTransportNames + " is wanted");
 }
 
-std::optional<Illuminant> illuminant_from(const std::string& text) {
-    if (text.empty()) return std::nullopt;
-    return Illuminant::parse(text);
-}
+}  // namespace
 
 std::uint32_t seed_from(std::int64_t seed) {
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
     return static_cast<std::uint32_t>(seed);
+}
+
+RenderSettings settings_from(int spp, std::int64_t seed, int max_bounces, const std::string& transport,
+                             float clamp_cd_m2, int threads, const std::vector<std::string>& layers,
+                             const std::vector<std::string>& effects, const std::string& illuminant) {
+    RenderSettings settings{
+        spp,         seed_from(seed),      max_bounces,           threads, transport_from(transport),
+        clamp_cd_m2, layers_named(layers), effects_named(effects)};
+    if (!illuminant.empty()) settings.illuminant = Illuminant::parse(illuminant);
+    return settings;
 }
 
 bool heed_signals() {
@@ -91,15 +100,8 @@ py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std
                  int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
                  const std::vector<std::string>& layers, const std::vector<std::string>& effects,
                  const std::string& illuminant, const py::object& progress) {
-    const RenderSettings settings{spp,
-                                  seed_from(seed),
-                                  max_bounces,
-                                  threads,
-                                  transport_from(transport),
-                                  clamp_cd_m2,
-                                  layers_named(layers),
-                                  effects_named(effects),
-                                  illuminant_from(illuminant)};
+    const RenderSettings settings =
+        settings_from(spp, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, illuminant);
     Session& session = session_for(device);
     const Progress report = progress_of(progress);
     Image image;

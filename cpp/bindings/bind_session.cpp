@@ -22,15 +22,7 @@ public:
                   int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
                   const std::vector<std::string>& layers, const std::vector<std::string>& effects,
                   const std::string& illuminant)
-        : settings_{1,
-                    seed_from(seed),
-                    max_bounces,
-                    threads,
-                    transport_from(transport),
-                    clamp_cd_m2,
-                    layers_named(layers),
-                    effects_named(effects),
-                    illuminant_from(illuminant)} {
+        : settings_(settings_from(1, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, illuminant)) {
         {
             const Unlocked unlocked;
             session_ = make_session(device);

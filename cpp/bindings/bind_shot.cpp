@@ -36,15 +36,8 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
 py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::string& transport, float clamp_cd_m2,
                   const std::vector<std::string>& effects, const std::string& illuminant, const std::string& denoiser) {
     py::dict entries;
-    io::ImageMetadata metadata = io::metadata_of(camera, {spp,
-                                                          seed,
-                                                          0,
-                                                          0,
-                                                          transport_from(transport),
-                                                          clamp_cd_m2,
-                                                          {},
-                                                          effects_named(effects),
-                                                          illuminant_from(illuminant)});
+    io::ImageMetadata metadata =
+        io::metadata_of(camera, settings_from(spp, seed, 0, transport, clamp_cd_m2, 0, {}, effects, illuminant));
     metadata.denoiser = denoiser;
     for (const auto& [name, value] : metadata.entries()) entries[py::str(name)] = value;
     return entries;

@@ -10,8 +10,8 @@
 #include "../io/lens_file.hpp"
 #include "../optics/lens_system.hpp"
 #include "../optics/object_point.hpp"
-#include "../render/path_settings.hpp"
 #include "../render/progress.hpp"
+#include "../render/render_settings.hpp"
 #include "../scene/assembly.hpp"
 #include "unlocked.hpp"
 
@@ -52,14 +52,14 @@ Session& session_for(const std::string& device);
 /// "film" or "linear". Throws InputError.
 ToneCurve tone_curve_from(const std::string& name);
 
-/// The illuminant of a text (Illuminant::parse), none of an empty one. Throws InputError.
-std::optional<Illuminant> illuminant_from(const std::string& text);
-
-/// "paths" or "whitted". Throws InputError.
-LightTransport transport_from(const std::string& name);
-
 /// Throws InputError for what does not fit 32 bits.
 std::uint32_t seed_from(std::int64_t seed);
+
+/// Settings as Python's users write them. `transport`: "paths" or "whitted"; `illuminant`: as Illuminant::parse reads
+/// it, empty: none. Throws InputError.
+RenderSettings settings_from(int spp, std::int64_t seed, int max_bounces, const std::string& transport,
+                             float clamp_cd_m2, int threads, const std::vector<std::string>& layers,
+                             const std::vector<std::string>& effects, const std::string& illuminant);
 
 /// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without
 /// the interpreter's lock. The callback must outlive the result.

@@ -9,21 +9,14 @@ struct Effects {
     bool dispersion = false;
 
     constexpr bool operator==(const Effects&) const = default;
-    /// Whether it has all that the other one has.
-    constexpr bool holds(const Effects& other) const { return dispersion || !other.dispersion; }
 };
 
 inline constexpr Effects kNoEffects = {};
 inline constexpr Effects kDispersion = {true};
 
-/// The sets for which there is code, the smallest first. A picture is taken with the first that holds all it asks for.
+/// The sets for which there is code.
 inline constexpr Effects kCompiledEffects[] = {kNoEffects, kDispersion};
 
-constexpr Effects smallest_compiled(const Effects& wanted) {
-    for (const Effects& set : kCompiledEffects)
-        if (set.holds(wanted)) return set;
-    return wanted;
-}
 /// Its place in kCompiledEffects, for kernels: nvcc writes no code that launches one whose argument is of a class.
 constexpr int number_of(const Effects& compiled) {
     int number = 0;
@@ -33,6 +26,5 @@ constexpr int number_of(const Effects& compiled) {
     }
     return number;
 }
-static_assert(smallest_compiled(kNoEffects) == kNoEffects && smallest_compiled(kDispersion) == kDispersion);
 
 }  // namespace REALCAM_NAMESPACE

@@ -15,10 +15,9 @@ REALCAM_INLINE void scatter_lambert(const PathSettings& settings, int bounce, co
     const float clamp = bounce > 0 ? settings.clamp : 0.0f;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec3f position = surfaces.position[i], geometric = surfaces.geometric_normal[i];
-        const SurfacePlace place = {position, geometric, surfaces.self_offset[i]};
+        const SurfacePlace place = surfaces.place(i);
         const Vec3f normal = surfaces.normal[i];
-        LightSample light = lights[i];
+        const LightSample light = lights[i];
         const float density = cosine_pdf(normal, light.direction);
         const bool is_seen = (surfaces.scatters[i] != 0) & (dot(place.geometric_normal, light.direction) > 0.0f);
         const float weight = goes_on ? mis_weight(light.pdf, density) : 1.0f;
@@ -32,11 +31,10 @@ REALCAM_INLINE void scatter_lambert(const PathSettings& settings, int bounce, co
     }
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec3f position = surfaces.position[i], geometric = surfaces.geometric_normal[i];
-        const SurfacePlace place = {position, geometric, surfaces.self_offset[i]};
+        const SurfacePlace place = surfaces.place(i);
         const Vec3f normal = surfaces.normal[i], direction = sample_cosine(normal, u[i]);
         const float density = cosine_pdf(normal, direction);
-        const float above = select(density > 0.0f, dot(geometric, direction), 0.0f);
+        const float above = select(density > 0.0f, dot(place.geometric_normal, direction), 0.0f);
         const Color throughput = path.throughput[i] * surfaces.diffuse[i];
         path.rays.active[i] = select(above > 0.0f, select(is_black(throughput), 0, surfaces.scatters[i]), 0);
         path.throughput.set(i, throughput);

@@ -271,19 +271,13 @@ REALCAM_INLINE LightSample sample_picked(const SceneView& scene, LightReceiver r
 
 /// Chooses one light, and a place on it.
 template <SceneKind scene_kind>
-REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, const LightKinds& kinds,
-                                        Vec2f u, std::uint32_t seed) {
-    const LightPick pick = pick_light(scene, receiver, kinds, u, seed);
+REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
+    const LightPick pick = pick_light(scene, receiver, light_kinds(scene, receiver), u, seed);
     if (!(pick.probability > 0.0f)) return {{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};
     LightSample sample = sample_picked<scene_kind>(scene, receiver, pick);
     sample.irradiance = bounded_light((1.0f / pick.probability) * sample.irradiance);
     sample.pdf *= pick.probability;
     return sample;
-}
-
-template <SceneKind scene_kind>
-REALCAM_INLINE LightSample sample_light(const SceneView& scene, LightReceiver receiver, Vec2f u, std::uint32_t seed) {
-    return sample_light<scene_kind>(scene, receiver, light_kinds(scene, receiver), u, seed);
 }
 
 }  // namespace REALCAM_NAMESPACE
