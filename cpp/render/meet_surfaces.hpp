@@ -84,10 +84,7 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
                     i, results.irradiance[i] + clamped(environment_light<scene_kind>(view, path, i), limit));
             continue;
         }
-        Footprint footprint;
-        if constexpr (scene_kind != SceneKind::plain) {
-            if (bounce == 0) footprint = film_footprint(camera, block, i);
-        }
+        const Footprint footprint = bounce == 0 ? film_footprint(camera, block, i) : Footprint{};
         const SurfacePoint point =
             surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time, footprint);
         surfaces.set(i, point);

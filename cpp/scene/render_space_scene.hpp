@@ -50,10 +50,8 @@ public:
             }
         }
         find_kind();
-        if (kind_ != SceneKind::plain) {  // whose kernels read the finest level alone
-            static_geometry_.add_texture_levels(checkpoint_);
-            for (const auto& object : objects_) object->add_texture_levels(checkpoint_);
-        }
+        static_geometry_.add_texture_levels(checkpoint_);
+        for (const auto& object : objects_) object->add_texture_levels(checkpoint_);
         for (const auto& object : objects_) object_views_.push_back(object->view());
         const Environment& environment = assembly_.static_geometry->environment;
         environment_ = environment_tables(environment, checkpoint_);

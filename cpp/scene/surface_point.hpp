@@ -215,13 +215,11 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     point.material = &material;
     point.diffuse = material.diffuse;
     point.emission = point.is_front ? material.emission : Color{0, 0, 0};
-    if constexpr (scene_kind == SceneKind::plain) {
-        if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at);
-    } else {
-        const UvFootprint seen = footprint.area > 0.0f && mesh.uvs
-                                     ? uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint)
-                                     : UvFootprint{};
-        point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at, seen);
+    UvFootprint seen;
+    if (is_textured && footprint.area > 0.0f && mesh.uvs)
+        seen = uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint);
+    if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at, seen);
+    if constexpr (scene_kind != SceneKind::plain) {
         if (material.emits_on_both_sides) point.emission = material.emission;
         point.emission *= texture_color(mesh, material.emission_texture, uv.at, seen);
         const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
@@ -259,8 +257,7 @@ template <SceneKind scene_kind>
 REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const InstanceView& instance, Hit hit,
                                           Vec3f ray_origin, Vec3f ray_direction, Footprint footprint) {
     const InverseAffine<float>& into = instance.object_from_render;
-    if constexpr (scene_kind != SceneKind::plain)
-        footprint.area /= std::fabs(instance.render_from_object.determinant());
+    if (footprint.area > 0.0f) footprint.area /= std::fabs(instance.render_from_object.determinant());
     SurfacePoint point =
         surface_point<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction), footprint);
     point.position = instance.render_from_object.point(point.position);

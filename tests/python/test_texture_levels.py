@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 import realcam as rc
@@ -12,11 +14,11 @@ SQUARES = ((np.arange(256)[:, None] // 16 + np.arange(256)[None] // 16) % 2 * 25
 FINE = ((np.arange(256)[:, None] + np.arange(256)[None]) % 2 * 255).astype(np.uint8)
 
 
-def floor(texture: np.ndarray, *, levels: bool, **material: object) -> rc.Scene:
-    """A plane 1 m below the camera, to 2 km, with tiles of 4 m. Scenes of Lambert's lobe alone have no levels."""
+def floor(texture: np.ndarray, **material: object) -> rc.Scene:
+    """A plane 1 m below the camera, to 2 km, with tiles of 4 m."""
     corners, _ = scenes.quad((0, -1, -1000), 2000, 1000, up=(0, 0, -1))
     uvs = np.array([[0, 0], [1000, 0], [1000, 500], [0, 500]], float)
-    m = rc.Material(diffuse=(1, 1, 1), texture=texture, double_sided=levels, **material)  # type: ignore[arg-type]
+    m = rc.Material(diffuse=(1, 1, 1), texture=texture, **material)  # type: ignore[arg-type]
     return rc.Scene.from_arrays(corners, [[0, 1, 2], [0, 2, 3]], uvs=uvs, materials=[m]).with_environment(1.0)
 
 
@@ -30,31 +32,28 @@ def camera(model: str = "pinhole") -> rc.Camera:
     return rc.Camera(lens, film=film, exposure_time_s=1, model=model)
 
 
-def test_the_error_of_few_samples_is_smaller_and_that_of_many_not_larger() -> None:
+def test_errors_are_smaller_than_those_of_points_of_the_texture() -> None:
+    """Samples of squares that are black or white have the variance p (1 - p), p being the white share of a pixel."""
     taken = camera()
-    truth = scenes.radiance(floor(SQUARES, levels=False), taken, spp=1024)[..., 0]
-    below = slice(34, 64)  # of the horizon
-    for spp, most in ((1, 0.75), (4, 0.8), (64, 1.0)):
-        with_levels, without = (
-            rms((scenes.radiance(floor(SQUARES, levels=on), taken, spp=spp)[..., 0] - truth)[below])
-            for on in (True, False)
-        )
-        assert with_levels < most * without, spp
+    white = scenes.radiance(floor(SQUARES), taken, spp=4096)[34:, :, 0].clip(0, 1)  # below the horizon
+    of_a_point = math.sqrt(float(np.mean(white * (1 - white))))
+    for spp, most in ((1, 0.75), (4, 0.5), (64, 0.4)):
+        error = rms(scenes.radiance(floor(SQUARES), taken, spp=spp)[34:, :, 0] - white)
+        assert error < most * of_a_point / math.sqrt(spp), spp
 
 
-def test_the_horizon_does_not_shimmer() -> None:
-    """Rows in which a pixel covers many squares, at one sample: they are grey, where they were black and white."""
-    taken = camera()
-    rows = slice(33, 36)
-    grey = scenes.radiance(floor(SQUARES, levels=True), taken, spp=1)[rows, :, 0]
+@pytest.mark.parametrize("shiny", [False, True])  # kernels for Lambert's and Phong's lobes, and those for all others
+def test_the_horizon_does_not_shimmer(shiny: bool) -> None:
+    """Rows in which a pixel covers many squares, at one sample: grey, where points of them are 0.5 away from that."""
+    scene = floor(SQUARES, double_sided=shiny)
+    grey = scenes.radiance(scene, camera(), spp=1)[33:36, :, 0]
     assert rms(grey - 0.5) < 0.1
-    assert rms(scenes.radiance(floor(SQUARES, levels=False), taken, spp=1)[rows, :, 0] - 0.5) > 0.4
 
 
 @pytest.mark.parametrize("spp", [1, 16])
 def test_levels_are_means_of_light(spp: int) -> None:
     """Squares of one texel; the mean of their codes would be 0.21."""
-    picture = scenes.radiance(floor(FINE, levels=True), camera(), spp=spp)[34:50, :, 0]
+    picture = scenes.radiance(floor(FINE), camera(), spp=spp)[34:50, :, 0]
     assert picture.mean() == pytest.approx(0.5, abs=0.01)
 
 
@@ -62,20 +61,38 @@ def test_coverage_stays_what_it_is() -> None:
     """Maps of opacity have no levels: through half of the floor the sky is seen, whatever the distance."""
     alpha = np.full((256, 256, 4), 255, np.uint8)
     alpha[..., 3] = FINE
-    scene = floor(np.zeros((2, 2), np.uint8), levels=True, opacity_texture=alpha)
+    scene = floor(np.zeros((2, 2), np.uint8), opacity_texture=alpha)
     picture = scenes.radiance(scene, camera(), spp=64)[34:, :, 0]
     assert picture.mean() == pytest.approx(0.5, abs=0.01)
-    cut = floor(np.zeros((2, 2), np.uint8), levels=True, opacity_texture=alpha, opacity_cutoff=0.5)
+    cut = floor(np.zeros((2, 2), np.uint8), opacity_texture=alpha, opacity_cutoff=0.5)
     assert scenes.radiance(cut, camera(), spp=64)[34:, :, 0].mean() == pytest.approx(0.5, abs=0.05)
 
 
+def squares_of_triangles() -> rc.Scene:
+    """The nearest 12 m of floor(SQUARES), of squares that are white or black."""
+    side, columns, rows = 0.25, 80, 48
+    x, z = np.meshgrid(np.arange(columns) - columns // 2, np.arange(rows), indexing="ij")
+    left, near = (side * x.ravel())[:, None], (-side * z.ravel())[:, None]
+    across, away = np.array([[0, 1, 1, 0]]) * side, np.array([[0, 0, 1, 1]]) * side
+    corners = np.stack([left + across, np.full((x.size, 4), -1.0), near - away], axis=-1).reshape(-1, 3)
+    first = 4 * np.arange(x.size)[:, None]
+    faces = np.concatenate([first + (0, 1, 2), first + (0, 2, 3)])
+    # The texture's lower left square, which lies at x = 0 on the near edge, is white.
+    white = (x + z).ravel() % 2 == 0
+    materials = [rc.Material(diffuse=(0, 0, 0)), rc.Material(diffuse=(1, 1, 1))]
+    made = rc.Scene.from_arrays(corners, faces, triangle_materials=np.tile(white.astype(int), 2), materials=materials)
+    return made.with_environment(1.0)
+
+
 def test_out_of_focus_a_texture_is_blurred_by_the_lens_alone() -> None:
-    """By the same amount with levels and without: what the lens makes of squares nearby, out of focus."""
+    """As squares are that are triangles: by the lens, and by no footprint of its width."""
     taken = camera("thin")
-    pictures = [scenes.radiance(floor(SQUARES, levels=on), taken, spp=1024)[50:, :, 0] for on in (True, False)]
+    textured, made = (
+        scenes.radiance(scene, taken, spp=1024)[50:, :, 0] for scene in (floor(SQUARES), squares_of_triangles())
+    )
     # The noise of 1024 samples of squares of contrast 1.
-    assert rms(pictures[0] - pictures[1]) < 0.02
-    assert pictures[0].std() == pytest.approx(pictures[1].std(), rel=0.02)
+    assert rms(textured - made) < 0.02
+    assert textured.std() == pytest.approx(made.std(), rel=0.02)
 
 
 def test_a_stretched_instance_has_the_levels_of_its_triangles() -> None:
