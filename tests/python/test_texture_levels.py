@@ -76,7 +76,7 @@ def squares_of_triangles() -> rc.Scene:
     across, away = np.array([[0, 1, 1, 0]]) * side, np.array([[0, 0, 1, 1]]) * side
     corners = np.stack([left + across, np.full((x.size, 4), -1.0), near - away], axis=-1).reshape(-1, 3)
     first = 4 * np.arange(x.size)[:, None]
-    faces = np.concatenate([first + (0, 1, 2), first + (0, 2, 3)])
+    faces = np.concatenate([first + np.array([0, 1, 2]), first + np.array([0, 2, 3])])
     # The texture's lower left square, which lies at x = 0 on the near edge, is white.
     white = (x + z).ravel() % 2 == 0
     materials = [rc.Material(diffuse=(0, 0, 0)), rc.Material(diffuse=(1, 1, 1))]
