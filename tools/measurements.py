@@ -21,6 +21,7 @@ SECTIONS = (
     "Iteration",
     "Bundled lenses",
     "Samplers",
+    "Effects",
     "Truth",
     "Other programs",
     "Parity",

@@ -84,9 +84,9 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
                     i, results.irradiance[i] + clamped(environment_light<scene_kind>(view, path, i), limit));
             continue;
         }
-        const Footprint footprint = bounce == 0 ? film_footprint(camera, block, i) : Footprint{};
-        const SurfacePoint point =
-            surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time, footprint);
+        const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time, [&] {
+            return bounce == 0 ? film_footprint(camera, block, i) : Footprint{};
+        });
         surfaces.set(i, point);
         if constexpr (scene_kind != SceneKind::plain) {
             const Color absorption = path.absorption[i];

@@ -102,6 +102,11 @@ struct Footprint {
     float chance = 0;  ///< 0..1, by which one of two levels is taken
 };
 
+/// Of a ray that stands for a point alone.
+struct PointFootprint {
+    REALCAM_INLINE Footprint operator()() const { return {}; }
+};
+
 /// A footprint on the texture coordinates of a triangle.
 struct UvFootprint {
     float area = 0;  ///< in units of the square of the coordinates
@@ -171,9 +176,10 @@ REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangl
     return size2 > 0.0f ? (1.0f / std::sqrt(size2)) * mapped : normal;
 }
 
-template <SceneKind scene_kind>
+/// `footprint_of`: () -> Footprint of the ray, asked for where there are textures.
+template <SceneKind scene_kind, class FootprintOf>
 REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
-                                          Footprint footprint = {}) {
+                                          FootprintOf&& footprint_of) {
     const Triangle triangle = mesh.triangles[hit.triangle];
     const TrianglePlane plane = mesh.planes[hit.triangle];
     const std::uint32_t* corner = triangle.vertices;
@@ -216,8 +222,10 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f r
     point.diffuse = material.diffuse;
     point.emission = point.is_front ? material.emission : Color{0, 0, 0};
     UvFootprint seen;
-    if (is_textured && footprint.area > 0.0f && mesh.uvs)
-        seen = uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint);
+    if (is_textured && mesh.uvs) {
+        const Footprint footprint = footprint_of();
+        if (footprint.area > 0.0f) seen = uv_footprint(mesh, triangle, uv, hit, plane.normal, ray_direction, footprint);
+    }
     if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at, seen);
     if constexpr (scene_kind != SceneKind::plain) {
         if (material.emits_on_both_sides) point.emission = material.emission;
@@ -253,13 +261,17 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
 
 /// Likewise of an instance of a mesh: the ray goes into the object's frame, with the same distances, and what it finds
 /// comes back.
-template <SceneKind scene_kind>
+template <SceneKind scene_kind, class FootprintOf>
 REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const InstanceView& instance, Hit hit,
-                                          Vec3f ray_origin, Vec3f ray_direction, Footprint footprint) {
+                                          Vec3f ray_origin, Vec3f ray_direction, FootprintOf&& footprint_of) {
     const InverseAffine<float>& into = instance.object_from_render;
-    if (footprint.area > 0.0f) footprint.area /= std::fabs(instance.render_from_object.determinant());
-    SurfacePoint point =
-        surface_point<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction), footprint);
+    const auto footprint_of_object = [&] {
+        Footprint footprint = footprint_of();
+        footprint.area /= std::fabs(instance.render_from_object.determinant());
+        return footprint;
+    };
+    SurfacePoint point = surface_point<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction),
+                                                   footprint_of_object);
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
     const float stretch = 1.0f / length(geometric);
@@ -275,19 +287,19 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const Instance
 }
 
 /// Likewise of a whole scene, at a time of the exposure.
-template <SceneKind scene_kind>
+template <SceneKind scene_kind, class FootprintOf = PointFootprint>
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
-                                          float time, Footprint footprint = {}) {
+                                          float time, FootprintOf&& footprint_of = {}) {
     if (hit.instance == kNoInstance)
         return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction,
-                                         footprint);
+                                         footprint_of);
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& object = scene.objects[instance.object];
     if constexpr (scene_kind == SceneKind::any) {
         const InstanceView placed = instance_at(scene, hit.instance, time);
-        return surface_point<scene_kind>(object, placed, hit, ray_origin, ray_direction, footprint);
+        return surface_point<scene_kind>(object, placed, hit, ray_origin, ray_direction, footprint_of);
     }
-    return surface_point<scene_kind>(object, instance, hit, ray_origin, ray_direction, footprint);
+    return surface_point<scene_kind>(object, instance, hit, ray_origin, ray_direction, footprint_of);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -92,7 +92,7 @@ def pass_share(threads: int) -> Result:
         lens = Lens.load(name)
         width, height = lens.film_mm
         film = Film(width, height, (300, max(1, round(300 * height / width))))
-        stats = render(speck, Camera(lens, film=film), spp=16, max_bounces=0, threads=threads).stats
+        stats = render(speck, Camera(lens, film=film), spp=16, max_bounces=0, device="cpu", threads=threads).stats
         shares[name] = round(stats.passed_rays / stats.sampled_rays, 4)
     return {"share": shares, "worst": min(shares.values())}
 
@@ -169,11 +169,13 @@ def frame(threads: int) -> Result:
     cameras = {model: frame_camera(model) for model in ("full", "thick", "thin", "pinhole")}
     cpu: dict[str, list[float]] = {model: [] for model in cameras}
     wall: dict[str, list[float]] = {model: [] for model in cameras}
-    render(scene, cameras["pinhole"], spp=1, threads=threads)  # builds the scene's BVH, which is no part of a picture
+    render(
+        scene, cameras["pinhole"], spp=1, device="cpu", threads=threads
+    )  # builds the scene's BVH, which is no part of a picture
     for _ in range(5):  # in turns, so that what else the machine does falls on all alike
         for model, camera in cameras.items():
             start = time.process_time(), time.perf_counter()
-            render(scene, camera, spp=20, max_bounces=0, threads=threads)
+            render(scene, camera, spp=20, max_bounces=0, device="cpu", threads=threads)
             cpu[model].append(time.process_time() - start[0])
             wall[model].append(time.perf_counter() - start[1])
     best = {model: min(times) for model, times in cpu.items()}

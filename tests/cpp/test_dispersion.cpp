@@ -49,7 +49,7 @@ TEST_CASE("cubics give the indices of all lenses") {
     for (const std::string& name : io::lens_names()) worst = std::max(worst, worst_index_error(io::read_lens(name)));
     // A hundredth of what tells F from C in a glass of V = 60, 0.01; a lateral colour of two pixels is then right to a
     // fiftieth of one.
-    hold({"Dispersion", "index of refraction from a cubic over the wavelength", "all lenses, 380 to 780 nm", "core",
+    hold({"Effects", "index of refraction from a cubic over the wavelength", "all lenses, 380 to 780 nm", "core",
           "float32", worst, 1.5e-4, ""});
 }
 
