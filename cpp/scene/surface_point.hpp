@@ -178,7 +178,7 @@ REALCAM_INLINE Vec3f mapped_normal(const MeshView& mesh, const Triangle& triangl
 
 /// `footprint_of`: () -> Footprint of the ray, asked for where there are textures.
 template <SceneKind scene_kind, class FootprintOf>
-REALCAM_INLINE SurfacePoint surface_point(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
+REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
                                           FootprintOf&& footprint_of) {
     const Triangle triangle = mesh.triangles[hit.triangle];
     const TrianglePlane plane = mesh.planes[hit.triangle];
@@ -259,18 +259,18 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
     return select(own < instance.reach_margin, own, instance.reach_margin) + stretch * off * coordinates;
 }
 
-/// Likewise of an instance of a mesh: the ray goes into the object's frame, with the same distances, and what it finds
+/// Likewise on an instance of a mesh: the ray goes into the object's frame, with the same distances, and what it finds
 /// comes back.
 template <SceneKind scene_kind, class FootprintOf>
-REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const InstanceView& instance, Hit hit,
-                                          Vec3f ray_origin, Vec3f ray_direction, FootprintOf&& footprint_of) {
+REALCAM_INLINE SurfacePoint point_on_instance(const MeshView& object, const InstanceView& instance, Hit hit,
+                                              Vec3f ray_origin, Vec3f ray_direction, FootprintOf&& footprint_of) {
     const InverseAffine<float>& into = instance.object_from_render;
     const auto footprint_of_object = [&] {
         Footprint footprint = footprint_of();
         footprint.area /= std::fabs(instance.render_from_object.determinant());
         return footprint;
     };
-    SurfacePoint point = surface_point<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction),
+    SurfacePoint point = point_on_mesh<scene_kind>(object, hit, into.point(ray_origin), into.direction(ray_direction),
                                                    footprint_of_object);
     point.position = instance.render_from_object.point(point.position);
     const Vec3f geometric = into.normal_of(point.geometric_normal), shading = into.normal_of(point.normal);
@@ -286,20 +286,20 @@ REALCAM_INLINE SurfacePoint surface_point(const MeshView& object, const Instance
     return point;
 }
 
-/// Likewise of a whole scene, at a time of the exposure.
+/// What a ray has met in the scene, at a time of the exposure.
 template <SceneKind scene_kind, class FootprintOf = PointFootprint>
 REALCAM_INLINE SurfacePoint surface_point(const SceneView& scene, Hit hit, Vec3f ray_origin, Vec3f ray_direction,
                                           float time, FootprintOf&& footprint_of = {}) {
     if (hit.instance == kNoInstance)
-        return surface_point<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction,
+        return point_on_mesh<scene_kind>(static_cast<const MeshView&>(scene), hit, ray_origin, ray_direction,
                                          footprint_of);
     const InstanceView& instance = scene.instances[hit.instance];
     const MeshView& object = scene.objects[instance.object];
     if constexpr (scene_kind == SceneKind::any) {
         const InstanceView placed = instance_at(scene, hit.instance, time);
-        return surface_point<scene_kind>(object, placed, hit, ray_origin, ray_direction, footprint_of);
+        return point_on_instance<scene_kind>(object, placed, hit, ray_origin, ray_direction, footprint_of);
     }
-    return surface_point<scene_kind>(object, instance, hit, ray_origin, ray_direction, footprint_of);
+    return point_on_instance<scene_kind>(object, instance, hit, ray_origin, ray_direction, footprint_of);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -200,10 +200,15 @@ def test_the_callers_gpu_stays_current(device: str) -> None:
     last = f"cuda:{device[-1]}"
     code = f"""
 import gc
+
+def frame():
+    live = rc.LiveView(scene, device={last!r})  # kept, because a view that is gone stops its frames
+    return live.shoot(camera, spp=1).codes
+
 for take in (
     lambda: rc.render(scene, camera, spp=1, device={device!r}),
     lambda: rc.render(scene, camera, spp=1, device={device!r}, progress=lambda share: True),
-    lambda: rc.LiveView(scene, device={last!r}).shoot(camera, spp=1).codes,
+    frame,
     lambda: rc.LiveView(scene, device={last!r}).cancel(),
     lambda: camera.generate_rays(spp=1, device={last!r}),
 ):
