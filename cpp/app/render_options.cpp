@@ -39,6 +39,10 @@ void read_environment_word(const std::string& word, shot::ShotRequest& request) 
 void read_camera_words(const RenderWords& w, shot::ShotRequest& request) {
     if (!w.lens.empty()) request.lens = w.lens;
     if (!w.f_number.empty()) request.f_number = parse_number("--f-number", w.f_number);
+    if (!w.blades.empty()) request.blades = parse_whole("--blades", w.blades, kMaxIrisBlades);
+    if (!w.blade_rounding.empty()) request.blade_rounding = parse_number("--blade-rounding", w.blade_rounding);
+    if (!w.blade_rotation.empty()) request.blade_rotation_deg = parse_number("--blade-rotation", w.blade_rotation);
+    check_blades(request);
     if (!w.film.empty()) request.film_mm = parse_size("--film", w.film);
     if (!w.resolution.empty()) request.resolution = parse_resolution("--resolution", w.resolution);
     if (!w.position.empty()) request.view.position_m = parse_point("--position", w.position);
@@ -131,6 +135,10 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     option("--up", w.up, "Direction that is up in the picture [0,1,0]", "X,Y,Z");
     option("--focus", w.focus, "Object plane to film, inf, or auto [auto: the first surface on the axis]", "METRES");
     option("--f-number", w.f_number, "Close the diaphragm to f/N [wide open]", "N");
+    option("--blades", w.blades, "Of the diaphragm: 3 to 24, or 0 for a round one [the lens's]", "N");
+    option("--blade-rounding", w.blade_rounding, "0: straight edges; 1: the opening is a circle [the lens's]", "SHARE");
+    option("--blade-rotation", w.blade_rotation, "Degrees by which the blades are turned about the axis [the lens's]",
+           "DEGREES");
     option("--exposure-time", w.exposure_time,
            "Seconds, such as 1/125, or auto [auto: the average lands on middle grey]", "TIME");
     option("--shutter-opens", w.shutter_opens, "When, in seconds of a scene that moves [0]", "SECONDS");
@@ -156,7 +164,8 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     option("--tone", w.tone, "Tone mapping of .png: film (soft highlights) or linear (clipped) [film]", "CURVE");
     option("--layers", w.layers,
            "Also write to .exr, separated by commas: all, or some of " + layer_names() + " [none]", "NAMES");
-    option("--effects", w.effects, "What else is simulated, separated by commas: " + effect_names() + " [none]",
+    option("--effects", w.effects,
+           "What else is simulated or, with a minus, left out, separated by commas after a \"=\": " + effect_names(),
            "NAMES");
     option("--illuminant", w.illuminant,
            "Of dispersion, the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]", "SPECTRUM");

@@ -49,6 +49,7 @@ struct PoseKey {
 struct Shutter {
     double opens_s = 0;         ///< time in the scene at which the exposure of the top row begins
     double readout_time_s = 0;  ///< from then to where that of a row below the last would begin; 0: all rows together
+    bool blurs = true;  ///< false: what a row sees is the scene in the middle of its exposure
 
     bool operator==(const Shutter&) const = default;
 };
@@ -65,9 +66,12 @@ struct Camera {
     std::vector<PoseKey> motion;  ///< in rising order of time; empty: it stays where it is
 
     bool moves() const { return !motion.empty(); }
-    /// From the begin of the first row's exposure to the end of the last one's.
+    /// For which a row of pixels sees the scene, s.
+    double seen_time() const { return shutter.blurs ? exposure_time_s : 0.0; }
+    /// From when the first row sees the scene to when the last one does no more.
     TimeInterval exposure() const {
-        return {shutter.opens_s, shutter.opens_s + shutter.readout_time_s + exposure_time_s};
+        const double begin = shutter.opens_s + 0.5 * (exposure_time_s - seen_time());
+        return {begin, begin + shutter.readout_time_s + seen_time()};
     }
 };
 
@@ -301,7 +305,7 @@ inline Pose pose_at(const Camera& camera, double time_s) {
 
 /// The middle of its film when the shutter opens, m.
 inline Vec3d position_when_open(const Camera& camera) {
-    return pose_at(camera, camera.shutter.opens_s).position_m;
+    return pose_at(camera, camera.exposure().begin_s).position_m;
 }
 
 /// Lets a camera move. Throws InputError for keys that are none.
@@ -361,7 +365,7 @@ public:
         const FirstOrder data = first_order(lens, lens.wavelength_nm);
         CameraView view{};
         static_cast<CameraPlacement&>(view) =
-            placement(scene_from_camera(pose_at(camera_, camera_.shutter.opens_s)), origin_m);
+            placement(scene_from_camera(pose_at(camera_, camera_.exposure().begin_s)), origin_m);
         view.model = camera_.model;
         view.width = camera_.film.width;
         view.height = camera_.film.height;
@@ -419,9 +423,9 @@ private:
         view.keys = keys_.data();
         view.key_count = static_cast<int>(keys_.size());
         if (keys_.empty() && !scene_moves) return;
-        const double all = camera_.shutter.readout_time_s + camera_.exposure_time_s;
+        const double all = camera_.shutter.readout_time_s + camera_.seen_time();
         view.row_time = static_cast<float>(camera_.shutter.readout_time_s / all / camera_.film.height);
-        view.exposed_time = static_cast<float>(camera_.exposure_time_s / all);
+        view.exposed_time = static_cast<float>(camera_.seen_time() / all);
     }
 
     bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths) const {

@@ -1,6 +1,7 @@
 #include "image_metadata.hpp"
 
 #include <cstdio>
+#include <numbers>
 
 #include "../render/effect_names.hpp"
 
@@ -36,6 +37,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.model = name_of(camera.model);
     metadata.focal_length_mm = data.effective_focal_length;
     metadata.f_number = data.f_number;
+    metadata.iris = camera.lens.iris;
     metadata.focus_distance_m = camera.lens.focus_distance / 1000;
     metadata.film_width_mm = camera.film.width_mm;
     metadata.film_height_mm = camera.film.height_mm;
@@ -66,7 +68,13 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
         {"realcam:iso", number(iso)},
         {"realcam:seed", std::to_string(seed)},
         {"realcam:spp", std::to_string(spp)}};
-    // What is not said of a picture is that nothing was left out, and that the shutter opened at once at time 0.
+    // What is not said of a picture is that nothing was left out, that the diaphragm is round, and that the shutter
+    // opened at once at time 0.
+    if (iris.blades > 0) {
+        entries.emplace_back("realcam:blades", std::to_string(iris.blades));
+        entries.emplace_back("realcam:blade_rounding", number(iris.rounding));
+        entries.emplace_back("realcam:blade_rotation_deg", number(iris.rotation_rad * 180 / std::numbers::pi));
+    }
     if (transport != LightTransport::paths) entries.emplace_back("realcam:transport", name_of(transport));
     if (shutter_opens_s != 0) entries.emplace_back("realcam:shutter_opens_s", number(shutter_opens_s));
     if (readout_time_s > 0) entries.emplace_back("realcam:readout_time_s", number(readout_time_s));

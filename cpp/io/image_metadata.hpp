@@ -15,6 +15,7 @@ struct ImageMetadata {
     std::string model;
     double focal_length_mm = 0;
     double f_number = 0;
+    IrisShape iris;
     double focus_distance_m = 0;  ///< object plane to film; may be infinite
     double film_width_mm = 0, film_height_mm = 0;
     double exposure_time_s = 0;

@@ -161,7 +161,7 @@ void check_lens(const TomlTable& file, const toml::array& surfaces, const LensSy
         return node ? *node : file.raw();
     };
     check_part(file, surfaces[0], surfaces, [&] { check_surfaces(lens); });
-    check_part(file, part("iris"), surfaces, [&] { check_iris(lens); });
+    check_part(file, part("iris"), surfaces, [&] { check_iris(lens.iris); });
     check_part(file, part("film_mm"), surfaces, [&] { check_film_size(lens); });
     check_part(file, part("focus", "group"), surfaces, [&] { check_focusing(lens); });
 }

@@ -115,13 +115,13 @@ inline void check_surfaces(const LensSystem& lens) {
                  " from the axis; faces that keep apart up to their rims are wanted (allow_crossing admits it)");
 }
 
-inline void check_iris(const LensSystem& lens) {
-    if (lens.iris.blades != 0 && (lens.iris.blades < 3 || lens.iris.blades > kMaxIrisBlades))
-        throw LensFileError("the iris has " + std::to_string(lens.iris.blades) + " blades; 0 (round) or 3 to " +
+inline void check_iris(const IrisShape& iris) {
+    if (iris.blades != 0 && (iris.blades < 3 || iris.blades > kMaxIrisBlades))
+        throw LensFileError("the iris has " + std::to_string(iris.blades) + " blades; 0 (round) or 3 to " +
                             std::to_string(kMaxIrisBlades) + " are wanted");
-    if (!(lens.iris.rounding >= 0 && lens.iris.rounding <= 1))
+    if (!(iris.rounding >= 0 && iris.rounding <= 1))
         throw LensFileError("the rounding of the iris must lie between 0 (straight blades) and 1 (a circle)");
-    if (!std::isfinite(lens.iris.rotation_rad)) throw LensFileError("the rotation of the iris is not a finite number");
+    if (!std::isfinite(iris.rotation_rad)) throw LensFileError("the rotation of the iris is not a finite number");
 }
 
 inline void check_film_size(const LensSystem& lens) {
@@ -139,7 +139,7 @@ inline void check_focusing(const LensSystem& lens) {
 /// Everything but the place of the film, which may not be known yet. Throws LensFileError.
 inline void validate(const LensSystem& lens) {
     check_surfaces(lens);
-    check_iris(lens);
+    check_iris(lens.iris);
     check_film_size(lens);
     check_focusing(lens);
 }

@@ -27,4 +27,12 @@ constexpr int number_of(const Effects& compiled) {
     return number;
 }
 
+/// What a picture is to have of all effects. Those of the exposure are there where something moves, unless left out.
+struct EffectChoice : Effects {
+    bool motion_blur = true;  ///< else each row of pixels sees the scene in the middle of its exposure
+    bool rolling_shutter = true;  ///< else the shutter's readout time is 0
+
+    constexpr bool operator==(const EffectChoice&) const = default;
+};
+
 }  // namespace REALCAM_NAMESPACE

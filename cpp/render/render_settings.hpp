@@ -20,7 +20,7 @@ struct RenderSettings {
     LightTransport transport = LightTransport::paths;
     float clamp = 0;  ///< see PathSettings
     LayerSet layers = {};
-    Effects effects = {};
+    EffectChoice effects = {};
     std::optional<Illuminant> illuminant = {};  ///< of the effect dispersion; none: D65, the white of RGB
 
     /// The light of a picture with dispersion; nothing without.

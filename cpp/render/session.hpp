@@ -16,6 +16,7 @@
 #include "../scene/scene_checks.hpp"
 #include "image.hpp"
 #include "layer_film.hpp"
+#include "left_out_motion.hpp"
 #include "live_frame.hpp"
 #include "motion_vectors.hpp"
 #include "render_settings.hpp"
@@ -282,8 +283,9 @@ private:
                (settings_.layers.has(Layer::variance) || !settings.layers.has(Layer::variance));
     }
 
-    void make_ready(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+    void make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
                     const KeepGoing& keep_going) {
+        const auto [scene, camera] = without_left_out_motion(wanted_scene, wanted_camera, settings.effects);
         if (!ready_ || !is_same_picture(scene, camera, settings)) {
             ready_ = false;  // whatever fails from here on, the next call begins anew
             give_up_samples();

@@ -1,10 +1,12 @@
 #include "shot.hpp"
 
+#include <numbers>
 #include <utility>
 
 #include "../camera/default_film.hpp"
 #include "../error.hpp"
 #include "../io/lens_file.hpp"
+#include "../optics/lens_changes.hpp"
 #include "../render/daylight.hpp"
 #include "../render/metering.hpp"
 #include "shot_scene.hpp"
@@ -20,11 +22,32 @@ void add_texture(Scene& scene, const std::string& path, const PictureReaders& re
     for (Material& material : scene.materials) material.diffuse_texture = {index, {1, 0, 0}, {0, 1, 0}};
 }
 
+IrisShape iris_of(const ShotRequest& request, IrisShape iris) {
+    iris.blades = request.blades.value_or(iris.blades);
+    iris.rounding = request.blade_rounding.value_or(iris.rounding);
+    if (request.blade_rotation_deg) iris.rotation_rad = *request.blade_rotation_deg * std::numbers::pi / 180;
+    if (iris.blades == 0 && !request.blades)
+        throw InputError("the diaphragm of " + request.lens +
+                         " is round; blade_rounding and blade_rotation want blades");
+    return iris;
+}
+
 }  // namespace
+
+void check_blades(const ShotRequest& request) {
+    try {
+        check_iris(
+            {request.blades.value_or(0), request.blade_rounding.value_or(0), request.blade_rotation_deg.value_or(0)});
+    } catch (const LensFileError& error) {
+        throw InputError(error.what());
+    }
+}
 
 Camera camera_of(const ShotRequest& request) {
     Camera camera;
     camera.lens = io::read_lens(request.lens);
+    if (request.blades || request.blade_rounding || request.blade_rotation_deg)
+        camera.lens = with_iris(camera.lens, iris_of(request, camera.lens.iris));
     if (request.f_number) camera.lens = stopped_down(camera.lens, *request.f_number);
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
     camera.model = request.model;

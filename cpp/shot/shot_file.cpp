@@ -36,6 +36,9 @@ public:
                       "environment_cd_m2",
                       "lens",
                       "f_number",
+                      "blades",
+                      "blade_rounding",
+                      "blade_rotation_deg",
                       "film_mm",
                       "resolution",
                       "position_m",
@@ -89,6 +92,10 @@ private:
         if (const std::string lens = table_.name("lens"); !lens.empty())
             shot.lens = lens.find_first_of("/.") == std::string::npos ? lens : table_.path("lens");
         shot.f_number = table_.number("f_number");
+        if (const auto blades = table_.number("blades")) shot.blades = table_.whole("blades", *blades);
+        shot.blade_rounding = table_.number("blade_rounding");
+        shot.blade_rotation_deg = table_.number("blade_rotation_deg");
+        table_.checked(shot.blades ? "blades" : "blade_rounding", [&] { check_blades(shot); });
         if (const auto size = table_.numbers("film_mm", 2); !size.empty()) shot.film_mm = {size[0], size[1]};
         if (const auto pixels = table_.numbers("resolution", 2); !pixels.empty())
             shot.resolution = {table_.whole("resolution", pixels[0]), table_.whole("resolution", pixels[1])};

@@ -23,6 +23,8 @@ struct ShotRequest {
 
     std::string lens = "double-gauss-50mm";  ///< a bundled one, or a file
     std::optional<double> f_number;
+    std::optional<int> blades;  ///< of the diaphragm; this and the next two: the lens's where they are left out
+    std::optional<double> blade_rounding, blade_rotation_deg;
     std::optional<std::array<double, 2>> film_mm;
     std::optional<std::array<int, 2>> resolution;
     ViewRequest view;
@@ -37,6 +39,9 @@ struct ShotRequest {
 
     bool chooses_environment() const { return environment_cd_m2 || !environment_file.empty(); }
 };
+
+/// Throws InputError where the blades of a request are no diaphragm's.
+void check_blades(const ShotRequest& request);
 
 /// Throws InputError unless it is a luminance that a scene can be lit with.
 void check_environment(Vec3f radiance_cd_m2);

@@ -94,6 +94,7 @@ HOST_ONLY = {
     "render/gap_finder.hpp",
     "render/image.hpp",
     "render/layer_film.hpp",
+    "render/left_out_motion.hpp",
     "render/layers.hpp",
     "render/live_frame.hpp",
     "render/live_view.hpp",

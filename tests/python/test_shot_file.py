@@ -79,6 +79,20 @@ def test_focus_and_stop(tmp_path: Path) -> None:
     assert load(tmp_path, base + "f_number = 8\n").camera.lens.first_order().f_number == pytest.approx(8)
 
 
+def test_blades(tmp_path: Path) -> None:
+    base = 'format = 1\nscene = "quad.obj"\nexposure_time_s = 1\nf_number = 8\n'
+    lens = load(tmp_path, base + "blades = 7\nblade_rounding = 0.3\nblade_rotation_deg = 15\n").camera.lens
+    assert lens == load(tmp_path, base).camera.lens.with_iris(7, 0.3, 15)
+    for line, wanted in (
+        ("blades = 2", r"shot\.toml:5: the iris has 2 blades; 0 \(round\) or 3 to 24 are wanted"),
+        ("blades = 5.5", r"shot\.toml:5: .*whole numbers"),
+        ("blade_rounding = 1.5", r"shot\.toml:5: the rounding of the iris"),
+        ("blade_rotation_deg = 10", "the diaphragm of double-gauss-50mm is round"),
+    ):
+        with pytest.raises(rc.InputError, match=wanted):
+            load(tmp_path, base + line + "\n")
+
+
 TEAPOT = "v 0 0 0\nv 1 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n"
 PLACED = """
 format = 1
