@@ -1,10 +1,12 @@
-"""Writes the quantum efficiencies of sensors/*.toml that come from tables: python tools/make_sensor_files.py (wants colour-science).
+"""Writes the quantum efficiencies of sensors/*.toml that come from tables: python tools/make_sensor_files.py.
 
-sony-imx071-color.toml. The shape of each filter's response is that of a Nikon D5100, in which this sensor sits: Darrodi,
-Finlayson, Goodman and Mackiewicz, "Reference data set for camera spectral sensitivity estimation", J. Opt. Soc. Am. A 32
-(2015), 381, as colour-science has it: per unit of energy, each filter with a maximum of 1. How the filters compare is
-not in it; Adobe's colour matrix of the D5100 for D65 (DNG Converter; also in LibRaw and dcraw) says what each sees of
-white. So response over wavelength gives electrons per photon up to one factor, which PEAK fixes.
+Wants colour-science, for its tables alone.
+
+sony-imx071-color.toml. The shape of each filter's response is that of a Nikon D5100, in which this sensor sits:
+Darrodi, Finlayson, Goodman and Mackiewicz, "Reference data set for camera spectral sensitivity estimation", J. Opt.
+Soc. Am. A 32 (2015), 381, as colour-science has it: per unit of energy, each filter with a maximum of 1. How the
+filters compare is not in it; Adobe's colour matrix of the D5100 for D65 (DNG Converter; also in LibRaw and dcraw) says
+what each sees of white. So response over wavelength gives electrons per photon up to one factor, which PEAK fixes.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>&
     request.hot_share = static_cast<float>(noise.hot_pixel_share);
     request.hot_electrons = static_cast<float>(
         std::min(dark_electrons(sensor, noise.hot_pixel_current_e_per_s, exposure_time_s, temperature_c), 1e30));
-    request.full_well_e = static_cast<float>(full_well_e(sensor.conversion.saturation_capacity_e));
+    request.full_well_e = static_cast<float>(full_well_e(sensor));
     request.read_noise_e = static_cast<float>(noise.read_noise_e);
     request.row_noise_e = static_cast<float>(noise.row_noise_e);
     request.converter_noise_dn = static_cast<float>(sensor.conversion.converter_noise_dn);
@@ -251,7 +251,7 @@ void bind_conversion(py::class_<Sensor>& type) {
     def("black_level_dn", &SensorConversion::black_level_dn, "Of no light.");
     def("converter_noise_dn", &SensorConversion::converter_noise_dn, "After the gain, standard deviation.");
     type.def_property_readonly(
-        "full_well_e", [](const Sensor& s) { return full_well_e(s.conversion.saturation_capacity_e); },
+        "full_well_e", [](const Sensor& s) { return full_well_e(s); },
         "Electrons that a pixel holds. EMVA 1288's saturation capacity lies some three deviations below.");
 }
 

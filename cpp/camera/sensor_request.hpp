@@ -69,7 +69,7 @@ struct SensorLanes {
     alignas(64) double mean[N];  ///< electrons expected
     alignas(64) double count[N];
     alignas(64) std::uint32_t stream[N];
-    alignas(64) std::int32_t is_drawn[N];
+    alignas(64) std::int32_t is_left[N];
     alignas(64) float offset_e[N];  ///< fixed and read noise
     alignas(64) float converter_dn[N];
 };
@@ -89,7 +89,8 @@ REALCAM_INLINE float angular_response(const AngularResponse& response, float col
 /// Electrons beyond which neither well nor converter can tell how many there are; so that absurd light stays finite.
 REALCAM_INLINE float most_electrons(const SensorRequest& request) {
     const float converter = request.largest_dn / request.gain_dn_per_e;
-    const float limit = request.full_well_e < converter ? request.full_well_e : converter;
+    const float most_of_these = request.full_well_e < converter ? request.full_well_e : converter;
+    const float limit = most_of_these < 1e15f ? most_of_these : 1e15f;  // whole numbers in a double, with room
     return limit +
            40.0f * (std::sqrt(limit) + request.read_noise_e + request.row_noise_e + request.offset_deviation_e) +
            1000.0f;
@@ -138,20 +139,51 @@ void add_pattern(const SensorRequest& request, std::uint32_t first_pixel, float 
     }
 }
 
-/// Most numbers come of the first attempt, all lanes together; the others one by one.
+/// Small means, some lanes at a time, so that few wait for one of a larger mean.
 template <int N>
-void draw_electrons(SensorLanes<N>& lanes) {
+void invert_small_means(SensorLanes<N>& lanes) {
+    constexpr int kGroup = 32;
+    static_assert(N % kGroup == 0);
+    alignas(64) double mean[kGroup], u[kGroup], count[kGroup];
+    for (int first = 0; first < N; first += kGroup) {
+        bool is_any_small = false;
+        for (int k = 0; k < kGroup; ++k) {
+            const double m = lanes.mean[first + k];
+            is_any_small |= (m < kLargestInvertedMean) & (m > 0);
+        }
+        if (!is_any_small) {
+            for (int k = 0; k < kGroup; ++k) lanes.count[first + k] = 0;
+            continue;
+        }
+        REALCAM_LANES
+        for (int k = 0; k < kGroup; ++k) {
+            const std::uint32_t stream = lanes.stream[first + k];
+            mean[k] = lanes.mean[first + k] < kLargestInvertedMean ? lanes.mean[first + k] : 0.0;
+            u[k] = open_unit_double(attempt_bits(stream, 0, 0)) +
+                   (open_unit_double(attempt_bits(stream, 0, 1)) - 0.5) * 0x1p-32;
+        }
+        invert_poisson(mean, u, count);
+        for (int k = 0; k < kGroup; ++k) lanes.count[first + k] = count[k];
+    }
+}
+
+/// Of larger means most numbers come of the first attempt, all lanes together; the others one by one.
+template <int N>
+void draw_large_means(SensorLanes<N>& lanes) {
+    std::int32_t left = 0;
     REALCAM_LANES
     for (int k = 0; k < N; ++k) {
-        const double mean = lanes.mean[k] > kLeastRejectionMean ? lanes.mean[k] : kLeastRejectionMean;
-        const double u = open_unit_double(attempt_bits(lanes.stream[k], 0, 0));
-        const double v = open_unit_double(attempt_bits(lanes.stream[k], 0, 1));
-        const PoissonAttempt attempt = PoissonHat(mean).attempt(u, v);
-        lanes.count[k] = attempt.count;
-        lanes.is_drawn[k] = attempt.is_accepted & (lanes.mean[k] >= kLeastRejectionMean) ? 1 : 0;
+        const bool is_large = lanes.mean[k] >= kLargestInvertedMean;
+        const PoissonHat hat(is_large ? lanes.mean[k] : kLargestInvertedMean);
+        const PoissonAttempt attempt = hat.attempt(open_unit_double(attempt_bits(lanes.stream[k], 0, 0)),
+                                                   open_unit_double(attempt_bits(lanes.stream[k], 0, 1)));
+        lanes.count[k] = is_large ? attempt.count : lanes.count[k];
+        lanes.is_left[k] = is_large & !attempt.is_accepted ? 1 : 0;
+        left += lanes.is_left[k];
     }
+    if (left == 0) return;
     for (int k = 0; k < N; ++k)
-        if (!lanes.is_drawn[k]) lanes.count[k] = poisson(lanes.mean[k], lanes.stream[k]);
+        if (lanes.is_left[k]) lanes.count[k] = poisson_by_rejection(lanes.mean[k], lanes.stream[k]);
 }
 
 template <int N>
@@ -209,7 +241,8 @@ void expose_rows(const SensorRequest& request) {
                 lanes.stream[k] = sensor_noise::stream(first + static_cast<std::uint32_t>(k), request.seed);
             expect_light(request, row, column, from, lanes);
             add_pattern(request, first, most, lanes);
-            draw_electrons(lanes);
+            invert_small_means(lanes);
+            draw_large_means(lanes);
             add_read_noise(request, row_offset_e, lanes);
             convert(request, lanes, dn);
             for (int k = 0; k < used; ++k) request.raw[place + k] = static_cast<std::uint16_t>(static_cast<int>(dn[k]));

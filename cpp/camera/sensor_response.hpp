@@ -114,29 +114,44 @@ inline std::array<double, 3> white_of(const SensorMatrix& matrix) {
 }
 
 /// The number of electrons at which a well is full. EMVA 1288 measures the saturation capacity where the temporal
-/// variance is largest. Of a Poisson number X that is cut at a limit C, that is below C: var(min(X, C)) = m v(z), with
-/// the mean m, z = (C - m) / sqrt(m) and v the variance of a standard normal number cut at z. It is largest where
-/// v(z) = sqrt(m) v'(z), to first order in 1 / sqrt(m); then C = m + z sqrt(m).
-inline double full_well_e(double saturation_capacity_e) {
+/// variance, averaged over the pixels, is largest. Of a Poisson number of mean m that is cut at C it is m v(z), with
+/// z = (C - m) / sqrt(m) and v the variance of a standard normal number cut at z; its derivative by m is
+/// v(z) - v'(z) (C + m) / (2 sqrt(m)). Pixels have the means m (1 + PRNU). So C lies some three deviations above.
+inline double full_well_e(double saturation_capacity_e, double prnu_percent) {
     if (!std::isfinite(saturation_capacity_e)) return saturation_capacity_e;
-    const double root = std::sqrt(saturation_capacity_e);
-    const auto rises = [&](double z) {
-        const double below = 0.5 * std::erfc(-z / std::numbers::sqrt2),
-                     density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+    const auto slope = [](double m, double full) {
+        const double z = (full - m) / std::sqrt(m);
+        const double below = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+        const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
         const double mean = z * (1 - below) - density;
         const double variance = below - z * density + z * z * (1 - below) - mean * mean;
-        return variance - root * 2 * (1 - below) * (density + z * below) >= 0;
+        return variance - (1 - below) * (density + z * below) * (full + m) / std::sqrt(m);
     };
-    double low = 0, high = 12;
+    const auto rises = [&](double full) {
+        double sum = 0;
+        for (int i = -24; i <= 24; ++i) {  // PRNU up to six deviations, in quarters
+            const double deviations = 0.25 * i, response = 1 + 0.01 * prnu_percent * deviations;
+            sum += std::exp(-deviations * deviations / 2) * response * slope(response * saturation_capacity_e, full);
+        }
+        return sum >= 0;
+    };
+    double low = saturation_capacity_e;
+    double high = low + 12 * std::sqrt(low) + 0.08 * prnu_percent * low;
     for (int i = 0; i < 60; ++i) (rises(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
-    return saturation_capacity_e + low * root;
+    return high;
+}
+
+/// That of a sensor.
+inline double full_well_e(const Sensor& sensor) {
+    return full_well_e(sensor.conversion.saturation_capacity_e, sensor.noise.prnu_percent);
 }
 
 /// A sensor with pixels of one size: what its ISO numbers mean. ISO 12232, saturation-based speed: S = 78 / H, H being
 /// the exposure in lux seconds at which white, here under D65, saturates its most sensitive filter.
 class SensorSpeed {
 public:
-    SensorSpeed(const Sensor& sensor, double pitch_um) : conversion_(sensor.conversion) {
+    SensorSpeed(const Sensor& sensor, double pitch_um)
+        : conversion_(sensor.conversion), full_well_e_(full_well_e(sensor)) {
         const std::array<double, 3> white = white_of(electrons_per_um2(sensor, Illuminant::named("D65")));
         electrons_per_lux_s_ = pitch_um * pitch_um * *std::max_element(white.begin(), white.end());
         if (!(electrons_per_lux_s_ > 0)) throw InputError("quantum_efficiency must see some of the light of D65");
@@ -145,8 +160,7 @@ public:
     /// 0 and infinite where the gain is whatever the ISO asks for.
     double lowest_iso() const {
         if (conversion_.gain_dn_per_e == 0) return 0;
-        const double electrons =
-            std::min(full_well_e(conversion_.saturation_capacity_e), range_dn() / conversion_.gain_dn_per_e);
+        const double electrons = std::min(full_well_e_, range_dn() / conversion_.gain_dn_per_e);
         return kSaturation * electrons_per_lux_s_ / electrons;
     }
     double highest_iso() const {
@@ -176,6 +190,7 @@ private:
     }
 
     SensorConversion conversion_;
+    double full_well_e_;
     double electrons_per_lux_s_;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "random.hpp"
 
@@ -9,8 +11,8 @@ namespace REALCAM_NAMESPACE {
 // transformed rejection where it is not (Hoermann 1993, "The transformed rejection method for generating Poisson random
 // variables", algorithm PTRS). All in double: a mean of 1e7 electrons has a deviation of 3e3 whole numbers.
 
-/// From here on transformed rejection is valid (Hoermann 1993).
-inline constexpr double kLeastRejectionMean = 10;
+/// Up to here the sum of probabilities is quicker than rejection, which is valid from 10 on (Hoermann 1993).
+inline constexpr double kLargestInvertedMean = 40;
 
 /// 32 random bits as a double in (0, 1).
 REALCAM_INLINE double open_unit_double(std::uint32_t bits) {
@@ -18,14 +20,14 @@ REALCAM_INLINE double open_unit_double(std::uint32_t bits) {
     return 0.5 + (static_cast<double>(static_cast<std::int32_t>(bits)) + 0.5) * 0x1p-32;
 }
 
-/// One attempt of PTRS for a mean of at least kLeastRejectionMean.
+/// One attempt of PTRS.
 struct PoissonAttempt {
     double count;  ///< whole; the result if accepted
     bool is_accepted;  ///< at once: some 9 in 10
     bool is_possible;  ///< is_accepted_slowly decides
 };
 
-/// The hat of PTRS for one mean.
+/// The hat of PTRS for one mean of at least 10.
 struct PoissonHat {
     double mean, b, a, least_v;
 
@@ -62,19 +64,44 @@ struct PoissonHat {
     }
 };
 
-/// A Poisson number by inversion, for means below kLeastRejectionMean. u in (0, 1), from 53 random bits: what lies
-/// beyond has a probability of 1e-16.
-REALCAM_HD inline double poisson_by_inversion(double mean, double u) {
-    // No further than the whole numbers whose probability a double still adds to the sum.
-    constexpr int kFarthest = 80;
-    double probability = std::exp(-mean), sum = probability;
-    int count = 0;
-    while (u > sum && count < kFarthest) {
-        ++count;
-        probability *= mean / count;
-        sum += probability;
+/// e^-x for x from 0 to 40, to 8e-15 of its value. Plain arithmetic, so that lane loops with it become vector code.
+REALCAM_INLINE double exp_of_negative(double x) {
+    constexpr double kLog2 = 0.693147180559945309417;
+    const double halvings = std::floor(x / kLog2 + 0.5), r = halvings * kLog2 - x;  // -0.35 .. 0.35
+    double sum = 1;
+    REALCAM_UNROLL
+    for (int k = 13; k >= 1; --k) sum = 1 + r * (1.0 / k) * sum;
+    const auto exponent = static_cast<std::int64_t>(1023 - static_cast<std::int32_t>(halvings));
+    return sum * std::bit_cast<double>(exponent << 52);
+}
+
+/// Poisson numbers by inversion, of means up to kLargestInvertedMean: the number of partial sums of the probabilities
+/// that are below u, a uniform number in (0, 1) of 53 bits. All lanes go as far as the farthest of them, which is
+/// quicker than one by one: a step has no quotient and no branch of a lane's own. Other means: any count.
+template <int N>
+REALCAM_HD void invert_poisson(const double (&mean)[N], const double (&u)[N], double (&count)[N]) {
+    constexpr int kFarthest = 160;  // a probability of 1e-40 at the largest mean
+    alignas(64) double probability[N], left[N];  // of u, less the sum so far
+    REALCAM_LANES
+    for (int k = 0; k < N; ++k) {
+        const double m = mean[k] < kLargestInvertedMean ? mean[k] : 0.0;
+        probability[k] = exp_of_negative(m);
+        left[k] = m > 0.0 ? u[k] - probability[k] : 0.0;
+        count[k] = 0;
     }
-    return count;
+    for (int step = 1; step < kFarthest; ++step) {
+        const double inverse = 1.0 / step;
+        double going = 0;
+        REALCAM_LANES
+        for (int k = 0; k < N; ++k) {
+            const double one = left[k] > 0.0 ? 1.0 : 0.0;
+            count[k] += one;
+            going += one;
+            probability[k] *= mean[k] * inverse;
+            left[k] -= probability[k];
+        }
+        if (!(going > 0)) return;
+    }
 }
 
 /// The random bits of one Poisson number are a function of its stream and of the attempt; two halves for each.
@@ -82,14 +109,8 @@ REALCAM_INLINE std::uint32_t attempt_bits(std::uint32_t stream, std::uint32_t at
     return hash32(stream, 2 * attempt + half);
 }
 
-/// A Poisson number of a finite mean. Attempts before `first_attempt` are known to have failed.
-REALCAM_HD inline double poisson(double mean, std::uint32_t stream, std::uint32_t first_attempt = 0) {
-    if (!(mean > 0)) return 0;
-    if (mean < kLeastRejectionMean) {
-        const double high = open_unit_double(attempt_bits(stream, 0, 0));
-        const double low = open_unit_double(attempt_bits(stream, 0, 1)) - 0.5;
-        return poisson_by_inversion(mean, high + low * 0x1p-32);
-    }
+/// A Poisson number of a finite mean of at least 10, by rejection. Attempts before `first_attempt` have failed.
+REALCAM_HD inline double poisson_by_rejection(double mean, std::uint32_t stream, std::uint32_t first_attempt = 0) {
     const PoissonHat hat(mean);
     for (std::uint32_t i = first_attempt;; ++i) {
         const double u = open_unit_double(attempt_bits(stream, i, 0)), v = open_unit_double(attempt_bits(stream, i, 1));

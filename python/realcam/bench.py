@@ -192,12 +192,24 @@ def sensor(threads: int) -> Result:
     pitch_um, film_pixels = 2.25, (4000, 6000)
     per_lux_s = chip.electrons_per_um2()[0].sum() * pitch_um**2
     seconds = {}
-    for electrons in (0, 1, 10, 100, 1000, 8000):
+    for electrons in (0, 1, 10, 50, 100, 1000, 8000):
         exposure = np.full((*film_pixels, 3), electrons / per_lux_s, np.float32)
         seconds[str(electrons)] = round(
             _best(
                 partial(
-                    _core._expose, chip, exposure, pitch_um, pitch_um, math.inf, 0.01, chip.iso_range()[0], "", None, 1, 0, 1
+                    _core._expose,
+                    chip,
+                    exposure,
+                    pitch_um,
+                    pitch_um,
+                    math.inf,
+                    0.01,
+                    chip.iso_range()[0],
+                    "",
+                    None,
+                    1,
+                    0,
+                    1,
                 )
             ),
             3,

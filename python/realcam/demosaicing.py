@@ -9,6 +9,9 @@ import numpy as np
 from ._core import InputError
 
 METHODS = ("menon", "malvar", "bilinear")
+# Pixels by which a mosaic is continued beyond its edges, mirrored at its last pixels, so that the order of the filters
+# goes on. The library repeats the last pixels, which puts numbers of one filter in the place of another's.
+MARGIN = 8
 
 
 def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
@@ -32,4 +35,6 @@ def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
         "malvar": demosaicing_CFA_Bayer_Malvar2004,
         "bilinear": demosaicing_CFA_Bayer_bilinear,
     }
-    return np.asarray(by_name[method](mosaic, pattern), np.float32)
+    continued = np.pad(mosaic, MARGIN, mode="reflect")
+    colors = by_name[method](continued, pattern)[MARGIN:-MARGIN, MARGIN:-MARGIN]
+    return np.array(colors, np.float32)

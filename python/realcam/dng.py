@@ -32,14 +32,20 @@ def write(raw: RawImage, path: str | os.PathLike[str]) -> None:
     with tifffile.TiffWriter(buffer, byteorder="<") as file:
         file.write(
             raw.mosaic,
-            photometric=CFA if has_filters else LINEAR_RAW,
-            planarconfig=None if has_filters else "contig",
+            photometric=CFA if has_filters else "minisblack",
             software=f"realcam {__version__}",
             description="\n".join(f"{name} = {value}" for name, value in raw.metadata().items()),
             metadata=None,
             extratags=[(code, kind, count, value, True) for code, kind, count, value in _tags(raw)],
         )
-    write_whole(path, buffer.getvalue())
+    if not has_filters:  # tifffile takes LinearRaw for a picture of three colours
+        buffer.seek(0)
+        with tifffile.TiffFile(buffer, mode="r+b") as file:
+            file.pages[0].tags["PhotometricInterpretation"].overwrite(LINEAR_RAW)
+            content = buffer.getvalue()
+    else:
+        content = buffer.getvalue()
+    write_whole(path, content)
 
 
 def write_array(array: np.ndarray, path: str | os.PathLike[str]) -> None:

@@ -143,7 +143,9 @@ class RawImage:
         elif suffix == ".npy":
             dng.write_array(self.mosaic, path)
         elif suffix == ".png":
-            image_file.write_codes(self.developed(tone, demosaic=demosaic), path, {**self.metadata(), "realcam:tone": tone})
+            image_file.write_codes(
+                self.developed(tone, demosaic=demosaic), path, {**self.metadata(), "realcam:tone": tone}
+            )
         else:
             raise InputError(f"{os.fsdecode(path)}: .dng, .npy (the mosaic) or .png (developed) is wanted")
 
@@ -251,4 +253,4 @@ def exposed_film(
 def _exit_pupil_distance_mm(image: Image) -> float:
     """From the exit pupil to the film, by first-order optics: chief rays come from there."""
     lens: Any = image.camera.lens
-    return abs(lens.film_position_mm - lens.first_order().exit_pupil_position_mm)
+    return abs(float(lens.film_position_mm - lens.first_order().exit_pupil_position_mm))

@@ -31,8 +31,8 @@ def quiet() -> Iterator[None]:
 
 @cache
 def patches() -> np.ndarray:
-    """(4, 6, 3): linear sRGB of the 24 patches of X-Rite's ColorChecker, xyY of 2005 (N. Ohta's averages of charts up to
-    then), from D50 to D65 by Bradford's matrix; what sRGB cannot show is cut at 0.
+    """(4, 6, 3): linear sRGB of the 24 patches of the ColorChecker, as published in 2005 (xyY under D50), to D65 by
+    Bradford's matrix; what sRGB cannot show is cut at 0.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -46,8 +46,10 @@ def patches() -> np.ndarray:
 
 
 def chart_film(iso: float, illuminant: str = "") -> rc.Image:
-    """The chart, with a white of 1 at 0.9 of what a picture of this ISO shows as white."""
-    exposure = patches() * 0.9 / (0.018 * iso)
+    """The chart, with a white of 1 at 0.9 of what a picture of this ISO shows as white; in other light at half of it,
+    because ISO numbers are D65's, and tungsten has more red photons.
+    """
+    exposure = patches() * (0.45 if illuminant else 0.9) / (0.018 * iso)
     pixels = exposure.repeat(SIDE, axis=0).repeat(SIDE, axis=1)
     return film_of(pixels, pitch_um=PITCH_UM, iso=iso, illuminant=illuminant)
 
@@ -91,8 +93,10 @@ def test_the_developed_chart_looks_as_the_film_does(name: str, illuminant: str, 
     film, raw = exposed(name, illuminant)
     reference = patch_means(film.pixels) * 0.018 * raw.iso
     found = patch_means(raw.exposure(demosaic)) * 0.018 * raw.iso
-    # No fit: absolute lux seconds. The mean of 576 noisy pixels leaves some 0.1.
-    assert differences(found, reference).max() < 0.5
+    # No fit: absolute lux seconds. Noise is left: black has some 500 electrons a pixel, of which the mean of 576 pixels
+    # knows each filter to 0.2%, and the matrix doubles that.
+    assert differences(found, reference).max() < 1.0
+    assert np.median(differences(found, reference)) < 0.15
 
 
 @pytest.mark.parametrize("name", SENSORS)
@@ -161,7 +165,7 @@ def test_rawpy_opens_a_dng_without_filters(tmp_path: Path) -> None:
 
 def test_the_dng_has_what_the_format_asks_for(tmp_path: Path) -> None:
     tifffile = pytest.importorskip("tifffile", reason="tifffile comes with the dev extra")
-    film, raw = exposed("sony-imx071-color", "A")
+    _, raw = exposed("sony-imx071-color", "A")
     raw.save(tmp_path / "chart.dng")
     with tifffile.TiffFile(tmp_path / "chart.dng") as file:
         tags = {tag.code: tag.value for tag in file.pages[0].tags}

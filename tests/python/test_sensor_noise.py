@@ -54,7 +54,9 @@ def test_the_mean_of_many_exposures_is_what_light_brings() -> None:
 
 def test_the_same_numbers_for_any_number_of_threads() -> None:
     film = electron_film(300, (257, 301))
-    sensor = counter(black_level_dn=50).replace(prnu_percent=1, dsnu_e=2, read_noise_e=3, row_noise_e=1, hot_pixel_share=0.01)
+    sensor = counter(black_level_dn=50).replace(
+        prnu_percent=1, dsnu_e=2, read_noise_e=3, row_noise_e=1, hot_pixel_share=0.01
+    )
     one = sensor.expose(film, seed=5, threads=1)
     assert np.array_equal(one.mosaic, sensor.expose(film, seed=5, threads=2).mosaic)
     assert one == sensor.expose(film, seed=5)
@@ -77,7 +79,9 @@ def test_what_a_sensor_has_for_ever_stays_from_exposure_to_exposure() -> None:
     shape, mean = (200, 300), 2000.0
 
     def average(level: float, serial: int) -> np.ndarray:
-        film = electron_film(level, shape, black_level_dn=200) if level else film_of(np.zeros(shape), pitch_um=1, iso=1e3)
+        film = (
+            electron_film(level, shape, black_level_dn=200) if level else film_of(np.zeros(shape), pitch_um=1, iso=1e3)
+        )
         iso = sensor.iso_range()[0]
         frames = [sensor.expose(film, seed=s, serial=serial, iso=iso).mosaic for s in range(60)]
         return np.mean(frames, axis=0)

@@ -36,8 +36,11 @@ def info(name: SensorName) -> None:
         "pixel pitch": "the film's" if sensor.pixel_pitch_um is None else f"{sensor.pixel_pitch_um:g} um",
         "filters": sensor.color_filter_array or "none",
         "ISO": "any" if lowest == 0 else f"{lowest:.4g} to {highest:.4g}",
-        "gain": "by the ISO" if lowest == 0 else f"{sensor.gain_dn_per_e:g} DN/e, and up to {sensor.largest_gain_db:g} dB",
-        "converter": f"{sensor.adc_bits} bit, black at {sensor.black_level_dn:g} DN, noise {sensor.converter_noise_dn:g} DN",
+        "gain": "by the ISO"
+        if lowest == 0
+        else f"{sensor.gain_dn_per_e:g} DN/e, and up to {sensor.largest_gain_db:g} dB",
+        "converter": f"{sensor.adc_bits} bit, black at {sensor.black_level_dn:g} DN",
+        "converter noise": f"{sensor.converter_noise_dn:g} DN",
         "saturation capacity": f"{sensor.saturation_capacity_e:g} e",
         "read noise": f"{sensor.read_noise_e:g} e",
         "row noise": f"{sensor.row_noise_e:g} e",
