@@ -40,7 +40,7 @@ def write(raw: RawImage, path: str | os.PathLike[str]) -> None:
         )
     if not has_filters:  # tifffile takes LinearRaw for a picture of three colours
         buffer.seek(0)
-        with tifffile.TiffFile(buffer, mode="r+b") as file:
+        with tifffile.TiffFile(buffer, mode="r+") as file:
             file.pages[0].tags["PhotometricInterpretation"].overwrite(LINEAR_RAW)
             content = buffer.getvalue()
     else:

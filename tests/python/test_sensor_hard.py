@@ -100,7 +100,7 @@ def test_both_ends_of_iso(name: str) -> None:
 
 @pytest.mark.parametrize("iso", [1e-37, 1e38])
 def test_iso_numbers_of_no_camera(iso: float) -> None:
-    """All that a Camera admits, on pixels from a nanometre to a metre: numbers come, and within the converter's range."""
+    """The ends of what a Camera admits, on pixels from a nanometre to a metre."""
     for pitch_um in (1e-3, 1e6):
         pixels = np.array([[0, 1e-30, 1, 3.4e38]]).repeat(4, axis=0)
         mosaic = rc.Sensor.load("ideal").expose(film_of(pixels, pitch_um=pitch_um, iso=iso)).mosaic

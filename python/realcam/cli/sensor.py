@@ -76,6 +76,7 @@ def expose(
     demosaic: Annotated[str, typer.Option(help="Of .png: menon, malvar or bilinear.")] = "menon",
 ) -> None:
     """Expose a sensor to a film: raw numbers with the sensor's noise, and a picture developed from them."""
+    from ..demosaicing import METHODS
     from ..files import check_target
     from ..image_file import read_film
     from ..raw_image import exposed_film
@@ -86,6 +87,9 @@ def expose(
             raise InputError(f"{path}: is the film itself; the raw picture needs another name")
         if path.suffix.lower() not in (".dng", ".npy", ".png"):
             raise InputError(f"{path}: .dng, .npy (raw) or .png (developed) is wanted")
+    for word, known in ((tone, ("linear", "film")), (demosaic, METHODS)):
+        if word not in known:
+            raise InputError(f'"{word:.60}" is unknown; {", ".join(known)} is wanted')
     chosen = Sensor.load(sensor)
     pixels, entries = read_film(film)
     if chosen.angular_response:
