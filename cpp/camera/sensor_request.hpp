@@ -26,8 +26,8 @@ struct SensorRequest {
     const float* exposure;  ///< rows * width * 3, lux seconds, linear Rec. 709
     std::uint16_t* raw;     ///< rows * width
     std::int32_t width, first_row, row_count;  ///< the pointers are to the first of these rows
-    float electrons[4]
-                   [3];  ///< of one lux second of each channel, for the places (row % 2) * 2 + column % 2 of the mosaic
+    /// Of one lux second of each channel, at the places (row % 2) * 2 + column % 2 of the mosaic.
+    float electrons[4][3];
     AngularResponse angular_response;
     float response_deviation;  ///< photo-response non-uniformity, a fraction
     float offset_deviation_e;  ///< dark signal non-uniformity
@@ -54,7 +54,7 @@ inline constexpr std::uint32_t kRead = 0x10000, kRow = 0x10002;
 /// In the stream of the serial number.
 inline constexpr std::uint32_t kPattern = 0, kHot = 2;
 
-/// Bits as a fraction of 2^24, and the hot pixels' current in units of its mean: exponentially distributed.
+/// Current of a hot pixel in units of its mean, exponentially distributed; 0 for all but a share of the pixels.
 REALCAM_INLINE float hot_current(std::uint32_t bits, float share) {
     const float u = positive_unit_float(bits);
     return u < share ? -log_of_positive(u / share) : 0.0f;

@@ -175,7 +175,7 @@ public:
         if (iso < lowest_iso() * (1 - kRounded) || iso > highest_iso() * (1 + kRounded))
             throw InputError("iso must lie between " + rounded(lowest_iso()) + " and " + rounded(highest_iso()) +
                              " for this sensor; it is " + rounded(iso) +
-                             ": camera.replace(iso=...).metered(scene) exposes for another");
+                             " (camera.replace(iso=...).metered(scene) and realcam render --iso expose for another)");
         return conversion_.gain_dn_per_e * iso / lowest_iso();
     }
 

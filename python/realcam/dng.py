@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 LIGHT_SOURCES = {"": 21, "D65": 21, "A": 17, "FL2": 14}
 OTHER_LIGHT_SOURCE = 255
 CFA, LINEAR_RAW = 32803, 34892  # PhotometricInterpretation
+# IEC 61966-2-1.
+SRGB_FROM_XYZ = (3.2404542, -1.5371385, -0.4985314, -0.969266, 1.8760108, 0.041556, 0.0556434, -0.2040259, 1.0572252)
 ASCII, BYTE, SHORT, LONG, RATIONAL, SRATIONAL = "s", "B", "H", "I", "2I", "2i"
 
 
@@ -31,21 +33,17 @@ def write(raw: RawImage, path: str | os.PathLike[str]) -> None:
     has_filters = bool(raw.color_filter_array)
     with tifffile.TiffWriter(buffer, byteorder="<") as file:
         file.write(
-            raw.mosaic,
-            photometric=CFA if has_filters else "minisblack",
+            # Without filters as three equal colours: of one alone LibRaw makes a grey picture, and darktable 4.2 takes
+            # each pixel and its two neighbours for red, green and blue.
+            raw.mosaic if has_filters else np.repeat(raw.mosaic[..., None], 3, axis=2),
+            photometric=CFA if has_filters else LINEAR_RAW,
+            planarconfig=None if has_filters else "contig",
             software=f"realcam {__version__}",
             description="\n".join(f"{name} = {value}" for name, value in raw.metadata().items()),
             metadata=None,
             extratags=[(code, kind, count, value, True) for code, kind, count, value in _tags(raw)],
         )
-    if not has_filters:  # tifffile takes LinearRaw for a picture of three colours
-        buffer.seek(0)
-        with tifffile.TiffFile(buffer, mode="r+") as file:
-            file.pages[0].tags["PhotometricInterpretation"].overwrite(LINEAR_RAW)
-            content = buffer.getvalue()
-    else:
-        content = buffer.getvalue()
-    write_whole(path, content)
+    write_whole(path, buffer.getvalue())
 
 
 def write_array(array: np.ndarray, path: str | os.PathLike[str]) -> None:
@@ -73,6 +71,7 @@ def _tags(raw: RawImage) -> list[tuple[int, str, int, Any]]:
     height, width = raw.mosaic.shape
     model = f"realcam {raw.sensor.name}"
     entries = raw.metadata()
+    samples = 1 if raw.color_filter_array else 3
 
     def text(code: int, value: str) -> tuple[int, str, int, Any]:
         return code, ASCII, 0, value.encode("ascii", "replace").decode()
@@ -90,8 +89,8 @@ def _tags(raw: RawImage) -> list[tuple[int, str, int, Any]]:
         (50706, BYTE, 4, (1, 4, 0, 0)),  # DNGVersion
         (50707, BYTE, 4, (1, 1, 0, 0)),  # DNGBackwardVersion
         text(50708, model),  # UniqueCameraModel
-        rational(50714, raw.black_level_dn),  # BlackLevel
-        (50717, LONG, 1, raw.white_level_dn),  # WhiteLevel
+        rational(50714, samples * (raw.black_level_dn,)),  # BlackLevel
+        (50717, LONG, samples, samples * (raw.white_level_dn,)),  # WhiteLevel
         rational(50718, (1, 1)),  # DefaultScale
         (50719, LONG, 2, (0, 0)),  # DefaultCropOrigin
         (50720, LONG, 2, (width, height)),  # DefaultCropSize
@@ -113,5 +112,11 @@ def _tags(raw: RawImage) -> list[tuple[int, str, int, Any]]:
             rational(50728, raw.as_shot_neutral),  # AsShotNeutral
             (50778, SHORT, 1, LIGHT_SOURCES.get(raw.illuminant, OTHER_LIGHT_SOURCE)),  # CalibrationIlluminant1
             rational(50964, raw.d50_from_balanced, signed=True),  # ForwardMatrix1
+        ]
+    else:
+        tags += [
+            rational(50721, SRGB_FROM_XYZ, signed=True),  # ColorMatrix1: of D65's white equal colours
+            rational(50728, (1, 1, 1)),  # AsShotNeutral
+            (50778, SHORT, 1, LIGHT_SOURCES["D65"]),  # CalibrationIlluminant1
         ]
     return sorted(tags, key=lambda tag: tag[0])

@@ -220,7 +220,7 @@ def exposed_film(
         warnings.warn(
             f"the film's pixels of {film_pitch_um:.4g} um are exposed as the sensor's of {pitch_um:.4g} um: noise is "
             "the sensor's, sharpness the film's (film=sensor.film() makes both agree)",
-            stacklevel=stacklevel + 1,
+            stacklevel=stacklevel,
         )
     mosaic = _core._expose(
         sensor,
