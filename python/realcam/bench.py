@@ -186,35 +186,21 @@ def frame(threads: int) -> Result:
 
 
 def sensor(threads: int) -> Result:
-    """A sensor of 24 megapixels, on one core: seconds from film to raw, by the electrons of a pixel."""
+    """A sensor of 24 megapixels: CPU seconds from film to raw on one core, by the electrons of a pixel."""
     del threads  # one core by definition
     chip = Sensor.load("sony-imx900-mono").replace(row_noise_e=0.3, hot_pixel_share=1e-4, hot_pixel_current_e_per_s=50)
-    pitch_um, film_pixels = 2.25, (4000, 6000)
-    per_lux_s = chip.electrons_per_um2()[0].sum() * pitch_um**2
-    seconds = {}
+    pitch_um, lowest_iso = 2.25, chip.iso_range()[0]
+    electrons_per_lux_s = chip.electrons_per_um2()[0].sum() * pitch_um**2
+    best = {}
     for electrons in (0, 1, 10, 50, 100, 1000, 8000):
-        exposure = np.full((*film_pixels, 3), electrons / per_lux_s, np.float32)
-        seconds[str(electrons)] = round(
-            _best(
-                partial(
-                    _core._expose,
-                    chip,
-                    exposure,
-                    pitch_um,
-                    pitch_um,
-                    math.inf,
-                    0.01,
-                    chip.iso_range()[0],
-                    "",
-                    None,
-                    1,
-                    0,
-                    1,
-                )
-            ),
-            3,
-        )
-    return {"megapixels": 24, "seconds_by_electrons": seconds, "worst": max(seconds.values())}
+        exposure = np.full((4000, 6000, 3), electrons / electrons_per_lux_s, np.float32)
+        times = []
+        for _ in range(3):
+            start = time.process_time()
+            _core._expose(chip, exposure, pitch_um, pitch_um, math.inf, 0.01, lowest_iso, "", None, 1, 0, 1)
+            times.append(time.process_time() - start)
+        best[str(electrons)] = round(min(times), 3)
+    return {"megapixels": 24, "cpu_seconds_by_electrons": best, "worst": max(best.values())}
 
 
 def _gpu_scene() -> Scene:
