@@ -10,8 +10,8 @@ namespace realcam::io {
 /// Names of the bundled sensors, sorted.
 std::vector<std::string> sensor_names();
 
-/// Reads a sensor: a bundled one by name, or a .toml file by its path (anything with a '/' or a '.'). Throws InputError,
-/// naming file and line.
+/// Reads a sensor: a bundled one by name, or a .toml file by its path (anything with a '/' or a '.'). Throws
+/// InputError, naming file and line.
 Sensor read_sensor(const std::string& name_or_path);
 
 /// Reads a sensor from the text of a sensor file (format 1, described in sensors/README.md). `file` is what messages
