@@ -41,6 +41,7 @@ void bind_view(py::module_& m);
 void bind_shot(py::module_& m);
 void bind_live(py::module_& m);
 void bind_session(py::module_& m);
+void bind_sensor(py::module_& m);
 void bind_bench(py::module_& m);
 
 /// What all functions and classes of the module have in common; the last of all.

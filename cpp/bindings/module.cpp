@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, m) {
     bind_shot(m);
     bind_live(m);
     bind_session(m);
+    bind_sensor(m);
     bind_bench(m);
     finish_module(m);
     watch_exit_and_fork();

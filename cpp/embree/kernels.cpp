@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include "../camera/ray_request.hpp"
+#include "../camera/sensor_request.hpp"
 #include "../optics/trace_request.hpp"
 #include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
@@ -187,6 +188,10 @@ void trace_all(const void* request) {
     for (std::int64_t first = 0; first < rays.count; first += kBlock) trace_rays_of<kBlock>(rays, first);
 }
 
+void expose_sensor(const void* request) {
+    expose_rows<kLanes>(*static_cast<const SensorRequest*>(request));
+}
+
 void trace_block(const void* lens_view, void* rays) {
     trace_lens(*static_cast<const LensView<float>*>(lens_view), *static_cast<LensRays<float, kLanes>*>(rays));
 }
@@ -202,4 +207,5 @@ void trace_block(const void* lens_view, void* rays) {
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
     REALCAM_TEXT(REALCAM_ISA), realcam::render_tile, realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
-    realcam::generate_all,     realcam::trace_block, realcam::trace_all<double>,  realcam::trace_all<float>};
+    realcam::generate_all,     realcam::trace_block, realcam::trace_all<double>,  realcam::trace_all<float>,
+    realcam::expose_sensor};

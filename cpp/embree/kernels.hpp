@@ -31,6 +31,7 @@ struct realcam_kernels {
     void (*trace_block)(const void* lens_view, void* rays);  // LensView<float>, LensRays<float, 256>
     void (*trace_f64)(const void* request);                  // TraceRequest<double>
     void (*trace_f32)(const void* request);                  // TraceRequest<float>
+    void (*expose_sensor)(const void* request);              // SensorRequest
 };
 }
 

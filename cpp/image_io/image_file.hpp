@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "../camera/develop.hpp"
 #include "../io/image_metadata.hpp"
@@ -61,6 +63,20 @@ inline PictureView view_of(const Image& image) {
 ///   second part. Further layers are channels, too (docs/layers.md), and the names of their ids are in the metadata.
 void write_image(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                  ToneCurve tone = ToneCurve::film, const KeepGoing& keep_going = {});
+
+/// A picture of 8-bit sRGB codes (height * width * 3) as .png, with text for every entry. Throws as write_image does.
+void write_codes(const std::string& path, int width, int height, const std::uint8_t* codes,
+                 const std::vector<std::pair<std::string, std::string>>& entries, const KeepGoing& keep_going = {});
+
+/// What write_image has put into an .exr: the exposure, and the "realcam:..." entries of its metadata.
+struct FilmFile {
+    int width = 0, height = 0;
+    std::vector<float> exposure;  ///< height * width * 3, lux seconds, linear Rec. 709
+    std::vector<std::pair<std::string, std::string>> entries;
+};
+
+/// Reads such a file. Throws ImageFileError and Cancelled.
+FilmFile read_film(const std::string& path, const KeepGoing& keep_going = {});
 
 /// Throws ImageFileError where write_image could not write this path: to be told before rendering, not after.
 void check_image_path(const std::string& path);

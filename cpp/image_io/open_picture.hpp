@@ -3,6 +3,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "../error.hpp"
 #include "../keep_going.hpp"
@@ -20,6 +22,7 @@ public:
     bool is_wide = false;    ///< more than 8 bits a value
     bool has_associated_alpha = false;  ///< colours are multiplied by alpha
     std::size_t encoded_size = 0;       ///< bytes of the file
+    std::vector<std::pair<std::string, std::string>> entries;  ///< of its metadata, those named "realcam:..."
 
     std::size_t pixel_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 

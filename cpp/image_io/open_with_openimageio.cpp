@@ -45,6 +45,10 @@ public:
         is_wide = found.format.size() > 1;
         // OpenEXR multiplies colours by alpha, whatever a reader wishes.
         has_associated_alpha = format == "openexr" && found.alpha_channel == 3;
+        for (const OIIO::ParamValue& entry : found.extra_attribs) {
+            const std::string name = entry.name().string();
+            if (name.starts_with("realcam:")) entries.emplace_back(name, entry.get_string());
+        }
     }
 
     void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {

@@ -133,4 +133,21 @@ Environment read_environment(const std::string& path, const KeepGoing& keep_goin
     return environment;
 }
 
+FilmFile read_film(const std::string& path, const KeepGoing& keep_going) {
+    try {
+        const auto picture = open_picture(path, {});
+        if (!picture->is_linear || picture->channels < 3)
+            throw Error("holds no exposure; an .exr that realcam has written is wanted");
+        check_size(*picture, kMostTexturePixels, 3 * sizeof(float));
+        FilmFile film{picture->width, picture->height, std::vector<float>(3 * picture->pixel_count()),
+                      picture->entries};
+        picture->read(3, 3, film.exposure.data(), keep_going);
+        return film;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        throw ImageFileError(path + ": " + error.what());
+    }
+}
+
 }  // namespace realcam::image_io

@@ -199,6 +199,21 @@ void write_image(const PictureView& picture, const std::string& path, const io::
     }
 }
 
+void write_codes(const std::string& path, int width, int height, const std::uint8_t* codes,
+                 const std::vector<std::pair<std::string, std::string>>& entries, const KeepGoing& keep_going) {
+    check_name(path);
+    if (format_of(path) != "png") throw ImageFileError(path + ": codes are written to .png");
+    if (width < 1 || height < 1) throw ImageFileError(path + ": the picture is empty");
+    ImageSpec spec(width, height, 3, TypeDesc::UINT8);
+    spec.attribute("Software", "realcam " REALCAM_VERSION);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    for (const auto& [name, value] : entries) spec.attribute(name, value);
+    const std::size_t row = 3 * static_cast<std::size_t>(width);
+    write_rows<std::uint8_t>(path, "png", spec, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
+        std::memcpy(out, codes + first * row, (end - first) * row);
+    });
+}
+
 void check_image_path(const std::string& path) {
     check_name(path);
     const UnfinishedFile attempt(path);

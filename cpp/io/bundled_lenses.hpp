@@ -4,12 +4,9 @@
 #include <span>
 #include <string_view>
 
-namespace realcam::io {
+#include "bundled_file.hpp"
 
-struct BundledFile {
-    std::string_view name;  // of the file, without its suffix: "double-gauss-50mm"
-    std::string_view text;
-};
+namespace realcam::io {
 
 // Every bundled lens, in the order of the file names.
 std::span<const BundledFile> bundled_lens_files();

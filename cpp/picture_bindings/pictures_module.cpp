@@ -89,7 +89,8 @@ std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, co
 
 void write_picture(const std::string& path, const FloatArray& exposure, const FloatArray& depth, const Camera& camera,
                    int spp, std::uint32_t seed, bool film_tone, const py::dict& layers, const IdNames& object_names,
-                   const IdNames& material_names, bool is_whitted, float clamp_cd_m2, const std::string& denoiser) {
+                   const IdNames& material_names, bool is_whitted, float clamp_cd_m2, const std::string& denoiser,
+                   const std::string& effects, const std::string& illuminant) {
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
         throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
@@ -105,7 +106,30 @@ void write_picture(const std::string& path, const FloatArray& exposure, const Fl
     io::ImageMetadata metadata = io::metadata_of(
         camera, {spp, seed, 0, 0, is_whitted ? LightTransport::whitted : LightTransport::paths, clamp_cd_m2});
     metadata.denoiser = denoiser;
+    metadata.effects = effects;
+    metadata.illuminant = illuminant;
     image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
+}
+
+using Entries = std::vector<std::pair<std::string, std::string>>;
+
+py::tuple read_film(const std::string& path) {
+    image_io::FilmFile film;
+    {
+        const Unlocked unlocked;
+        film = image_io::read_film(path, no_signal);
+    }
+    py::array_t<float> exposure({film.height, film.width, 3});
+    std::memcpy(exposure.mutable_data(), film.exposure.data(), film.exposure.size() * sizeof(float));
+    return py::make_tuple(exposure, film.entries);
+}
+
+void write_codes(const std::string& path, const py::array_t<std::uint8_t, py::array::c_style>& codes,
+                 const Entries& entries) {
+    if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("codes of the shape (H, W, 3) are wanted");
+    const Unlocked unlocked;
+    image_io::write_codes(path, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),
+                          entries, no_signal);
 }
 
 }  // namespace
@@ -118,7 +142,9 @@ PYBIND11_MODULE(_pictures, m) {
     m.def("read_environment", &read_environment, "path"_a);
     m.def("write_picture", &write_picture, "path"_a, "exposure"_a, "depth"_a, "camera"_a, "spp"_a, "seed"_a,
           "film_tone"_a, "layers"_a, "object_names"_a, "material_names"_a, "is_whitted"_a, "clamp_cd_m2"_a,
-          "denoiser"_a);
+          "denoiser"_a, "effects"_a, "illuminant"_a);
+    m.def("write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
+    m.def("read_film", &read_film, "path"_a);
     m.def("check_image_path", &image_io::check_image_path, "path"_a);
     bindings::watch_exit_and_fork();  // of this extension's own work: each counts for itself
 }

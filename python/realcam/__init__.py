@@ -35,6 +35,7 @@ from ._core import (
     Scene,
     SceneFileError,
     Seidel,
+    Sensor,
     Spot,
     Surface,
     TraceResult,
@@ -43,10 +44,12 @@ from ._core import (
     devices,
     effects,
     lens_names,
+    sensor_names,
 )
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
+from .raw_image import RawImage
 from .render import render
 from .session import Session
 from .shot import Shot
@@ -73,6 +76,7 @@ __all__ = [
     "LiveView",
     "Material",
     "Mirror",
+    "RawImage",
     "RayChunks",
     "RayStatus",
     "RealcamError",
@@ -80,6 +84,7 @@ __all__ = [
     "Scene",
     "SceneFileError",
     "Seidel",
+    "Sensor",
     "Session",
     "Shot",
     "Spot",
@@ -93,4 +98,5 @@ __all__ = [
     "lens_names",
     "read_environment",
     "render",
+    "sensor_names",
 ]

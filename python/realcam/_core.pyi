@@ -9,6 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 from typing_extensions import Self, TypeVar
 
+from .image import Image
+from .raw_image import RawImage
+
 __version__: str
 _STATE_FORMAT: int
 
@@ -16,6 +19,7 @@ _Path: TypeAlias = str | PathLike[str]
 _Triple: TypeAlias = Sequence[float] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
 _PoseKey: TypeAlias = tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]
 _Material: TypeAlias = float | tuple[float, float] | str | Glass | None
+_Table: TypeAlias = Sequence[Sequence[float]]
 _Progress: TypeAlias = Callable[[float], bool | None]
 _Layers: TypeAlias = dict[str, NDArray[np.float32] | NDArray[np.uint32]]
 _Picture: TypeAlias = tuple[
@@ -456,6 +460,102 @@ class Film(_Value):
     def resolution(self) -> tuple[int, int]: ...
 
 @final
+class Sensor(_Value):
+    @staticmethod
+    def load(name_or_path: _Path = "ideal") -> Sensor: ...
+    def replace(
+        self,
+        *,
+        name: str | None = None,
+        pixel_pitch_um: float | None = None,
+        resolution: tuple[int, int] | None = None,
+        color_filter_array: str | None = None,
+        quantum_efficiency: _Table | None = None,
+        cover_glass: _Table | None = None,
+        angular_response: _Table | None = None,
+        gain_dn_per_e: float | None = None,
+        largest_gain_db: float | None = None,
+        saturation_capacity_e: float | None = None,
+        adc_bits: int | None = None,
+        black_level_dn: float | None = None,
+        converter_noise_dn: float | None = None,
+        read_noise_e: float | None = None,
+        row_noise_e: float | None = None,
+        dark_current_e_per_s: float | None = None,
+        dark_current_temperature_c: float | None = None,
+        dark_current_doubling_k: float | None = None,
+        dsnu_e: float | None = None,
+        prnu_percent: float | None = None,
+        hot_pixel_share: float | None = None,
+        hot_pixel_current_e_per_s: float | None = None,
+    ) -> Sensor: ...
+    def film(self) -> Film: ...
+    def electrons_per_um2(self, illuminant: str = "D65") -> NDArray[np.float64]: ...
+    def iso_range(self, pixel_pitch_um: float | None = None) -> tuple[float, float]: ...
+    def expose(
+        self,
+        image: Image,
+        *,
+        iso: float | None = None,
+        seed: int = 0,
+        serial: int = 0,
+        temperature_c: float | None = None,
+        threads: int = 0,
+    ) -> RawImage: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def source(self) -> str: ...
+    @property
+    def assumptions(self) -> tuple[str, ...]: ...
+    @property
+    def full_well_e(self) -> float: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def pixel_pitch_um(self) -> float | None: ...
+    @property
+    def resolution(self) -> tuple[int, int] | None: ...
+    @property
+    def color_filter_array(self) -> str: ...
+    @property
+    def quantum_efficiency(self) -> tuple[tuple[float, ...], ...]: ...
+    @property
+    def cover_glass(self) -> tuple[tuple[float, float], ...]: ...
+    @property
+    def angular_response(self) -> tuple[tuple[float, float], ...]: ...
+    @property
+    def gain_dn_per_e(self) -> float: ...
+    @property
+    def largest_gain_db(self) -> float: ...
+    @property
+    def saturation_capacity_e(self) -> float: ...
+    @property
+    def adc_bits(self) -> int: ...
+    @property
+    def black_level_dn(self) -> float: ...
+    @property
+    def converter_noise_dn(self) -> float: ...
+    @property
+    def read_noise_e(self) -> float: ...
+    @property
+    def row_noise_e(self) -> float: ...
+    @property
+    def dark_current_e_per_s(self) -> float: ...
+    @property
+    def dark_current_temperature_c(self) -> float: ...
+    @property
+    def dark_current_doubling_k(self) -> float: ...
+    @property
+    def dsnu_e(self) -> float: ...
+    @property
+    def prnu_percent(self) -> float: ...
+    @property
+    def hot_pixel_share(self) -> float: ...
+    @property
+    def hot_pixel_current_e_per_s(self) -> float: ...
+
+@final
 class CameraRays(Generic[_Doubles, _Floats, _Integers]):
     @property
     def origins_m(self) -> _Doubles: ...
@@ -794,6 +894,24 @@ def _metadata(
     illuminant: str,
     denoiser: str,
 ) -> dict[str, str]: ...
+def _expose(
+    sensor: Sensor,
+    exposure: NDArray[np.float32],
+    pixel_pitch_um: float,
+    film_pitch_um: float,
+    exit_pupil_distance_mm: float,
+    exposure_time_s: float,
+    iso: float,
+    illuminant: str,
+    temperature_c: float | None,
+    seed: int,
+    serial: int,
+    threads: int,
+) -> NDArray[np.uint16]: ...
+def _sensor_gain(sensor: Sensor, pixel_pitch_um: float, iso: float) -> float: ...
+def _sensor_color(
+    sensor: Sensor, illuminant: str
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 def _read_shot(
     path: str | os.PathLike[str], device: str, progress: _Progress | None
 ) -> tuple[Scene, Camera, int, int, int, str, tuple[str, ...], str, float, tuple[str, ...], str]: ...
@@ -865,4 +983,5 @@ def develop(exposure: ArrayLike, iso: float, tone: str = "film") -> NDArray[np.u
 def effects() -> list[str]: ...
 def devices() -> list[str]: ...
 def lens_names() -> list[str]: ...
+def sensor_names() -> list[str]: ...
 def pupil_setup(lens: Lens, film_radius_mm: float, on_one_core: bool = False) -> float: ...

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from . import _core
-from ._core import Camera, Film, Lens, Material, Scene, lens_names
+from ._core import Camera, Film, Lens, Material, Scene, Sensor, lens_names
 from .render import render
 
 Result = dict[str, object]
@@ -185,6 +185,24 @@ def frame(threads: int) -> Result:
         "wall_seconds": {model: round(min(times), 3) for model, times in wall.items()},
         "full_over_thin": round(best["full"] / best["thin"], 3),
     }
+
+
+def sensor(threads: int) -> Result:
+    """A sensor of 24 megapixels: CPU seconds from film to raw on one core, by the electrons of a pixel."""
+    del threads  # one core by definition
+    chip = Sensor.load("sony-imx900-mono").replace(row_noise_e=0.3, hot_pixel_share=1e-4, hot_pixel_current_e_per_s=50)
+    pitch_um, lowest_iso = 2.25, chip.iso_range()[0]
+    electrons_per_lux_s = chip.electrons_per_um2()[0].sum() * pitch_um**2
+    best = {}
+    for electrons in (0, 1, 10, 50, 100, 1000, 8000):
+        exposure = np.full((4000, 6000, 3), electrons / electrons_per_lux_s, np.float32)
+        times = []
+        for _ in range(3):
+            start = time.process_time()
+            _core._expose(chip, exposure, pitch_um, pitch_um, math.inf, 0.01, lowest_iso, "", None, 1, 0, 1)
+            times.append(time.process_time() - start)
+        best[str(electrons)] = round(min(times), 3)
+    return {"megapixels": 24, "cpu_seconds_by_electrons": best, "worst": max(best.values())}
 
 
 def _gpu_scene() -> Scene:
@@ -359,6 +377,7 @@ BENCHMARKS: dict[str, Callable[[int], Result]] = {
     "lens-setup": lens_setup,
     "pass-share": pass_share,
     "frame": frame,
+    "sensor": sensor,
     "gpu-lens-rays": gpu_lens_rays,
     "gpu-hits": gpu_hits,
     "gpu-paths": gpu_paths,

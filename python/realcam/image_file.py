@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,7 @@ def write_image(image: Image, path: str | os.PathLike[str], tone: str) -> None:
     """Raises ImageFileError, InputError."""
     if tone not in ("film", "linear"):
         raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
+    entries = image.metadata()
     try:
         _pictures().write_picture(
             system_name(path),
@@ -44,11 +46,26 @@ def write_image(image: Image, path: str | os.PathLike[str], tone: str) -> None:
             image.transport == "whitted",
             image.clamp_cd_m2,
             image.denoiser,
+            entries.get("realcam:effects", ""),
+            entries.get("realcam:illuminant", ""),
         )
     except TypeError:
         raise InputError(
             "pixels, depth, camera, spp, seed, layers and names of the image must be such as rc.render gives"
         ) from None
+
+
+def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str]) -> None:
+    """Writes (H, W, 3) uint8 sRGB as .png with metadata. Raises ImageFileError."""
+    _pictures().write_codes(system_name(path), codes, list(entries.items()))
+
+
+def read_film(path: str | os.PathLike[str]) -> tuple[np.ndarray, dict[str, str]]:
+    """The film's exposure in an .exr of realcam's, (H, W, 3) float32 lux seconds, and the "realcam:..." entries of its
+    metadata. Raises ImageFileError.
+    """
+    exposure, entries = _pictures().read_film(system_name(path))
+    return exposure, dict(entries)
 
 
 def _pictures() -> ModuleType:

@@ -64,9 +64,15 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     "AimedRays": [lambda: lens().aim([(0, 0), (0, 0.5)]), lambda: lens().aim([(0, 0), (0, 0.6)])],
     "TraceResult": [lambda: lens().trace(ORIGINS, DIRECTIONS), lambda: lens().trace(ORIGINS, 2 * DIRECTIONS[::-1])],
     "CameraRays": [lambda: camera().generate_rays(), lambda: camera().generate_rays(seed=1)],
+    "Sensor": [
+        lambda: rc.Sensor.load(),
+        lambda: rc.Sensor.load("sony-imx900-mono"),
+        lambda: rc.Sensor.load().replace(adc_bits=14),
+    ],
+    "RawImage": [lambda: rc.Sensor.load().expose(image()), lambda: rc.Sensor.load().expose(image(), seed=1)],
     "Image": [image, lambda: rc.render(floor_scene().with_environment(100), camera(), spp=2, seed=1, device="cpu")],
 }
-UNHASHABLE = {"Scene", "Spot", "Wavefront", "Seidel", "AimedRays", "TraceResult", "CameraRays", "Image"}
+UNHASHABLE = {"Scene", "Spot", "Wavefront", "Seidel", "AimedRays", "TraceResult", "CameraRays", "Image", "RawImage"}
 each_kind = pytest.mark.parametrize("kind", sorted(MAKERS))
 
 

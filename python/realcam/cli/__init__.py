@@ -9,7 +9,7 @@ import typer
 
 from .. import __version__
 from .._core import RealcamError, one_line
-from . import bench, demo, lens
+from . import bench, demo, lens, sensor
 from .options import add_command_of_the_executable
 
 # click's, which newer versions of typer bring along under a private name.
@@ -24,6 +24,8 @@ app = typer.Typer(
 add_command_of_the_executable(app, "render", "Photograph a scene through a lens.")
 app.add_typer(lens.app, name="lens")
 add_command_of_the_executable(app, "devices", "List what this machine can render with.")
+app.add_typer(sensor.app, name="sensor")
+app.command("expose")(sensor.expose)
 app.command("demo")(demo.demo)
 app.command("bench")(bench.bench)
 

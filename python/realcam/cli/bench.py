@@ -15,7 +15,8 @@ def bench(
     names: Annotated[
         Optional[list[str]],  # noqa: UP045
         typer.Argument(
-            help="lens-rays, lens-setup, pass-share, frame; gpu-lens-rays, gpu-hits, gpu-paths, gpu-frames [all].",
+            help="lens-rays, lens-setup, pass-share, frame, sensor; gpu-lens-rays, gpu-hits, gpu-paths, gpu-frames, "
+            "gpu-objects [all].",
             metavar="[BENCHMARK]...",
             show_default=False,
         ),
@@ -23,7 +24,7 @@ def bench(
     threads: Annotated[int, typer.Option(help="0: all.", min=0, max=4096)] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit.")] = False,
 ) -> None:
-    """Measure rays through the lens, pupil set-up, sampling efficiency and a frame on this machine."""
+    """Measure rays through the lens, pupil set-up, sampling efficiency, a frame and a sensor on this machine."""
     from ..bench import BENCHMARKS, GPU_BENCHMARKS, machine
 
     has_gpu = any(line.startswith("cuda") for line in devices())

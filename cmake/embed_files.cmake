@@ -1,12 +1,19 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Writes OUTPUT, a C++ source with the text of every file named in LIST. Arrays of numbers, because compilers limit
-# the length of a string literal and a lens file may hold any delimiter.
+# Writes OUTPUT, a C++ source with the text of every file named in LIST, as the function bundled_KIND_files() of HEADER
+# gives them. Arrays of numbers, because compilers limit the length of a string literal and a file may hold any delimiter.
 file(STRINGS ${LIST} paths)
 
 set(arrays "")
 set(entries "")
-set(glass "{}")
+set(glass "")
+if(KIND STREQUAL "lens")
+  set(glass "
+std::string_view bundled_glass_catalogue() {
+    return {};
+}
+")
+endif()
 set(index 0)
 foreach(path IN LISTS paths)
   get_filename_component(name ${path} NAME_WLE)
@@ -15,18 +22,22 @@ foreach(path IN LISTS paths)
   string(REGEX REPLACE "(0x0a,)" "\\1\n    " bytes "${bytes}")
   string(APPEND arrays "constexpr unsigned char file_${index}[] = {\n    ${bytes}0x00};\n\n")
   if(name STREQUAL "glass")
-    set(glass "text_of(file_${index})")
+    set(glass "
+std::string_view bundled_glass_catalogue() {
+    return text_of(file_${index});
+}
+")
   else()
     string(APPEND entries "        {\"${name}\", text_of(file_${index})},\n")
   endif()
   math(EXPR index "${index} + 1")
 endforeach()
 
-file(WRITE ${OUTPUT} "// Generated from lenses/*.toml.
+file(WRITE ${OUTPUT} "// Generated from the files in ${LIST}.
 #include <cstddef>
 #include <vector>
 
-#include \"io/bundled_lenses.hpp\"
+#include \"io/${HEADER}\"
 
 namespace realcam::io {
 namespace {
@@ -39,15 +50,11 @@ template <std::size_t Size>
 
 }  // namespace
 
-std::span<const BundledFile> bundled_lens_files() {
+std::span<const BundledFile> bundled_${KIND}_files() {
     static const std::vector<BundledFile> files{
 ${entries}    };
     return files;
 }
-
-std::string_view bundled_glass_catalogue() {
-    return ${glass};
-}
-
+${glass}
 }  // namespace realcam::io
 ")

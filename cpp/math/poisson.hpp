@@ -1,0 +1,123 @@
+#pragma once
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "random.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Poisson numbers without an approximation of their distribution: by inversion where the mean is small, and by
+// transformed rejection where it is not (Hoermann 1993, "The transformed rejection method for generating Poisson random
+// variables", algorithm PTRS). All in double: a mean of 1e7 electrons has a deviation of 3e3 whole numbers.
+
+/// Up to here the sum of probabilities is quicker than rejection, which is valid from 10 on (Hoermann 1993).
+inline constexpr double kLargestInvertedMean = 40;
+
+/// 32 random bits as a double in (0, 1).
+REALCAM_INLINE double open_unit_double(std::uint32_t bits) {
+    // Through a signed integer: AVX2 cannot convert unsigned ones.
+    return 0.5 + (static_cast<double>(static_cast<std::int32_t>(bits)) + 0.5) * 0x1p-32;
+}
+
+/// One attempt of PTRS.
+struct PoissonAttempt {
+    double count;  ///< whole; the result if accepted
+    bool is_accepted;  ///< at once: some 9 in 10
+    bool is_possible;  ///< is_accepted_slowly decides
+};
+
+/// The hat of PTRS for one mean of at least 10.
+struct PoissonHat {
+    double mean, b, a, least_v;
+
+    REALCAM_INLINE explicit PoissonHat(double mean_)
+        : mean(mean_),
+          b(0.931 + 2.53 * std::sqrt(mean_)),
+          a(-0.059 + 0.02483 * b),
+          least_v(0.9277 - 3.6224 / (b - 2)) {}
+
+    /// u and v in (0, 1).
+    REALCAM_INLINE PoissonAttempt attempt(double u, double v) const {
+        const double from_middle = u - 0.5, to_edge = 0.5 - std::fabs(from_middle);
+        const double count = std::floor((2 * a / to_edge + b) * from_middle + mean + 0.43);
+        const bool accepted = (to_edge >= 0.07) & (v <= least_v);
+        const bool possible = (count >= 0) & ((to_edge >= 0.013) | (v <= to_edge));
+        return {count, accepted, possible};
+    }
+
+    /// Of an attempt that is possible and not accepted at once.
+    REALCAM_HD bool is_accepted_slowly(double count, double u, double v) const {
+        const double to_edge = 0.5 - std::fabs(u - 0.5);
+        const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
+        return std::log(v * inverse_alpha / (a / (to_edge * to_edge) + b)) <=
+               count * std::log(mean) - mean - log_factorial(count);
+    }
+
+    /// log(k!), to 1e-10 of its value: Stirling's series from 10 on, a product below.
+    REALCAM_HD static double log_factorial(double k) {
+        double shift = 1;
+        for (; k < 10; ++k) shift *= k + 1;
+        const double inverse = 1 / k, square = inverse * inverse;
+        const double series = inverse * (1.0 / 12 - square * (1.0 / 360 - square * (1.0 / 1260 - square / 1680)));
+        return (k + 0.5) * std::log(k) - k + 0.91893853320467274178 + series - std::log(shift);
+    }
+};
+
+/// e^-x for x from 0 to 40, to 8e-15 of its value. Plain arithmetic, so that lane loops with it become vector code.
+REALCAM_INLINE double exp_of_negative(double x) {
+    constexpr double kLog2 = 0.693147180559945309417;
+    const double halvings = std::floor(x / kLog2 + 0.5), r = halvings * kLog2 - x;  // -0.35 .. 0.35
+    double sum = 1;
+    REALCAM_UNROLL
+    for (int k = 13; k >= 1; --k) sum = 1 + r * (1.0 / k) * sum;
+    const auto exponent = static_cast<std::int64_t>(1023 - static_cast<std::int32_t>(halvings));
+    return sum * std::bit_cast<double>(exponent << 52);
+}
+
+/// Poisson numbers by inversion, of means up to kLargestInvertedMean: the number of partial sums of the probabilities
+/// that are below u, a uniform number in (0, 1) of 53 bits. All lanes go as far as the farthest of them, which is
+/// quicker than one by one: a step has no quotient and no branch of a lane's own. Other means: any count.
+template <int N>
+REALCAM_HD void invert_poisson(const double (&mean)[N], const double (&u)[N], double (&count)[N]) {
+    constexpr int kFarthest = 160;  // a probability of 1e-40 at the largest mean
+    alignas(64) double probability[N], left[N];  // of u, less the sum so far
+    REALCAM_LANES
+    for (int k = 0; k < N; ++k) {
+        const double m = mean[k] < kLargestInvertedMean ? mean[k] : 0.0;
+        probability[k] = exp_of_negative(m);
+        left[k] = m > 0.0 ? u[k] - probability[k] : 0.0;
+        count[k] = 0;
+    }
+    for (int step = 1; step < kFarthest; ++step) {
+        const double inverse = 1.0 / step;
+        double going = 0;
+        REALCAM_LANES
+        for (int k = 0; k < N; ++k) {
+            const double one = left[k] > 0.0 ? 1.0 : 0.0;
+            count[k] += one;
+            going += one;
+            probability[k] *= mean[k] * inverse;
+            left[k] -= probability[k];
+        }
+        if (!(going > 0)) return;
+    }
+}
+
+/// The random bits of one Poisson number are a function of its stream and of the attempt; two halves for each.
+REALCAM_INLINE std::uint32_t attempt_bits(std::uint32_t stream, std::uint32_t attempt, std::uint32_t half) {
+    return hash32(stream, 2 * attempt + half);
+}
+
+/// A Poisson number of a finite mean of at least 10, by rejection. Attempts before `first_attempt` have failed.
+REALCAM_HD inline double poisson_by_rejection(double mean, std::uint32_t stream, std::uint32_t first_attempt = 0) {
+    const PoissonHat hat(mean);
+    for (std::uint32_t i = first_attempt;; ++i) {
+        const double u = open_unit_double(attempt_bits(stream, i, 0)), v = open_unit_double(attempt_bits(stream, i, 1));
+        const PoissonAttempt attempt = hat.attempt(u, v);
+        if (attempt.is_accepted || (attempt.is_possible && hat.is_accepted_slowly(attempt.count, u, v)))
+            return attempt.count;
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,138 @@
+"""realcam sensor: look at sensors. realcam expose: from film to raw."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Annotated, Optional
+
+import numpy as np
+import typer
+
+from .._core import Film, InputError, Sensor, sensor_names
+
+app = typer.Typer(help="Look at sensors.", rich_markup_mode=None)
+
+SensorName = Annotated[
+    str, typer.Argument(help="A bundled sensor (see `realcam sensor list`) or a sensor file.", metavar="SENSOR")
+]
+
+
+@app.command("list")
+def list_sensors() -> None:
+    """List the bundled sensors."""
+    names = sensor_names()
+    for name in names:
+        typer.echo(f"{name:{max(map(len, names))}}  {Sensor.load(name).title}")
+
+
+@app.command("info")
+def info(name: SensorName) -> None:
+    """Print what a sensor does, where it is from, and what had to be assumed."""
+    sensor = Sensor.load(name)
+    lowest, highest = sensor.iso_range()
+    rows = {
+        "pixels": "any" if sensor.resolution is None else f"{sensor.resolution[0]} x {sensor.resolution[1]}",
+        "pixel pitch": "the film's" if sensor.pixel_pitch_um is None else f"{sensor.pixel_pitch_um:g} um",
+        "filters": sensor.color_filter_array or "none",
+        "ISO": "any" if lowest == 0 else f"{lowest:.4g} to {highest:.4g}",
+        "gain": "by the ISO"
+        if lowest == 0
+        else f"{sensor.gain_dn_per_e:g} DN/e, and up to {sensor.largest_gain_db:g} dB",
+        "converter": f"{sensor.adc_bits} bit, black at {sensor.black_level_dn:g} DN",
+        "converter noise": f"{sensor.converter_noise_dn:g} DN",
+        "saturation capacity": f"{sensor.saturation_capacity_e:g} e",
+        "read noise": f"{sensor.read_noise_e:g} e",
+        "row noise": f"{sensor.row_noise_e:g} e",
+        "dark current": f"{sensor.dark_current_e_per_s:g} e/s at {sensor.dark_current_temperature_c:g} degrees C",
+        "DSNU, PRNU": f"{sensor.dsnu_e:g} e, {sensor.prnu_percent:g} %",
+        "hot pixels": f"{100 * sensor.hot_pixel_share:g} %, {sensor.hot_pixel_current_e_per_s:g} e/s",
+    }
+    typer.echo(sensor.title or sensor.name)
+    for what, value in rows.items():
+        typer.echo(f"  {what:20} {value}")
+    typer.echo(f"  {'source':20} {sensor.source}")
+    for assumption in sensor.assumptions:
+        typer.echo(f"  {'assumed':20} {assumption}")
+
+
+def expose(
+    film: Annotated[Path, typer.Argument(help="The film's exposure: an .exr of `realcam render`.", metavar="FILM")],
+    output: Annotated[
+        list[Path],
+        typer.Option("--output", "-o", help="Raw as .dng or .npy, developed as .png; may be repeated."),
+    ],
+    sensor: Annotated[
+        str, typer.Option("--sensor", help="A bundled sensor (`realcam sensor list`) or a sensor file.")
+    ] = "ideal",
+    iso: Annotated[Optional[float], typer.Option("--iso", help="Sensitivity [the picture's].")] = None,  # noqa: UP045
+    seed: Annotated[int, typer.Option(help="Of the noise of this exposure.", min=0, max=2**32 - 1)] = 0,
+    serial: Annotated[int, typer.Option(help="Of what a sensor has for ever.", min=0, max=2**32 - 1)] = 0,
+    temperature: Annotated[
+        Optional[float],  # noqa: UP045
+        typer.Option("--temperature", help="Degrees Celsius [that of the sensor's dark current]."),
+    ] = None,
+    tone: Annotated[str, typer.Option(help="Tone curve of .png: linear (clipped) or film.")] = "linear",
+    demosaic: Annotated[str, typer.Option(help="Of .png: menon, malvar or bilinear.")] = "menon",
+) -> None:
+    """Expose a sensor to a film: raw numbers with the sensor's noise, and a picture developed from them."""
+    from ..demosaicing import METHODS
+    from ..files import check_target
+    from ..image_file import read_film
+    from ..raw_image import exposed_film
+
+    for path in output:
+        check_target(path)
+        if path.exists() and path.samefile(film):
+            raise InputError(f"{path}: is the film itself; the raw picture needs another name")
+        if path.suffix.lower() not in (".dng", ".npy", ".png"):
+            raise InputError(f"{path}: .dng, .npy (raw) or .png (developed) is wanted")
+    for word, known in ((tone, ("linear", "film")), (demosaic, METHODS)):
+        if word not in known:
+            raise InputError(f'"{word:.60}" is unknown; {", ".join(known)} is wanted')
+    chosen = Sensor.load(sensor)
+    pixels, entries = read_film(film)
+    if chosen.angular_response:
+        typer.echo("realcam: the film does not tell where its exit pupil was: all angles count alike", err=True)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        raw = exposed_film(
+            chosen,
+            pixels,
+            _film_of(film, entries, pixels),
+            exposure_time_s=_number(film, entries, "realcam:exposure_time_s"),
+            iso=_number(film, entries, "realcam:iso") if iso is None else iso,
+            illuminant=entries.get("realcam:illuminant", ""),
+            temperature_c=temperature,
+            seed=seed,
+            serial=serial,
+            metadata=entries,
+        )
+    for warning in caught:
+        typer.echo(f"realcam: {warning.message}", err=True)
+    full = float(np.mean(raw.mosaic >= raw.white_level_dn))
+    typer.echo(
+        f"{chosen.name}, ISO {raw.iso:.4g}: {raw.gain_dn_per_e:.4g} DN/e, black {raw.black_level_dn:g}, "
+        f"white {raw.white_level_dn} DN, {100 * full:.2g}% of the pixels full"
+    )
+    for assumption in chosen.assumptions:
+        typer.echo(f"assumed: {assumption}")
+    for path in output:
+        raw.save(path, tone=tone, demosaic=demosaic)
+        typer.echo(f"wrote {path}")
+
+
+def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
+    size = entries.get("realcam:film_mm", "").split("x")
+    try:
+        width, height = (float(word) for word in size)
+    except ValueError:
+        raise InputError(f"{path}: does not say how large its film is; an .exr of `realcam render` is wanted") from None
+    return Film(width, height, (pixels.shape[1], pixels.shape[0]))
+
+
+def _number(path: Path, entries: dict[str, str], name: str) -> float:
+    try:
+        return float(entries[name])
+    except (KeyError, ValueError):
+        raise InputError(f"{path}: has no {name}; an .exr of `realcam render` is wanted") from None

@@ -1,0 +1,40 @@
+"""Colours for each pixel of a mosaic, by colour-demosaicing from the extra realcam[raw]."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from ._core import InputError
+
+METHODS = ("menon", "malvar", "bilinear")
+# Pixels by which a mosaic is continued beyond its edges, mirrored at its last pixels, so that the order of the filters
+# goes on. The library repeats the last pixels, which puts numbers of one filter in the place of another's.
+MARGIN = 8
+
+
+def demosaiced(mosaic: np.ndarray, pattern: str, method: str) -> np.ndarray:
+    """(H, W, 3) float32 of a (H, W) mosaic, which is best balanced to white. Raises InputError."""
+    if method not in METHODS:
+        raise InputError(f"unknown demosaicing {method!r:.60}; {', '.join(METHODS)} is wanted")
+    if min(mosaic.shape) < 2:
+        raise InputError("a mosaic of at least 2 x 2 pixels is wanted")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of packages that colour-science would like to have
+            from colour_demosaicing.bayer import (
+                demosaicing_CFA_Bayer_bilinear,
+                demosaicing_CFA_Bayer_Malvar2004,
+                demosaicing_CFA_Bayer_Menon2007,
+            )
+    except ImportError as error:
+        raise InputError(f"colour-demosaicing is not here ({error}); pip install realcam[raw] brings it") from None
+    by_name = {
+        "menon": demosaicing_CFA_Bayer_Menon2007,
+        "malvar": demosaicing_CFA_Bayer_Malvar2004,
+        "bilinear": demosaicing_CFA_Bayer_bilinear,
+    }
+    continued = np.pad(mosaic, MARGIN, mode="reflect")
+    colors = by_name[method](continued, pattern)[MARGIN:-MARGIN, MARGIN:-MARGIN]
+    return np.array(colors, np.float32)

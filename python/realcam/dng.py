@@ -1,0 +1,122 @@
+"""Digital Negatives (Adobe DNG 1.4) through tifffile, from the extra realcam[raw]."""
+
+from __future__ import annotations
+
+import io
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._core import InputError, __version__
+from .files import write_whole
+
+if TYPE_CHECKING:
+    from .raw_image import RawImage
+
+# EXIF's LightSource. Any other light has no number.
+LIGHT_SOURCES = {"": 21, "D65": 21, "A": 17, "FL2": 14}
+OTHER_LIGHT_SOURCE = 255
+CFA, LINEAR_RAW = 32803, 34892  # PhotometricInterpretation
+# IEC 61966-2-1.
+SRGB_FROM_XYZ = (3.2404542, -1.5371385, -0.4985314, -0.969266, 1.8760108, 0.041556, 0.0556434, -0.2040259, 1.0572252)
+ASCII, BYTE, SHORT, LONG, RATIONAL, SRATIONAL = "s", "B", "H", "I", "2I", "2i"
+
+
+def write(raw: RawImage, path: str | os.PathLike[str]) -> None:
+    """Writes a mosaic with what raw developers need. Raises ImageFileError and InputError."""
+    try:
+        import tifffile
+    except ImportError as error:
+        raise InputError(f"tifffile is not here ({error}); pip install realcam[raw] brings it") from None
+    buffer = io.BytesIO()
+    has_filters = bool(raw.color_filter_array)
+    with tifffile.TiffWriter(buffer, byteorder="<") as file:
+        file.write(
+            # Without filters as three equal colours: of one alone LibRaw makes a grey picture, and darktable 4.2 takes
+            # each pixel and its two neighbours for red, green and blue.
+            raw.mosaic if has_filters else np.repeat(raw.mosaic[..., None], 3, axis=2),
+            photometric=CFA if has_filters else LINEAR_RAW,
+            planarconfig=None if has_filters else "contig",
+            software=f"realcam {__version__}",
+            description="\n".join(f"{name} = {value}" for name, value in raw.metadata().items()),
+            metadata=None,
+            extratags=[(code, kind, count, value, True) for code, kind, count, value in _tags(raw)],
+        )
+    write_whole(path, buffer.getvalue())
+
+
+def write_array(array: np.ndarray, path: str | os.PathLike[str]) -> None:
+    """Writes a .npy file. Raises ImageFileError."""
+    buffer = io.BytesIO()
+    np.save(buffer, array, allow_pickle=False)
+    write_whole(path, buffer.getvalue())
+
+
+def _rationals(values: Any, signed: bool = False) -> tuple[int, ...]:
+    """Numerators and denominators of numbers, to a millionth, or to ten digits where they are small."""
+    flat = []
+    for value in np.ravel(values):
+        denominator = 10**9 if abs(value) < 2 else 10**6
+        while abs(value) * denominator >= 2 ** (31 if signed else 32):
+            denominator //= 10
+        flat += [round(float(value) * max(denominator, 1)), max(denominator, 1)]
+    return tuple(flat)
+
+
+def _tags(raw: RawImage) -> list[tuple[int, str, int, Any]]:
+    """Code, type, count and value of DNG's and EXIF's tags, in the order of the codes."""
+    from .raw_image import SATURATION_OVER_WHITE
+
+    height, width = raw.mosaic.shape
+    model = f"realcam {raw.sensor.name}"
+    entries = raw.metadata()
+    samples = 1 if raw.color_filter_array else 3
+
+    def text(code: int, value: str) -> tuple[int, str, int, Any]:
+        return code, ASCII, 0, value.encode("ascii", "replace").decode()
+
+    def rational(code: int, values: Any, signed: bool = False) -> tuple[int, str, int, Any]:
+        return code, SRATIONAL if signed else RATIONAL, np.size(values), _rationals(values, signed)
+
+    tags: list[tuple[int, str, int, Any]] = [
+        (254, LONG, 1, 0),  # NewSubfileType: the full picture
+        text(271, "realcam"),  # Make
+        text(272, model),  # Model
+        (274, SHORT, 1, 1),  # Orientation
+        rational(33434, raw.exposure_time_s),  # ExposureTime
+        (34855, SHORT, 1, min(round(raw.iso), 65535)),  # ISOSpeedRatings
+        (50706, BYTE, 4, (1, 4, 0, 0)),  # DNGVersion
+        (50707, BYTE, 4, (1, 1, 0, 0)),  # DNGBackwardVersion
+        text(50708, model),  # UniqueCameraModel
+        rational(50714, samples * (raw.black_level_dn,)),  # BlackLevel
+        (50717, LONG, samples, samples * (raw.white_level_dn,)),  # WhiteLevel
+        rational(50718, (1, 1)),  # DefaultScale
+        (50719, LONG, 2, (0, 0)),  # DefaultCropOrigin
+        (50720, LONG, 2, (width, height)),  # DefaultCropSize
+        # BaselineExposure, in stops: where white lies below saturation.
+        rational(50730, np.log2(SATURATION_OVER_WHITE), signed=True),
+        (50829, LONG, 4, (0, 0, height, width)),  # ActiveArea
+    ]
+    for code, name in ((33437, "realcam:f_number"), (37386, "realcam:focal_length_mm")):
+        value = float(entries.get(name, "inf"))
+        if 0 < value < 1e6:
+            tags.append(rational(code, value))
+    if raw.color_filter_array:
+        tags += [
+            (33421, SHORT, 2, (2, 2)),  # CFARepeatPatternDim
+            (33422, BYTE, 4, tuple("RGB".index(color) for color in raw.color_filter_array)),  # CFAPattern
+            (50710, BYTE, 3, (0, 1, 2)),  # CFAPlaneColor
+            (50711, SHORT, 1, 1),  # CFALayout: rectangular
+            rational(50721, raw.camera_from_xyz, signed=True),  # ColorMatrix1
+            rational(50728, raw.as_shot_neutral),  # AsShotNeutral
+            (50778, SHORT, 1, LIGHT_SOURCES.get(raw.illuminant, OTHER_LIGHT_SOURCE)),  # CalibrationIlluminant1
+            rational(50964, raw.d50_from_balanced, signed=True),  # ForwardMatrix1
+        ]
+    else:
+        tags += [
+            rational(50721, SRGB_FROM_XYZ, signed=True),  # ColorMatrix1: of D65's white equal colours
+            rational(50728, (1, 1, 1)),  # AsShotNeutral
+            (50778, SHORT, 1, LIGHT_SOURCES["D65"]),  # CalibrationIlluminant1
+        ]
+    return sorted(tags, key=lambda tag: tag[0])

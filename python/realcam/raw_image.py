@@ -1,0 +1,256 @@
+"""What a sensor makes of a film's exposure: a mosaic of whole numbers, and the way back to a picture."""
+
+from __future__ import annotations
+
+import math
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core, demosaicing, dng, image_file
+from ._core import Film, InputError, Sensor
+
+if TYPE_CHECKING:
+    from .image import Image
+
+# Of the film's exposure that saturates a sensor, middle grey is this share of what it is on screen (ISO 12232): white,
+# in pictures 0.018 iso lux seconds, is reached at 1 / 1.404 of the 78 / iso lux seconds that saturate.
+SATURATION_OVER_WHITE = 0.018 * 78
+
+
+@dataclass(frozen=True, eq=False)
+class RawImage:
+    """The numbers of a sensor, linear in light, and what is needed to make a picture of them.
+
+    mosaic: (H, W) uint16, one number for each pixel, row 0 at the top; sensor.color_filter_array says under which
+    filter. iso, exposure_time_s, temperature_c, seed, serial: as it was exposed. illuminant: of the picture, as
+    Image has it; empty: D65. pixel_pitch_um: of the sensor. image_metadata: of the picture on the film.
+    """
+
+    mosaic: np.ndarray
+    sensor: Sensor
+    iso: float
+    exposure_time_s: float
+    pixel_pitch_um: float
+    seed: int = 0
+    serial: int = 0
+    temperature_c: float | None = None
+    illuminant: str = ""
+    image_metadata: Mapping[str, str] = field(default_factory=dict)
+
+    __hash__ = None  # type: ignore[assignment]  # its arrays may be written to
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, RawImage):
+            return NotImplemented
+        return (
+            np.array_equal(self.mosaic, other.mosaic)
+            and self.sensor == other.sensor
+            and self.metadata() == other.metadata()
+        )
+
+    def __repr__(self) -> str:
+        height, width = self.mosaic.shape
+        name = self.sensor.name if len(self.sensor.name) <= 40 else f"{self.sensor.name[:37]}..."
+        return f"<realcam.RawImage {width} x {height} pixels of {name!r}, ISO {self.iso:.4g}>"
+
+    @property
+    def color_filter_array(self) -> str:
+        """The filters of two rows of two pixels from the top left, as "RGGB"; "": none."""
+        return self.sensor.color_filter_array
+
+    @cached_property
+    def gain_dn_per_e(self) -> float:
+        """Overall system gain at this ISO, digital numbers per electron."""
+        return _core._sensor_gain(self.sensor, self.pixel_pitch_um, self.iso)
+
+    @property
+    def black_level_dn(self) -> float:
+        """The number of no light."""
+        return self.sensor.black_level_dn
+
+    @property
+    def white_level_dn(self) -> int:
+        """The number at which a pixel is full, or the converter's largest."""
+        full = self.black_level_dn + self.gain_dn_per_e * self.sensor.full_well_e
+        return int(min(full, 2**self.sensor.adc_bits - 1))
+
+    @cached_property
+    def _color(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        if not self.color_filter_array:
+            raise InputError(f"the sensor {self.sensor.name!r} has no colour filters")
+        white, camera_from_xyz, film_from_balanced, d50_from_balanced = _core._sensor_color(
+            self.sensor, self.illuminant
+        )
+        return white, camera_from_xyz, film_from_balanced, d50_from_balanced
+
+    @property
+    def as_shot_neutral(self) -> np.ndarray:
+        """(3,): what the red, green and blue filters see of the illuminant's white, the largest 1."""
+        return self._color[0]
+
+    @property
+    def camera_from_xyz(self) -> np.ndarray:
+        """(3, 3): XYZ under the illuminant to the filters' numbers, such that white of Y = 1 is as_shot_neutral."""
+        return self._color[1]
+
+    @property
+    def d50_from_balanced(self) -> np.ndarray:
+        """(3, 3): the filters' numbers over as_shot_neutral to XYZ under D50 (DNG's ForwardMatrix)."""
+        return self._color[3]
+
+    def exposure(self, demosaic: str = "menon") -> np.ndarray:
+        """(H, W, 3) float32: the film's exposure as the numbers tell it, lux seconds, linear Rec. 709, noise included.
+
+        What is saturated in one filter is cut at the same white in all, so that highlights have no colour. demosaic:
+        "menon" (Menon 2007), "malvar" (2004) or "bilinear", by colour-demosaicing, which the extra realcam[raw] brings.
+        A sensor without filters gives the same in all channels. Noise may go below 0. Raises InputError.
+        """
+        light = (self.mosaic.astype(np.float32) - np.float32(self.black_level_dn)) / np.float32(self.gain_dn_per_e)
+        full = (self.white_level_dn - self.black_level_dn) / self.gain_dn_per_e
+        per_lux_s = self.sensor.electrons_per_um2(self.illuminant or "D65").sum(axis=1) * self.pixel_pitch_um**2
+        if not self.color_filter_array:
+            return np.repeat((light / np.float32(per_lux_s[0]))[..., None], 3, axis=2)
+        for place, color in enumerate(self.color_filter_array):
+            light[place // 2 :: 2, place % 2 :: 2] /= np.float32(per_lux_s["RGB".index(color)])
+        balanced = demosaicing.demosaiced(light, self.color_filter_array, demosaic)
+        np.minimum(balanced, np.float32(full / per_lux_s.max()), out=balanced)
+        result: np.ndarray = balanced @ self._color[2].T.astype(np.float32)
+        return result
+
+    def developed(self, tone: str = "linear", iso: float | None = None, demosaic: str = "menon") -> np.ndarray:
+        """(H, W, 3) uint8 sRGB, as Image.developed gives it of the film.
+
+        tone: "linear" (clipped at white, above which a sensor has half a stop) or "film", whose shoulder expects
+        brighter highlights than a sensor has. iso: None is that of the exposure; another one brightens. demosaic: as
+        exposure() has it. Raises InputError.
+        """
+        return _core.develop(self.exposure(demosaic), self.iso if iso is None else iso, tone)
+
+    def save(self, path: str | os.PathLike[str], tone: str = "linear", demosaic: str = "menon") -> None:
+        """Writes .dng (the mosaic, for raw developers), .npy (the same as an array) or .png (developed).
+
+        DNG and PNG hold the metadata. Raises ImageFileError and InputError; no half-written file is left.
+        """
+        suffix = os.path.splitext(os.fsdecode(path))[1].lower()  # noqa: PTH122 - bytes are paths, too
+        if suffix == ".dng":
+            dng.write(self, path)
+        elif suffix == ".npy":
+            dng.write_array(self.mosaic, path)
+        elif suffix == ".png":
+            image_file.write_codes(
+                self.developed(tone, demosaic=demosaic), path, {**self.metadata(), "realcam:tone": tone}
+            )
+        else:
+            raise InputError(f"{os.fsdecode(path)}: .dng, .npy (the mosaic) or .png (developed) is wanted")
+
+    def metadata(self) -> dict[str, str]:
+        """Names ("realcam:...") and values of what is written into files: the picture's, and the sensor's."""
+        entries = dict(self.image_metadata)
+        entries["realcam:iso"] = f"{self.iso:.9g}"
+        entries["realcam:sensor"] = self.sensor.name
+        entries["realcam:sensor_seed"] = str(self.seed)
+        entries["realcam:sensor_serial"] = str(self.serial)
+        entries["realcam:sensor_gain_dn_per_e"] = f"{self.gain_dn_per_e:.6g}"
+        if self.temperature_c is not None:
+            entries["realcam:sensor_temperature_c"] = f"{self.temperature_c:.6g}"
+        if self.sensor.assumptions:
+            entries["realcam:sensor_assumptions"] = "; ".join(self.sensor.assumptions)
+        return entries
+
+
+def exposed(
+    sensor: Sensor,
+    image: Image,
+    iso: float | None,
+    seed: int,
+    serial: int,
+    temperature_c: float | None,
+    threads: int,
+) -> RawImage:
+    """Sensor.expose. Raises InputError."""
+    from .image import Image
+
+    if not isinstance(image, Image):
+        raise InputError(f"image must be a realcam.Image; it is {image!r:.60}")
+    camera = image.camera
+    return exposed_film(
+        sensor,
+        image.pixels,
+        camera.film,
+        exposure_time_s=camera.exposure_time_s,
+        iso=camera.iso if iso is None else iso,
+        illuminant=image.illuminant,
+        exit_pupil_distance_mm=_exit_pupil_distance_mm(image),
+        temperature_c=temperature_c,
+        seed=seed,
+        serial=serial,
+        threads=threads,
+        metadata=image.metadata(),
+        stacklevel=3,
+    )
+
+
+def exposed_film(
+    sensor: Sensor,
+    pixels: np.ndarray,
+    film: Film,
+    *,
+    exposure_time_s: float,
+    iso: float,
+    illuminant: str = "",
+    exit_pupil_distance_mm: float = math.inf,
+    temperature_c: float | None = None,
+    seed: int = 0,
+    serial: int = 0,
+    threads: int = 0,
+    metadata: Mapping[str, str] | None = None,
+    stacklevel: int = 2,
+) -> RawImage:
+    """The same of an exposure, (H, W, 3) lux seconds, that came from a file. Raises InputError."""
+    height, width = np.shape(pixels)[:2]
+    film_pitch_um = 1000 * math.sqrt(film.width_mm * film.height_mm / (width * height))
+    pitch_um = sensor.pixel_pitch_um or film_pitch_um
+    if abs(pitch_um / film_pitch_um - 1) > 0.01:
+        warnings.warn(
+            f"the film's pixels of {film_pitch_um:.4g} um are exposed as the sensor's of {pitch_um:.4g} um: noise is "
+            "the sensor's, sharpness the film's (film=sensor.film() makes both agree)",
+            stacklevel=stacklevel,
+        )
+    mosaic = _core._expose(
+        sensor,
+        pixels,
+        pitch_um,
+        film_pitch_um,
+        exit_pupil_distance_mm,
+        exposure_time_s,
+        iso,
+        illuminant,
+        temperature_c,
+        seed,
+        serial,
+        threads,
+    )
+    return RawImage(
+        mosaic=mosaic,
+        sensor=sensor,
+        iso=iso,
+        exposure_time_s=exposure_time_s,
+        pixel_pitch_um=pitch_um,
+        seed=seed,
+        serial=serial,
+        temperature_c=temperature_c,
+        illuminant=illuminant,
+        image_metadata=dict(metadata or {}),
+    )
+
+
+def _exit_pupil_distance_mm(image: Image) -> float:
+    """From the exit pupil to the film, by first-order optics: chief rays come from there."""
+    lens: Any = image.camera.lens
+    return abs(float(lens.film_position_mm - lens.first_order().exit_pupil_position_mm))

@@ -1,0 +1,237 @@
+"""Absurd light, both ends of everything, and what users get wrong."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from .sensors import counter, film_of
+
+NAMES = rc.sensor_names()
+each_sensor = pytest.mark.parametrize("name", NAMES)
+
+
+def of(name: str) -> tuple[rc.Sensor, float, float]:
+    """A sensor, its pitch in um, and the lowest ISO (100 where there is none)."""
+    sensor = rc.Sensor.load(name)
+    return sensor, sensor.pixel_pitch_um or 5.0, sensor.iso_range()[0] or 100.0
+
+
+@each_sensor
+def test_light_of_any_size(name: str) -> None:
+    sensor, pitch_um, iso = of(name)
+    values = [0, 1e-30, 1e-3, 1e5, 1e38, 3.4e38, np.inf, -np.inf, np.nan, -1e38]
+    pixels = np.repeat(np.array(values, np.float32), 256).reshape(len(values) * 8, 32)
+    raw = sensor.expose(film_of(pixels, pitch_um=pitch_um, iso=iso))
+    rows = raw.mosaic.reshape(len(values), 256).astype(float)
+    spread = 8 * raw.gain_dn_per_e * (sensor.read_noise_e + sensor.dsnu_e) + 1
+    black, white = raw.black_level_dn, raw.white_level_dn
+    for value, numbers in zip(values, rows, strict=True):
+        if value > 1e3:
+            assert numbers.min() >= white - spread, value
+            assert numbers.max() <= 2**sensor.adc_bits - 1
+        elif not value >= 1e-3:
+            assert abs(numbers - black).max() <= spread, value
+    developed = raw.exposure(demosaic="bilinear")
+    assert np.isfinite(developed).all()
+
+
+@each_sensor
+def test_a_light_1e8_times_as_bright_leaves_its_neighbours_alone(name: str) -> None:
+    sensor, pitch_um, iso = of(name)
+    dim = np.full((64, 64), 0.1 * 78 / iso, np.float32)
+    bright = dim.copy()
+    bright[20:24, 20:24] *= 1e8
+    without, with_light = (sensor.expose(film_of(p, pitch_um=pitch_um, iso=iso)) for p in (dim, bright))
+    same = np.ones(dim.shape, bool)
+    same[20:24, 20:24] = False
+    assert np.array_equal(without.mosaic[same], with_light.mosaic[same])
+    full = with_light.white_level_dn
+    assert (
+        with_light.mosaic[20:24, 20:24]
+        >= full - 8 * with_light.gain_dn_per_e * (sensor.read_noise_e + sensor.dsnu_e) - 1
+    ).all()
+    # Cut highlights are white, not coloured: all channels of the middle alike.
+    middle = with_light.exposure("bilinear")[21:23, 21:23]
+    assert np.ptp(middle, axis=2).max() <= 0.02 * middle.max()
+
+
+@each_sensor
+def test_zero_exposure_is_black(name: str) -> None:
+    sensor, pitch_um, iso = of(name)
+    raw = sensor.expose(film_of(np.zeros((200, 200)), pitch_um=pitch_um, iso=iso))
+    dark_e = sensor.dark_current_e_per_s * 0.01
+    expected = raw.black_level_dn + raw.gain_dn_per_e * dark_e
+    error = raw.gain_dn_per_e * np.sqrt(sensor.read_noise_e**2 + sensor.dsnu_e**2 + dark_e) + 0.3
+    assert raw.mosaic.mean() == pytest.approx(expected, abs=5 * error / 200)
+    assert raw.developed(demosaic="bilinear").mean() < 12
+
+
+@each_sensor
+def test_saturated_is_white(name: str) -> None:
+    sensor, pitch_um, iso = of(name)
+    raw = sensor.expose(film_of(np.full((32, 32), 1e3), pitch_um=pitch_um, iso=iso))
+    assert (raw.developed(demosaic="bilinear") == 255).all()
+
+
+@each_sensor
+def test_both_ends_of_iso(name: str) -> None:
+    sensor, pitch_um, _ = of(name)
+    lowest, highest = sensor.iso_range(pitch_um)
+    for iso in (lowest or 1e-3, highest if highest < 1e9 else 1e9):
+        # Half of what saturates, by the definition of the number.
+        film = film_of(np.full((64, 64), 0.5 * 78 / iso), pitch_um=pitch_um, iso=iso)
+        raw = sensor.expose(film)
+        white = (raw.mosaic.astype(float) - raw.black_level_dn) / (raw.white_level_dn - raw.black_level_dn)
+        most_sensitive = white.reshape(32, 2, 32, 2).mean(axis=(0, 2)).max()
+        # The smallest signals, a few electrons at 1e9 ISO, are noisy.
+        electrons = max(0.5 * (raw.white_level_dn - raw.black_level_dn) / raw.gain_dn_per_e, 1e-3)
+        assert most_sensitive == pytest.approx(0.5, abs=0.02 + 6 / np.sqrt(electrons * 1024))
+    if highest < 1e9:
+        for iso in (0.9 * lowest, 1.1 * highest):
+            with pytest.raises(rc.InputError, match=r"iso must lie between .* for this sensor; it is"):
+                sensor.expose(film_of(np.zeros((4, 4)), pitch_um=pitch_um, iso=iso))
+
+
+@pytest.mark.parametrize("iso", [1e-37, 1e38])
+def test_iso_numbers_of_no_camera(iso: float) -> None:
+    """The ends of what a Camera admits, on pixels from a nanometre to a metre."""
+    for pitch_um in (1e-3, 1e6):
+        pixels = np.array([[0, 1e-30, 1, 3.4e38]]).repeat(4, axis=0)
+        mosaic = rc.Sensor.load("ideal").expose(film_of(pixels, pitch_um=pitch_um, iso=iso)).mosaic
+        assert (mosaic[:, 0] == 0).all()
+        assert mosaic.max() <= 65535
+
+
+def test_saturation_by_iso_12232() -> None:
+    """At any ISO number the converter is full at 78 / ISO lux seconds of white, in the most sensitive filter."""
+    sensor = rc.Sensor.load("ideal")
+    for iso in (50, 800):
+        for share, is_full in ((0.99, False), (1.01, True)):
+            raw = sensor.expose(film_of(np.full((64, 64), share * 78 / iso), pitch_um=20, iso=iso))
+            assert (np.mean(raw.mosaic == 65535) > 0.2) == is_full
+
+
+def test_pixels_of_another_size_are_told() -> None:
+    sensor = rc.Sensor.load("sony-imx071-color")
+    iso = sensor.iso_range()[0]
+    with pytest.warns(UserWarning, match=r"pixels of 37.5 um are exposed as the sensor's of 4.78 um"):
+        sensor.expose(film_of(np.ones((4, 4)), pitch_um=37.5, iso=iso))
+    assert sensor.film().resolution == (4944, 3284)
+    assert sensor.film().width_mm == pytest.approx(4.944 * 4.78)
+    with pytest.raises(rc.InputError, match="pixels of any size"):
+        rc.Sensor.load("ideal").film()
+
+
+def test_sensors_are_values() -> None:
+    sensor = rc.Sensor.load("sony-imx900-mono")
+    assert sensor == rc.Sensor.load("sony-imx900-mono") != rc.Sensor.load("ideal")
+    assert hash(sensor) == hash(rc.Sensor.load("sony-imx900-mono"))
+    assert sensor.replace() == sensor != sensor.replace(dsnu_e=1)
+    assert pickle.loads(pickle.dumps(sensor)) == copy.deepcopy(sensor) == sensor
+    assert repr(sensor) == "<realcam.Sensor sony-imx900-mono, 2064 x 1552 pixels of 2.25 um, monochrome, 12 bit>"
+    raw = sensor.expose(film_of(np.ones((4, 6)), pitch_um=2.25, iso=1000))
+    assert pickle.loads(pickle.dumps(raw)) == raw
+    assert repr(raw) == "<realcam.RawImage 6 x 4 pixels of 'sony-imx900-mono', ISO 1000>"
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(raw)
+
+
+@each_sensor
+def test_bundled_sensors_say_where_they_are_from(name: str) -> None:
+    sensor = rc.Sensor.load(name)
+    assert sensor.name == name
+    assert sensor.title
+    assert sensor.source
+    assert sensor.assumptions
+
+
+GOOD = 'format = 1\nname = "x"\nquantum_efficiency = [[400, 0.5], [700, 0.5]]\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (GOOD + "read_nois_e = 3\n", r's.toml:4: unknown key "read_nois_e" \(did you mean "read_noise_e"'),
+        (GOOD + "read_noise_e = -1\n", r"s.toml:4: read_noise_e must be a number from 0 on"),
+        (GOOD + 'adc_bits = "12"\n', r's.toml:4: "adc_bits" must be a finite number'),
+        (GOOD + "adc_bits = 17\n", r"s.toml:4: adc_bits must be a whole number from 1 to 16"),
+        (GOOD + "adc_bits = 12.5\n", r's.toml:4: "adc_bits" must be a whole number'),
+        (GOOD + "black_level_dn = 70000\n", r"s.toml:4: black_level_dn must be from 0 to less than"),
+        (GOOD + "saturation_capacity_e = 1000\n", r"gain_dn_per_e must be given where there is"),
+        (GOOD + 'color_filter_array = "RGBG"\n', r"quantum_efficiency.* must be a table of \[nm, red, green, blue\]"),
+        (GOOD + "cover_glass = [[400, 1.2]]\n", r"s.toml:4: cover_glass must be a table of values from 0 to 1"),
+        (GOOD + "cover_glass = [[500, 1], [400, 1]]\n", r"cover_glass must be a table whose first column rises"),
+        (GOOD + "angular_response = [[5, 1], [20, 0.5]]\n", r"angular_response must be a table from 0 to less than 90"),
+        (GOOD + "prnu_percent = 50\n", r"prnu_percent must be from 0 to 15"),
+        (GOOD + "resolution = [100]\n", r"resolution"),
+        ('format = 1\nname = "x"\n', r"quantum_efficiency must be a table of at least two wavelengths"),
+        ('name = "x"\n', r"format = 1 is wanted"),
+        ("format = 1\n", r'"name" is missing'),
+        ("format = = 1\n", r"s.toml:1: not valid TOML"),
+    ],
+)
+def test_mistakes_in_sensor_files_are_told_with_their_line(text: str, why: str, tmp_path: Path) -> None:
+    file = tmp_path / "s.toml"
+    file.write_text(text)
+    with pytest.raises(rc.InputError, match=why) as error:
+        rc.Sensor.load(file)
+    assert "\n" not in str(error.value)
+
+
+def test_other_mistakes_are_told() -> None:
+    with pytest.raises(rc.InputError, match='unknown sensor "idael"') as error:
+        rc.Sensor.load("idael")
+    assert 'did you mean "ideal"' in str(error.value)
+    with pytest.raises(rc.InputError, match="no such file"):
+        rc.Sensor.load("./nothing.toml")
+    film, sensor = film_of(np.ones((4, 4)), pitch_um=1, iso=100), counter()
+    iso = sensor.iso_range()[0]
+    with pytest.raises(rc.InputError, match=r"image must be a realcam.Image; it is 3"):
+        sensor.expose(3)  # type: ignore[arg-type]
+    with pytest.raises(rc.InputError, match="the seed must lie between"):
+        sensor.expose(film, iso=iso, seed=-1)
+    raw = sensor.expose(film, iso=iso)
+    with pytest.raises(rc.InputError, match="has no colour filters"):
+        _ = raw.camera_from_xyz
+    color = rc.Sensor.load("ideal").expose(film)
+    with pytest.raises(rc.InputError, match="unknown demosaicing 'magic'"):
+        color.exposure("magic")
+    with pytest.raises(rc.InputError, match=r"raw\.jpg: \.dng, \.npy .* is wanted"):
+        color.save("raw.jpg")
+
+
+def test_what_is_not_installed_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    raw = rc.Sensor.load("ideal").expose(film_of(np.ones((4, 4)), pitch_um=5))
+    monkeypatch.setitem(__import__("sys").modules, "tifffile", None)
+    monkeypatch.setitem(__import__("sys").modules, "colour_demosaicing.bayer", None)
+    for use in (lambda: raw.save(tmp_path / "x.dng"), raw.developed):
+        with pytest.raises(rc.InputError, match=r"pip install realcam\[raw\] brings it") as error:
+            use()
+        assert "\n" not in str(error.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_microlenses_see_less_from_the_side() -> None:
+    """A response of cos^2 of the chief ray's angle, from the paraxial exit pupil: 1 / (1 + r^2 / d^2)."""
+    angles = np.linspace(0, 60, 121)
+    sensor = counter().replace(angular_response=np.stack([angles, np.cos(np.radians(angles)) ** 2], axis=1).tolist())
+    iso, shape, pitch_um = sensor.iso_range()[0], (300, 300), 100.0
+    film = film_of(
+        np.full(shape, 5000 / sensor.electrons_per_um2("550")[0].sum()), pitch_um=pitch_um, iso=iso, illuminant="550"
+    )
+    with pytest.warns(UserWarning, match="pixels of 100 um"):
+        raw = sensor.expose(film)
+    lens = film.camera.lens
+    distance_mm = lens.film_position_mm - lens.first_order().exit_pupil_position_mm
+    y, x = np.indices(shape) - 149.5
+    expected = 5000 / (1 + (x**2 + y**2) * 0.1**2 / distance_mm**2)
+    blocks = (raw.mosaic - expected).reshape(10, 30, 10, 30).mean(axis=(1, 3))
+    # Noise of 900 pixels, and the table's steps, some 1e-4.
+    assert np.abs(blocks).max() < 5 * np.sqrt(5000 / 900) + 2
+    assert expected.min() < 4400  # there is something to see
