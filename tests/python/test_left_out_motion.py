@@ -84,7 +84,7 @@ def test_a_session_begins_anew_where_motion_is_left_out() -> None:
     session = rc.Session(passing(), camera(), device="cpu", effects="-motion_blur")
     session.add(16)
     np.testing.assert_array_equal(session.image().pixels, picture(passing(), camera(), "-motion_blur"))
-    session.set(passing(), camera(shutter_opens_s=0.3))
+    session.set(camera=camera(shutter_opens_s=0.3))
     session.add(16)
     moved = picture(passing().at_time(0.3 + EXPOSED / 2), camera())
     np.testing.assert_array_equal(session.image().pixels, moved)
@@ -93,7 +93,6 @@ def test_a_session_begins_anew_where_motion_is_left_out() -> None:
 def test_what_is_left_out_is_told() -> None:
     image = rc.render(passing(), camera(), spp=1, device="cpu", effects={"-rolling_shutter", "-motion_blur"})
     assert image.metadata()["realcam:effects"] == "-motion_blur,-rolling_shutter"
-    assert {line.split(":")[0] for line in rc.effects()} >= {"dispersion", "motion_blur", "rolling_shutter"}
 
 
 @pytest.mark.parametrize(

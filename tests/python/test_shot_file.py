@@ -81,8 +81,12 @@ def test_focus_and_stop(tmp_path: Path) -> None:
 
 def test_blades(tmp_path: Path) -> None:
     base = 'format = 1\nscene = "quad.obj"\nexposure_time_s = 1\nf_number = 8\n'
-    lens = load(tmp_path, base + "blades = 7\nblade_rounding = 0.3\nblade_rotation_deg = 15\n").camera.lens
-    assert lens == load(tmp_path, base).camera.lens.with_iris(7, 0.3, 15)
+    shot = load(tmp_path, base + "blades = 7\nblade_rounding = 0.3\nblade_rotation_deg = 15\n")
+    lens = shot.camera.lens
+    assert (lens.iris_blades, lens.iris_rounding) == (7, 0.3)
+    assert lens.iris_rotation_deg == pytest.approx(15)
+    assert lens.first_order().f_number == pytest.approx(8)
+    assert rc.render(shot.scene, shot.camera, spp=1).metadata()["realcam:blades"] == "7"
     for line, wanted in (
         ("blades = 2", r"shot\.toml:5: the iris has 2 blades; 0 \(round\) or 3 to 24 are wanted"),
         ("blades = 5.5", r"shot\.toml:5: .*whole numbers"),
