@@ -121,7 +121,8 @@ CoatingResponse response(const Coating& coating, const py::object& angle_deg, co
             surface.emplace(coating, mirror, nm, from_inside ? n_in : n_out, from_inside ? n_out : n_in, !from_inside);
             wavelength = nm;
         }
-        const PolarisedResponse at = surface->at(std::cos(angle * std::numbers::pi / 180));
+        // The cosine, by way of a difference that is exact: a rounded angle has none of its digits near 90 degrees.
+        const PolarisedResponse at = surface->at(std::sin((90 - angle) * std::numbers::pi / 180));
         const double numbers[] = {at.s.reflectance,   at.p.reflectance, at.s.transmittance,
                                   at.p.transmittance, at.s.absorptance, at.p.absorptance};
         const std::complex<double> amplitudes[] = {at.s.r, at.p.r, at.s.t, at.p.t};

@@ -13,7 +13,6 @@ import tmm
 from measurement import Measurement, hold
 from numpy.typing import NDArray
 
-
 SHARES = ("reflectance", "transmittance", "absorptance")
 
 
@@ -189,7 +188,7 @@ def test_grazing_light_against_many_digits(distance_deg: float) -> None:
         angle, wavelength, inside=glass
     )
     with mpmath.workdps(60):
-        cosine = mpmath.cos(mpmath.mpf(np.cos(np.radians(angle)) and angle) * mpmath.pi / 180)
+        cosine = mpmath.sin((90 - mpmath.mpf(angle)) * mpmath.pi / 180)
         for polarisation in "sp":
 
             def admittance(n: complex, polarisation: str = polarisation) -> mpmath.mpc:
@@ -203,10 +202,8 @@ def test_grazing_light_against_many_digits(distance_deg: float) -> None:
                 c, s = mpmath.cos(delta), mpmath.sin(delta)
                 u, v = c * u - 1j * s / y * v, -1j * y * s * u + c * v
             expected = 4 * cosine * admittance(glass).real / abs(cosine * u + v) ** 2
-            # cos() of a double near 90 degrees is as exact as the double: half a rounding of the angle, 7e-15 degrees.
             found = power(response, "transmittance", polarisation)
-            assert float(found) == pytest.approx(float(expected), rel=1e-13 + 1.5e-14 / distance_deg)
-    assert 0 < response.reflectance_s < 1 or distance_deg < 1e-9
+            assert float(found) == pytest.approx(float(expected), rel=1e-13)
 
 
 def test_at_90_degrees_everything_is_reflected() -> None:
@@ -251,7 +248,7 @@ def test_light_passes_both_ways_alike() -> None:
 
 
 def test_layers_are_counted_from_the_air() -> None:
-    """One coating on both faces of a plate: light meets the first layer first when it enters, and last when it leaves."""
+    """On both faces of a plate: light meets the first layer first when it enters, and last when it leaves."""
     films = rc.Coating([layer(1.38, 100), layer(2.1, 130)])
     entering = films.response(20, 500, inside=1.6)
     theirs = tmm.coh_tmm("s", [1, 1.38, 2.1, 1.6], [np.inf, 100, 130, np.inf], np.radians(20), 500)

@@ -1,4 +1,4 @@
-"""What lenses let through: against closed forms and an independent polarisation ray trace; T-stops; lens files that say coatings."""
+"""What lenses let through, against closed forms and an independent polarisation trace; T-stops; coatings in lens files."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def plates(count: int = 2, index: float = 1.7) -> rc.Lens:
 
 
 def fresnel_amplitudes(before: float, behind: float, cosine: float) -> tuple[float, float]:
-    """t_s and t_p times sqrt(n' cos' / n cos): their squares are shares of the power (Born and Wolf 1.5.2 and 1.5.3)."""
+    """t_s and t_p times sqrt(n' cos' / n cos): squared, shares of the power (Born and Wolf 1.5.2 and 1.5.3)."""
     inner = math.sqrt(1 - (before / behind) ** 2 * (1 - cosine**2))
     scale = math.sqrt(behind * inner / (before * cosine))
     s = 2 * before * cosine / (before * cosine + behind * inner)
@@ -42,7 +42,7 @@ def fresnel_amplitudes(before: float, behind: float, cosine: float) -> tuple[flo
 
 
 def jones_transmission(lens: rc.Lens, origin: Vector, direction: Vector) -> float:
-    """Chipman's 3 x 3 matrices in numpy, for spheres without coatings; half the trace of P^T P over the transverse plane."""
+    """Chipman's 3 x 3 matrices, for bare spheres: half the trace of P^T P over the plane across the light."""
     media = indices_of(lens, lens.wavelength_nm)
     total = np.eye(3)
     before = direction / np.linalg.norm(direction)
@@ -152,7 +152,7 @@ def test_light_passes_a_lens_both_ways_alike(name: str, coating: str) -> None:
 
 
 def field_of_the_film(lens: rc.Lens) -> float:
-    """Angle to the axis of the film's corner, degrees; of the farthest place towards it that gets light where that has none."""
+    """Angle to the axis of the film's corner, degrees, or of the place nearest to it that gets light."""
     width, height = lens.film_mm
     while True:
         across = rc.Camera(lens, film=rc.Film(width, height)).field_of_view_deg.diagonal
