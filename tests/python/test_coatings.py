@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 import realcam as rc
 import tmm
-from measurement import Measurement, hold
 from numpy.typing import NDArray
+
+from ..measurement import Measurement, hold
 
 SHARES = ("reflectance", "transmittance", "absorptance")
 
@@ -297,7 +298,7 @@ def test_a_stated_reflectance_holds_everywhere() -> None:
         (lambda: rc.Coating.named("unknown").response(0, 550, inside=1.5), "nothing can be said"),
         (
             lambda: rc.Coating.named("silver").response(0, 2000),
-            'material "silver" is known from 188 to 1937 nm; 2000 nm',
+            'material "silver" is known from 188 nm to 1937 nm; 2000 nm',
         ),
     ],
 )

@@ -1,4 +1,4 @@
-"""What lenses let through, against closed forms and an independent polarisation trace; T-stops; coatings in lens files."""
+"""What lenses let through: closed forms, an independent polarisation trace, T-stops, and coatings in lens files."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from measurement import Measurement, hold
 from numpy.typing import NDArray
+
+from ..measurement import Measurement, hold
 
 DOUBLE_GAUSS = "double-gauss-50mm"
 Vector = NDArray[np.float64]
@@ -139,9 +140,9 @@ def test_skew_rays_agree_with_an_independent_polarisation_trace(name: str) -> No
 @pytest.mark.parametrize("coating", ["bare", "quarter_wave"])
 def test_light_passes_a_lens_both_ways_alike(name: str, coating: str) -> None:
     lens = rc.Lens.load(name).with_coating(coating)
-    if lens.surfaces != lens.with_coating("unknown").surfaces and any(s.type == "mirror" for s in lens.surfaces):
+    if any(surface.type == "mirror" for surface in lens.surfaces):
         lens = lens.with_coating("aluminium")
-    aimed = lens.aim([(0.6, 0.1), (0.2, 0.7), (-0.4, -0.5)], 4, object_distance_m=math.inf)
+    aimed = lens.aim([(0.7, 0.1), (0.2, 0.75), (-0.6, -0.5)], 2, object_distance_m=math.inf)
     there = lens.trace(aimed.origins_mm, aimed.directions, start="scene", transmission=True)
     back = lens.trace(there.origins_mm, -there.directions, start="film", transmission=True)
     passed = np.asarray(there.status) == rc.RayStatus.OK
@@ -284,7 +285,8 @@ def test_a_wavelength_outside_a_glass_is_an_error_that_names_it() -> None:
             achromat.transmission(0, wavelength)
     film = lens.with_coating(rc.Coating([rc.CoatingLayer([(500, 1.4, 0), (600, 1.39, 0)], thickness_nm=90)]))
     with pytest.raises(
-        rc.InputError, match='surface 2 of lens "tabulated": the coating material is known from 500 to 600 nm; 450 nm'
+        rc.InputError,
+        match='surface 2 of lens "tabulated": the coating material is known from 500 nm to 600 nm; 450 nm',
     ):
         film.transmission(0, 450)
 
@@ -385,7 +387,7 @@ HOSTILE = {
         "",
         "",
         "[coating.a]\nlayer = []",
-        r'coated\.toml:19: unknown key "layer" \(did you mean "layers"',
+        r'coated\.toml:18: unknown key "layer" \(did you mean "layers"',
     ),
     "a mirror's on glass": (
         "",
@@ -403,76 +405,76 @@ HOSTILE = {
         "",
         "",
         "[coating.bare]\nlayers = [{ material = 1.4, thickness_nm = 9 }]",
-        r'coated\.toml:18: "bare" is a coating that all',
+        r'coated\.toml:17: "bare" is a coating that all',
     ),
-    "nothing": ("", "", "[coating.a]", r'coated\.toml:18: a coating needs "layers"'),
-    "two kinds": ("", "", '[coating.a]\nmetal = "silver"\nreflectance = 0.5', r"coated\.toml:18: a coating needs"),
+    "nothing": ("", "", "[coating.a]", r'coated\.toml:17: a coating needs "layers"'),
+    "two kinds": ("", "", '[coating.a]\nmetal = "silver"\nreflectance = 0.5', r"coated\.toml:17: a coating needs"),
     "reflects more": (
         "",
         "",
         "[coating.a]\nreflectance = 1.5",
-        r"coated\.toml:18: the reflectance of a mirror must lie",
+        r"coated\.toml:17: the reflectance of a mirror must lie",
     ),
     "nan": (
         "",
         "",
         "[coating.a]\nlayers = [{ material = 1.4, thickness_nm = nan }]",
-        r'coated\.toml:19: "thickness_nm" must be a finite number',
+        r'coated\.toml:18: "thickness_nm" must be a finite number',
     ),
     "negative thickness": (
         "",
         "",
         "[coating.a]\nlayers = [{ material = 1.4, thickness_nm = -1 }]",
-        r"coated\.toml:18: the thickness of layer 1 must lie",
+        r"coated\.toml:17: the thickness of layer 1 must lie",
     ),
     "negative index": (
         "",
         "",
         "[coating.a]\nlayers = [{ material = -1.4, thickness_nm = 1 }]",
-        r'coated\.toml:19: the refractive index in "material" is less than 1',
+        r'coated\.toml:18: the refractive index in "material" is less than 1',
     ),
     "gain": (
         "",
         "",
         "[coating.a]\nlayers = [{ complex_index = [1.4, -1], thickness_nm = 1 }]",
-        r"coated\.toml:18: the refractive index n \+ ik of layer 1",
+        r"coated\.toml:17: the refractive index n \+ ik of layer 1",
     ),
     "no thickness": (
         "",
         "",
         "[coating.a]\nlayers = [{ material = 1.4 }]",
-        r'coated\.toml:19: a layer needs exactly one of "thickness_nm"',
+        r'coated\.toml:18: a layer needs exactly one of "thickness_nm"',
     ),
     "no wavelength": (
         "",
         "",
         "[coating.a]\nlayers = [{ material = 1.4, thickness_waves = 1 }]",
-        r'coated\.toml:19: "thickness_waves" counts waves',
+        r'coated\.toml:18: "thickness_waves" counts waves',
     ),
     "unknown glass": (
         "",
         "",
         '[coating.a]\nlayers = [{ material = "N-BK8", thickness_nm = 1 }]',
-        r'coated\.toml:19: unknown glass "N-BK8" \(did you mean',
+        r'coated\.toml:18: unknown glass "N-BK8" \(did you mean',
     ),
     "unknown metal": (
         "",
         "",
         '[coating.a]\nmetal = "sliver"',
-        r'coated\.toml:19: unknown metal "sliver" \(did you mean "silver"',
+        r'coated\.toml:18: unknown metal "sliver" \(did you mean "silver"',
     ),
-    "no list": ("", "", "[coating.a]\nlayers = 3", r'coated\.toml:19: "layers" must be an array of tables'),
+    "no list": ("", "", "[coating.a]\nlayers = 3", r'coated\.toml:18: "layers" must be an array of tables'),
     "falling": (
         "",
         "",
         "[coating.a]\nmetal = [[500, 1, 1], [400, 1, 1]]",
-        r"coated\.toml:18: the wavelengths of the metal must rise",
+        r"coated\.toml:17: the wavelengths of the metal must rise",
     ),
     "no numbers": (
         "",
         "",
         '[coating.a]\nmetal = [["a", 1, 1]]',
-        r"coated\.toml:19: each number of a point must be a finite number",
+        r"coated\.toml:18: each number of a point must be a finite number",
     ),
     "a text": ("", "coating = 3", "", r'coated\.toml:13: surface 2: "coating" must be a text'),
     "a plain key": ("coating = 'bare'", "", "", r'coated\.toml:3: "coating" must be a table'),
@@ -488,7 +490,7 @@ def test_hostile_lens_files_get_one_clear_message(case: str, tmp_path: Path) -> 
 
 def test_a_million_layers_are_refused(tmp_path: Path) -> None:
     layers = ",".join(["{material=1.4,thickness_nm=1}"] * 400_000)
-    with pytest.raises(rc.LensFileError, match=r"coated\.toml:19: the coating has 400000 layers; at most 1000"):
+    with pytest.raises(rc.LensFileError, match=r"coated\.toml:18: the coating has 400000 layers; at most 1000"):
         lens_of(tmp_path, tables=f"[coating.a]\nlayers = [{layers}]")
     with pytest.raises(rc.LensFileError, match="larger than 16 MiB"):
         lens_of(tmp_path, tables=f"[coating.a]\nlayers = [{layers},{layers}]")
