@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coated_faces.hpp"
+#include "glass_resonances.hpp"
 #include "lens_path.hpp"
 #include "lens_system.hpp"
 #include "thin_film.hpp"
@@ -26,9 +27,9 @@ public:
           has_stated_reflectance_(is_mirror && coating.kind != CoatingKind::metal),
           stated_(coating.kind == CoatingKind::reflectance ? coating.reflectance : 1) {
         for (const CoatingLayer& layer : coating.layers)
-            stack_.films.push_back({layer.material.index(wavelength_nm), layer.thickness_nm});
+            stack_.films.push_back({known_index(layer.material, wavelength_nm), layer.thickness_nm});
         if (!as_listed) std::reverse(stack_.films.begin(), stack_.films.end());
-        if (coating.kind == CoatingKind::metal) stack_.index_behind = coating.metal.index(wavelength_nm);
+        if (coating.kind == CoatingKind::metal) stack_.index_behind = known_index(coating.metal, wavelength_nm);
     }
 
     /// `cosine`: of the angle of incidence, in the medium from which the light comes.
@@ -42,6 +43,14 @@ public:
     bool is_mirror() const { return is_mirror_; }
 
 private:
+    static std::complex<double> known_index(const CoatingMaterial& material, double wavelength_nm) {
+        const WavelengthRange range = between_resonances(material.glass);
+        if (wavelength_nm > range.first && wavelength_nm < range.last) return material.index(wavelength_nm);
+        throw InputError("the coating material" + (material.name().empty() ? "" : " \"" + material.name() + '"') +
+                         " lets no light pass at " + std::to_string(std::lround(wavelength_nm)) +
+                         " nm, at or beyond a resonance");
+    }
+
     FilmStack stack_;
     bool is_mirror_, has_stated_reflectance_;
     double stated_;
