@@ -200,7 +200,7 @@ void bind_coating(py::module_& m) {
              "reflectance"_a = py::none(), "name"_a = "",
              "layers: CoatingLayers from the air inwards: the first touches the medium of the lower index at the d "
              "line, the\n"
-             "last the glass or the metal. None: a bare surface.\n"
+             "last the glass or the metal. Empty: a bare surface.\n"
              "metal: of a mirror, with or without layers; materials as CoatingLayer takes them.\n"
              "reflectance: of a mirror, the share of the power that it reflects at every angle and wavelength.")
         .def_static(
