@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <numbers>
+#include <optional>
 
 #include "../camera/field_of_view.hpp"
 #include "../io/json_writer.hpp"
 #include "../optics/paraxial.hpp"
+#include "../optics/transmission.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
@@ -37,11 +40,26 @@ std::string material_name(const Surface& surface) {
     return surface.material.is_air() ? "air" : surface.material.label;
 }
 
-std::string shape(const Surface& surface) {
+/// The name that a lens file gives it; else what it is.
+std::string coating_name(const Coating& coating) {
+    if (!coating.name.empty()) return coating.name;
+    switch (coating.kind) {
+        case CoatingKind::unknown: return "unknown";
+        case CoatingKind::bare: return "bare";
+        case CoatingKind::layers: break;
+        case CoatingKind::metal: return "metal";
+        case CoatingKind::reflectance: return "reflectance " + short_number(coating.reflectance);
+    }
+    return std::to_string(coating.layers.size()) + " layers";
+}
+
+std::string remarks(const Surface& surface) {
     std::string text;
     const auto add = [&](const std::string& mark) { text += (text.empty() ? "" : ", ") + mark; };
     if (surface.conic != 0) add("conic " + short_number(surface.conic, 6));
     if (surface.is_asphere()) add("asphere to r^" + std::to_string(2 * surface.aspheric.size() + 2));
+    if (surface.coating.kind != CoatingKind::unknown && surface.coating.kind != CoatingKind::bare)
+        add(coating_name(surface.coating));
     if (surface.inner_semi_diameter > 0) add("blocked inside " + short_number(surface.inner_semi_diameter, 6) + " mm");
     return text;
 }
@@ -56,7 +74,7 @@ std::string table(const LensSystem& lens) {
         const bool closed = s.type == SurfaceType::stop && !lens.is_wide_open();
         rows.push_back({std::to_string(i + 1), type_name(s.type), radius,
                         fixed(last ? lens.film_distance : s.thickness), material_name(s),
-                        fixed(closed ? lens.stop_semi_diameter : s.clear_semi_diameter), shape(s)});
+                        fixed(closed ? lens.stop_semi_diameter : s.clear_semi_diameter), remarks(s)});
     }
     rows.push_back({"", "film", "", "", "", "", ""});
     std::array<std::size_t, 7> widths{};
@@ -89,6 +107,38 @@ std::array<double, 3> field_of_view(const LensSystem& lens) {
     return {full(lens.film_width), full(lens.film_height), full(std::hypot(lens.film_width, lens.film_height))};
 }
 
+/// What is assumed of surfaces of which the lens does not say how they are coated; empty where it says all.
+std::string coating_assumptions(const LensSystem& lens) {
+    const std::vector<int> unknown = surfaces_with_unknown_coating(lens);
+    const auto mirrors = std::count_if(unknown.begin(), unknown.end(), [&](int i) {
+        return lens.surfaces[static_cast<std::size_t>(i)].type == SurfaceType::mirror;
+    });
+    const auto faces = static_cast<std::ptrdiff_t>(unknown.size()) - mirrors;
+    const auto assumed = [](std::ptrdiff_t count, const std::string& what, const std::string& as) {
+        if (count == 0) return std::string();
+        return std::to_string(count) + ' ' + what + (count == 1 ? " is" : "s are") + " taken for " + as;
+    };
+    const std::string glass = assumed(faces, "face", "bare glass"), metal = assumed(mirrors, "mirror", "perfect");
+    if (unknown.empty()) return "";
+    return "not stated: " + glass + (glass.empty() || metal.empty() ? "" : ", ") + metal;
+}
+
+/// Nothing where a material is not known at the design wavelength; `why` then says which.
+std::optional<double> known_t_stop(const LensSystem& lens, std::string& why) {
+    try {
+        return t_stop(lens, lens.wavelength_nm);
+    } catch (const InputError& error) {
+        why = error.what();
+        return std::nullopt;
+    }
+}
+
+std::string t_stop_text(const LensSystem& lens) {
+    std::string why;
+    const std::optional<double> value = known_t_stop(lens, why);
+    return value ? "T/" + short_number(*value) : "unknown: " + why;
+}
+
 std::string iris_text(const IrisShape& iris) {
     if (iris.blades == 0) return "round";
     return std::to_string(iris.blades) + " blades, rounding " + short_number(iris.rounding) + ", rotation " +
@@ -116,6 +166,9 @@ std::string lens_as_text(const LensSystem& lens) {
     line("back focal distance", mm(data.back_focal_distance));
     line("front focal distance", mm(data.front_focal_distance));
     line("f-number", std::string(7, ' ') + "f/" + short_number(data.f_number));
+    line("T-stop", std::string(7, ' ') + t_stop_text(lens));
+    const std::string assumptions = coating_assumptions(lens);
+    line("coatings", "     " + (assumptions.empty() ? std::string("as stated") : assumptions));
     line("entrance pupil position", mm(data.entrance_pupil_position));
     line("entrance pupil diameter", mm(data.entrance_pupil_diameter));
     line("exit pupil position", mm(data.exit_pupil_position));
@@ -145,6 +198,7 @@ std::string lens_as_json(const LensSystem& lens) {
         const Surface& s = lens.surfaces[i];
         json.begin_object().key("number").number(static_cast<double>(i + 1)).key("type").text(type_name(s.type));
         json.key("radius_of_curvature_mm").number(1 / s.curvature).key("thickness_mm").number(s.thickness);
+        if (s.bends_light()) json.key("coating").text(coating_name(s.coating));
         json.key("material").text(material_name(s)).key("clear_semi_diameter_mm").number(s.clear_semi_diameter);
         if (s.inner_semi_diameter > 0) json.key("inner_semi_diameter_mm").number(s.inner_semi_diameter);
         if (s.conic != 0) json.key("conic").number(s.conic);
@@ -163,6 +217,10 @@ std::string lens_as_json(const LensSystem& lens) {
     add("back_focal_distance_mm", data.back_focal_distance);
     add("front_focal_distance_mm", data.front_focal_distance);
     add("f_number", data.f_number);
+    std::string why;
+    add("t_stop", known_t_stop(lens, why).value_or(std::numeric_limits<double>::quiet_NaN()));
+    if (!why.empty()) json.key("t_stop_unknown").text(why);
+    json.key("coating_assumptions").text(coating_assumptions(lens));
     add("entrance_pupil_position_mm", data.entrance_pupil_position);
     add("entrance_pupil_diameter_mm", data.entrance_pupil_diameter);
     add("exit_pupil_position_mm", data.exit_pupil_position);

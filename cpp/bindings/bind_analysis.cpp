@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "../embree/lens_rays.hpp"
+#include "analysis_arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
@@ -16,32 +17,6 @@ namespace {
 
 using Array = py::array_t<double>;
 using Points = InputArray<double>;
-
-// What the analyses ask of the user alike.
-
-std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples, const std::optional<Points>& pupil) {
-    if (pupil) {
-        if (pupil->ndim() != 2 || pupil->shape(1) != 2 || pupil->shape(0) == 0)
-            throw InputError("pupil must be an array of shape (N, 2), with N of 1 or more");
-        std::vector<PupilPoint> points;
-        const auto count = static_cast<std::size_t>(pupil->shape(0));
-        points.reserve(count);
-        RayLoop{heed_signals}.in_order(count, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const double x = pupil->data()[2 * i], y = pupil->data()[2 * i + 1];
-                if (!(std::hypot(x, y) < 10)) throw InputError("places in the pupil are shares of the stop's radius");
-                points.push_back({x, y, 1});
-            }
-        });
-        return points;
-    }
-    if (!(samples >= 1 && samples <= 2048)) throw InputError("samples must lie between 1 and 2048");
-    const RayLoop loop{heed_signals};
-    if (pattern == "grid") return square_grid(samples, loop);
-    if (pattern == "rings") return gauss_rings(samples, loop);
-    if (pattern == "hexapolar") return hexapolar(samples, loop);
-    throw InputError("unknown pattern \"" + pattern + "\"; grid, rings or hexapolar is wanted");
-}
 
 double film_distance_from(const LensSystem& lens, std::optional<double> mm) {
     if (mm && !std::isfinite(*mm)) throw InputError("film_distance_mm must be a finite length, or None for the film");
@@ -153,21 +128,6 @@ Spot make_spot(const LensSystem& lens, double field_deg, std::optional<double> o
     const FieldPoint field = field_from(field_deg, object_distance_m);
     return spot_of(field_rays(lens, wavelength, field, std::move(points), loop), distance, loop);
 }
-
-constexpr const char* kFieldText =
-    R"(field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
-  for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
-object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
-wavelength_nm: None is the design wavelength.
-)";
-constexpr const char* kPatternText =
-    R"(pattern, samples: "grid", the cells of a square of samples x samples; "rings", samples rings at Gauss's nodes,
-  whose means over a round stop are exact for smooth functions; "hexapolar", a middle ray and samples rings of 6, 12,
-  ... rays up to the edge, all of one weight.
-pupil: (N, 2), places on the stop as shares of its radius, in place of a pattern.
-Rays fill the real stop: each is aimed at its place there within 1e-10 of the stop's radius. One for which no ray is
-found ends as NO_CONVERGENCE, and what a rim blocks as VIGNETTED.
-)";
 
 }  // namespace
 

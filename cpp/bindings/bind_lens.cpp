@@ -5,6 +5,7 @@
 #include "../optics/focus.hpp"
 #include "../optics/lens_changes.hpp"
 #include "bindings.hpp"
+#include "coating_from.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
@@ -62,6 +63,7 @@ struct SurfaceChanges {
     std::optional<std::map<int, double>> aspheric_coefficients;
     std::optional<double> inner_semi_diameter_mm;
     std::optional<std::string> type;
+    std::optional<Coating> coating;
 };
 
 std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {
@@ -91,14 +93,15 @@ Surface changed(Surface surface, const SurfaceChanges& to) {
     surface.clear_semi_diameter = to.clear_semi_diameter_mm.value_or(surface.clear_semi_diameter);
     surface.inner_semi_diameter = to.inner_semi_diameter_mm.value_or(surface.inner_semi_diameter);
     surface.conic = to.conic.value_or(surface.conic);
+    surface.coating = to.coating.value_or(surface.coating);
     return surface;
 }
 
 Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
                      double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
-                     double inner_semi_diameter, const std::string& type) {
+                     double inner_semi_diameter, const std::string& type, const py::object& coating) {
     return changed(Surface(), {radius_of_curvature, thickness, glass_from(material), clear_semi_diameter, conic,
-                               aspheric, inner_semi_diameter, type});
+                               aspheric, inner_semi_diameter, type, coating_from(coating)});
 }
 
 /// Defines a method whose arguments are `first`, and by their names those of Surface. What is left out stays; because
@@ -112,16 +115,18 @@ void def_surface_changes(py::class_<T>& type, const char* name, Function functio
         name,
         [function](const T& self, Index<First>... place, Number radius, Number thickness, const py::object& material,
                    Number clear, Number conic, const std::optional<std::map<int, double>>& aspheric, Number inner,
-                   const std::optional<std::string>& surface_type) {
+                   const std::optional<std::string>& surface_type, const py::object& coating) {
             const bool stays = material.is(py::ellipsis());
             const SurfaceChanges changes{
-                radius, thickness,   stays ? std::nullopt : std::optional(glass_from(material)), clear, conic, aspheric,
-                inner,  surface_type};
+                radius, thickness,    stays ? std::nullopt : std::optional(glass_from(material)),
+                clear,  conic,        aspheric,
+                inner,  surface_type, coating.is_none() ? std::nullopt : std::optional(coating_from(coating))};
             return function(self, place..., changes);
         },
         first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
         "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),
-        "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(), text);
+        "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
+        "coating"_a = py::none(), text);
 }
 
 std::map<int, double> aspheric_map(const Surface& surface) {
@@ -175,6 +180,8 @@ std::string text_of(const Surface& s) {
     if (s.curvature != 0) text += ", radius " + digits(1 / s.curvature) + " mm";
     text += ", semi-diameter " + digits(s.clear_semi_diameter) + " mm";
     if (s.is_asphere() || s.conic != 0) text += ", aspheric";
+    if (s.coating.kind != CoatingKind::unknown)
+        text += ", " + (s.coating.name.empty() ? std::string("coated") : shortened(s.coating.name));
     return text + ", then " + digits(s.thickness) + " mm of " + text_of(s.material) + '>';
 }
 
@@ -247,13 +254,16 @@ void bind_surface(py::module_& m) {
         .def(py::init(&make_surface), py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
              "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
              "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
-             "type"_a = "refracting",
+             "type"_a = "refracting", "coating"_a = "unknown",
              "radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.\n"
              "thickness_mm: to the next surface; that of the last surface is not used.\n"
              "material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.\n"
              "conic: k = -e^2. aspheric_coefficients: {even power of r: mm^(1 - power)}, powers 4 to 18.\n"
              "inner_semi_diameter_mm: light closer to the axis is blocked.\n"
-             "type: refracting, mirror, stop or aperture (a plane that only blocks).")
+             "type: refracting, mirror, stop or aperture (a plane that only blocks).\n"
+             "coating: \"bare\", \"quarter_wave\", of a mirror \"aluminium\" or \"silver\", a Coating, or \"unknown\": "
+             "light\n"
+             "is then taken to meet bare glass, or a perfect mirror.")
         .def_property_readonly("radius_of_curvature_mm",
                                [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
         .def_readonly("curvature_per_mm", &Surface::curvature)
@@ -264,6 +274,7 @@ void bind_surface(py::module_& m) {
         .def_readonly("conic", &Surface::conic)
         .def_property_readonly("aspheric_coefficients", &aspheric_map)
         .def_property_readonly("type", [](const Surface& s) { return kTypeNames[static_cast<int>(s.type)]; })
+        .def_readonly("coating", &Surface::coating)
         .def("sag_mm", &Surface::sag, "radius_mm"_a,
              "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.")
         .def("__repr__", [](const Surface& s) { return text_of(s); });
@@ -368,6 +379,19 @@ void bind_lens(py::module_& m) {
             "blades"_a, "rounding"_a = py::none(), "rotation_deg"_a = py::none(),
             "The lens with another diaphragm: blades, rounding and rotation as Lens() takes them; None stays. The\n"
             "f-number stays too, because it is the open area that it means. Raises LensFileError.")
+        .def(
+            "with_coating",
+            [](const LensSystem& lens, const py::object& coating, const std::optional<std::vector<int>>& surfaces) {
+                return surfaces ? with_coating(lens, coating_from(coating), *surfaces)
+                                : with_coating(lens, coating_from(coating));
+            },
+            "coating"_a, "surfaces"_a = py::none(),
+            "The lens with another coating, as Surface() takes it, on the surfaces of these indices; None: on all that "
+            "it "
+            "is\n"
+            "for, a mirror's on all mirrors, any other on all faces between air and glass. Cemented faces stay as they "
+            "are.\n"
+            "Raises InputError, and LensFileError where a coating does not fit its surface.")
         .def_property_readonly("iris_rounding", [](const LensSystem& l) { return l.iris.rounding; })
         .def_property_readonly("iris_rotation_deg",
                                [](const LensSystem& l) { return l.iris.rotation_rad * 180 / std::numbers::pi; })

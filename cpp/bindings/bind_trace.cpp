@@ -7,6 +7,7 @@
 #include "../cuda/cuda_rays.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/lens_rays.hpp"
+#include "../optics/polarised_ray.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "device_array.hpp"
@@ -23,7 +24,7 @@ using Array = InputArray<double>;
 
 /// Arrays of numpy, or DeviceArrays.
 struct TraceResult {
-    py::object origins_mm, directions, optical_path_mm, status, surface_index;
+    py::object origins_mm, directions, optical_path_mm, status, surface_index, transmission;
 };
 
 /// What is asked of the rays, checked.
@@ -32,10 +33,11 @@ struct TraceOptions {
     double wavelength_nm;
     Precision precision;
     int surface_count;
+    bool transmission;
 };
 
 TraceOptions options_of(const LensSystem& lens, std::optional<double> wavelength_nm, const std::string& start,
-                        const py::object& dtype, std::optional<int> surface_count) {
+                        const py::object& dtype, std::optional<int> surface_count, bool transmission) {
     if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
     if (surface_count && *surface_count < 1)
         throw InputError("surface_count must be 1 or more, or None for all surfaces");
@@ -44,7 +46,7 @@ TraceOptions options_of(const LensSystem& lens, std::optional<double> wavelength
         throw InputError("dtype must be \"float64\" or \"float32\"");
     return {start == "film" ? LightDirection::to_scene : LightDirection::to_film,
             wavelength_nm.value_or(lens.wavelength_nm), type.itemsize() == 8 ? Precision::float64 : Precision::float32,
-            surface_count.value_or(-1)};
+            surface_count.value_or(-1), transmission};
 }
 
 std::int64_t ray_count(const Array& origins, const Array& directions) {
@@ -52,6 +54,26 @@ std::int64_t ray_count(const Array& origins, const Array& directions) {
                       directions.shape(1) == 3 && origins.shape(0) == directions.shape(0);
     if (!fits) throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
     return origins.shape(0);
+}
+
+/// (N,), or None where it is not asked for. In double whatever the precision of the trace.
+py::object transmission_of(const LensSystem& lens, const Array& origins, const Array& directions,
+                           const TraceOptions& options) {
+    if (!options.transmission) return py::none();
+    const auto count = static_cast<std::size_t>(origins.shape(0));
+    py::array_t<double> result(origins.shape(0));
+    double* to = result.mutable_data();
+    {
+        const Unlocked unlocked;
+        const PolarisedTrace trace(lens, options.way, options.wavelength_nm, options.surface_count);
+        parallel_ray_loop(heed_signals).for_all(count, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) {
+                const double *o = origins.data() + 3 * i, *d = directions.data() + 3 * i;
+                to[i] = trace({o[0], o[1], o[2]}, {d[0], d[1], d[2]}).traced;
+            }
+        });
+    }
+    return result;
 }
 
 TraceResult trace_host_arrays(const LensSystem& lens, const Array& origins, const Array& directions,
@@ -70,7 +92,7 @@ TraceResult trace_host_arrays(const LensSystem& lens, const Array& origins, cons
             trace_rays(lens, options.way, options.wavelength_nm, options.precision, options.surface_count, count,
                        origins.data(), directions.data(), out, nullptr, heed_signals);
     }
-    return {to, towards, path, status, surface};
+    return {to, towards, path, status, surface, transmission_of(lens, origins, directions, options)};
 }
 
 /// The GPU of both inputs, which must be the one that `device` names.
@@ -92,6 +114,8 @@ TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origi
                                 const TraceOptions& options, const std::optional<std::string>& device) {
     if (origins.count != directions.count)
         throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
+    if (options.transmission)
+        throw InputError("transmission is worked out for arrays of the host only, and these lie on a GPU");
     ForeignNumbers from = origins.numbers, along = directions.numbers;
     from.ordinal = along.ordinal = gpu_of(origins, directions, device);
     const TracedArrays traced = [&] {
@@ -99,14 +123,14 @@ TraceResult trace_device_arrays(const LensSystem& lens, const DeviceInput& origi
         return trace_arrays(lens, options.way, options.wavelength_nm, options.precision, options.surface_count,
                             origins.count, from, along);
     }();
-    return {py::cast(traced.origins), py::cast(traced.directions), py::cast(traced.optical_path),
-            py::cast(traced.status), py::cast(traced.surface_index)};
+    return {py::cast(traced.origins), py::cast(traced.directions),    py::cast(traced.optical_path),
+            py::cast(traced.status),  py::cast(traced.surface_index), py::none()};
 }
 
 TraceResult trace(const LensSystem& lens, const py::object& origins, const py::object& directions,
                   std::optional<double> wavelength_nm, const std::string& start, const py::object& dtype,
-                  std::optional<int> surface_count, const std::optional<std::string>& device) {
-    const TraceOptions options = options_of(lens, wavelength_nm, start, dtype, surface_count);
+                  std::optional<int> surface_count, const std::optional<std::string>& device, bool transmission) {
+    const TraceOptions options = options_of(lens, wavelength_nm, start, dtype, surface_count, transmission);
     const auto from = device_input(origins, "origins_mm"), along = device_input(directions, "directions");
     if (from && along) return trace_device_arrays(lens, *from, *along, options, device);
     if (from || along)
@@ -144,11 +168,16 @@ void bind_trace(py::module_& m) {
         .def_readonly("status", &TraceResult::status, "(N,): RayStatus values.")
         .def_readonly("surface_index", &TraceResult::surface_index,
                       "(N,): surface at which the ray ended, from 0; -1: bad input.")
+        .def_readonly(
+            "transmission", &TraceResult::transmission,
+            "(N,): share of the power of unpolarised light that is left, 0 where the status is not OK; None where "
+            "it\nwas not asked for.")
         .def("__repr__",
              [](const TraceResult& r) { return "<realcam.TraceResult " + counted(py::len(r.status), "ray") + '>'; });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("trace", &trace, "origins_mm"_a, "directions"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
              "start"_a = "film", "dtype"_a = "float64", "surface_count"_a = py::none(), "device"_a = py::none(),
+             "transmission"_a = false,
              "Traces rays surface by surface. origins_mm, directions: (N, 3), lens frame.\n"
              "start: \"film\" (towards the scene) or \"scene\" (towards the film).\n"
              "dtype: number type of the computation, float64 or float32; results are float64 arrays.\n"
@@ -159,6 +188,10 @@ void bind_trace(py::module_& m) {
              "GPU's\n"
              "memory (torch, cupy, DeviceArray: float64 or float32, contiguous) are traced where they lie, and the\n"
              "results are DeviceArrays.\n"
+             "transmission: work out transmission too, by polarisation ray tracing in float64, as Lens.transmission "
+             "does; "
+             "for\n"
+             "arrays of the host.\n"
              "Returns a TraceResult. Raises InputError for wrong shapes, DeviceError; single bad rays end as "
              "BAD_INPUT.");
 }

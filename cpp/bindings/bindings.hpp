@@ -25,11 +25,13 @@ namespace py = pybind11;
 
 // One function for each file of this folder.
 void bind_errors(py::module_& m);
+void bind_coating(py::module_& m);
 void bind_lens(py::module_& m);
 void bind_device_array(py::module_& m);
 void bind_trace(py::module_& m);
 void bind_seidel(py::module_& m);
 void bind_analysis(py::module_& m);
+void bind_transmission(py::module_& m);
 void bind_camera(py::module_& m);
 void bind_camera_rays(py::module_& m);
 void bind_material(py::module_& m);

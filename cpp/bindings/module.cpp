@@ -7,11 +7,13 @@ PYBIND11_MODULE(_core, m) {
     m.attr("__version__") = REALCAM_VERSION;
     m.attr("_STATE_FORMAT") = kStateFormat;
     bind_errors(m);
+    bind_coating(m);
     bind_lens(m);
     bind_device_array(m);
     bind_trace(m);
     bind_seidel(m);
     bind_analysis(m);
+    bind_transmission(m);
     bind_camera(m);
     bind_camera_rays(m);
     bind_material(m);

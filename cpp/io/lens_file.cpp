@@ -2,51 +2,14 @@
 
 #include "../optics/focus.hpp"
 #include "bundled_lenses.hpp"
-#include "glass_table.hpp"
+#include "lens_coating.hpp"
+#include "lens_material.hpp"
 #include "regular_file.hpp"
 
 namespace realcam::io {
 namespace {
 
 constexpr int kFormat = 1;
-
-std::string number_label(double value) {
-    std::string text = std::to_string(value);
-    return text.substr(0, text.find_last_not_of('0') + 1);
-}
-
-/// The material of a surface: an index, [n_d, V_d], the name of a glass of the file or of the catalogue; absent: air.
-Glass read_material(const TomlTable& surface, const std::optional<TomlTable>& glasses) {
-    const toml::node* node = surface.find("material");
-    if (!node) return Glass::air();
-    if (node->is_number()) {
-        const double index = surface.as_number(*node, "the index in \"material\"");
-        if (!(index >= 1)) surface.fail("the refractive index in \"material\" is less than 1", node);
-        Glass glass = Glass::constant(index);
-        glass.label = number_label(index);
-        return glass;
-    }
-    if (node->is_array()) {
-        const std::vector<double> pair = surface.numbers("material", 2);
-        if (!(pair[0] >= 1) || !(pair[1] > 0))
-            surface.fail("\"material\" as [n_d, V_d] needs n_d of at least 1 and a positive V_d", node);
-        Glass glass = Glass::from_abbe_number(pair[0], pair[1]);
-        glass.label = number_label(pair[0]) + " / " + number_label(pair[1]);
-        return glass;
-    }
-    const std::string name = surface.text("material");
-    if (glasses)
-        if (const auto own = glasses->table(name)) {
-            Glass glass = glass_from_table(*own);
-            glass.label = name;
-            return glass;
-        }
-    try {
-        return catalogue_glass(name);
-    } catch (const InputError& error) {
-        surface.fail(error.what(), node);
-    }
-}
 
 SurfaceType read_type(const TomlTable& table) {
     const std::string type = table.text("type");
@@ -78,12 +41,13 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
     return values;
 }
 
-Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& glasses, bool is_last) {
+Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& glasses, const LensCoatings& coatings,
+                     bool is_last) {
     Surface surface;
     surface.type = read_type(table);
     if (surface.bends_light()) {
         table.allow({"type", "radius_of_curvature_mm", "thickness_mm", "material", "clear_semi_diameter_mm",
-                     "inner_semi_diameter_mm", "conic", "aspheric_coefficients"});
+                     "inner_semi_diameter_mm", "conic", "aspheric_coefficients", "coating"});
     } else {
         table.allow({"type", "thickness_mm", "clear_semi_diameter_mm", "inner_semi_diameter_mm"});
     }
@@ -100,7 +64,8 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     if (surface.type == SurfaceType::mirror && table.find("material"))
         table.fail("a mirror has no material of its own; what lies before it lies behind it too",
                    table.find("material"));
-    surface.material = read_material(table, glasses);
+    if (table.find("material")) surface.material = read_material(table, glasses);
+    surface.coating = coatings.of(table);
     const auto thickness = table.number("thickness_mm");
     if (!thickness && !is_last) table.fail("\"thickness_mm\" is missing: the axial distance to the next surface");
     if (thickness && is_last)
@@ -194,8 +159,8 @@ void set_film_distance(const TomlTable& file, LensSystem& lens) {
 
 LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     const TomlTable top(root, file);
-    top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm", "glass", "surface",
-               "iris", "focus", "allow_crossing"});
+    top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm", "glass", "coating",
+               "default_coating", "surface", "iris", "focus", "allow_crossing"});
     const auto format = top.number("format");
     if (!format) top.fail("\"format = 1\" is missing");
     if (*format != kFormat)
@@ -214,13 +179,15 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
         lens.film_height = film[1];
     }
     const auto glasses = top.table("glass");
+    const LensCoatings coatings(top, glasses);
     const toml::array* surfaces = root["surface"].as_array();
     if (!surfaces || !surfaces->is_array_of_tables())
         top.fail("the lens has no surfaces; tables [[surface]] are wanted");
     for (std::size_t i = 0; i < surfaces->size(); ++i) {
         const TomlTable table(*(*surfaces)[i].as_table(), file, static_cast<int>(i) + 1);
-        lens.surfaces.push_back(read_surface(table, glasses, i + 1 == surfaces->size()));
+        lens.surfaces.push_back(read_surface(table, glasses, coatings, i + 1 == surfaces->size()));
     }
+    coatings.apply_default(lens, *surfaces);
     read_iris(top, lens);
     read_focusing(top, lens);
     check_lens(top, *surfaces, lens);

@@ -3,18 +3,24 @@
 #include <string>
 #include <utility>
 
+#include "coated_faces.hpp"
 #include "lens_checks.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// Throws InputError where the lens has no surface of that number, counted from 0.
+inline void check_surface_exists(const LensSystem& lens, int index) {
+    const int count = static_cast<int>(lens.surfaces.size());
+    if (index < 0 || index >= count)
+        throw InputError("there is no surface " + std::to_string(index) + "; the lens has " + std::to_string(count) +
+                         ", counted from 0");
+}
 
 /// The lens with another surface in place of one, counted from 0. All else stays, the film's place too: focused()
 /// brings the picture into focus again. A diaphragm that is wide open stays so. Throws InputError where there is no
 /// such surface, and LensFileError where the lens cannot be built.
 inline LensSystem with_surface(LensSystem lens, int index, Surface surface) {
-    const int count = static_cast<int>(lens.surfaces.size());
-    if (index < 0 || index >= count)
-        throw InputError("there is no surface " + std::to_string(index) + "; the lens has " + std::to_string(count) +
-                         ", counted from 0");
+    check_surface_exists(lens, index);
     const bool was_open = lens.is_wide_open();
     lens.surfaces[static_cast<std::size_t>(index)] = std::move(surface);
     lens.surfaces.back().thickness = 0;
@@ -27,6 +33,36 @@ inline LensSystem with_surface(LensSystem lens, int index, Surface surface) {
 /// The lens with other blades, which leave the same area open: its f-number stays. Throws LensFileError.
 inline LensSystem with_iris(LensSystem lens, const IrisShape& iris) {
     lens.iris = iris;
+    validate(lens);
+    return lens;
+}
+
+/// The lens with a coating on all faces that it is for: a mirror's on all mirrors, any other on all faces between air
+/// and glass; `unknown` takes what is known of both away. Cemented faces stay as they are. Throws InputError where the
+/// lens has no such face.
+inline LensSystem with_coating(LensSystem lens, const Coating& coating) {
+    bool any = false;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const bool mirror = lens.surfaces[i].type == SurfaceType::mirror;
+        const bool fits = coating.kind == CoatingKind::unknown || mirror == coating.is_for_mirrors();
+        if (!fits || !(mirror || is_face_in_air(lens, i))) continue;
+        lens.surfaces[i].coating = coating;
+        any = true;
+    }
+    if (!any)
+        throw InputError("lens \"" + lens.name + "\" has no " +
+                         (coating.is_for_mirrors() ? "mirror" : "face between air and glass") + " to coat");
+    validate(lens);
+    return lens;
+}
+
+/// The same on given surfaces, counted from 0. Throws InputError where there is no such surface, and LensFileError
+/// where the coating does not fit it.
+inline LensSystem with_coating(LensSystem lens, const Coating& coating, const std::vector<int>& surfaces) {
+    for (const int index : surfaces) {
+        check_surface_exists(lens, index);
+        lens.surfaces[static_cast<std::size_t>(index)].coating = coating;
+    }
     validate(lens);
     return lens;
 }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "clearance.hpp"
+#include "coating_checks.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -68,6 +69,15 @@ inline void check_material(const Surface& s, std::size_t i, double design_wavele
     }
 }
 
+inline void check_surface_coating(const Surface& s, std::size_t i) {
+    try {
+        check_coating(s.coating);
+        check_coating_fits(s);
+    } catch (const InputError& error) {
+        fail(i, error.what());
+    }
+}
+
 inline void check_stop(const LensSystem& lens) {
     const int first = lens.stop_index();
     if (first < 0) throw LensFileError("the lens has no surface of type \"stop\"; exactly one is wanted");
@@ -103,6 +113,7 @@ inline void check_surfaces(const LensSystem& lens) {
         check_rim(s, i);
         check_thickness(s, i, direction);
         check_material(s, i, lens.wavelength_nm);
+        check_surface_coating(s, i);
     }
     check_stop(lens);
     if (direction < 0)

@@ -6,16 +6,10 @@
 #include <vector>
 
 #include "index_cubic.hpp"
+#include "known_wavelengths.hpp"
 #include "lens_path.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-/// Wavelengths from one to another, nm.
-struct WavelengthRange {
-    double first, last;
-
-    bool operator==(const WavelengthRange&) const = default;
-};
 
 inline WavelengthVariable variable_over(WavelengthRange range) {
     const auto pole = static_cast<double>(WavelengthVariable::kPole_nm);
@@ -37,12 +31,6 @@ inline std::vector<int> surfaces_with_one_index(const LensSystem& lens) {
 
 namespace lens_dispersion_detail {
 
-inline std::string nm_text(double wavelength) {
-    std::string text = std::to_string(std::round(10 * wavelength) / 10);
-    text.erase(text.find_last_not_of('0') + 1);
-    return text.back() == '.' ? text.substr(0, text.size() - 1) : text;
-}
-
 /// Cubic of x in [-1, 1] through a function that is known at Chebyshev's nodes: the first terms of its series.
 template <std::size_t N>
 IndexCubic cubic_of(const std::array<double, N>& nodes, const std::array<double, N>& values) {
@@ -61,21 +49,10 @@ IndexCubic cubic_of(const std::array<double, N>& nodes, const std::array<double,
 /// Throws InputError where a glass is not known at all of these wavelengths, or the film lies in one that disperses:
 /// directions on the film are then another measure at each wavelength.
 inline void check_dispersion(const LensSystem& lens, WavelengthRange range) {
-    using lens_dispersion_detail::nm_text;
+    check_glasses_known(lens, range, "dispersion");
     const Glass* last = nullptr;
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-        if (lens.surfaces[i].type != SurfaceType::refracting) continue;
-        const Glass& glass = lens.surfaces[i].material;
-        last = &glass;
-        if (glass.has_one_index()) continue;
-        const std::string which = "the glass of surface " + std::to_string(i + 1) +
-                                  (glass.label.empty() ? "" : " (" + glass.label + ")") + " of " + lens.name;
-        const auto [first_known, last_known] = glass.known_nm();
-        if (range.first < first_known - 0.05 || range.last > last_known + 0.05)
-            throw InputError("dispersion: " + which + " is known from " + nm_text(first_known) + " to " +
-                             nm_text(last_known) + " nm; " + nm_text(range.first) + " to " + nm_text(range.last) +
-                             " nm are wanted");
-    }
+    for (const Surface& surface : lens.surfaces)
+        if (surface.type == SurfaceType::refracting) last = &surface.material;
     if (last && !last->has_one_index())
         throw InputError("dispersion: the film of " + lens.name +
                          " lies in glass; a lens with air behind its last surface is wanted");

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "glass.hpp"
+#include "coating.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -24,6 +24,7 @@ struct Surface {
     Glass material = Glass::air();  ///< behind the surface, on the light's way to the film
     double clear_semi_diameter = 0;
     double inner_semi_diameter = 0;  ///< light closer to the axis is blocked; 0: none
+    Coating coating;
 
     bool operator==(const Surface&) const = default;
 

@@ -20,6 +20,8 @@ _Triple: TypeAlias = Sequence[float] | NDArray[np.floating[Any]] | NDArray[np.in
 _PoseKey: TypeAlias = tuple[float, _Triple, _Triple] | tuple[float, _Triple, _Triple, _Triple]
 _Material: TypeAlias = float | tuple[float, float] | str | Glass | None
 _Table: TypeAlias = Sequence[Sequence[float]]
+_CoatingMaterial: TypeAlias = complex | tuple[float, float] | Sequence[tuple[float, float, float]] | str | Glass
+_Coating: TypeAlias = str | Coating
 _Progress: TypeAlias = Callable[[float], bool | None]
 _Layers: TypeAlias = dict[str, NDArray[np.float32] | NDArray[np.uint32]]
 _Picture: TypeAlias = tuple[
@@ -86,6 +88,73 @@ class Glass(_Value):
     def label(self) -> str: ...
 
 @final
+class CoatingResponse:
+    @property
+    def reflectance_s(self) -> NDArray[np.float64]: ...
+    @property
+    def reflectance_p(self) -> NDArray[np.float64]: ...
+    @property
+    def transmittance_s(self) -> NDArray[np.float64]: ...
+    @property
+    def transmittance_p(self) -> NDArray[np.float64]: ...
+    @property
+    def absorptance_s(self) -> NDArray[np.float64]: ...
+    @property
+    def absorptance_p(self) -> NDArray[np.float64]: ...
+    @property
+    def r_s(self) -> NDArray[np.complex128]: ...
+    @property
+    def r_p(self) -> NDArray[np.complex128]: ...
+    @property
+    def t_s(self) -> NDArray[np.complex128]: ...
+    @property
+    def t_p(self) -> NDArray[np.complex128]: ...
+
+@final
+class CoatingLayer(_Value):
+    def __init__(
+        self,
+        material: _CoatingMaterial,
+        *,
+        thickness_nm: float | None = None,
+        thickness_waves: float | None = None,
+        design_wavelength_nm: float | None = None,
+    ) -> None: ...
+    @property
+    def thickness_nm(self) -> float: ...
+    def index(self, wavelength_nm: float) -> complex: ...
+
+@final
+class Coating(_Value):
+    def __init__(
+        self,
+        layers: Sequence[CoatingLayer] = [],
+        *,
+        metal: _CoatingMaterial | None = None,
+        reflectance: float | None = None,
+        name: str = "",
+    ) -> None: ...
+    @staticmethod
+    def named(name: str) -> Coating: ...
+    @staticmethod
+    def quarter_wave(material: _CoatingMaterial = 1.38, design_wavelength_nm: float = 550.0) -> Coating: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def layers(self) -> list[CoatingLayer]: ...
+    def response(
+        self,
+        angle_deg: ArrayLike,
+        wavelength_nm: ArrayLike,
+        *,
+        outside: _Material = None,
+        inside: _Material = None,
+        from_inside: bool = False,
+    ) -> CoatingResponse: ...
+
+@final
 class Surface(_Value):
     def __init__(
         self,
@@ -98,6 +167,7 @@ class Surface(_Value):
         aspheric_coefficients: Mapping[int, float] = {},
         inner_semi_diameter_mm: float = 0.0,
         type: str = "refracting",
+        coating: _Coating = "unknown",
     ) -> None: ...
     @property
     def radius_of_curvature_mm(self) -> float: ...
@@ -117,6 +187,8 @@ class Surface(_Value):
     def aspheric_coefficients(self) -> dict[int, float]: ...
     @property
     def type(self) -> str: ...
+    @property
+    def coating(self) -> Coating: ...
     def sag_mm(self, radius_mm: float) -> float: ...
     def replace(
         self,
@@ -129,6 +201,7 @@ class Surface(_Value):
         aspheric_coefficients: Mapping[int, float] | None = None,
         inner_semi_diameter_mm: float | None = None,
         type: str | None = None,
+        coating: _Coating | None = None,
     ) -> Surface: ...
 
 @final
@@ -185,6 +258,8 @@ class TraceResult(Generic[_Doubles, _Integers]):
     def status(self) -> _Integers: ...
     @property
     def surface_index(self) -> _Integers: ...
+    @property
+    def transmission(self) -> NDArray[np.float64] | None: ...
 
 @final
 class Seidel(_LargeValue):
@@ -330,6 +405,7 @@ class Lens(_Value):
         dtype: DTypeLike = "float64",
         surface_count: int | None = None,
         device: str | None = None,
+        transmission: bool = False,
     ) -> TraceResult[DeviceArray, DeviceArray]: ...
     @overload
     def trace(
@@ -342,7 +418,24 @@ class Lens(_Value):
         dtype: DTypeLike = "float64",
         surface_count: int | None = None,
         device: str | None = None,
+        transmission: bool = False,
     ) -> TraceResult: ...
+    def transmission(
+        self,
+        field_deg: float = 0.0,
+        wavelength_nm: float | None = None,
+        *,
+        object_distance_m: float | None = None,
+        polarisation: str = "traced",
+        pattern: str = "rings",
+        samples: int = 8,
+        pupil: ArrayLike | None = None,
+    ) -> float: ...
+    @property
+    def t_stop(self) -> float: ...
+    @property
+    def unknown_coatings(self) -> list[int]: ...
+    def with_coating(self, coating: _Coating, surfaces: Sequence[int] | None = None) -> Lens: ...
     def seidel(
         self,
         field_deg: float,
@@ -434,6 +527,7 @@ class Lens(_Value):
         aspheric_coefficients: Mapping[int, float] | None = None,
         inner_semi_diameter_mm: float | None = None,
         type: str | None = None,
+        coating: _Coating | None = None,
     ) -> Lens: ...
 
 @final

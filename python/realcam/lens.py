@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ._core import Surface
+from ._core import Coating, Surface
 
 
 def Stop(*, clear_semi_diameter_mm: float, thickness_mm: float = 0.0) -> Surface:  # noqa: N802
@@ -21,6 +21,7 @@ def Mirror(  # noqa: N802
     conic: float = 0.0,
     aspheric_coefficients: Mapping[int, float] | None = None,
     inner_semi_diameter_mm: float = 0.0,
+    coating: str | Coating = "unknown",
 ) -> Surface:
     """A mirror: light goes back, and thicknesses after it are negative until the next mirror."""
     return Surface(
@@ -31,4 +32,5 @@ def Mirror(  # noqa: N802
         conic=conic,
         aspheric_coefficients=dict(aspheric_coefficients or {}),
         inner_semi_diameter_mm=inner_semi_diameter_mm,
+        coating=coating,
     )

@@ -50,8 +50,29 @@ ORIGINS, DIRECTIONS = np.full((4, 3), (0.0, 0.0, 80.0)), np.array([[0, 0.01 * i,
 # Each made twice is equal, and differs from its neighbour here.
 MAKERS: dict[str, list[Callable[[], Any]]] = {
     "Glass": [lambda: rc.Glass.named("N-BK7"), lambda: rc.Glass.constant(1.5), lambda: rc.Glass.table([(500, 1.5)])],
-    "Surface": [lambda: lens().surfaces[0], lambda: lens().surfaces[1], lambda: rc.Stop(clear_semi_diameter_mm=3)],
-    "Lens": [lens, lambda: lens().focused(2), lambda: lens().stopped_down(8)],
+    "Surface": [
+        lambda: lens().surfaces[0],
+        lambda: lens().surfaces[0].replace(coating="bare"),
+        lambda: rc.Stop(clear_semi_diameter_mm=3),
+    ],
+    "Coating": [
+        lambda: rc.Coating.named("quarter_wave"),
+        lambda: rc.Coating.quarter_wave(1.45),
+        lambda: rc.Coating(metal="silver"),
+        lambda: rc.Coating(reflectance=0.9),
+        lambda: rc.Coating(
+            [rc.CoatingLayer("N-BK7", thickness_nm=50)], name="a name that nobody would type twice, long"
+        ),
+    ],
+    "CoatingLayer": [
+        lambda: rc.CoatingLayer(1.38, thickness_nm=90),
+        lambda: rc.CoatingLayer(1.38 + 1j, thickness_nm=90),
+    ],
+    "CoatingResponse": [
+        lambda: rc.Coating().response(0, 550, inside=1.5),
+        lambda: rc.Coating().response(0, 550, inside=1.6),
+    ],
+    "Lens": [lens, lambda: lens().with_coating("bare"), lambda: lens().focused(2), lambda: lens().stopped_down(8)],
     "FirstOrder": [lambda: lens().first_order(), lambda: lens().stopped_down(8).first_order()],
     "Film": [lambda: rc.Film(), lambda: rc.Film(resolution=(960, 641))],
     "Camera": [camera, lambda: rc.Camera(lens())],
@@ -72,7 +93,18 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     "RawImage": [lambda: rc.Sensor.load().expose(image()), lambda: rc.Sensor.load().expose(image(), seed=1)],
     "Image": [image, lambda: rc.render(floor_scene().with_environment(100), camera(), spp=2, seed=1, device="cpu")],
 }
-UNHASHABLE = {"Scene", "Spot", "Wavefront", "Seidel", "AimedRays", "TraceResult", "CameraRays", "Image", "RawImage"}
+UNHASHABLE = {
+    "CoatingResponse",
+    "Scene",
+    "Spot",
+    "Wavefront",
+    "Seidel",
+    "AimedRays",
+    "TraceResult",
+    "CameraRays",
+    "Image",
+    "RawImage",
+}
 each_kind = pytest.mark.parametrize("kind", sorted(MAKERS))
 
 

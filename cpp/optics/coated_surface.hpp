@@ -1,0 +1,98 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coated_faces.hpp"
+#include "glass_resonances.hpp"
+#include "lens_path.hpp"
+#include "lens_system.hpp"
+#include "thin_film.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A coating between two media, or on a mirror, met by light of one wavelength from one side. An unknown coating is
+/// taken for none on glass and for a perfect mirror's on a mirror: whoever shows numbers of it has to say so.
+class CoatedSurface {
+public:
+    /// `before`, `behind`: refractive indices of the media in the light's order, of a mirror both the same.
+    /// `as_listed`: whether the light meets the layers in the order of the list. Throws InputError where a layer's
+    /// index is not known at that wavelength.
+    CoatedSurface(const Coating& coating, bool is_mirror, double wavelength_nm, double before, double behind,
+                  bool as_listed)
+        : stack_{wavelength_nm, before, {}, behind},
+          is_mirror_(is_mirror),
+          has_stated_reflectance_(is_mirror && coating.kind != CoatingKind::metal),
+          stated_(coating.kind == CoatingKind::reflectance ? coating.reflectance : 1) {
+        for (const CoatingLayer& layer : coating.layers)
+            stack_.films.push_back({known_index(layer.material, wavelength_nm), layer.thickness_nm});
+        if (!as_listed) std::reverse(stack_.films.begin(), stack_.films.end());
+        if (coating.kind == CoatingKind::metal) stack_.index_behind = known_index(coating.metal, wavelength_nm);
+    }
+
+    /// `cosine`: of the angle of incidence, in the medium from which the light comes.
+    PolarisedResponse at(double cosine) const {
+        if (!has_stated_reflectance_) return response_of(stack_, cosine);
+        // As a perfect conductor, which turns the electric field along the surface around.
+        const double r = std::sqrt(stated_);
+        return {{-r, 0, stated_, 0, 1 - stated_}, {r, 0, stated_, 0, 1 - stated_}};
+    }
+
+    bool is_mirror() const { return is_mirror_; }
+
+private:
+    static std::complex<double> known_index(const CoatingMaterial& material, double wavelength_nm) {
+        const WavelengthRange range = between_resonances(material.glass);
+        if (wavelength_nm > range.first && wavelength_nm < range.last) return material.index(wavelength_nm);
+        throw InputError("the coating material" + (material.name().empty() ? "" : " \"" + material.name() + '"') +
+                         " lets no light pass at " + std::to_string(std::lround(wavelength_nm)) +
+                         " nm, at or beyond a resonance");
+    }
+
+    FilmStack stack_;
+    bool is_mirror_, has_stated_reflectance_;
+    double stated_;
+};
+
+/// Whether light on its way to the film meets the layers of a surface in the order of their list, from the air inwards.
+inline bool layers_listed_towards_film(const LensSystem& lens, std::size_t index) {
+    const Surface& surface = lens.surfaces[index];
+    return medium_before(lens, index).index(kLineD_nm) <= surface.material.index(kLineD_nm);
+}
+
+/// One surface of a lens for light of one wavelength on its way to the film or to the scene. `indices`: of
+/// lens.indices(wavelength_nm). Throws InputError, with surface and material, where a layer's index is not known.
+inline CoatedSurface coated_surface(const LensSystem& lens, std::size_t index, double wavelength_nm,
+                                    LightDirection direction, const std::vector<double>& indices) {
+    const Surface& surface = lens.surfaces[index];
+    const bool to_film = direction == LightDirection::to_film, is_mirror = surface.type == SurfaceType::mirror;
+    try {
+        return {surface.coating,
+                is_mirror,
+                wavelength_nm,
+                to_film ? indices[index] : indices[index + 1],
+                to_film ? indices[index + 1] : indices[index],
+                is_mirror || to_film == layers_listed_towards_film(lens, index)};
+    } catch (const InputError& error) {
+        throw InputError("surface " + std::to_string(index + 1) + " of lens \"" + lens.name + "\": " + error.what());
+    }
+}
+
+/// All surfaces in the order in which the light meets them; none for stops and apertures, at which light is blocked or
+/// passes as it is. Throws InputError where an index is not known.
+inline std::vector<std::optional<CoatedSurface>> coated_surfaces(const LensSystem& lens, double wavelength_nm,
+                                                                 LightDirection direction) {
+    const std::vector<double> indices = lens.indices(wavelength_nm);
+    std::vector<std::optional<CoatedSurface>> surfaces;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        surfaces.emplace_back();
+        if (lens.surfaces[i].bends_light())
+            surfaces.back() = coated_surface(lens, i, wavelength_nm, direction, indices);
+    }
+    if (direction == LightDirection::to_scene) std::reverse(surfaces.begin(), surfaces.end());
+    return surfaces;
+}
+
+}  // namespace REALCAM_NAMESPACE

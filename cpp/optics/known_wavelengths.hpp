@@ -1,0 +1,48 @@
+#pragma once
+#include <cmath>
+#include <string>
+
+#include "lens_system.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Wavelengths from one to another, nm.
+struct WavelengthRange {
+    double first, last;
+
+    bool operator==(const WavelengthRange&) const = default;
+};
+
+namespace known_wavelengths_detail {
+
+inline std::string nm_text(double wavelength) {
+    std::string text = std::to_string(std::round(10 * wavelength) / 10);
+    text.erase(text.find_last_not_of('0') + 1);
+    return text.back() == '.' ? text.substr(0, text.size() - 1) : text;
+}
+
+inline std::string range_text(WavelengthRange range) {
+    return range.first == range.last ? nm_text(range.first) + " nm is"
+                                     : nm_text(range.first) + " to " + nm_text(range.last) + " nm are";
+}
+
+}  // namespace known_wavelengths_detail
+
+/// Throws InputError, with the surface and the glass, where a glass is not known at all of these wavelengths: outside
+/// the points of a table whatever is said would be a guess.
+inline void check_glasses_known(const LensSystem& lens, WavelengthRange range, const std::string& purpose) {
+    using namespace known_wavelengths_detail;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        if (lens.surfaces[i].type != SurfaceType::refracting) continue;
+        const Glass& glass = lens.surfaces[i].material;
+        const auto [first_known, last_known] = glass.known_nm();
+        // A tenth of a nanometre: a table that ends at 656.3 is meant for the line at 656.27.
+        if (range.first < first_known - 0.05 || range.last > last_known + 0.05)
+            throw InputError(purpose + ": the glass of surface " + std::to_string(i + 1) +
+                             (glass.label.empty() ? "" : " (" + glass.label + ")") + " of " + lens.name +
+                             " is known from " + nm_text(first_known) + " to " + nm_text(last_known) + " nm; " +
+                             range_text(range) + " wanted");
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE
