@@ -66,7 +66,7 @@ bool is_exr(const std::string& path) {
 std::vector<std::string> words_in(const std::string& text) {
     std::vector<std::string> names;
     std::istringstream words(text);
-    for (std::string name; std::getline(words, name, ',');) names.push_back(name);
+    for (std::string name; std::getline(words >> std::ws, name, ',');) names.push_back(name);
     return names;
 }
 

@@ -40,8 +40,9 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
     const std::string model = io::name_of(camera.model);
     line("lens", (lens.title.empty() ? lens.name : lens.title) + (model == "full" ? "" : ", as " + model + " model"));
     line("", "focal length " + short_number(data.effective_focal_length) + " mm, f/" + short_number(data.f_number, 3) +
-                 (lens.iris.blades > 0 ? " with " + std::to_string(lens.iris.blades) + " blades" : "") + ", focus " +
-                 distance_text(lens.focus_distance / 1000));
+                 (lens.iris.blades > 0 && !lens.is_wide_open() ? " with " + std::to_string(lens.iris.blades) + " blades"
+                                                               : "") +
+                 ", focus " + distance_text(lens.focus_distance / 1000));
     const Vec3d from = camera.pose.position_m, to = camera.pose.look_at_m;
     const auto point = [](Vec3d p) { return short_number(p.x) + "," + short_number(p.y) + "," + short_number(p.z); };
     line("camera", "at " + point(from) + ", looks at " + point(to));

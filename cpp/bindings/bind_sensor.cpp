@@ -72,12 +72,13 @@ double dark_electrons(const Sensor& sensor, double current_e_per_s, double expos
                       std::optional<double> temperature_c) {
     const SensorNoise& noise = sensor.noise;
     double doublings = 0;
+    if (temperature_c && !sensor_detail::is_temperature(*temperature_c))
+        throw InputError("temperature_c must be a temperature in degrees Celsius, from -273.15 to 1000");
     if (temperature_c && *temperature_c != noise.dark_current_temperature_c) {
-        if (!std::isfinite(*temperature_c)) throw InputError("temperature_c must be a temperature in degrees Celsius");
         if (current_e_per_s > 0 && noise.dark_current_doubling_k == 0)
             throw InputError("the sensor \"" + sensor.name +
-                             "\" does not tell how its dark current changes with temperature; "
-                             "replace(dark_current_doubling_k=...) does");
+                             "\" does not tell how its dark current changes with temperature "
+                             "(dark_current_doubling_k)");
         if (current_e_per_s > 0)
             doublings = (*temperature_c - noise.dark_current_temperature_c) / noise.dark_current_doubling_k;
     }
@@ -143,7 +144,8 @@ py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>&
     request.black_level_dn = static_cast<float>(sensor.conversion.black_level_dn);
     request.largest_dn = static_cast<float>(sensor.conversion.largest_dn());
     request.seed = seed_from(seed);
-    request.serial = seed_from(serial);
+    if (serial < 0 || serial > 0xffffffff) throw InputError("the serial number must lie between 0 and 4294967295");
+    request.serial = static_cast<std::uint32_t>(serial);
     const Unlocked unlocked;
     expose_sensor(request, threads, heed_signals);
     return raw;
@@ -165,33 +167,44 @@ Sensor changed(Sensor sensor, const std::optional<std::string>& name, std::optio
                std::optional<double> dark_current_doubling_k, std::optional<double> dsnu_e,
                std::optional<double> prnu_percent, std::optional<double> hot_pixel_share,
                std::optional<double> hot_pixel_current_e_per_s) {
-    const auto set = [](auto& value, const auto& given) {
+    std::string changes;
+    const auto changes_if = [&](bool does, const char* what) {
+        if (does) changes += std::string(changes.empty() ? "" : ", ") + what;
+    };
+    const auto set = [&](const char* what, auto& value, const auto& given) {
+        changes_if(given && !(value == *given), what);
         if (given) value = *given;
     };
-    set(sensor.name, name);
-    set(sensor.pixel_pitch_um, pixel_pitch_um);
+    const Sensor before = sensor;
+    if (name) sensor.name = *name;
+    set("pixel_pitch_um", sensor.pixel_pitch_um, pixel_pitch_um);
     if (resolution) std::tie(sensor.columns, sensor.rows) = *resolution;
-    set(sensor.color_filter_array, color_filter_array);
+    set("color_filter_array", sensor.color_filter_array, color_filter_array);
     if (quantum_efficiency) sensor.quantum_efficiency = efficiency_from(*quantum_efficiency, sensor.has_filters());
     if (cover_glass) sensor.cover_glass = points_from("cover_glass", *cover_glass);
     if (angular_response) sensor.angular_response = points_from("angular_response", *angular_response);
+    changes_if(sensor.columns != before.columns || sensor.rows != before.rows, "resolution");
+    changes_if(sensor.quantum_efficiency != before.quantum_efficiency, "quantum_efficiency");
+    changes_if(sensor.cover_glass != before.cover_glass, "cover_glass");
+    changes_if(sensor.angular_response != before.angular_response, "angular_response");
     SensorConversion& conversion = sensor.conversion;
-    set(conversion.gain_dn_per_e, gain_dn_per_e);
-    set(conversion.largest_gain_db, largest_gain_db);
-    set(conversion.saturation_capacity_e, saturation_capacity_e);
-    set(conversion.adc_bits, adc_bits);
-    set(conversion.black_level_dn, black_level_dn);
-    set(conversion.converter_noise_dn, converter_noise_dn);
+    set("gain_dn_per_e", conversion.gain_dn_per_e, gain_dn_per_e);
+    set("largest_gain_db", conversion.largest_gain_db, largest_gain_db);
+    set("saturation_capacity_e", conversion.saturation_capacity_e, saturation_capacity_e);
+    set("adc_bits", conversion.adc_bits, adc_bits);
+    set("black_level_dn", conversion.black_level_dn, black_level_dn);
+    set("converter_noise_dn", conversion.converter_noise_dn, converter_noise_dn);
     SensorNoise& noise = sensor.noise;
-    set(noise.read_noise_e, read_noise_e);
-    set(noise.row_noise_e, row_noise_e);
-    set(noise.dark_current_e_per_s, dark_current_e_per_s);
-    set(noise.dark_current_temperature_c, dark_current_temperature_c);
-    set(noise.dark_current_doubling_k, dark_current_doubling_k);
-    set(noise.dsnu_e, dsnu_e);
-    set(noise.prnu_percent, prnu_percent);
-    set(noise.hot_pixel_share, hot_pixel_share);
-    set(noise.hot_pixel_current_e_per_s, hot_pixel_current_e_per_s);
+    set("read_noise_e", noise.read_noise_e, read_noise_e);
+    set("row_noise_e", noise.row_noise_e, row_noise_e);
+    set("dark_current_e_per_s", noise.dark_current_e_per_s, dark_current_e_per_s);
+    set("dark_current_temperature_c", noise.dark_current_temperature_c, dark_current_temperature_c);
+    set("dark_current_doubling_k", noise.dark_current_doubling_k, dark_current_doubling_k);
+    set("dsnu_e", noise.dsnu_e, dsnu_e);
+    set("prnu_percent", noise.prnu_percent, prnu_percent);
+    set("hot_pixel_share", noise.hot_pixel_share, hot_pixel_share);
+    set("hot_pixel_current_e_per_s", noise.hot_pixel_current_e_per_s, hot_pixel_current_e_per_s);
+    if (!changes.empty()) sensor.assumptions.push_back("changed since its file: " + changes);
     validate(sensor);
     return sensor;
 }

@@ -171,7 +171,7 @@ public:
     double gain_dn_per_e(double iso) const {
         if (!(iso > 0) || !std::isfinite(iso)) throw InputError("iso must be a positive number");
         if (conversion_.gain_dn_per_e == 0) return range_dn() * iso / (kSaturation * electrons_per_lux_s_);
-        constexpr double kRounded = 1e-3;  // of what users copy from a message
+        constexpr double kRounded = 5e-3;  // of what users copy from a message or a table
         if (iso < lowest_iso() * (1 - kRounded) || iso > highest_iso() * (1 + kRounded))
             throw InputError("iso must lie between " + rounded(lowest_iso()) + " and " + rounded(highest_iso()) +
                              " for this sensor; it is " + rounded(iso) +

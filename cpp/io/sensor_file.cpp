@@ -58,6 +58,8 @@ void read_pixels(const TomlTable& table, Sensor& sensor) {
         sensor.rows = whole(table, "resolution", size[1]);
     }
     sensor.color_filter_array = table.text("color_filter_array");
+    if (sensor.has_filters() && !is_filter_array(sensor.color_filter_array))
+        table.fail(std::string("\"color_filter_array\" must be ") + kFilterArrays, table.find("color_filter_array"));
     const bool has_filters = sensor.has_filters();
     const std::string columns = has_filters ? "[nm, red, green, blue]" : "[nm, electrons per photon]";
     for (const std::vector<double>& row :
@@ -154,7 +156,7 @@ std::string_view bundled_text(const std::string& name) {
     for (const BundledFile& file : bundled_sensor_files())
         if (file.name == name) return file.text;
     throw InputError("unknown sensor " + in_quotes(name) + did_you_mean(name, sensor_names()) +
-                     "; a bundled sensor (realcam.sensor_names() lists them) or the path of a .toml file is wanted");
+                     "; a bundled sensor (`realcam sensor list` names them) or the path of a .toml file is wanted");
 }
 
 }  // namespace

@@ -10,9 +10,12 @@ from ._core import InputError
 Illuminant = str | float | Sequence[tuple[float, float]]
 
 
-def effect_list(effects: str | Iterable[str]) -> list[str]:
-    """Names of effects as users give them: one, or some."""
-    return [effects] if isinstance(effects, str) else sorted(effects)
+def effect_list(effects: str | Iterable[str] | None) -> list[str]:
+    """Names of effects as users give them: one, some, or none. Raises InputError."""
+    try:
+        return [effects] if isinstance(effects, str) else sorted(effects or ())
+    except TypeError:
+        raise InputError(f"effects must be names (rc.effects() lists them); they are {effects!r:.60}") from None
 
 
 def illuminant_text(illuminant: Illuminant | None) -> str:

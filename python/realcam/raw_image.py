@@ -45,6 +45,11 @@ class RawImage:
 
     __hash__ = None  # type: ignore[assignment]  # its arrays may be written to
 
+    def __post_init__(self) -> None:
+        mosaic = self.mosaic
+        if not isinstance(mosaic, np.ndarray) or mosaic.dtype != np.uint16 or mosaic.ndim != 2 or mosaic.size == 0:
+            raise InputError("mosaic must be an array of (H, W) numbers of the type uint16")
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, RawImage):
             return NotImplemented
@@ -214,6 +219,11 @@ def exposed_film(
 ) -> RawImage:
     """The same of an exposure, (H, W, 3) lux seconds, that came from a file. Raises InputError."""
     height, width = np.shape(pixels)[:2]
+    columns, rows = sensor.resolution or (width, height)
+    if width > columns or height > rows:
+        raise InputError(
+            f"the picture has {width} x {height} pixels, and the sensor {sensor.name!r:.60} {columns} x {rows}"
+        )
     film_pitch_um = 1000 * math.sqrt(film.width_mm * film.height_mm / (width * height))
     pitch_um = sensor.pixel_pitch_um or film_pitch_um
     if abs(pitch_um / film_pitch_um - 1) > 0.01:

@@ -162,12 +162,12 @@ GOOD = 'format = 1\nname = "x"\nquantum_efficiency = [[400, 0.5], [700, 0.5]]\n'
         (GOOD + 'adc_bits = "12"\n', r's.toml:4: "adc_bits" must be a finite number'),
         (GOOD + "adc_bits = 17\n", r"s.toml:4: adc_bits must be a whole number from 1 to 16"),
         (GOOD + "adc_bits = 12.5\n", r's.toml:4: "adc_bits" must be a whole number'),
-        (GOOD + "black_level_dn = 70000\n", r"s.toml:4: black_level_dn must be from 0 to less than"),
+        (GOOD + "black_level_dn = 70000\n", r"s.toml:4: black_level_dn must be from 0 to half of"),
         (GOOD + "saturation_capacity_e = 1000\n", r"gain_dn_per_e must be given where there is"),
         (GOOD + 'color_filter_array = "RGBG"\n', r"quantum_efficiency.* must be a table of \[nm, red, green, blue\]"),
         (GOOD + "cover_glass = [[400, 1.2]]\n", r"s.toml:4: cover_glass must be a table of values from 0 to 1"),
         (GOOD + "cover_glass = [[500, 1], [400, 1]]\n", r"cover_glass must be a table whose first column rises"),
-        (GOOD + "angular_response = [[5, 1], [20, 0.5]]\n", r"angular_response must be a table from 0 to less than 90"),
+        (GOOD + "angular_response = [[5, 1], [20, 0.5]]\n", r"angular_response must be a table that begins with"),
         (GOOD + "prnu_percent = 50\n", r"prnu_percent must be from 0 to 15"),
         (GOOD + "resolution = [100]\n", r"resolution"),
         ('format = 1\nname = "x"\n', r"quantum_efficiency must be a table of at least two wavelengths"),
@@ -235,3 +235,39 @@ def test_microlenses_see_less_from_the_side() -> None:
     # Noise of 900 pixels, and the table's steps, some 1e-4.
     assert np.abs(blocks).max() < 5 * np.sqrt(5000 / 900) + 2
     assert expected.min() < 4400  # there is something to see
+
+
+def test_what_is_changed_is_told() -> None:
+    changed = rc.Sensor.load("sony-imx071-color").replace(prnu_percent=2, read_noise_e=50, adc_bits=14)
+    assert changed.assumptions[-1] == "changed since its file: read_noise_e, prnu_percent"
+    assert rc.Sensor.load("ideal").replace(name="mine").assumptions == rc.Sensor.load("ideal").assumptions
+
+
+@pytest.mark.parametrize(
+    ("changes", "wanted"),
+    [
+        ({"angular_response": [[0, 0.5], [20, 0.5]]}, r"begins with \[0, 1\]"),
+        ({"black_level_dn": 200, "adc_bits": 8}, "black_level_dn must be from 0 to half"),
+        ({"dark_current_temperature_c": -300}, "from -273.15"),
+        ({"read_noise_e": 1e30}, "from 0 to 1e12"),
+        ({"pixel_pitch_um": 1e-300}, "from 0.001 to 1e6"),
+        ({"color_filter_array": "RGBW"}, "RGGB, BGGR, GRBG or GBRG"),
+    ],
+)
+def test_values_beyond_sense_are_refused(changes: dict[str, object], wanted: str) -> None:
+    with pytest.raises(rc.InputError, match=wanted):
+        rc.Sensor.load("ideal").replace(**changes)
+
+
+def test_a_picture_has_no_more_pixels_than_the_sensor() -> None:
+    image = film_of(np.full((8, 8), 0.1), pitch_um=5)
+    with pytest.raises(rc.InputError, match=r"has 8 x 8 pixels, and the sensor 'ideal' 3 x 3"):
+        rc.Sensor.load("ideal").replace(resolution=(3, 3)).expose(image)
+
+
+@pytest.mark.parametrize(
+    "mosaic", [np.zeros((4, 4)), np.zeros((4, 4, 3), np.uint16), [[1, 2]], np.zeros((0, 4), np.uint16)]
+)
+def test_what_is_no_mosaic_is_refused(mosaic: object) -> None:
+    with pytest.raises(rc.InputError, match="mosaic must be an array"):
+        rc.RawImage(mosaic, rc.Sensor.load(), 100, 1, 4.78)

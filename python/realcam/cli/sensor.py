@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from pathlib import Path
 from typing import Annotated, Optional
@@ -35,7 +36,7 @@ def info(name: SensorName) -> None:
         "pixels": "any" if sensor.resolution is None else f"{sensor.resolution[0]} x {sensor.resolution[1]}",
         "pixel pitch": "the film's" if sensor.pixel_pitch_um is None else f"{sensor.pixel_pitch_um:g} um",
         "filters": sensor.color_filter_array or "none",
-        "ISO": "any" if lowest == 0 else f"{lowest:.4g} to {highest:.4g}",
+        "ISO": "any" if lowest == 0 else f"{math.ceil(lowest)} to {math.floor(highest)}",
         "gain": "by the ISO"
         if lowest == 0
         else f"{sensor.gain_dn_per_e:g} DN/e, and up to {sensor.largest_gain_db:g} dB",
@@ -87,9 +88,9 @@ def expose(
             raise InputError(f"{path}: is the film itself; the raw picture needs another name")
         if path.suffix.lower() not in (".dng", ".npy", ".png"):
             raise InputError(f"{path}: .dng, .npy (raw) or .png (developed) is wanted")
-    for word, known in ((tone, ("linear", "film")), (demosaic, METHODS)):
+    for option, word, known in (("--tone", tone, ("linear", "film")), ("--demosaic", demosaic, METHODS)):
         if word not in known:
-            raise InputError(f'"{word:.60}" is unknown; {", ".join(known)} is wanted')
+            raise InputError(f'{option}: "{word:.60}" is unknown; {", ".join(known)} is wanted')
     chosen = Sensor.load(sensor)
     pixels, entries = read_film(film)
     if chosen.angular_response:
@@ -110,6 +111,8 @@ def expose(
         )
     for warning in caught:
         typer.echo(f"realcam: {warning.message}", err=True)
+    for path in output:
+        raw.save(path, tone=tone, demosaic=demosaic)
     full = float(np.mean(raw.mosaic >= raw.white_level_dn))
     typer.echo(
         f"{chosen.name}, ISO {raw.iso:.4g}: {raw.gain_dn_per_e:.4g} DN/e, black {raw.black_level_dn:g}, "
@@ -118,7 +121,6 @@ def expose(
     for assumption in chosen.assumptions:
         typer.echo(f"assumed: {assumption}")
     for path in output:
-        raw.save(path, tone=tone, demosaic=demosaic)
         typer.echo(f"wrote {path}")
 
 
