@@ -121,11 +121,12 @@ class RawImage:
         per_lux_s = self.sensor.electrons_per_um2(self.illuminant or "D65").sum(axis=1) * self.pixel_pitch_um**2
         if not self.color_filter_array:
             return np.repeat((light / np.float32(per_lux_s[0]))[..., None], 3, axis=2)
+        film_from_balanced = self._color[2].astype(np.float32)
         for place, color in enumerate(self.color_filter_array):
             light[place // 2 :: 2, place % 2 :: 2] /= np.float32(per_lux_s["RGB".index(color)])
         balanced = demosaicing.demosaiced(light, self.color_filter_array, demosaic)
         np.minimum(balanced, np.float32(full / per_lux_s.max()), out=balanced)
-        result: np.ndarray = balanced @ self._color[2].T.astype(np.float32)
+        result: np.ndarray = balanced @ film_from_balanced.T
         return result
 
     def developed(self, tone: str = "linear", iso: float | None = None, demosaic: str = "menon") -> np.ndarray:
