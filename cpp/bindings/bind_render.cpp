@@ -55,8 +55,9 @@ LightTransport transport_from(const std::string& name) {
 
 }  // namespace
 
-std::uint32_t seed_from(std::int64_t seed) {
-    if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
+std::uint32_t seed_from(std::int64_t seed, const char* what) {
+    if (seed < 0 || seed > 0xffffffff)
+        throw InputError("the " + std::string(what) + " must lie between 0 and 4294967295");
     return static_cast<std::uint32_t>(seed);
 }
 

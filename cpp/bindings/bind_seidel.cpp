@@ -123,7 +123,7 @@ void bind_seidel(py::module_& m) {
         .def(
             "ghost",
             [](const LensSystem& lens, int first, int second, std::optional<double> nm) {
-                return ghost_path(lens, wavelength_or_design(lens, nm), first, second);
+                return ghost_path(lens, wavelength_or_design(lens, nm), {first, second});
             },
             "first"_a, "second"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
             "The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward "

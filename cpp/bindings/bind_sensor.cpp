@@ -144,8 +144,7 @@ py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>&
     request.black_level_dn = static_cast<float>(sensor.conversion.black_level_dn);
     request.largest_dn = static_cast<float>(sensor.conversion.largest_dn());
     request.seed = seed_from(seed);
-    if (serial < 0 || serial > 0xffffffff) throw InputError("the serial number must lie between 0 and 4294967295");
-    request.serial = static_cast<std::uint32_t>(serial);
+    request.serial = seed_from(serial, "serial number");
     const Unlocked unlocked;
     expose_sensor(request, threads, heed_signals);
     return raw;

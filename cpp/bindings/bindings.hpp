@@ -56,7 +56,7 @@ Session& session_for(const std::string& device);
 ToneCurve tone_curve_from(const std::string& name);
 
 /// Throws InputError for what does not fit 32 bits.
-std::uint32_t seed_from(std::int64_t seed);
+std::uint32_t seed_from(std::int64_t seed, const char* what = "seed");
 
 /// Settings as Python's users write them. `transport`: "paths" or "whitted"; `illuminant`: as Illuminant::parse reads
 /// it, empty: none. Throws InputError.

@@ -11,10 +11,12 @@
 
 #include "../math/uniform_keys.hpp"
 #include "../optics/exposure.hpp"
+#include "../optics/fit_coatings.hpp"
 #include "../optics/focus.hpp"
 #include "../optics/pupil.hpp"
 #include "camera_view.hpp"
 #include "film_spectrum.hpp"
+#include "ghost_tables.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -323,24 +325,43 @@ inline bool lies_near(const Camera& camera, Vec3d origin_m) {
     return length(position_when_open(camera) - origin_m) <= 10 * focus_m;
 }
 
+/// What is simulated of the light in the lens besides its refraction at the design wavelength.
+struct LensEffects {
+    std::optional<Illuminant> illuminant;  ///< of a picture with dispersion
+    bool coatings = false;  ///< what the surfaces pass on of the light
+    std::optional<double> ghost_share = {};  ///< with ghosts, but for those with less of the lens's light
+
+    bool operator==(const LensEffects&) const = default;
+};
+
 /// A camera made ready: owns the tables that its view points to.
 class CameraSetup {
 public:
     /// Throws InputError, also for a camera that turns too fast for the exposure. `tracer`: see Pupil. `last`: a set-up
     /// whose pupil is taken over if it is the same one: finding it is most of the work, and a camera that only moves
-    /// keeps it. `illuminant`: of a picture with dispersion; none: all light has the lens's design wavelength.
+    /// keeps it.
     explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr,
-                         const std::optional<Illuminant>& illuminant = {})
-        : camera_(validated(camera)), path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
-        if (illuminant) set_wavelengths(*illuminant);
+                         const LensEffects& effects = {})
+        : camera_(validated(camera)),
+          effects_(effects),
+          path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
+        if (effects.illuminant) set_wavelengths(*effects.illuminant);
+        if (effects.coatings) set_coatings();
         const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
         for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
         if (last && last->has_pupil_of(camera, pupil_wavelengths_))
             pupil_ = last->pupil_;
         else if (camera.model == CameraModel::full_lens)
-            pupil_ = std::make_shared<const Pupil>(camera.lens,
-                                                   0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm),
-                                                   std::move(tracer), pupil_wavelengths_);
+            pupil_ = std::make_shared<const Pupil>(
+                camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm), tracer, pupil_wavelengths_);
+        if (effects.ghost_share) {
+            if (last && last->ghosts_ && last->effects_ == effects && last->has_lens_and_film_of(camera))
+                ghosts_ = last->ghosts_;
+            else
+                ghosts_ = std::make_shared<const GhostTables>(
+                    camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm), *effects.ghost_share,
+                    tracer, spectrum_ ? &*spectrum_ : nullptr);
+        }
         if (!pupil_) {
             camera_detail::validate_ideal(camera.lens, camera.model);
             return;
@@ -388,11 +409,15 @@ public:
                                to_film_.data(),
                                film_path_->view().surfaces};
         }
+        const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+        view.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
         set_times(view, scene_moves);
         return view;
     }
 
     const Camera& camera() const { return camera_; }
+    /// Of a picture with ghosts; else null.
+    const GhostTables* ghosts() const { return ghosts_.get(); }
 
 private:
     /// Before anything is made from it: a camera without a lens has no surface to begin with.
@@ -414,6 +439,21 @@ private:
             if (end != pupil_wavelengths_.front()) pupil_wavelengths_.push_back(end);
     }
 
+    void set_coatings() {
+        const LensSystem& lens = camera_.lens;
+        if (!spectrum_) {
+            check_wavelength_in_glasses(lens, lens.wavelength_nm, "coatings");
+            coatings_ = fit_coatings<kOneWavelengthTerms>(lens, LightDirection::to_scene, {lens.wavelength_nm});
+            return;
+        }
+        const std::vector<double> wavelengths = spectrum_->even_wavelengths();
+        for (const double end : {wavelengths.front(), wavelengths.back()})
+            check_wavelength_in_glasses(lens, end, "coatings");
+        const WavelengthVariable variable = variable_over(spectrum_->range());
+        coatings_to_scene_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_scene, wavelengths, variable);
+        coatings_to_film_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_film, wavelengths, variable);
+    }
+
     static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
         return {static_cast<Vec3f>(scene_from_camera.origin - origin_m), static_cast<Vec3f>(scene_from_camera.x),
                 static_cast<Vec3f>(scene_from_camera.y), static_cast<Vec3f>(scene_from_camera.z)};
@@ -428,20 +468,27 @@ private:
         view.exposed_time = static_cast<float>(camera_.seen_time() / all);
     }
 
+    bool has_lens_and_film_of(const Camera& camera) const {
+        return camera_.lens == camera.lens && camera_.film.width_mm == camera.film.width_mm &&
+               camera_.film.height_mm == camera.film.height_mm;
+    }
     bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths) const {
-        return pupil_ && camera.model == CameraModel::full_lens && camera_.lens == camera.lens &&
-               camera_.film.width_mm == camera.film.width_mm && camera_.film.height_mm == camera.film.height_mm &&
+        return pupil_ && camera.model == CameraModel::full_lens && has_lens_and_film_of(camera) &&
                pupil_wavelengths_ == wavelengths;
     }
 
     Camera camera_;
+    LensEffects effects_;
     LensPath<float> path_;
     std::vector<CameraPlacement> keys_;  ///< positions relative to the first
     std::optional<FilmSpectrum> spectrum_;  ///< of a picture with dispersion, as what follows
     std::vector<IndexCubic> to_scene_, to_film_;
     std::optional<LensPath<float>> film_path_;
+    std::vector<CoatingPolynomials<kOneWavelengthTerms>> coatings_;
+    std::vector<CoatingPolynomials<kSpectrumTerms>> coatings_to_scene_, coatings_to_film_;
     std::vector<double> pupil_wavelengths_;
     std::shared_ptr<const Pupil> pupil_;
+    std::shared_ptr<const GhostTables> ghosts_;  ///< of a picture with ghosts
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -5,6 +5,7 @@
 #include "../optics/lens_view.hpp"
 #include "../optics/pupil_view.hpp"
 #include "circle_of_confusion.hpp"
+#include "coating_view.hpp"
 #include "dispersion_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -57,6 +58,7 @@ struct CameraView : CameraPlacement {
     const CameraPlacement* keys;  ///< of a camera that moves, at even times; positions relative to its own
     int key_count;
     DispersionView dispersion;
+    CoatingView coatings;
 };
 
 /// The camera at a time of the exposure. Between two keys its axes are interpolated, and made unit and right-angled
@@ -87,6 +89,9 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.dispersion.to_film, view.lens.count);
     move(view.dispersion.film_surfaces, view.lens.count);
     move(view.dispersion.cells, view.dispersion.cell_count);
+    move(view.coatings.one_wavelength, view.lens.count);
+    move(view.coatings.to_scene, view.lens.count);
+    move(view.coatings.to_film, view.lens.count);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
     return view;

@@ -12,10 +12,29 @@ namespace REALCAM_NAMESPACE {
 
 namespace dispersed_rays_detail {
 
-/// Sets `shares` to the steps at which rays that have left the lens end in the pixels from which they came.
-template <LensKind lens_kind, int N>
+/// Takes rays through the lens, each with its WavelengthVariable. `passed`: what they keep, if the lens is `coated`.
+template <LensKind lens_kind, bool coated, int N>
+REALCAM_HD inline void trace_dispersed(const LensView<float>& lens, LensRays<float, N>& rays, const IndexCubic* indices,
+                                       const CoatingPolynomials<kSpectrumTerms>* coatings, const float (&variable)[N],
+                                       float (&passed)[N]) {
+    const ManyWavelengths media{indices, variable};
+    if constexpr (coated) {
+        PassedPower<N> power;
+        trace_lens<lens_kind>(lens, rays, NoRecord{},
+                              CoatedMedia<ManyWavelengths, kSpectrumTerms, N>{media, coatings, variable, power});
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) passed[i] = select(rays.status[i] == 0, power.of_unpolarised(i), 0.0f);
+    } else {
+        trace_lens<lens_kind>(lens, rays, NoRecord{}, media);
+    }
+}
+
+/// Sets `shares` to the steps at which rays that have left the lens end in the pixels from which they came, and
+/// `passed` to what the lens passes on at their wavelengths.
+template <LensKind lens_kind, bool coated, int N>
 REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N>& block,
-                                   const LensRays<float, N>& left, const float (&place)[N], std::int32_t (&shares)[N]) {
+                                   const LensRays<float, N>& left, const float (&place)[N], std::int32_t (&shares)[N],
+                                   float (&passed)[kSharedWavelengths][N]) {
     const DispersionView& view = camera.dispersion;
     LensView<float> to_film = camera.lens;
     to_film.surfaces = view.film_surfaces;
@@ -31,7 +50,8 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
             back.status[i] = left.status[i];
             variable[i] = view.variable.at(wavelength_at(view, shared_place(view, place[i], step)));
         }
-        trace_lens<lens_kind>(to_film, back, NoRecord{}, ManyWavelengths{view.to_film, variable});
+        trace_dispersed<lens_kind, coated>(to_film, back, view.to_film, camera.coatings.to_film, variable,
+                                           passed[step]);
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
             const Vec3f o = back.origin[i], d = back.direction[i];
@@ -48,27 +68,31 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
 }  // namespace dispersed_rays_detail
 
 /// generate_rays of a full lens with dispersion: each ray has a wavelength of its own, which is stratified over the
-/// samples of its pixel. `place`, `shares`: of the wavelengths for which the sample counts (film_color).
-template <LensKind lens_kind = LensKind::any, int N>
+/// samples of its pixel. `wavelengths`: for which the sample counts (film_color). `coated`: with what the lens passes
+/// on.
+template <LensKind lens_kind = LensKind::any, bool coated = false, int N>
 REALCAM_HD inline void generate_dispersed_rays(const CameraView& camera, const SampleBlock<N>& block,
-                                               float (&wavelength_nm)[N], float (&place)[N], std::int32_t (&shares)[N],
-                                               CameraRays<N>& rays) {
+                                               SampleWavelengths<N>& wavelengths, CameraRays<N>& rays) {
+    using namespace dispersed_rays_detail;
     const DispersionView& view = camera.dispersion;
     alignas(kLaneAlignment<float, N>) float variable[N];
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        place[i] = block.random(i, dimension::time).y * static_cast<float>(view.cell_count);
-        shares[i] = 1;
+        wavelengths.place[i] = block.random(i, dimension::time).y * static_cast<float>(view.cell_count);
+        wavelengths.shares[i] = 1;
     }
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        wavelength_nm[i] = wavelength_at(view, place[i]);
-        variable[i] = view.variable.at(wavelength_nm[i]);
+        wavelengths.nm[i] = wavelength_at(view, wavelengths.place[i]);
+        variable[i] = view.variable.at(wavelengths.nm[i]);
     }
     LensRays<float, N> inside;
     start_lens_rays(camera, block, inside, rays);
-    trace_lens<lens_kind>(camera.lens, inside, NoRecord{}, ManyWavelengths{view.to_scene, variable});
-    if (view.cell_count > 1) dispersed_rays_detail::find_shares<lens_kind>(camera, block, inside, place, shares);
+    trace_dispersed<lens_kind, coated>(camera.lens, inside, view.to_scene, camera.coatings.to_scene, variable,
+                                       wavelengths.passed[0]);
+    if (view.cell_count > 1)
+        find_shares<lens_kind, coated>(camera, block, inside, wavelengths.place, wavelengths.shares,
+                                       wavelengths.passed);
     place_lens_rays(camera, inside, rays);
 }
 

@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "../math/color.hpp"
+#include "../math/lanes.hpp"
 #include "../optics/index_cubic.hpp"
 #include "../optics/lens_view.hpp"
 
@@ -25,6 +26,14 @@ struct DispersionView {
     const SurfaceView<float>* film_surfaces;  ///< of the lens, on the light's way to the film
 };
 
+/// Wavelengths for which samples count: one that was drawn, and others at steps from its place, see film_color.
+template <int N>
+struct SampleWavelengths {
+    alignas(kLaneAlignment<float, N>) float nm[N], place[N];
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t shares[N];
+    alignas(kLaneAlignment<float, N>) float passed[kSharedWavelengths][N];  ///< by a coated lens, at each step
+};
+
 /// Wavelengths are drawn evenly over the cells: this one is the same share of its cell as the place's.
 REALCAM_INLINE float wavelength_at(const DispersionView& view, float place) {
     const auto cell = static_cast<std::int32_t>(place);
@@ -41,18 +50,28 @@ REALCAM_INLINE float shared_place(const DispersionView& view, float place, int s
 }
 
 /// What light of a scene's colour is on the film where it has the wavelengths of the place's cell, or, in equal parts,
-/// of those steps from it of which `shares` has the bit.
-REALCAM_INLINE Color film_color(const DispersionView& view, float place, std::int32_t shares, Color scene) {
+/// of those steps from it of which `shares` has the bit; `passed`: the share that the lens passes on at each step.
+REALCAM_INLINE Color film_color(const DispersionView& view, float place, std::int32_t shares,
+                                const float (&passed)[kSharedWavelengths], Color scene) {
     Color sum = {0, 0, 0};
     float count = 0.0f;
     for (int step = 0; step < kSharedWavelengths; ++step) {
         if (!(shares >> step & 1)) continue;
         const float (&m)[9] = view.cells[static_cast<std::int32_t>(shared_place(view, place, step))].film;
-        sum += Color{m[0] * scene.r + m[1] * scene.g + m[2] * scene.b, m[3] * scene.r + m[4] * scene.g + m[5] * scene.b,
-                     m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
+        sum += passed[step] * Color{m[0] * scene.r + m[1] * scene.g + m[2] * scene.b,
+                                    m[3] * scene.r + m[4] * scene.g + m[5] * scene.b,
+                                    m[6] * scene.r + m[7] * scene.g + m[8] * scene.b};
         count += 1.0f;
     }
     return (1.0f / count) * sum;
+}
+
+/// The same of a sample. `coated`: with what the lens passes on.
+template <bool coated, int N>
+REALCAM_INLINE Color film_color(const DispersionView& view, const SampleWavelengths<N>& of, int lane, Color scene) {
+    float passed[kSharedWavelengths];
+    for (int step = 0; step < kSharedWavelengths; ++step) passed[step] = coated ? of.passed[step][lane] : 1.0f;
+    return film_color(view, of.place[lane], of.shares[lane], passed, scene);
 }
 
 }  // namespace REALCAM_NAMESPACE

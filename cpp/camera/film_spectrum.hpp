@@ -212,6 +212,14 @@ public:
     WavelengthRange range() const {
         return {static_cast<double>(cells_.front().first_nm), static_cast<double>(cells_.back().last_nm)};
     }
+    /// About thirty, spread as the wavelengths of samples are.
+    std::vector<double> even_wavelengths() const {
+        constexpr std::size_t kStep = 6;
+        std::vector<double> wavelengths;
+        for (std::size_t i = std::min(kStep / 2, cells_.size() - 1); i < cells_.size(); i += kStep)
+            wavelengths.push_back(static_cast<double>(0.5f * (cells_[i].first_nm + cells_[i].last_nm)));
+        return wavelengths;
+    }
 
 private:
     std::vector<WavelengthCell> cells_;

@@ -10,12 +10,12 @@ namespace REALCAM_NAMESPACE {
 /// threads may use it.
 class LastSetup {
 public:
-    /// Throws InputError, and keeps the last one then. `illuminant`: as CameraSetup has it.
+    /// Throws InputError, and keeps the last one then.
     std::shared_ptr<const CameraSetup> make(const Camera& camera, const PupilTracer& tracer,
-                                            const std::optional<Illuminant>& illuminant = {}) {
+                                            const LensEffects& effects = {}) {
         // Not locked while the pupil is found: another thread's camera may be ready at once.
         const std::shared_ptr<const CameraSetup> last = get();
-        auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), illuminant);
+        auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), effects);
         const std::lock_guard lock(mutex_);
         return setup_ = std::move(setup);
     }

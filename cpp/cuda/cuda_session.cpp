@@ -47,7 +47,7 @@ public:
 private:
     void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                  const KeepGoing& keep_going, OwnStop& stop) override {
-        setup_ = last_setup_.make(camera, tracer_, settings.dispersed_light());
+        setup_ = last_setup_.make(camera, tracer_, settings.lens_effects());
         const auto place = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
             run_heeding(place, keep_going, stop);
@@ -57,6 +57,13 @@ private:
         }
         const CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
         for (const auto& renderer : renderers_) renderer->set_camera(view);
+        const GhostTables* const ghosts = setup_->ghosts();
+        if (ghosts) {
+            const GhostView ghost_view = ghosts->view();
+            front().set_ghosts(&ghost_view, ghost_units_per_lux(scene_.placed().view(), view, ghost_view));
+        } else {
+            front().set_ghosts(nullptr, 1);
+        }
     }
 
     void clear() override {
@@ -64,6 +71,7 @@ private:
         film_ = {};
         stats_ = {};
         for (const auto& renderer : renderers_) renderer->clear_counts();
+        front().clear_ghosts(static_cast<std::int64_t>(width()) * height());
     }
 
     void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop& stop) override {
@@ -77,6 +85,7 @@ private:
             expose_band(row, rows, range, stop, done);
             if (kept) front().download_film(kept);
         }
+        front().add_ghosts(range);
         for (const auto& renderer : renderers_) renderer->wait();
         stats_.seconds += seconds_since(exposing);
     }
@@ -113,8 +122,10 @@ private:
             rows_ = height();
         }
         if (!fits()) throw DeviceError("the film is larger than the GPU's memory");
-        for (const SampleRange& range : ranges)
+        for (const SampleRange& range : ranges) {
             front().add({0, height(), range.first, range.count}, settings_of(range));
+            front().add_ghosts(range);
+        }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
         frame->develop(front(), camera(), curve);
@@ -131,7 +142,7 @@ private:
             image.depth.resize(pixels);
             front().develop(camera().exposure_time_s, image.exposure.data(), image.depth.data());
         } else {
-            image = developed(film_, width(), height(), camera().exposure_time_s);
+            image = developed(film_, width(), height(), camera().exposure_time_s, front().download_ghosts().view());
         }
         collect_counts();
         image.stats = stats_;

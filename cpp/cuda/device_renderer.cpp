@@ -72,6 +72,26 @@ void DeviceRenderer::set_camera(const CameraView& camera) {
         camera, [&](const auto* from, std::size_t count) { return camera_arrays_.copy(from, count, stream_); });
 }
 
+void DeviceRenderer::set_ghosts(const GhostView* ghosts, double units_per_lux) {
+    const CurrentDevice current(ordinal_);
+    ghosts_.set(ghosts, units_per_lux, stream_);
+}
+
+void DeviceRenderer::clear_ghosts(std::int64_t pixels) {
+    const CurrentDevice current(ordinal_);
+    ghosts_.clear(pixels, stream_);
+}
+
+void DeviceRenderer::add_ghosts(const SampleRange& range) {
+    const CurrentDevice current(ordinal_);
+    ghosts_.add(scene_, camera_, stop_.data(), range, stream_);
+}
+
+DeviceGhosts::OnHost DeviceRenderer::download_ghosts() {
+    const CurrentDevice current(ordinal_);
+    return ghosts_.download(stream_);
+}
+
 void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
     const CurrentDevice current(ordinal_);
     const auto count = static_cast<std::size_t>(pixels);
@@ -84,7 +104,7 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
 
 void DeviceRenderer::rehearse() {
     for (const bool timed : {false, true}) launch({0, 0, 0, 0}, {}, sums_.data(), timed);
-    launch_develop(sums_.data(), 0, 1, exposure_.data(), depth_.data(), stream_);
+    launch_develop(sums_.data(), {}, 0, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
@@ -139,8 +159,8 @@ void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
 void DeviceRenderer::develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {
     const CurrentDevice current(ordinal_);
     codes_.resize(3 * sums_.size());
-    launch_develop_codes(sums_.data(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, iso, curve,
-                         codes_.data(), stream_);
+    launch_develop_codes(sums_.data(), ghosts_.seen(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, iso,
+                         curve, codes_.data(), stream_);
     codes_.download(codes, stream_);
 }
 
@@ -168,7 +188,8 @@ void DeviceRenderer::download_film(PixelSum* to) {
 
 void DeviceRenderer::develop_here(double exposure_time_s, float* exposure, float* depth) {
     const CurrentDevice current(ordinal_);
-    launch_develop(sums_.data(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, exposure, depth, stream_);
+    launch_develop(sums_.data(), ghosts_.seen(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, exposure,
+                   depth, stream_);
 }
 
 void DeviceRenderer::develop(double exposure_time_s, float* exposure, float* depth) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "../render/render_settings.hpp"
+#include "device_ghosts.hpp"
 #include "device_scene.hpp"
 #include "layer_kernels.hpp"
 #include "render_kernel.hpp"
@@ -31,6 +32,13 @@ public:
     void set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_camera(const CameraView& camera);
+
+    /// The ghosts of the pictures that follow, and an empty film for them. Null: they have none.
+    void set_ghosts(const GhostView* ghosts, double units_per_lux);
+    void clear_ghosts(std::int64_t pixels);
+    /// Starts to add the ghost samples that belong to samples of pixels.
+    void add_ghosts(const SampleRange& range);
+    DeviceGhosts::OnHost download_ghosts();
 
     /// Makes room for all that exposing, merging and developing so many pixels takes. Throws OutOfDeviceMemory.
     void reserve_film(std::int64_t pixels, bool merges);
@@ -93,6 +101,7 @@ private:
     DeviceScene scene_;
     DeviceArrays camera_arrays_;
     CameraView camera_{};
+    DeviceGhosts ghosts_;
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<LayerSum> layer_sums_;
     DeviceArray<MiddleSurface> middle_surfaces_;

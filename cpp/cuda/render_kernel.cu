@@ -1,25 +1,31 @@
 #include "render_kernel.hpp"
 
+#include <iterator>
+
+#include "../render/kind_of.hpp"
 #include "cuda_error.hpp"
 #include "lanes_per_pixel.hpp"
-#include "render_kernel_template.hpp"
+#include "launch_grid.hpp"
+#include "render_kernel_of.hpp"
+#include "warp_tiles.hpp"
 
 namespace realcam {
 namespace {
 
-__global__ void develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure,
-                        float* depth) {
+__global__ void develop(const PixelSum* sums, GhostFilmView ghosts, std::int64_t pixels, double exposure_time_s,
+                        float* exposure, float* depth) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s);
+    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, ghosts.irradiance(i, c));
     depth[i] = sums[i].mean_depth();
 }
 
-__global__ void develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
-                              ToneCurve curve, std::uint8_t* codes) {
+__global__ void develop_codes(const PixelSum* sums, GhostFilmView ghosts, std::int64_t pixels, double exposure_time_s,
+                              double iso, ToneCurve curve, std::uint8_t* codes) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) codes[3 * i + c] = sums[i].code(c, exposure_time_s, iso, curve);
+    for (int c = 0; c < 3; ++c)
+        codes[3 * i + c] = sums[i].code(c, exposure_time_s, iso, curve, ghosts.irradiance(i, c));
 }
 
 __global__ void count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts) {
@@ -32,11 +38,10 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
     if (i < pixels) sums[i] += other[i];
 }
 
-template <int effects>
-RenderKernel kernel_for(SceneKind scene_kind, LensKind lens_kind, bool instanced, bool timed) {
+RenderKernel kernel_without_effects(SceneKind scene_kind, LensKind lens_kind, bool instanced, bool timed) {
     const auto of_kind = [&]<SceneKind known>() {
-        return lens_kind == LensKind::plain ? render_kernel_of<LensKind::plain, known, effects>(instanced, timed)
-                                            : render_kernel_of<LensKind::any, known, effects>(instanced, timed);
+        return lens_kind == LensKind::plain ? render_kernel_of<LensKind::plain, known, 0>(instanced, timed)
+                                            : render_kernel_of<LensKind::any, known, 0>(instanced, timed);
     };
     switch (scene_kind) {
         case SceneKind::plain: return of_kind.template operator()<SceneKind::plain>();
@@ -45,11 +50,28 @@ RenderKernel kernel_for(SceneKind scene_kind, LensKind lens_kind, bool instanced
     }
 }
 
+template <int effects>
+RenderKernel kernel_with_effects(SceneKind scene_kind, LensKind lens_kind, bool instanced, bool timed) {
+    if (scene_kind != SceneKind::plain)
+        return render_kernel_of<LensKind::any, SceneKind::any, effects>(instanced, timed);
+    return lens_kind == LensKind::plain ? render_kernel_of<LensKind::plain, SceneKind::plain, effects>(instanced, timed)
+                                        : render_kernel_of<LensKind::any, SceneKind::plain, effects>(instanced, timed);
+}
+
+RenderKernel kernel_for(const RenderJob& job, bool timed) {
+    using Chooser = RenderKernel (*)(SceneKind, LensKind, bool, bool);
+    static constexpr Chooser kChoosers[] = {kernel_without_effects, kernel_with_effects<1>, kernel_with_effects<2>,
+                                            kernel_with_effects<3>};
+    static_assert(kCompiledEffects[0] == kNoEffects && std::size(kChoosers) == std::size(kCompiledEffects));
+    return kChoosers[number_of(effects_of(job.camera))](kind_of(job.scene, job.camera), job.camera.lens.kind,
+                                                        job.scene.instance_count > 0, timed);
+}
+
 }  // namespace
 
 void check_render_code() {
     cudaFuncAttributes attributes{};
-    const auto kernel = render_kernel_of<LensKind::any, SceneKind::any>(true, false);
+    const RenderKernel kernel = kernel_without_effects(SceneKind::any, LensKind::any, true, false);
     check_cuda(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)), "loading its code");
 }
 
@@ -57,23 +79,22 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     const int lanes = lanes_per_pixel(static_cast<std::int64_t>(job.camera.width) * job.row_count, job.sample_count);
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
-    const bool instanced = job.scene.instance_count > 0;
-    const auto choose =
-        job.camera.dispersion.cell_count > 0 ? kernel_for<number_of(kDispersion)> : kernel_for<number_of(kNoEffects)>;
-    const RenderKernel kernel = choose(kind_of(job.scene, job.camera), job.camera.lens.kind, instanced, timed);
+    const RenderKernel kernel = kernel_for(job, timed);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }
 
-void launch_develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure, float* depth,
-                    cudaStream_t stream) {
-    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, exposure_time_s, exposure, depth);
+void launch_develop(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels, double exposure_time_s,
+                    float* exposure, float* depth, cudaStream_t stream) {
+    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, ghosts, pixels, exposure_time_s, exposure, depth);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 
-void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
-                          ToneCurve curve, std::uint8_t* codes, cudaStream_t stream) {
-    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, pixels, exposure_time_s, iso, curve, codes);
+void launch_develop_codes(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels,
+                          double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes,
+                          cudaStream_t stream) {
+    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, ghosts, pixels, exposure_time_s, iso, curve,
+                                                                 codes);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 

@@ -5,6 +5,7 @@
 
 #include "../bvh/wide_bvh.hpp"
 #include "../camera/camera_view.hpp"
+#include "../render/ghost_film.hpp"
 #include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../scene/scene_view.hpp"
@@ -38,12 +39,13 @@ void check_render_code();
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream);
 
 /// Sums as exposure (3 per pixel, lux seconds) and depth (metres).
-void launch_develop(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, float* exposure, float* depth,
-                    cudaStream_t stream);
+void launch_develop(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels, double exposure_time_s,
+                    float* exposure, float* depth, cudaStream_t stream);
 
 /// The same as 8-bit sRGB (3 per pixel).
-void launch_develop_codes(const PixelSum* sums, std::int64_t pixels, double exposure_time_s, double iso,
-                          ToneCurve curve, std::uint8_t* codes, cudaStream_t stream);
+void launch_develop_codes(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels,
+                          double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes,
+                          cudaStream_t stream);
 
 /// The number of samples of each pixel.
 void launch_count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts, cudaStream_t stream);

@@ -1,15 +1,12 @@
 #pragma once
 #include "bvh_scene.hpp"
 #include "launch_grid.hpp"
-#include "render_kernel.hpp"
+#include "render_kernel_of.hpp"
 #include "warp_tiles.hpp"
 
-// The kernel that takes samples, for nvcc alone. It is instantiated in files of their own (render_kernel_*.cu), which
-// compile side by side: together they take minutes.
+// The kernel that takes samples, for nvcc alone. cmake/RealcamRenderKernels.cmake says for what it is instantiated.
 
 namespace realcam {
-
-using RenderKernel = void (*)(RenderJob, int);
 
 namespace render_kernel_detail {
 
@@ -110,9 +107,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
 
 }  // namespace render_kernel_detail
 
-/// The kernel for a kind of lens and of scene, and a set of effects by its number. `instanced`: whether there is
-/// anything but static geometry; `timed`: whether it counts clocks.
-template <LensKind lens_kind, SceneKind scene_kind, int effects = number_of(kNoEffects)>
+template <LensKind lens_kind, SceneKind scene_kind, int effects>
 RenderKernel render_kernel_of(bool instanced, bool timed) {
     using namespace render_kernel_detail;
     if (instanced)
@@ -121,18 +116,5 @@ RenderKernel render_kernel_of(bool instanced, bool timed) {
     return timed ? render<lens_kind, scene_kind, effects, false, StageClock>
                  : render<lens_kind, scene_kind, effects, false, NoClock>;
 }
-
-extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::plain>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::opaque>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::any>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::plain>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::opaque>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::any>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::plain, number_of(kDispersion)>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::opaque, number_of(kDispersion)>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::plain, SceneKind::any, number_of(kDispersion)>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::plain, number_of(kDispersion)>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::opaque, number_of(kDispersion)>(bool, bool);
-extern template RenderKernel render_kernel_of<LensKind::any, SceneKind::any, number_of(kDispersion)>(bool, bool);
 
 }  // namespace realcam

@@ -56,7 +56,7 @@ private:
                  const KeepGoing& keep_going, OwnStop& stop) override {
         const auto work = [&] {
             arena(settings).execute([&] {
-                setup_ = last_setup_.make(camera, fast_pupil_tracer(), settings.dispersed_light());
+                setup_ = last_setup_.make(camera, fast_pupil_tracer(), settings.lens_effects());
                 place(scene, camera);
                 camera_view_ = setup_->view(scene_->placed().origin_m(), scene_->placed().moves());
             });
@@ -67,12 +67,16 @@ private:
 
     void clear() override {
         const Film& film = camera().film;
-        film_.assign(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height), PixelSum{});
+        const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
+        film_.assign(pixels, PixelSum{});
+        ghost_film_.assign(settings().effects.ghosts ? pixels : 0, GhostSum{});
+        ghost_blocks_ = 0;
         stats_ = {};
     }
 
     void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop&) override {
         expose(range, settings(), done);
+        expose_ghosts(range, settings());
     }
 
     void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
@@ -106,9 +110,12 @@ private:
                      token = std::move(under_way)]() mutable {
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
-            for (const SampleRange& range : ranges) expose(range, settings, done);
+            for (const SampleRange& range : ranges) {
+                expose(range, settings, done);
+                expose_ghosts(range, settings);
+            }
             if (is_stopped()) throw Cancelled();
-            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve);
+            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, ghosts_seen());
         };
         const Film& film = camera().film;
         try {
@@ -120,7 +127,8 @@ private:
     }
 
     Image develop() override {
-        Image image = developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s);
+        Image image =
+            developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, ghosts_seen());
         image.stats = stats_;
         image.stats.device = name();
         return image;
@@ -174,6 +182,38 @@ private:
         });
     }
 
+    void expose_ghosts(const SampleRange& range, const RenderSettings& settings) {
+        if (ghost_film_.empty() || setup_->ghosts()->pairs().empty()) return;
+        const GhostView ghosts = setup_->ghosts()->view();
+        const SceneView scene = scene_->placed().view();
+        ghost_units_per_lux_ = ghost_units_per_lux(scene, camera_view_, ghosts);
+        const std::uint64_t per_sample = ghost_blocks_per_sample(camera_view_.width, camera_view_.height);
+        constexpr std::uint64_t kVisit = 64;
+        const std::uint64_t first = range.first * per_sample, count = range.count * per_sample;
+        arena(settings).execute([&] {
+            tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, [&](std::uint64_t visit) {
+                realcam_ghosts job{};
+                job.scene_view = &scene;
+                job.camera_view = &camera_view_;
+                job.ghost_view = &ghosts;
+                job.embree_scene = scene_->handle();
+                job.first_block = first + visit * kVisit;
+                job.block_count = std::min(kVisit, count - visit * kVisit);
+                job.seed = range.seed;
+                job.units_per_lux = ghost_units_per_lux_;
+                job.stopped = &is_raised;
+                job.stop = &stop_.flag();
+                job.sums = ghost_film_.data();
+                kernels().splat_ghosts(&job);
+                std::atomic_ref(ghost_blocks_) += job.blocks_done;
+            });
+        });
+    }
+
+    GhostFilmView ghosts_seen() const {
+        return {ghost_film_.empty() ? nullptr : ghost_film_.data(), ghost_units_per_lux_, &ghost_blocks_};
+    }
+
     /// visit(x, y, some samples) of the tile with that first pixel, until all samples of all tiles were taken.
     template <class Visit>
     void for_tiles(const SampleRange& range, const RenderSettings& settings, Visit&& visit) {
@@ -206,10 +246,12 @@ private:
         tile.first_sample = range.first;
         tile.sample_count = range.count;
         tile.seed = range.seed;
-        tile.stopped = [](const void* stop) -> int { return *static_cast<const std::atomic<bool>*>(stop); };
+        tile.stopped = &is_raised;
         tile.stop = &stop_.flag();
         return tile;
     }
+
+    static int is_raised(const void* stop) { return *static_cast<const std::atomic<bool>*>(stop); }
 
     static std::size_t pixels_of(const realcam_tile& tile) {
         return static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
@@ -246,6 +288,9 @@ private:
     CameraView camera_view_{};
     SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
+    std::vector<GhostSum> ghost_film_;  ///< empty without ghosts
+    unsigned long long ghost_blocks_ = 0;  ///< in it
+    double ghost_units_per_lux_ = 1;
     std::mutex stats_mutex_;
     RenderStats stats_;
 };

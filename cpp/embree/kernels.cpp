@@ -2,9 +2,13 @@
 
 #include <time.h>
 
+#include <iterator>
+#include <utility>
+
 #include "../camera/ray_request.hpp"
 #include "../camera/sensor_request.hpp"
 #include "../optics/trace_request.hpp"
+#include "../render/ghost_film.hpp"
 #include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/see_layers.hpp"
@@ -135,10 +139,10 @@ void render_tile_of(realcam_tile* tile) {
     tile->scene_rays += scene.rays_traced;
 }
 
-template <Effects effects>
-void render_tile_with(realcam_tile* tile) {
-    switch (
-        kind_of(*static_cast<const SceneView*>(tile->scene_view), *static_cast<const CameraView*>(tile->camera_view))) {
+template <int effects_number>
+void render_tile_with(realcam_tile* tile, SceneKind scene_kind) {
+    constexpr Effects effects = kCompiledEffects[effects_number];
+    switch (scene_kind) {
         case SceneKind::plain: return render_tile_of<SceneKind::plain, effects>(tile);
         case SceneKind::opaque: return render_tile_of<SceneKind::opaque, effects>(tile);
         case SceneKind::any: return render_tile_of<SceneKind::any, effects>(tile);
@@ -146,8 +150,12 @@ void render_tile_with(realcam_tile* tile) {
 }
 
 void render_tile(realcam_tile* tile) {
-    const bool disperses = static_cast<const CameraView*>(tile->camera_view)->dispersion.cell_count > 0;
-    return disperses ? render_tile_with<kDispersion>(tile) : render_tile_with<kNoEffects>(tile);
+    const auto& scene = *static_cast<const SceneView*>(tile->scene_view);
+    const auto& camera = *static_cast<const CameraView*>(tile->camera_view);
+    const int wanted = number_of(effects_of(camera));
+    [&]<int... number>(std::integer_sequence<int, number...>) {
+        (void)((number == wanted && (render_tile_with<number>(tile, kind_of(scene, camera)), true)) || ...);
+    }(std::make_integer_sequence<int, std::size(kCompiledEffects)>());
 }
 
 void see_layers_of_tile(realcam_tile* tile) {
@@ -174,6 +182,43 @@ void see_middle_surfaces_of_tile(realcam_tile* tile) {
         see_middle_surfaces(view, camera, block, scene, seen);
         for (int k = 0; k < lanes; ++k) surfaces[place[k]] = seen[k];
     });
+}
+
+template <SceneKind scene_kind, bool disperses>
+void splat_ghosts_with(realcam_ghosts* job) {
+    const SceneView view = *static_cast<const SceneView*>(job->scene_view);
+    const CameraView camera = *static_cast<const CameraView*>(job->camera_view);
+    const GhostView ghosts = *static_cast<const GhostView*>(job->ghost_view);
+    auto* const sums = static_cast<GhostSum*>(job->sums);
+    PacketScene<scene_kind> scene{static_cast<RTCScene>(job->embree_scene),
+                                  static_cast<std::uint32_t>(view.instance_count), RayOrder::incoherent, 0};
+    const auto splat = [&](std::int32_t pixel, Color lux, float dither) {
+        const float channels[3] = {lux.r, lux.g, lux.b};
+        for (int c = 0; c < 3; ++c)
+            __atomic_fetch_add(&sums[pixel].units[c], ghost_units(channels[c], job->units_per_lux, dither),
+                               __ATOMIC_RELAXED);
+    };
+    static_assert(kGhostBlock % kLanes == 0);
+    for (std::uint64_t i = 0; i < job->block_count && !job->stopped(job->stop); ++i) {
+        for (std::uint32_t first = 0; first < kGhostBlock; first += kLanes)
+            splat_ghosts<LensKind::any, scene_kind, disperses, kLanes>(
+                view, camera, ghosts, {job->first_block + i, job->seed}, first, scene, splat);
+        ++job->blocks_done;
+    }
+    job->rays += scene.rays_traced;
+}
+
+void splat_ghosts_of(realcam_ghosts* job) {
+    const auto& camera = *static_cast<const CameraView*>(job->camera_view);
+    const bool disperses = camera.dispersion.cell_count > 0;
+    switch (kind_of(*static_cast<const SceneView*>(job->scene_view), camera)) {
+        case SceneKind::plain:
+            return disperses ? splat_ghosts_with<SceneKind::plain, true>(job)
+                             : splat_ghosts_with<SceneKind::plain, false>(job);
+        default:
+            return disperses ? splat_ghosts_with<SceneKind::any, true>(job)
+                             : splat_ghosts_with<SceneKind::any, false>(job);
+    }
 }
 
 void generate_all(const void* request) {
@@ -206,6 +251,6 @@ void trace_block(const void* lens_view, void* rays) {
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile, realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
-    realcam::generate_all,     realcam::trace_block, realcam::trace_all<double>,  realcam::trace_all<float>,
-    realcam::expose_sensor};
+    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile,  realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
+    realcam::splat_ghosts_of,  realcam::generate_all, realcam::trace_block,        realcam::trace_all<double>,
+    realcam::trace_all<float>, realcam::expose_sensor};

@@ -22,11 +22,26 @@ struct realcam_tile {
     std::uint64_t sampled_rays, passed_rays, scene_rays;
 };
 
+struct realcam_ghosts {
+    const void* scene_view;   // SceneView
+    const void* camera_view;  // CameraView
+    const void* ghost_view;   // GhostView
+    void* embree_scene;       // RTCScene
+    std::uint64_t first_block, block_count;
+    std::uint32_t seed;
+    double units_per_lux;
+    int (*stopped)(const void* stop);  // asked before each block; what is left then is left out
+    const void* stop;
+    void* sums;  // GhostSum of all pixels; added to, also by other threads
+    std::uint64_t blocks_done, rays;
+};
+
 struct realcam_kernels {
     const char* instruction_set;
     void (*render_tile)(realcam_tile*);
     void (*see_layers)(realcam_tile*);           // of the same samples
     void (*see_middle_surfaces)(realcam_tile*);  // of one sample per pixel
+    void (*splat_ghosts)(realcam_ghosts*);
     void (*generate_rays)(const void* request);              // RayRequest
     void (*trace_block)(const void* lens_view, void* rays);  // LensView<float>, LensRays<float, 256>
     void (*trace_f64)(const void* request);                  // TraceRequest<double>

@@ -52,6 +52,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     for (const std::string& name : names_of(settings.effects))
         metadata.effects += (metadata.effects.empty() ? "" : ",") + name;
     if (const auto light = settings.dispersed_light()) metadata.illuminant = light->text();
+    if (settings.effects.coatings) metadata.coatings = coating_summary(camera.lens);
     return metadata;
 }
 
@@ -81,6 +82,7 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
     if (clamp_cd_m2 > 0) entries.emplace_back("realcam:clamp_cd_m2", number(clamp_cd_m2));
     if (!effects.empty()) entries.emplace_back("realcam:effects", effects);
     if (!illuminant.empty()) entries.emplace_back("realcam:illuminant", illuminant);
+    if (!coatings.empty()) entries.emplace_back("realcam:coatings", coatings);
     if (!denoiser.empty()) entries.emplace_back("realcam:denoiser", denoiser);
     return entries;
 }

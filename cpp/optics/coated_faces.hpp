@@ -1,5 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "lens_system.hpp"
 
@@ -25,6 +29,36 @@ inline bool has_unknown_coating(const LensSystem& lens, std::size_t index) {
     const Surface& surface = lens.surfaces[index];
     return surface.coating.kind == CoatingKind::unknown &&
            (surface.type == SurfaceType::mirror || is_face_in_air(lens, index));
+}
+
+/// The surfaces, counted from 0, of which the lens does not say how they are coated: glass in air, taken for bare, and
+/// mirrors, taken for perfect ones.
+inline std::vector<int> surfaces_with_unknown_coating(const LensSystem& lens) {
+    std::vector<int> found;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+        if (has_unknown_coating(lens, i)) found.push_back(static_cast<int>(i));
+    return found;
+}
+
+/// What covers each face in air, each mirror and whatever else the lens says something of, with the numbers of the
+/// surfaces from 1: "bare: 1, 2; unknown, taken as bare: 5".
+inline std::string coating_summary(const LensSystem& lens) {
+    std::vector<std::pair<std::string, std::string>> groups;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const Surface& surface = lens.surfaces[i];
+        const bool is_mirror = surface.type == SurfaceType::mirror;
+        const bool unknown = surface.coating.kind == CoatingKind::unknown;
+        if (!surface.bends_light() || (unknown && !has_unknown_coating(lens, i))) continue;
+        const std::string name = unknown ? std::string("unknown, taken as ") + (is_mirror ? "a perfect mirror" : "bare")
+                                 : surface.coating.name.empty() ? "unnamed"
+                                                                : surface.coating.name;
+        auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& other) { return other.first == name; });
+        if (group == groups.end()) group = groups.insert(group, {name, ""});
+        group->second += (group->second.empty() ? "" : ", ") + std::to_string(i + 1);
+    }
+    std::string text;
+    for (const auto& [name, numbers] : groups) text += (text.empty() ? "" : "; ") + name + ": " + numbers;
+    return text;
 }
 
 }  // namespace REALCAM_NAMESPACE

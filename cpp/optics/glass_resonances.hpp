@@ -27,15 +27,14 @@ inline WavelengthRange between_resonances(const Glass& glass) {
 /// Throws InputError, with the surface and the glass, at a wavelength for which a glass of the lens is not known:
 /// outside the points of its table, or at or beyond a resonance of its formula.
 inline void check_wavelength_in_glasses(const LensSystem& lens, double wavelength_nm, const std::string& purpose) {
-    using known_wavelengths_detail::nm_text;
+    using namespace known_wavelengths_detail;
     check_glasses_known(lens, {wavelength_nm, wavelength_nm}, purpose);
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         if (lens.surfaces[i].type != SurfaceType::refracting) continue;
         const Glass& glass = lens.surfaces[i].material;
         const WavelengthRange range = between_resonances(glass);
         if (wavelength_nm > range.first && wavelength_nm < range.last) continue;
-        throw InputError(purpose + ": the glass of surface " + std::to_string(i + 1) +
-                         (glass.label.empty() ? "" : " (" + glass.label + ")") + " of " + lens.name +
+        throw InputError(purpose + ": " + glass_text(lens, i) +
                          (wavelength_nm <= range.first
                               ? " lets no light pass below its resonance at " + nm_text(range.first)
                               : " lets no light pass above its resonance at " + nm_text(range.last)) +

@@ -23,13 +23,14 @@ struct alignas(16) IndexCubic {
 /// The media of a trace in which all rays have the wavelength of the lens's view.
 struct OneWavelength {
     template <class T>
-    struct Change {
-        T value;
-        REALCAM_INLINE T operator()(int) const { return value; }
+    struct Boundary {
+        T change;
+        static constexpr bool is_coated = false;
+        REALCAM_INLINE T squared_index_change(int) const { return change; }
     };
     template <class Surface>
     REALCAM_INLINE auto at(const Surface& surface, int) const {
-        return Change<decltype(surface.curvature)>{surface.squared_index_change};
+        return Boundary<decltype(surface.curvature)>{surface.squared_index_change};
     }
 };
 
@@ -38,13 +39,14 @@ struct ManyWavelengths {
     const IndexCubic* surfaces;  ///< in the order in which the light meets them
     const float* variable;       ///< of each ray
 
-    struct Change {
+    struct Boundary {
         IndexCubic cubic;
         const float* variable;
-        REALCAM_INLINE float operator()(int lane) const { return cubic.at(variable[lane]); }
+        static constexpr bool is_coated = false;
+        REALCAM_INLINE float squared_index_change(int lane) const { return cubic.at(variable[lane]); }
     };
     template <class Surface>
-    REALCAM_INLINE Change at(const Surface&, int place) const {
+    REALCAM_INLINE Boundary at(const Surface&, int place) const {
         return {surfaces[place], variable};
     }
 };

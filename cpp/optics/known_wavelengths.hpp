@@ -21,6 +21,12 @@ inline std::string nm_text(double wavelength) {
     return text.back() == '.' ? text.substr(0, text.size() - 1) : text;
 }
 
+inline std::string glass_text(const LensSystem& lens, std::size_t surface) {
+    const std::string& label = lens.surfaces[surface].material.label;
+    return "the glass of surface " + std::to_string(surface + 1) + (label.empty() ? "" : " (" + label + ")") + " of " +
+           lens.name;
+}
+
 inline std::string range_text(WavelengthRange range) {
     return range.first == range.last ? nm_text(range.first) + " nm is"
                                      : nm_text(range.first) + " to " + nm_text(range.last) + " nm are";
@@ -38,10 +44,8 @@ inline void check_glasses_known(const LensSystem& lens, WavelengthRange range, c
         const auto [first_known, last_known] = glass.known_nm();
         // A tenth of a nanometre: a table that ends at 656.3 is meant for the line at 656.27.
         if (range.first < first_known - 0.05 || range.last > last_known + 0.05)
-            throw InputError(purpose + ": the glass of surface " + std::to_string(i + 1) +
-                             (glass.label.empty() ? "" : " (" + glass.label + ")") + " of " + lens.name +
-                             " is known from " + nm_text(first_known) + " to " + nm_text(last_known) + " nm; " +
-                             range_text(range) + " wanted");
+            throw InputError(purpose + ": " + glass_text(lens, i) + " is known from " + nm_text(first_known) + " to " +
+                             nm_text(last_known) + " nm; " + range_text(range) + " wanted");
     }
 }
 

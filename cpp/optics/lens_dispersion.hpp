@@ -58,9 +58,10 @@ inline void check_dispersion(const LensSystem& lens, WavelengthRange range) {
                          " lies in glass; a lens with air behind its last surface is wanted");
 }
 
-/// What the surfaces do to light on its way to the film or the scene, in the order in which it meets them. Throws
-/// InputError where a glass has no index.
-inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction, WavelengthRange range) {
+/// What surfaces do to light on a way through the lens, in the order in which it meets them; `beyond`: what they would
+/// do if they let it pass where they reflect it. Throws InputError where a glass has no index.
+inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way,
+                                            WavelengthRange range, bool beyond = false) {
     constexpr std::size_t kNodes = 16;
     const WavelengthVariable variable = variable_over(range);
     std::array<double, kNodes> nodes{};
@@ -74,18 +75,22 @@ inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirecti
         indices.push_back(lens.indices(wavelength));
     }
     std::vector<IndexCubic> cubics;
-    const std::size_t count = lens.surfaces.size();
-    for (std::size_t k = 0; k < count; ++k) {
-        const bool to_film = direction == LightDirection::to_film;
-        const std::size_t before = to_film ? k : count - k, after = to_film ? k + 1 : count - k - 1;
+    for (const Crossing& crossing : way) {
         std::array<double, kNodes> change{};
         for (std::size_t j = 0; j < kNodes; ++j) {
-            const double n = indices[j][before], behind = indices[j][after];
-            change[j] = (behind - n) * (behind + n) / (n * n);
+            const double n = crossing.index_before(indices[j]);
+            const double other = beyond ? crossing.index_beyond(indices[j]) : crossing.index_behind(indices[j]);
+            change[j] = (other - n) * (other + n) / (n * n);
         }
         cubics.push_back(lens_dispersion_detail::cubic_of(nodes, change));
     }
     return cubics;
+}
+
+/// Of light on its way through the whole lens.
+inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction, WavelengthRange range) {
+    const std::vector<Crossing> to_film = crossings_of(lens);
+    return index_cubics(lens, direction == LightDirection::to_film ? to_film : reversed(to_film), range);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "crossing.hpp"
 #include "lens_system.hpp"
 #include "lens_trace.hpp"
 
@@ -13,36 +14,41 @@ enum class LightDirection { to_film, to_scene };
 template <class T>
 class LensPath {
 public:
-    LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm) : iris_(iris_of(lens)) {
-        const int count = static_cast<int>(lens.surfaces.size());
+    LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm)
+        : LensPath(lens, crossings_of(lens), direction, wavelength_nm) {}
+
+    /// Of light that takes this way to the film, or the same way back to the scene.
+    LensPath(const LensSystem& lens, const std::vector<Crossing>& way, LightDirection direction, double wavelength_nm)
+        : iris_(iris_of(lens)) {
         const std::vector<double> n = lens.indices(wavelength_nm);
         const std::vector<double> z = lens.vertices();
+        const auto vertex = [&](std::size_t crossing) { return z[static_cast<std::size_t>(way[crossing].surface)]; };
+        const bool to_film = direction == LightDirection::to_film;
         double direction_sign = 1;  // of light on its way to the film
-        for (int i = 0; i < count; ++i) {
-            const Surface& surface = lens.surfaces[static_cast<std::size_t>(i)];
-            const double direction_sign_behind = surface.type == SurfaceType::mirror ? -direction_sign : direction_sign;
+        for (std::size_t m = 0; m < way.size(); ++m) {
+            const Surface& surface = lens.surfaces[static_cast<std::size_t>(way[m].surface)];
+            const bool turns = way[m].is_reflected || surface.type == SurfaceType::mirror;
+            const double sign_behind = turns ? -direction_sign : direction_sign;
+            const double before = way[m].index_before(n), behind = way[m].index_behind(n);
             SurfaceView<T> view = shape_of(surface);
-            view.surface_index = i;
-            const auto k = static_cast<std::size_t>(i);
-            if (direction == LightDirection::to_film) {
-                set_media(view, n[k], n[k + 1], direction_sign, direction_sign_behind);
-                view.shift = static_cast<T>(i == 0 ? 0.0 : z[k] - z[k - 1]);
+            view.surface_index = way[m].surface;
+            if (to_film) {
+                set_media(view, before, behind, direction_sign, sign_behind);
+                view.shift = static_cast<T>(m == 0 ? 0.0 : vertex(m) - vertex(m - 1));
             } else {
-                set_media(view, n[k + 1], n[k], -direction_sign_behind, -direction_sign);
-                view.shift = static_cast<T>(i == count - 1 ? 0.0 : z[k] - z[k + 1]);
+                set_media(view, behind, before, -sign_behind, -direction_sign);
+                view.shift = static_cast<T>(m + 1 == way.size() ? 0.0 : vertex(m) - vertex(m + 1));
             }
             if (surface.type == SurfaceType::stop) set_stop(view, lens);
             views_.push_back(view);
-            direction_sign = direction_sign_behind;
+            direction_sign = sign_behind;
         }
-        if (direction == LightDirection::to_scene) std::reverse(views_.begin(), views_.end());
-        entry_index = direction == LightDirection::to_film ? n.front() : n.back();
+        if (!to_film) std::reverse(views_.begin(), views_.end());
+        entry_index = to_film ? n.front() : n.back();
         // A few diameters: what a float32 of the first surface's size can square.
-        entry_reach =
-            16 *
-            (direction == LightDirection::to_film ? lens.surfaces.front() : lens.surfaces.back()).clear_semi_diameter;
-        entry_position = direction == LightDirection::to_film ? z.front() : z.back();
-        exit_position = direction == LightDirection::to_film ? z.back() : z.front();
+        entry_reach = 16 * (to_film ? lens.surfaces.front() : lens.surfaces.back()).clear_semi_diameter;
+        entry_position = to_film ? z.front() : z.back();
+        exit_position = to_film ? z.back() : z.front();
     }
 
     LensView<T> view() const {

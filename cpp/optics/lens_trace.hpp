@@ -38,14 +38,15 @@ struct PathRecord {
 template <class T>
 inline constexpr T kFarthest = T(1e18);
 
-/// Takes one lane across a surface whose intersection is known: rim, hole, refraction, status.
-template <LensKind lens_kind, class T, int N, class Record>
-REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, T squared_index_change, LensRays<T, N>& rays,
+/// Takes one lane across a surface whose intersection is known: rim, hole, refraction, coating, status.
+template <LensKind lens_kind, class T, int N, class Boundary, class Record>
+REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                   Record& record, int lane, Vec3<T> o, Vec3<T> p, SurfaceHit<T> hit, int failure) {
     const Vec3<T> at = o + hit.parameter * p;
     const T r2 = at.x * at.x + at.y * at.y;
     const Refraction<T> refracted =
-        refract(p, hit.normal, hit.along_normal, squared_index_change, surface.direction_sign_out);
+        refract(p, hit.normal, hit.along_normal, boundary.squared_index_change(lane), surface.direction_sign_out);
+    if constexpr (Boundary::is_coated) boundary.pass(lane, hit.along_normal, sqrt_or_zero(refracted.radicand));
 
     const int before = rays.status[lane];
     const bool alive = before == static_cast<int>(RayStatus::ok);
@@ -71,8 +72,8 @@ REALCAM_INLINE void cross_surface(const SurfaceView<T>& surface, T squared_index
     }
 }
 
-template <LensKind lens_kind, class T, int N, class Change, class Record>
-REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, Change&& change, LensRays<T, N>& rays,
+template <LensKind lens_kind, class T, int N, class Boundary, class Record>
+REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                     Record& record) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
@@ -80,12 +81,12 @@ REALCAM_HD inline void cross_sphere(const SurfaceView<T>& surface, Change&& chan
         const Vec3<T> p = rays.direction[i];
         o.z -= surface.shift;
         const SurfaceHit<T> hit = intersect_sphere(o, p, surface.curvature, surface.direction_sign_in);
-        cross_surface<lens_kind>(surface, change(i), rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
+        cross_surface<lens_kind>(surface, boundary, rays, record, i, o, p, hit, static_cast<int>(RayStatus::missed));
     }
 }
 
-template <class T, int N, class Change, class Record>
-REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, Change&& change, LensRays<T, N>& rays,
+template <class T, int N, class Boundary, class Record>
+REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                    Record& record) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
@@ -96,13 +97,13 @@ REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, Change&& chang
         SurfaceHit<T> hit =
             intersect_conic(o + approach * p, p, surface.curvature, surface.conic_factor, surface.direction_sign_in);
         hit.parameter += approach;
-        cross_surface<LensKind::any>(surface, change(i), rays, record, i, o, p, hit,
+        cross_surface<LensKind::any>(surface, boundary, rays, record, i, o, p, hit,
                                      static_cast<int>(RayStatus::missed));
     }
 }
 
-template <class T, int N, class Change, class Record>
-REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, Change&& change, LensRays<T, N>& rays,
+template <class T, int N, class Boundary, class Record>
+REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                      Record& record) {
     AsphereSearch<T, N> search;
     alignas(kLaneAlignment<T, N>) T outside[N];
@@ -148,7 +149,7 @@ REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, Change&& cha
         // Without a bracket both are NaN.
         const int failure =
             select(slack < T(0), static_cast<int>(RayStatus::no_convergence), static_cast<int>(RayStatus::missed));
-        cross_surface<LensKind::any>(surface, change(i), rays, record, i, o, p, hit, failure);
+        cross_surface<LensKind::any>(surface, boundary, rays, record, i, o, p, hit, failure);
     }
 }
 
@@ -182,20 +183,21 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
 /// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
 /// vertex of the last one; directions are optical ones in the lens frame, before and after (LensPath::entry_index).
 /// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
-/// loops into vector code. `lens_kind`: any, or the lens's own. `media`: OneWavelength or ManyWavelengths.
+/// loops into vector code. `lens_kind`: any, or the lens's own. `media`: OneWavelength, ManyWavelengths or
+/// CoatedMedia.
 template <LensKind lens_kind = LensKind::any, class T, int N, class Record = NoRecord, class Media = OneWavelength>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
                                   const Media& media = {}) {
     for (int k = 0; k < lens.count; ++k) {
         const SurfaceView<T> surface = lens.surfaces[k];  // a copy: lane stores cannot alias it
-        const auto change = media.at(surface, k);
+        const auto boundary = media.at(surface, k);
         if (lens_kind == LensKind::plain) {
-            cross_sphere<lens_kind>(surface, change, rays, record);
+            cross_sphere<lens_kind>(surface, boundary, rays, record);
         } else {
             switch (surface.kind) {
-                case SurfaceShape::sphere: cross_sphere<lens_kind>(surface, change, rays, record); break;
-                case SurfaceShape::conic: cross_conic(surface, change, rays, record); break;
-                case SurfaceShape::asphere: cross_asphere(surface, change, rays, record); break;
+                case SurfaceShape::sphere: cross_sphere<lens_kind>(surface, boundary, rays, record); break;
+                case SurfaceShape::conic: cross_conic(surface, boundary, rays, record); break;
+                case SurfaceShape::asphere: cross_asphere(surface, boundary, rays, record); break;
             }
             if (surface.has_blades) cross_iris(lens.iris, rays);
         }

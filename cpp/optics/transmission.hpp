@@ -98,13 +98,4 @@ inline double t_stop(const LensSystem& lens, double wavelength_nm) {
     return f_number / std::sqrt(axial_transmittance(lens, wavelength_nm) * unobstructed_share(lens, wavelength_nm));
 }
 
-/// The surfaces, counted from 0, of which the lens does not say how they are coated: glass in air, taken for bare, and
-/// mirrors, taken for perfect ones.
-inline std::vector<int> surfaces_with_unknown_coating(const LensSystem& lens) {
-    std::vector<int> found;
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-        if (has_unknown_coating(lens, i)) found.push_back(static_cast<int>(i));
-    return found;
-}
-
 }  // namespace REALCAM_NAMESPACE

@@ -1,6 +1,7 @@
 #pragma once
 #include <type_traits>
 
+#include "../camera/coated_rays.hpp"
 #include "../camera/dispersed_rays.hpp"
 #include "scatter_plain_paths.hpp"
 
@@ -41,7 +42,9 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
                                    PathStateWith<N, effects>& path, PathResults<N>& results) {
     CameraRays<N> camera_rays;
     if constexpr (effects.dispersion)
-        generate_dispersed_rays<lens_kind>(camera, block, path.wavelength_nm, path.place, path.shares, camera_rays);
+        generate_dispersed_rays<lens_kind, effects.coatings>(camera, block, path.wavelengths, camera_rays);
+    else if constexpr (effects.coatings)
+        generate_coated_rays<lens_kind>(camera, block, camera_rays);
     else
         generate_rays<lens_kind>(camera, block, camera_rays);
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, block, camera_rays, path.rays.time);

@@ -7,15 +7,16 @@ namespace REALCAM_NAMESPACE {
 /// is switched off costs nothing.
 struct Effects {
     bool dispersion = false;
+    bool coatings = false;
 
     constexpr bool operator==(const Effects&) const = default;
 };
 
 inline constexpr Effects kNoEffects = {};
-inline constexpr Effects kDispersion = {true};
 
 /// The sets for which there is code.
-inline constexpr Effects kCompiledEffects[] = {kNoEffects, kDispersion};
+inline constexpr Effects kCompiledEffects[] = {
+    kNoEffects, {.dispersion = true}, {.coatings = true}, {.dispersion = true, .coatings = true}};
 
 /// Its place in kCompiledEffects, for kernels: nvcc writes no code that launches one whose argument is of a class.
 constexpr int number_of(const Effects& compiled) {
@@ -29,6 +30,8 @@ constexpr int number_of(const Effects& compiled) {
 
 /// What a picture is to have of all effects. Those of the exposure are there where something moves, unless left out.
 struct EffectChoice : Effects {
+    bool ghosts = false;  ///< what two surfaces of the lens reflect: found apart from the samples of pixels
+    double ghost_share = 1e-6;  ///< ghosts that bring less of the lens's light to the film are left out
     bool motion_blur = true;  ///< else each row of pixels sees the scene in the middle of its exposure
     bool rolling_shutter = true;  ///< else the shutter's readout time is 0
 

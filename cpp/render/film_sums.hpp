@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ghost_film.hpp"
 #include "image.hpp"
 #include "pixel_sum.hpp"
 
@@ -12,26 +13,31 @@ namespace REALCAM_NAMESPACE {
 using FilmSums = std::vector<PixelSum>;
 
 /// Exposure and depth of a film, without what the picture cost.
-inline Image developed(const FilmSums& film, int width, int height, double exposure_time_s) {
+inline Image developed(const FilmSums& film, int width, int height, double exposure_time_s,
+                       const GhostFilmView& ghosts = {}) {
     Image image;
     image.width = width;
     image.height = height;
     image.exposure.reserve(3 * film.size());
     image.depth.reserve(film.size());
-    for (const PixelSum& sum : film) {
-        for (int channel = 0; channel < 3; ++channel) image.exposure.push_back(sum.exposure(channel, exposure_time_s));
-        image.depth.push_back(sum.mean_depth());
+    for (std::size_t i = 0; i < film.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel)
+            image.exposure.push_back(
+                film[i].exposure(channel, exposure_time_s, ghosts.irradiance(static_cast<std::int64_t>(i), channel)));
+        image.depth.push_back(film[i].mean_depth());
     }
     return image;
 }
 
 /// A film as 8-bit sRGB, 3 per pixel.
 inline std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso,
-                                                 ToneCurve curve) {
+                                                 ToneCurve curve, const GhostFilmView& ghosts = {}) {
     std::vector<std::uint8_t> codes;
     codes.reserve(3 * film.size());
-    for (const PixelSum& sum : film)
-        for (int channel = 0; channel < 3; ++channel) codes.push_back(sum.code(channel, exposure_time_s, iso, curve));
+    for (std::size_t i = 0; i < film.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            codes.push_back(film[i].code(channel, exposure_time_s, iso, curve,
+                                         ghosts.irradiance(static_cast<std::int64_t>(i), channel)));
     return codes;
 }
 

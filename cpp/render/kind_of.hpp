@@ -1,12 +1,19 @@
 #pragma once
 #include "../camera/camera_view.hpp"
 #include "../scene/scene_view.hpp"
+#include "effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 /// What the kernels for a picture have to know.
 inline SceneKind kind_of(const SceneView& scene, const CameraView& camera) {
     return camera.key_count > 0 ? SceneKind::any : scene.kind;
+}
+
+/// The effects for which a camera was made ready.
+inline Effects effects_of(const CameraView& camera) {
+    const bool disperses = camera.dispersion.cell_count > 0;
+    return {disperses, disperses ? camera.coatings.to_scene != nullptr : camera.coatings.one_wavelength != nullptr};
 }
 
 }  // namespace REALCAM_NAMESPACE

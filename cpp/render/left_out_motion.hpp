@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "../camera/camera.hpp"
 #include "../scene/assembly.hpp"
 #include "effects.hpp"
@@ -10,9 +12,11 @@ struct SceneAndCamera {
     Camera camera;
 };
 
-/// Scene and camera as a picture sees them that leaves out motion blur or the rolling shutter.
-inline SceneAndCamera without_left_out_motion(const Assembly& scene, const Camera& camera,
-                                              const EffectChoice& effects) {
+/// Scene and camera as a picture sees them that leaves out motion blur or the rolling shutter; nothing where it leaves
+/// out neither, so that no frame pays for a copy.
+inline std::optional<SceneAndCamera> without_left_out_motion(const Assembly& scene, const Camera& camera,
+                                                             const EffectChoice& effects) {
+    if (effects.motion_blur && effects.rolling_shutter) return std::nullopt;
     SceneAndCamera seen{scene, camera};
     Shutter& shutter = seen.camera.shutter;
     if (!effects.rolling_shutter) shutter.readout_time_s = 0;

@@ -53,9 +53,7 @@ struct PathState {
 /// The same, of samples that each have a wavelength.
 template <int N>
 struct DispersedPathState : PathState<N> {
-    alignas(kLaneAlignment<float, N>) float wavelength_nm[N];
-    alignas(kLaneAlignment<float, N>) float place[N];  ///< of the wavelengths for which the sample
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t shares[N];  ///< counts (film_color)
+    SampleWavelengths<N> wavelengths;
 };
 
 /// What paths with these effects carry.

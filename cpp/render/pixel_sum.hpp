@@ -45,14 +45,15 @@ struct PixelSum {
         for (int i = 0; i < 3; ++i) squares[i] += rgb[i] * rgb[i];
     }
 
-    /// Lux seconds on the film; 0 where no sample was taken.
-    REALCAM_HD float exposure(int channel, double exposure_time_s) const {
+    /// Lux seconds on the film; 0 where no sample was taken. `ghosts`: irradiance that was found apart from them, lux.
+    REALCAM_HD float exposure(int channel, double exposure_time_s, double ghosts = 0) const {
         if (samples == 0) return 0;
-        return film_exposure(irradiance[channel] * exposure_time_s / static_cast<double>(samples));
+        return film_exposure((irradiance[channel] / static_cast<double>(samples) + ghosts) * exposure_time_s);
     }
     /// The same as 8-bit sRGB.
-    REALCAM_HD std::uint8_t code(int channel, double exposure_time_s, double iso, ToneCurve curve) const {
-        const double lux_s = static_cast<double>(exposure(channel, exposure_time_s));
+    REALCAM_HD std::uint8_t code(int channel, double exposure_time_s, double iso, ToneCurve curve,
+                                 double ghosts = 0) const {
+        const double lux_s = static_cast<double>(exposure(channel, exposure_time_s, ghosts));
         return srgb_code(apply_tone_curve(curve, sensor_value(lux_s, iso)));
     }
     /// Of the exposure, as the mean of samples that know nothing of each other, (lux seconds)^2; NaN of fewer than two.

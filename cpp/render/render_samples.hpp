@@ -18,8 +18,8 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
         ++bounce;
     if constexpr (effects.dispersion)
         for (int i = 0; i < N; ++i)
-            results.irradiance.set(i,
-                                   film_color(camera.dispersion, path.place[i], path.shares[i], results.irradiance[i]));
+            results.irradiance.set(
+                i, film_color<effects.coatings>(camera.dispersion, path.wavelengths, i, results.irradiance[i]));
 }
 
 }  // namespace REALCAM_NAMESPACE

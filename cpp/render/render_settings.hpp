@@ -27,6 +27,10 @@ struct RenderSettings {
     std::optional<Illuminant> dispersed_light() const {
         return effects.dispersion ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
     }
+    LensEffects lens_effects() const {
+        return {dispersed_light(), effects.coatings,
+                effects.ghosts ? std::optional(effects.ghost_share) : std::nullopt};
+    }
     PathSettings path() const { return {max_bounces, transport, clamp}; }
 };
 
@@ -49,8 +53,13 @@ inline void validate(const RenderSettings& settings) {
 
 /// Throws InputError where the camera cannot have an effect of the settings.
 inline void validate_effects(const RenderSettings& settings, const Camera& camera) {
-    if (settings.effects.dispersion && camera.model != CameraModel::full_lens)
-        throw InputError("dispersion: the camera's model is an ideal lens; the model full is wanted");
+    if (camera.model == CameraModel::full_lens) return;
+    const EffectChoice& effects = settings.effects;
+    if (effects.dispersion || effects.coatings || effects.ghosts)
+        throw InputError(std::string(effects.dispersion ? "dispersion"
+                                     : effects.coatings ? "coatings"
+                                                        : "ghosts") +
+                         ": the camera's model is an ideal lens; the model full is wanted");
 }
 
 }  // namespace REALCAM_NAMESPACE

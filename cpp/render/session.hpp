@@ -285,7 +285,9 @@ private:
 
     void make_ready(const Assembly& wanted_scene, const Camera& wanted_camera, const RenderSettings& settings,
                     const KeepGoing& keep_going) {
-        const auto [scene, camera] = without_left_out_motion(wanted_scene, wanted_camera, settings.effects);
+        const auto changed = without_left_out_motion(wanted_scene, wanted_camera, settings.effects);
+        const Assembly& scene = changed ? changed->scene : wanted_scene;
+        const Camera& camera = changed ? changed->camera : wanted_camera;
         if (!ready_ || !is_same_picture(scene, camera, settings)) {
             ready_ = false;  // whatever fails from here on, the next call begins anew
             give_up_samples();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "../checkpoint.hpp"
+#include "../math/append_cdf.hpp"
 #include "scene.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -12,25 +13,6 @@ namespace REALCAM_NAMESPACE {
 // because a light that is 1e8 times dimmer than another is all the light there is where the other does not reach.
 
 inline constexpr double kEvenShare = 0.125;  ///< its price: where power is the best choice, 1/7 more variance
-
-/// Appends weights as count + 1 cumulative probabilities in steps of 2^-24 (see math/cdf.hpp). Whatever has weight
-/// keeps at least one step, as long as there are enough. All alike where there is no weight at all.
-inline void append_cdf(const std::vector<double>& weights, std::vector<float>& cdf) {
-    constexpr double kSteps = 1 << 24;
-    double total = 0, count = 0;
-    for (double w : weights) {
-        total += w;
-        count += w > 0;
-    }
-    const double kept = count <= kSteps ? count : 0;
-    double sum = 0, before = 0;
-    cdf.push_back(0.0f);
-    for (double w : weights) {
-        sum += total > 0 ? w / total : 1.0 / static_cast<double>(weights.size());
-        before += kept > 0 && w > 0;
-        cdf.push_back(static_cast<float>((std::round(std::min(sum, 1.0) * (kSteps - kept)) + before) / kSteps));
-    }
-}
 
 /// `weights` by their sum, less kEvenShare; that share by `even_weights`, which are 0 where `weights` are.
 inline std::vector<double> mixed(std::vector<double> weights, const std::vector<double>& even_weights) {

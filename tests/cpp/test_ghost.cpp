@@ -27,7 +27,7 @@ TEST_CASE("ghosts of a lens and a plate as published") {
     double worst = 0;
     for (const Printed& p :
          {Printed{2, 1, 15.4447, -40.3803}, Printed{3, 1, 138.1157, -64.5371}, Printed{4, 3, 97.5804, 43.9402}}) {
-        const GhostPath ghost = ghost_path(lens, kLineD_nm, p.first, p.second);
+        const GhostPath ghost = ghost_path(lens, kLineD_nm, {p.first, p.second});
         worst = std::max({worst, std::fabs(ghost.effective_focal_length - p.focal_length),
                           std::fabs(ghost.back_focal_distance - p.back_focal_distance)});
     }
@@ -42,7 +42,7 @@ TEST_CASE("a plate's own ghost lies two reduced thicknesses before the image") {
                 {stop_plane(0, 5), refracting(100, 5, Glass::constant(1.6), 20), refracting(-100, 50, Glass::air(), 20),
                  refracting(0, d, Glass::constant(n), 20), refracting(0, 0, Glass::air(), 20)});
             const FirstOrder data = first_order(lens, kLineD_nm);
-            const GhostPath ghost = ghost_path(lens, kLineD_nm, 4, 3);
+            const GhostPath ghost = ghost_path(lens, kLineD_nm, {4, 3});
             CHECK(ghost.effective_focal_length == about(data.effective_focal_length, 1e-12));
             CHECK(ghost.back_focal_distance == about(data.back_focal_distance - 2 * d / n, 1e-12));
         }
@@ -84,7 +84,7 @@ TEST_CASE("a ghost is the image of a lens whose reflecting surfaces are mirrors"
             CAPTURE(first);
             CAPTURE(second);
             const FirstOrder data = first_order(unfolded, kLineD_nm);
-            const GhostPath ghost = ghost_path(lens, kLineD_nm, first, second);
+            const GhostPath ghost = ghost_path(lens, kLineD_nm, {first, second});
             CHECK(ghost.effective_focal_length == about(data.effective_focal_length, 1e-11));
             CHECK(ghost.back_focal_distance == about(data.back_focal_distance, 1e-11));
         }
@@ -92,9 +92,9 @@ TEST_CASE("a ghost is the image of a lens whose reflecting surfaces are mirrors"
 
 TEST_CASE("what makes no ghost is refused") {
     const LensSystem lens = io::read_lens("double-gauss-50mm");
-    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, 1, 2), InputError);
-    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, 2, 2), InputError);
-    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, 2, -1), InputError);
-    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, 11, 0), InputError);
-    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, 5, 0), InputError);  // the stop
+    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, {1, 2}), InputError);
+    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, {2, 2}), InputError);
+    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, {2, -1}), InputError);
+    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, {11, 0}), InputError);
+    CHECK_THROWS_AS(ghost_path(lens, kLineD_nm, {5, 0}), InputError);  // the stop
 }

@@ -230,7 +230,13 @@ def test_noise_where_colours_stay_in_a_pixel() -> None:
 
 
 def test_effects_are_listed() -> None:
-    assert [line.split(":")[0] for line in rc.effects()] == ["dispersion", "motion_blur", "rolling_shutter"]
+    assert [line.split(":")[0] for line in rc.effects()] == [
+        "dispersion",
+        "coatings",
+        "ghosts",
+        "motion_blur",
+        "rolling_shutter",
+    ]
 
 
 def test_what_the_lens_cannot_give_is_said() -> None:
@@ -251,8 +257,10 @@ def test_what_makes_no_picture_is_an_error() -> None:
     def taken(camera: rc.Camera = camera, **settings: object) -> None:
         rc.render(scenes.sky(), camera, spp=1, **settings)  # type: ignore[arg-type]
 
-    with pytest.raises(rc.InputError, match='unknown effect "ghosts"; some of dispersion, -motion_blur'):
-        taken(effects=["ghosts"])
+    with pytest.raises(
+        rc.InputError, match='unknown effect "glare"; some of dispersion, coatings, ghosts, -motion_blur'
+    ):
+        taken(effects=["glare"])
     with pytest.raises(rc.InputError, match="illuminant belongs to the effect dispersion"):
         taken(illuminant="A")
     with pytest.raises(

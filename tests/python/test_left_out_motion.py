@@ -98,7 +98,10 @@ def test_what_is_left_out_is_told() -> None:
 @pytest.mark.parametrize(
     ("effects", "wanted"),
     [
-        (["motion"], 'unknown effect "motion"; some of dispersion, -motion_blur, -rolling_shutter are wanted'),
+        (
+            ["motion"],
+            'unknown effect "motion"; some of dispersion, coatings, ghosts, -motion_blur, -rolling_shutter are wanted',
+        ),
         (["--motion_blur"], 'unknown effect "--motion_blur"'),
         (["dispersion", "-dispersion"], "dispersion is both named and left out"),
     ],

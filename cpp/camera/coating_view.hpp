@@ -1,0 +1,13 @@
+#pragma once
+#include "../optics/coating_polynomials.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What the lens's surfaces pass on, in the order in which light meets them. Of a picture with coatings, either at its
+/// one wavelength, on the way to the scene, or of a spectrum, on both ways; the others are null.
+struct CoatingView {
+    const CoatingPolynomials<kOneWavelengthTerms>* one_wavelength;
+    const CoatingPolynomials<kSpectrumTerms>*to_scene, *to_film;
+};
+
+}  // namespace REALCAM_NAMESPACE

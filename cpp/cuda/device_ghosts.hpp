@@ -1,0 +1,78 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "../render/sample_range.hpp"
+#include "cuda_stream.hpp"
+#include "device_array.hpp"
+#include "device_arrays.hpp"
+#include "device_scene.hpp"
+#include "ghost_kernels.hpp"
+
+namespace realcam {
+
+/// The ghosts of one GPU's picture. All functions throw DeviceError.
+class DeviceGhosts {
+public:
+    /// The host's copy may go afterwards. Null: the picture has none.
+    void set(const GhostView* ghosts, double units_per_lux, CudaStream& stream) {
+        arrays_.restart();
+        view_ = {};
+        units_per_lux_ = units_per_lux;
+        if (ghosts)
+            view_ = with_copied_arrays(
+                *ghosts, [&](const auto* from, std::size_t count) { return arrays_.copy(from, count, stream); });
+    }
+
+    /// An empty film of so many pixels.
+    void clear(std::int64_t pixels, CudaStream& stream) {
+        sums_.resize(view_.way_count > 0 ? static_cast<std::size_t>(pixels) : 0);
+        blocks_done_.resize(1);
+        sums_.clear(stream);
+        blocks_done_.clear(stream);
+    }
+
+    /// Starts to take the samples that belong to so many of each pixel.
+    void add(const DeviceScene& scene, const CameraView& camera, const volatile int* stop, const SampleRange& range,
+             CudaStream& stream) {
+        if (sums_.size() == 0) return;
+        const std::uint64_t per_sample = ghost_blocks_per_sample(camera.width, camera.height);
+        constexpr std::uint64_t kLaunch = 1 << 14;
+        const std::uint64_t end = (std::uint64_t{range.first} + range.count) * per_sample;
+        for (std::uint64_t block = range.first * per_sample; block < end; block += kLaunch)
+            launch_splat_ghosts(
+                {scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), blocks_done_.data(), block,
+                 static_cast<std::uint32_t>(std::min(kLaunch, end - block)), range.seed, units_per_lux_},
+                stream);
+    }
+
+    GhostFilmView seen() const {
+        if (sums_.size() == 0) return {};
+        return {sums_.data(), units_per_lux_, blocks_done_.data()};
+    }
+
+    /// Copies all to the host, and waits for it.
+    struct OnHost {
+        std::vector<GhostSum> sums;
+        unsigned long long blocks = 0;
+        double units_per_lux = 1;
+
+        GhostFilmView view() const { return {sums.empty() ? nullptr : sums.data(), units_per_lux, &blocks}; }
+    };
+    OnHost download(const CudaStream& stream) const {
+        OnHost here{std::vector<GhostSum>(sums_.size()), 0, units_per_lux_};
+        sums_.download(here.sums.data(), stream);
+        blocks_done_.download(&here.blocks, stream);
+        stream.wait("copying ghosts from it");
+        return here;
+    }
+
+private:
+    DeviceArrays arrays_;
+    GhostView view_{};
+    double units_per_lux_ = 1;
+    DeviceArray<GhostSum> sums_;
+    DeviceArray<unsigned long long> blocks_done_;
+};
+
+}  // namespace realcam

@@ -1,0 +1,27 @@
+#pragma once
+#include <cuda_runtime.h>
+
+#include "../bvh/wide_bvh.hpp"
+#include "../camera/camera_view.hpp"
+#include "../render/ghost_film.hpp"
+
+namespace realcam {
+
+/// One launch: some blocks of ghost samples. All pointers are the device's.
+struct GhostJob {
+    SceneView scene;
+    SceneBvhView bvh;
+    CameraView camera;
+    GhostView ghosts;
+    const volatile int* stop;  ///< not 0: no block is begun
+    GhostSum* sums;            ///< of all pixels; added to
+    unsigned long long* blocks_done;
+    std::uint64_t first_block;
+    std::uint32_t block_count, seed;
+    double units_per_lux;
+};
+
+/// Throws DeviceError.
+void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream);
+
+}  // namespace realcam

@@ -1,7 +1,0 @@
-#include "render_kernel_template.hpp"
-
-namespace realcam {
-
-template RenderKernel render_kernel_of<LensKind::plain, SceneKind::plain, number_of(kDispersion)>(bool, bool);
-
-}  // namespace realcam

@@ -1,0 +1,14 @@
+#pragma once
+#include "../render/effects.hpp"
+#include "render_kernel.hpp"
+
+namespace realcam {
+
+using RenderKernel = void (*)(RenderJob, int);
+
+/// The kernel for a kind of lens and of scene, and a set of effects by its number. `instanced`: whether there is
+/// anything but static geometry; `timed`: whether it counts clocks.
+template <LensKind lens_kind, SceneKind scene_kind, int effects>
+RenderKernel render_kernel_of(bool instanced, bool timed);
+
+}  // namespace realcam

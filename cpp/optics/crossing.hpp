@@ -1,0 +1,78 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "lens_system.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A meeting of light with a surface.
+struct Crossing {
+    int surface;        ///< from 0 at the front
+    bool in_order;      ///< the light comes from the medium in front of the surface, in the lens's order
+    bool is_reflected;  ///< by a surface that otherwise lets light pass: a ghost's
+
+    // Indices of refraction; `indices`: those of LensSystem::indices.
+    /// Of the medium from which the light comes.
+    double index_before(const std::vector<double>& indices) const { return index(indices, in_order); }
+    /// Of the one on the other side of the surface.
+    double index_beyond(const std::vector<double>& indices) const { return index(indices, !in_order); }
+    /// Of the one into which the light goes.
+    double index_behind(const std::vector<double>& indices) const {
+        return is_reflected ? index_before(indices) : index_beyond(indices);
+    }
+
+private:
+    double index(const std::vector<double>& indices, bool in_front) const {
+        return indices[static_cast<std::size_t>(in_front ? surface : surface + 1)];
+    }
+};
+
+/// Two refracting surfaces, from 0 at the front, that reflect light on its way to the film: first the one nearer to the
+/// film.
+struct GhostPair {
+    int first, second;
+
+    bool operator==(const GhostPair&) const = default;
+};
+
+/// Of light on its way to the film, which every surface lets pass or sends on as a mirror.
+inline std::vector<Crossing> crossings_of(const LensSystem& lens) {
+    std::vector<Crossing> crossings;
+    for (int i = 0; i < static_cast<int>(lens.surfaces.size()); ++i) crossings.push_back({i, true, false});
+    return crossings;
+}
+
+/// Of light on its way to the film that the two reflect.
+inline std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair) {
+    std::vector<Crossing> crossings;
+    for (int i = 0; i < pair.first; ++i) crossings.push_back({i, true, false});
+    crossings.push_back({pair.first, true, true});
+    for (int i = pair.first - 1; i > pair.second; --i) crossings.push_back({i, false, false});
+    crossings.push_back({pair.second, false, true});
+    for (int i = pair.second + 1; i < static_cast<int>(lens.surfaces.size()); ++i)
+        crossings.push_back({i, true, false});
+    return crossings;
+}
+
+/// Of light that goes the same way back.
+inline std::vector<Crossing> reversed(std::vector<Crossing> way) {
+    std::reverse(way.begin(), way.end());
+    for (Crossing& crossing : way)
+        if (!crossing.is_reflected) crossing.in_order = !crossing.in_order;
+    return way;
+}
+
+/// All pairs of refracting surfaces.
+inline std::vector<GhostPair> ghost_pairs(const LensSystem& lens) {
+    std::vector<GhostPair> pairs;
+    const auto refracts = [&](int i) {
+        return lens.surfaces[static_cast<std::size_t>(i)].type == SurfaceType::refracting;
+    };
+    for (int first = 1; first < static_cast<int>(lens.surfaces.size()); ++first)
+        for (int second = 0; second < first; ++second)
+            if (refracts(first) && refracts(second)) pairs.push_back({first, second});
+    return pairs;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+
+#include "../math/color.hpp"
+#include "splat_ghosts.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Ghosts on one pixel: irradiance in fixed point, because sums of integers are the same whatever their order.
+struct GhostSum {
+    std::int64_t units[3];
+};
+
+/// The unit is one 2^36th of the irradiance that all light would bring to a pixel which passed through the whole front
+/// of the lens to it alone: ghosts are 1e4 to 1e8 times dimmer.
+inline double ghost_units_per_lux(const SceneView& scene, const CameraView& camera, const GhostView& ghosts) {
+    const LightReceiver middle{camera.position - camera.front_vertex_m * camera.backward, {0, 0, 0}};
+    double light = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
+    if (scene.light_node_count > 0) light += static_cast<double>(light_importance(scene.light_nodes[0], middle));
+    for (int i = 0; i < scene.sun_count; ++i) light += static_cast<double>(luminance(scene.suns[i].illuminance));
+    const double pixel_mm2 = 4.0 * static_cast<double>(camera.film_half_width) *
+                             static_cast<double>(camera.film_half_height) / camera.width / camera.height;
+    const double side_mm = 2 * static_cast<double>(ghosts.reach), most = light * side_mm * side_mm / pixel_mm2;
+    return most > 1e-30 ? 0x1p36 / most : 0x1p36;
+}
+
+/// `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
+REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float dither) {
+    constexpr double kMost = 0x1p52;
+    const double units = static_cast<double>(lux) * units_per_lux + static_cast<double>(dither);
+    return static_cast<std::int64_t>(units < kMost ? std::floor(units) : kMost);
+}
+
+/// The ghosts of a picture, to be added to what its samples saw.
+struct GhostFilmView {
+    const GhostSum* sums = nullptr;  ///< of all pixels; null: there are none
+    double units_per_lux = 1;
+    const unsigned long long* blocks = nullptr;  ///< of kGhostBlock samples of the whole film, that are in the sums
+
+    REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
+        if (!sums || *blocks == 0) return 0;
+        const double samples = static_cast<double>(*blocks) * kGhostBlock;
+        return static_cast<double>(sums[pixel].units[channel]) / (units_per_lux * samples);
+    }
+};
+
+/// One sample of ghosts for each sample of a pixel: neighbours share them, because ghosts have no fine detail.
+inline std::uint64_t ghost_blocks_per_sample(int width, int height) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    return (pixels + kGhostBlock - 1) / kGhostBlock;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,185 @@
+"""Ghosts in pictures: where first order puts them, as much light as an independent sum, and none where none can be."""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from ..measurement import Measurement, hold
+from . import scenes
+
+FILM = rc.Film(24, 24, (96, 96))
+
+
+def far_lamp(tangent_x: float, tangent_y: float, distance_m: float = 1e4) -> rc.Scene:
+    """A small lamp of 1 lux at the camera, at these tangents to the axis; nothing else."""
+    behind = np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]])
+    place = (tangent_x * distance_m, tangent_y * distance_m, -distance_m)
+    lux = float(np.dot(place, place))
+    return rc.Scene.from_arrays(behind, [[0, 1, 2]]).with_point_light(place, (lux, lux, lux))
+
+
+def ghosts(
+    scene: rc.Scene, camera: rc.Camera, spp: int = 64, device: str = "cpu", effect: str = "ghosts=0", **settings: object
+) -> np.ndarray:
+    """(H, W, 3): what ghosts bring to the film. A point light is seen by no other sample."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        effects = {effect} | set(settings.pop("effects", ()))  # type: ignore[call-overload]
+        image = rc.render(scene, camera, spp=spp, effects=effects, device=device, **settings)  # type: ignore[arg-type]
+    return image.pixels.astype(np.float64)
+
+
+def lit_without_ghosts(scene: rc.Scene, camera: rc.Camera, **settings: object) -> np.ndarray:
+    return rc.render(scene, camera, device="cpu", **settings).pixels.astype(np.float64)  # type: ignore[arg-type]
+
+
+def singlet(stop_mm: float) -> rc.Lens:
+    """Two bare surfaces have one ghost; the stop is in front. Film in the focus."""
+    surfaces = [
+        rc.Stop(clear_semi_diameter_mm=stop_mm, thickness_mm=0),
+        rc.Surface(radius_of_curvature_mm=60, thickness_mm=6, material=1.6, clear_semi_diameter_mm=15),
+        rc.Surface(radius_of_curvature_mm=-80, clear_semi_diameter_mm=15),
+    ]
+    lens = rc.Lens(surfaces=surfaces, film_distance_mm=40.0)
+    return rc.Lens(surfaces=surfaces, film_distance_mm=lens.first_order().back_focal_distance_mm).with_coating("bare")
+
+
+def paraxial_film_height(lens: rc.Lens, height: float, slope: float) -> float:
+    """Of a ray that the singlet's back and front reflect: n'u' = nu - yc(n' - n), the index negative on the way back."""
+    n = 1.6
+    front, back = (surface.curvature_per_mm for surface in lens.surfaces[1:])
+    way = [(front, 1, n, 6.0), (back, n, -n, -6.0), (front, -n, n, 6.0), (back, n, 1, lens.film_distance_mm)]
+    y, u = height, slope
+    for curvature, before, behind, distance in way:
+        u = (before * u - y * curvature * (behind - before)) / behind
+        y += distance * u
+    return y
+
+
+def test_ghost_of_a_singlet_is_where_first_order_puts_it() -> None:
+    lens, tangent, side = singlet(stop_mm=0.5), 0.05, 480
+    film = rc.Film(12, 12, (side, side))
+    scene, camera = far_lamp(tangent, 0.0), rc.Camera(lens, film=film, exposure_time_s=1)
+    light = ghosts(scene, camera, spp=16).mean(axis=2)
+    along = (np.arange(side) + 0.5) * 12 / side - 6
+    total = light.sum()
+    middle = float((light * along[None, :]).sum() / total)
+    # The picture is turned, so that +x of the scene is to its right.
+    place = -paraxial_film_height(lens, 0.0, -tangent)
+    growth = abs(paraxial_film_height(lens, 1.0, 0.0))
+    # A disc whose squared distance from the middle has the mean r^2 / 2, and half of that along one axis.
+    spread = float(np.sqrt(((along[None, :] - middle) ** 2 * light).sum() / total))
+    radius = 2 * spread
+    # Third order: (0.05)^2 of the height, and of the disc.
+    hold(Measurement("Effects", "place of a singlet's ghost", "first order, at 3 degrees", "cpu", "float32",
+                     abs(middle - place), 0.005 * abs(place) + 0.005, "mm"))  # fmt: skip
+    hold(Measurement("Effects", "radius of a singlet's ghost", "first order", "cpu", "float32",
+                     abs(radius - growth * 0.5), 0.01 * growth * 0.5, "mm"))  # fmt: skip
+    reflected = (0.6 / 2.6) ** 2
+    flux = np.pi * 0.25 / np.sqrt(1 + tangent**2) * (1 - reflected) ** 2 * reflected**2  # lux mm^2
+    assert total * (12 / side) ** 2 == pytest.approx(flux, rel=0.01)
+
+
+class SequentialTrace:
+    """Rays of light through bare spheres in the order that a ghost meets them, by the textbook: vectors, Snell, and
+    Fresnel's formulas for s and p. It shares no code with realcam."""
+
+    def __init__(self, lens: rc.Lens) -> None:
+        self.lens = lens
+        self.z = np.asarray(lens.vertices_mm)
+        self.c = np.array([surface.curvature_per_mm for surface in lens.surfaces])
+        self.rim = np.array([surface.clear_semi_diameter_mm for surface in lens.surfaces])
+        self.n = [1.0]
+        for i, surface in enumerate(lens.surfaces):
+            refracts = surface.type == "refracting"
+            self.n.append(surface.material.index(lens.wavelength_nm) if refracts else self.n[-1])
+            if not refracts:
+                self.rim[i] = lens.stop_semi_diameter_mm
+        self.refracting = [i for i, surface in enumerate(lens.surfaces) if surface.type == "refracting"]
+
+    def way(self, first: int, second: int) -> list[tuple[int, int, bool]]:
+        """(surface, direction along z, whether it is reflected)."""
+        there = [(i, 1, i == first) for i in range(first + 1)]
+        back = [(i, -1, i == second) for i in range(first - 1, second - 1, -1)]
+        return there + back + [(i, 1, False) for i in range(second + 1, len(self.c))]
+
+    def to_film(
+        self, origin: np.ndarray, direction: np.ndarray, way: list[tuple[int, int, bool]]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Places on the film and shares of the power; 0 where a ray is lost."""
+        o, d = origin.copy(), direction.copy()
+        s = p = np.ones(len(o))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            for surface, sign, reflected in way:
+                c, centre = self.c[surface], self.z[surface]
+                # |o + t d - C|^2 = R^2 in curvatures: A t^2 - 2 G t + F = 0.
+                local = o - [0, 0, centre]
+                F = c * (local**2).sum(1) - 2 * local[:, 2]
+                G = d[:, 2] - c * (local * d).sum(1)
+                root = np.sqrt(G * G - c * F)
+                t = F / (G + sign * root)
+                o = o + t[:, None] * d
+                local = o - [0, 0, centre]
+                normal = sign * np.stack([-c * local[:, 0], -c * local[:, 1], 1 - c * local[:, 2]], axis=1)
+                inside = np.hypot(local[:, 0], local[:, 1]) <= self.rim[surface]
+                before, behind = (self.n[surface], self.n[surface + 1])[::sign]
+                cos1 = (d * normal).sum(1)
+                ratio = before / behind
+                squared = 1 - ratio**2 * (1 - cos1**2)
+                cos2 = np.sqrt(np.maximum(squared, 0))
+                rs = ((before * cos1 - behind * cos2) / (before * cos1 + behind * cos2)) ** 2
+                rp = ((behind * cos1 - before * cos2) / (behind * cos1 + before * cos2)) ** 2
+                if reflected:
+                    d = d - 2 * cos1[:, None] * normal
+                    s, p = s * rs * inside, p * rp * inside
+                else:
+                    d = ratio * d + (cos2 - ratio * cos1)[:, None] * normal
+                    passes = inside & (squared > 0)
+                    s, p = s * (1 - rs) * passes, p * (1 - rp) * passes
+            place = o + ((self.lens.film_position_mm - o[:, 2]) / d[:, 2])[:, None] * d
+        return place[:, :2], np.nan_to_num((s + p) / 2)
+
+    def flux(self, pair: tuple[int, int], tangent: float, film_mm: float, grid: int) -> float:
+        """lux mm^2 on a square film of a lamp of 1 lux at this tangent."""
+        d = np.array([-tangent, 0.0, 1.0]) / np.sqrt(1 + tangent**2)
+        reach = self.rim[0] * 1.3
+        edge = (np.arange(grid) + 0.5) / grid * 2 * reach - reach
+        x, y = (a.ravel() for a in np.meshgrid(edge, edge))
+        start = np.stack([x, y, np.zeros(grid * grid)], axis=1) - 30 * d
+        place, share = self.to_film(start, np.broadcast_to(d, start.shape), self.way(*pair))
+        inside = (np.abs(place) <= film_mm / 2).all(axis=1)
+        return float(np.where(inside, share, 0).sum() * (2 * reach / grid) ** 2 * d[2])
+
+
+@pytest.mark.parametrize("degrees", [0.0, 12.0, 30.0])
+def test_all_pairs_of_a_double_gauss_bring_as_much_light_as_an_independent_sum(degrees: float) -> None:
+    lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)
+    tangent = float(np.tan(np.radians(degrees)))
+    trace = SequentialTrace(lens)
+    pairs = [(b, a) for a, b in itertools.combinations(trace.refracting, 2)]
+    assert len(pairs) == 45
+    expected = sum(trace.flux(pair, tangent, 24, 192) for pair in pairs)
+    camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
+    total = ghosts(far_lamp(tangent, 0.0), camera, spp=256).mean(axis=2).sum() * (24 / 96) ** 2
+    hold(Measurement("Effects", "light that all 45 ghosts of a double Gauss bring to the film",
+                     f"a far lamp at {degrees:g} degrees, against a sum over rays in double", "cpu", "float32",
+                     abs(total / expected - 1), 0.01, ""))  # fmt: skip
+
+
+def test_a_lamp_behind_an_object_makes_no_ghost() -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
+    camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
+    place = (1000.0, 500.0, -10000.0)
+    lamp = (1e8, 1e8, 1e8)
+    seen = scenes.scene_of(scenes.quad((-0.5, 0.25, -5), 0.4)).with_point_light(place, lamp)
+    hidden = scenes.scene_of(scenes.quad((0.5, 0.25, -5), 0.4)).with_point_light(place, lamp)
+    without = {"spp": 4, "max_bounces": 0}
+    bright = ghosts(seen, camera, **without) - lit_without_ghosts(seen, camera, **without)
+    dark = ghosts(hidden, camera, **without) - lit_without_ghosts(hidden, camera, **without)
+    assert bright.sum() > 0
+    assert (dark == 0).all()
