@@ -2,7 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include "../optics/ghost.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
@@ -101,16 +100,6 @@ SeidelTable make_seidel(const LensSystem& lens, double field_deg, std::optional<
 
 void bind_seidel(py::module_& m) {
     bind_seidel_table(m);
-    py::class_<GhostPath> ghost(m, "Ghost",
-                                "First-order data of light that two surfaces reflect on its way to the film.");
-    def_hashable_value(ghost);
-    ghost.def_readonly("effective_focal_length_mm", &GhostPath::effective_focal_length)
-        .def_readonly("back_focal_distance_mm", &GhostPath::back_focal_distance,
-                      "Last vertex to where the ghost of a point at infinity is sharp; negative in front of it.")
-        .def("__repr__", [](const GhostPath& g) {
-            return "<realcam.Ghost focal length " + digits(g.effective_focal_length) + " mm, back focal distance " +
-                   digits(g.back_focal_distance) + " mm>";
-        });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("seidel", &make_seidel, "field_deg"_a, py::kw_only(), "object_distance_m"_a = py::none(),
              "wavelength_nm"_a = py::none(), "colours_nm"_a = std::pair(kLineF_nm, kLineC_nm),
@@ -119,18 +108,7 @@ void bind_seidel(py::module_& m) {
              "field_deg: angle of the paraxial chief ray to the axis; positive: it rises towards +y and the film.\n"
              "object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.\n"
              "colours_nm: the short and the long wavelength.\n"
-             "Returns a Seidel. Raises InputError for angles of 90 deg and more, and for an afocal lens.")
-        .def(
-            "ghost",
-            [](const LensSystem& lens, int first, int second, std::optional<double> nm) {
-                return ghost_path(lens, wavelength_or_design(lens, nm), {first, second});
-            },
-            "first"_a, "second"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
-            "The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward "
-            "again.\nSurfaces are numbered from 0, as in Lens.surfaces. Paraxial (R. H. Abd El-Maksoud and J. M. "
-            "Sasian, "
-            "Proc. SPIE 7428,\n742807, 2009). Raises InputError where the two are not refracting surfaces in that "
-            "order.");
+             "Returns a Seidel. Raises InputError for angles of 90 deg and more, and for an afocal lens.");
 }
 
 }  // namespace realcam::bindings

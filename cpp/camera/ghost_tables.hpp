@@ -17,86 +17,99 @@ namespace REALCAM_NAMESPACE {
 
 namespace ghost_tables_detail {
 
-/// The largest angle between light and axis that is looked at.
-inline constexpr double kLargestAngle = 125 * std::numbers::pi / 180;
-
-/// Where, on a grid across the light, rays of one direction reach the film.
-struct EntryGrid {
-    static constexpr int kCells = 24;  ///< on each side of the axis
-
-    GhostEntry box{0, 0, 0};
-    int hits = 0;
-
-    void include(Vec2f at, float cell) {
-        if (hits++ == 0) box = {at.x - cell, at.x + cell, at.y + cell};
-        box.low = std::min(box.low, at.x - cell);
-        box.high = std::max(box.high, at.x + cell);
-        box.half_width = std::max(box.half_width, at.y + cell);
-    }
+/// A ray from the film that has left the lens by some way.
+struct FoundRay {
+    float half_tangent;   ///< of its angle to the axis
+    float along,
+        across;  ///< place in the plane across it, through the front vertex: away from the axis, and beside, mm
+    float etendue;        ///< mm^2 sr
 };
 
-inline GhostEntry united(const GhostEntry& a, const GhostEntry& b) {
-    if (a.half_width == 0) return b;
-    if (b.half_width == 0) return a;
-    return {std::min(a.low, b.low), std::max(a.high, b.high), std::max(a.half_width, b.half_width)};
-}
-
-/// What the search for entries needs of lens and film.
+/// Looks for where light has to enter: by rays back from the film, because there their bundles are wide, while those of
+/// a fisheye are a hundredth of its front. Lens and circle of film are round, so that one radius of the film is enough.
 struct EntrySearch {
-    float reach;  ///< GhostView::reach
-    float film_distance, film_radius;
+    static constexpr int kRadii = 64, kColumns = 24, kRows = kColumns / 2;
+
+    double film_radius, film_distance;  ///< mm
+    double rear_reach;  ///< radius of a circle in the last vertex plane through which all light goes to the film
     const PupilTracer& tracer;
 
-    /// Rays at this angle to the axis. Lens and circle of film are round, so that half of the grid is enough.
-    EntryGrid at(const LensView<float>& way, double angle) const {
-        constexpr int kColumns = 2 * EntryGrid::kCells, kCount = kColumns * EntryGrid::kCells;
-        const float sine = static_cast<float>(std::sin(angle)), cosine = static_cast<float>(std::cos(angle));
-        const float cell = reach / EntryGrid::kCells;
-        EntryGrid grid;
-        const auto place = [&](int i) {
-            return Vec2f{(static_cast<float>(i % kColumns) + 0.5f) * cell - reach,
-                         (static_cast<float>(i / kColumns) + 0.5f) * cell};
-        };
+    std::vector<FoundRay> along(const LensView<float>& way_back) const {
+        constexpr int kCount = kRadii * kColumns * kRows;
+        std::vector<FoundRay> found;
         for (int first = 0; first < kCount; first += PupilTracer::kBlock) {
             PupilTracer::Rays rays;
-            for (int k = 0; k < PupilTracer::kBlock; ++k) {
-                const Vec2f at = place(std::min(first + k, kCount - 1));
-                rays.origin.set(k, {at.x * cosine, at.y, at.x * sine});
-                rays.direction.set(k, {-sine, 0, cosine});
-                rays.status[k] = 0;
-            }
-            tracer.trace(way, rays);
-            for (int k = 0; k < PupilTracer::kBlock && first + k < kCount; ++k)
-                if (rays.status[k] == 0 && is_on_film(rays.origin[k], rays.direction[k]))
-                    grid.include(place(first + k), cell);
+            float etendue[PupilTracer::kBlock];
+            for (int k = 0; k < PupilTracer::kBlock; ++k) start(first + k, k, rays, etendue[k]);
+            tracer.trace(way_back, rays);
+            for (int k = 0; k < PupilTracer::kBlock; ++k)
+                if (rays.status[k] == 0)
+                    found.push_back(found_ray(rays.origin[k], normalized(rays.direction[k]), etendue[k]));
         }
-        return grid;
+        return found;
     }
 
 private:
-    bool is_on_film(Vec3f o, Vec3f d) const {
-        const float t = (film_distance - o.z) / d.z, x = o.x + t * d.x, y = o.y + t * d.y;
-        return x * x + y * y <= film_radius * film_radius;
+    static_assert(kRadii * kColumns * kRows % PupilTracer::kBlock == 0);
+
+    /// From the middle of each ring of film in evenly spaced direction cosines to the circle behind the lens.
+    void start(int number, int lane, PupilTracer::Rays& rays, float& etendue) const {
+        const int radius = number / (kColumns * kRows), square = number % (kColumns * kRows);
+        const double ring = film_radius / kRadii, r = (radius + 0.5) * ring;
+        const auto cosine_to = [&](double away) { return away / std::hypot(away, film_distance); };
+        const double low = cosine_to(-rear_reach - r), high = cosine_to(rear_reach - r), most = cosine_to(rear_reach);
+        const double column = (high - low) / kColumns, row = most / kRows;
+        const double x = low + (square % kColumns + 0.5) * column, y = (square / kColumns + 0.5) * row;
+        const double z2 = 1 - x * x - y * y;
+        rays.origin.set(lane, static_cast<Vec3f>(Vec3d{r, 0, film_distance}));
+        rays.direction.set(lane, static_cast<Vec3f>(Vec3d{x, y, -std::sqrt(std::max(z2, 0.0))}));
+        rays.status[lane] = z2 > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        // Twice, for the other half of the circle.
+        etendue = static_cast<float>(2 * 2 * std::numbers::pi * r * ring * column * row);
+    }
+
+    static FoundRay found_ray(Vec3f o, Vec3f d, float etendue) {
+        const float sine = std::sqrt(d.x * d.x + d.y * d.y);
+        const Vec2f away = sine > 0 ? Vec2f{d.x / sine, d.y / sine} : Vec2f{1, 0};
+        const float along = dot(o, Vec3f{-d.z * away.x, -d.z * away.y, sine});
+        return {sine / (1 - d.z), along, -away.y * o.x + away.x * o.y, etendue};
     }
 };
 
-/// What a way's ghosts bring to the film, and where the light enters.
-struct Entries {
-    std::array<GhostEntry, kGhostAngles> boxes;
-    double flux;  ///< mean area through which light enters, over all directions of a half-space, mm^2
-};
-
-inline Entries entries_of(const EntrySearch& search, const LensView<float>& way, double largest_angle) {
-    Entries entries{};
-    const double step = largest_angle / kGhostAngles, cell = static_cast<double>(search.reach) / EntryGrid::kCells;
-    EntryGrid last = search.at(way, 0);
+/// Where light enters whose rays were found, in even steps up to the largest half tangent. A margin of a sixteenth on
+/// each side, and the neighbours' rectangles, for what lies between the rays.
+inline std::array<GhostEntry, kGhostAngles> entries_of(const std::vector<FoundRay>& rays, float largest_half_tangent) {
+    std::array<GhostEntry, kGhostAngles> own{}, entries{};
+    for (const FoundRay& ray : rays) {
+        const int bin = static_cast<int>(ray.half_tangent / largest_half_tangent * static_cast<float>(kGhostAngles));
+        GhostEntry& entry = own[static_cast<std::size_t>(std::clamp(bin, 0, kGhostAngles - 1))];
+        if (entry.half_width == 0) entry = {ray.along, ray.along, 0};
+        entry.low = std::min(entry.low, ray.along);
+        entry.high = std::max(entry.high, ray.along);
+        // Never 0, which means that there is none.
+        entry.half_width = std::max({entry.half_width, std::fabs(ray.across), 1e-6f});
+    }
     for (int i = 0; i < kGhostAngles; ++i) {
-        const EntryGrid next = search.at(way, (i + 1) * step);
-        entries.boxes[static_cast<std::size_t>(i)] = united(last.box, next.box);
-        entries.flux += 2 * cell * cell * next.hits * std::sin((i + 1) * step) * step;
-        last = next;
+        GhostEntry& entry = entries[static_cast<std::size_t>(i)];
+        for (int j = std::max(0, i - 1); j <= std::min(kGhostAngles - 1, i + 1); ++j) {
+            const GhostEntry& other = own[static_cast<std::size_t>(j)];
+            if (other.half_width == 0) continue;
+            if (entry.half_width == 0) entry = other;
+            entry = {std::min(entry.low, other.low), std::max(entry.high, other.high),
+                     std::max(entry.half_width, other.half_width)};
+        }
+        const float margin = 0.0625f * std::max(entry.high - entry.low, entry.half_width);
+        entry.low -= margin;
+        entry.high += margin;
+        entry.half_width += entry.half_width > 0 ? margin : 0;
     }
     return entries;
+}
+
+inline double etendue_of(const std::vector<FoundRay>& rays) {
+    double sum = 0;
+    for (const FoundRay& ray : rays) sum += static_cast<double>(ray.etendue);
+    return sum;
 }
 
 /// Number of a crossing among all that a ghost's way may have.
@@ -126,35 +139,41 @@ public:
     GhostTables(const LensSystem& lens, double film_radius, double least_share, const PupilTracer& tracer,
                 const FilmSpectrum* spectrum) {
         using namespace ghost_tables_detail;
-        const Surface& front = lens.surfaces.front();
-        reach_ = static_cast<float>(1.02 * std::hypot(front.clear_semi_diameter, front.sag(front.clear_semi_diameter)));
-        const EntrySearch search{reach_, static_cast<float>(lens.film_distance), static_cast<float>(film_radius),
-                                 tracer};
-        const std::vector<GhostPair> pairs = ghost_pairs(lens);
-        std::vector<LensPath<float>> ways;
-        for (const GhostPair pair : pairs)
-            ways.emplace_back(lens, crossings_of(lens, pair), LightDirection::to_film, lens.wavelength_nm);
-        largest_angle_ = 0;
-        find_largest_angle(search, ways);
-        std::vector<Entries> entries(pairs.size());
-        tracer.for_each(static_cast<int>(pairs.size()), [&](int i) {
-            const auto k = static_cast<std::size_t>(i);
-            entries[k] = entries_of(search, ways[k].view(), static_cast<double>(largest_angle_));
-        });
-        const LensPath<float> straight(lens, LightDirection::to_film, lens.wavelength_nm);
-        const double whole = entries_of(search, straight.view(), static_cast<double>(largest_angle_)).flux;
-        make_crossings(lens, spectrum);
-        std::vector<double> shares;
-        for (std::size_t k = 0; k < pairs.size(); ++k) {
-            const double share = entries[k].flux * axial_share(lens, pairs[k]) / whole;
-            if (!(share > least_share)) continue;
-            shares.push_back(share);
-            add(lens, pairs[k], ways[k].view(), entries[k]);
+        const Surface &front = lens.surfaces.front(), &rear = lens.surfaces.back();
+        const auto radius_of = [](const Surface& surface) {
+            return std::hypot(surface.clear_semi_diameter, surface.sag(surface.clear_semi_diameter));
+        };
+        reach_ = static_cast<float>(1.02 * radius_of(front));
+        const EntrySearch search{film_radius, lens.film_distance, 1.02 * radius_of(rear), tracer};
+        std::vector<GhostPair> pairs;
+        std::vector<double> axial;
+        for (const GhostPair pair : ghost_pairs(lens)) {
+            // A way that no more light can take than ten times what the lens itself takes is not worth the search.
+            const double share = axial_share(lens, pair);
+            if (!(10 * share > least_share)) continue;
+            pairs.push_back(pair);
+            axial.push_back(share);
         }
-        set_probabilities(shares);
-        const LensView<float> view = straight.view();
-        iris_ = view.iris;
-        kind_ = view.kind;
+        std::vector<std::vector<FoundRay>> found(pairs.size() + 1);  // the last of the lens itself
+        tracer.for_each(static_cast<int>(found.size()), [&](int i) {
+            const auto k = static_cast<std::size_t>(i);
+            const std::vector<Crossing> way = k < pairs.size() ? crossings_of(lens, pairs[k]) : crossings_of(lens);
+            found[k] = search.along(LensPath<float>(lens, way, LightDirection::to_scene, lens.wavelength_nm).view());
+        });
+        for (const std::vector<FoundRay>& rays : found)
+            for (const FoundRay& ray : rays) largest_half_tangent_ = std::max(largest_half_tangent_, ray.half_tangent);
+        largest_half_tangent_ *= 1 + 1.0f / kGhostAngles;
+        make_crossings(lens, spectrum);
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            const double share = axial[k] * etendue_of(found[k]) / etendue_of(found.back());
+            if (!(share > least_share)) continue;
+            shares_.push_back(share);
+            add(lens, pairs[k], entries_of(found[k], largest_half_tangent_));
+        }
+        set_probabilities();
+        const LensPath<float> straight(lens, LightDirection::to_film, lens.wavelength_nm);
+        iris_ = straight.view().iris;
+        kind_ = straight.view().kind;
     }
 
     GhostView view() const {
@@ -168,13 +187,15 @@ public:
                 data_of(coatings_),
                 data_of(indices_),
                 data_of(spectral_coatings_),
-                largest_angle_,
+                largest_half_tangent_,
                 reach_,
                 iris_,
                 kind_};
     }
 
     const std::vector<GhostPair>& pairs() const { return pairs_; }
+    /// Of the light that the lens itself brings to the film, from all sides alike: what each pair brings.
+    const std::vector<double>& shares() const { return shares_; }
 
 private:
     using Crossings = std::vector<Crossing>;
@@ -194,18 +215,6 @@ private:
                                                                   : response.mean_transmittance();
         }
         return share;
-    }
-
-    void find_largest_angle(const ghost_tables_detail::EntrySearch& search, const std::vector<LensPath<float>>& ways) {
-        constexpr double kStep = 5 * std::numbers::pi / 180;
-        std::vector<double> largest(ways.size(), kStep);
-        search.tracer.for_each(static_cast<int>(ways.size()), [&](int i) {
-            const auto k = static_cast<std::size_t>(i);
-            double angle = ghost_tables_detail::kLargestAngle;
-            while (angle > kStep && search.at(ways[k].view(), angle).hits == 0) angle -= kStep;
-            largest[k] = angle + kStep;
-        });
-        for (const double angle : largest) largest_angle_ = std::max(largest_angle_, static_cast<float>(angle));
     }
 
     /// What light does at each crossing that a way may have.
@@ -233,13 +242,15 @@ private:
         }
     }
 
-    void add(const LensSystem& lens, GhostPair pair, const LensView<float>& way,
-             const ghost_tables_detail::Entries& entries) {
+    void add(const LensSystem& lens, GhostPair pair, const std::array<GhostEntry, kGhostAngles>& entries) {
+        const std::vector<Crossing> crossings = crossings_of(lens, pair);
+        const LensPath<float> path(lens, crossings, LightDirection::to_film, lens.wavelength_nm);
+        const LensView<float> way = path.view();
         pairs_.push_back(pair);
         ways_.push_back({static_cast<std::int32_t>(surfaces_.size()), way.count, 0});
         surfaces_.insert(surfaces_.end(), way.surfaces, way.surfaces + way.count);
-        entries_.insert(entries_.end(), entries.boxes.begin(), entries.boxes.end());
-        for (const Crossing& crossing : crossings_of(lens, pair)) {
+        entries_.insert(entries_.end(), entries.begin(), entries.end());
+        for (const Crossing& crossing : crossings) {
             const std::size_t number = ghost_tables_detail::number_of(crossing);
             if (!all_coatings_.empty()) coatings_.push_back(all_coatings_[number]);
             if (all_indices_.empty()) continue;
@@ -249,18 +260,19 @@ private:
     }
 
     /// By what the ways bring to the film; a tenth without regard to it, because light comes from one side.
-    void set_probabilities(const std::vector<double>& shares) {
-        if (shares.empty()) return;
+    void set_probabilities() {
+        if (shares_.empty()) return;
         double sum = 0;
-        for (const double share : shares) sum += share;
+        for (const double share : shares_) sum += share;
         std::vector<double> weights;
-        for (const double share : shares)
-            weights.push_back(0.9 * share / sum + 0.1 / static_cast<double>(shares.size()));
+        for (const double share : shares_)
+            weights.push_back(0.9 * share / sum + 0.1 / static_cast<double>(shares_.size()));
         append_cdf(weights, cdf_);
         for (std::size_t k = 0; k < ways_.size(); ++k) ways_[k].probability = cdf_[k + 1] - cdf_[k];
     }
 
     std::vector<GhostPair> pairs_;
+    std::vector<double> shares_;
     std::vector<GhostWay> ways_;
     std::vector<float> cdf_;
     std::vector<GhostEntry> entries_;
@@ -269,7 +281,7 @@ private:
     std::vector<IndexCubic> indices_, all_indices_;
     std::vector<GhostCoating<kSpectrumTerms>> spectral_coatings_, all_spectral_;
     Crossings all_;  ///< of which the all_... are, by ghost_tables_detail::number_of
-    float largest_angle_ = 0, reach_ = 0;
+    float largest_half_tangent_ = 0, reach_ = 0;
     Iris<float> iris_{};
     LensKind kind_ = LensKind::any;
 };

@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// In how many steps of its angle to the axis light is looked at that becomes ghosts.
+/// In how many steps of the tangent of half its angle to the axis light is looked at that becomes ghosts.
 inline constexpr int kGhostAngles = 64;
 
 /// Where light of one direction has to enter to reach the film by one ghost's way: a rectangle in the plane across the
@@ -32,8 +32,8 @@ struct GhostView {
     const GhostCoating<kOneWavelengthTerms>* coatings;
     const IndexCubic* indices;  ///< of a picture with dispersion, as the next; else null
     const GhostCoating<kSpectrumTerms>* spectral_coatings;
-    float largest_angle;  ///< of light to the axis, rad, from which any ghost comes
-    float reach;          ///< radius of a circle that holds all places where light enters, mm
+    float largest_half_tangent;  ///< of the angle between axis and light from which any ghost comes
+    float reach;  ///< radius of a circle that holds all places where light enters, mm
     Iris<float> iris;
     LensKind kind;
 };

@@ -25,8 +25,9 @@ namespace ghost_dimension {
 inline constexpr std::uint32_t way = 0, light = 1, entry = 2, time = 3;
 }
 
-/// Share of the samples that enter anywhere, for what the entries' rectangles have missed.
-inline constexpr float kAnywhere = 1.0f / 16;
+/// Share of the samples that enter somewhere about the entry's rectangle, and share of those that enter anywhere: for
+/// what the rectangles have missed.
+inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale = 3;
 
 /// A place in front of the lens, in the plane across light of one direction.
 struct EntryPlace {
@@ -35,14 +36,24 @@ struct EntryPlace {
 };
 
 REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
-    const float area = 2.0f * entry.half_width * (entry.high - entry.low), whole = 4.0f * reach * reach;
-    const float anywhere = select(area > 0.0f, kAnywhere, 1.0f);
-    const bool everywhere = u.x < anywhere;
-    const float fresh = select(everywhere, u.x / anywhere, (u.x - anywhere) / (1.0f - kAnywhere));
-    const float along = select(everywhere, reach * (2.0f * fresh - 1.0f), entry.low + fresh * (entry.high - entry.low));
-    const float across = (2.0f * u.y - 1.0f) * select(everywhere, reach, entry.half_width);
-    const bool inside = (along >= entry.low) & (along <= entry.high) & (std::fabs(across) <= entry.half_width);
-    const float density = anywhere / whole + select(inside & (area > 0.0f), (1.0f - anywhere) / area, 0.0f);
+    const bool known = entry.half_width > 0.0f;
+    const float middle = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);
+    const float anywhere = select(known, kAnywhere, 1.0f), around = select(known, kAround, 0.0f);
+    const bool is_anywhere = u.x < anywhere, is_around = u.x < anywhere + around;
+    const float begin = select(is_anywhere, 0.0f, select(is_around, anywhere, anywhere + around));
+    const float share = select(is_anywhere, anywhere, select(is_around, around, 1.0f - anywhere - around));
+    const float scale = select(is_around, kAroundScale, 1.0f), fresh = (u.x - begin) / share;
+    const float along =
+        select(is_anywhere, 0.0f, middle) + (2.0f * fresh - 1.0f) * select(is_anywhere, reach, scale * half_length);
+    const float across = (2.0f * u.y - 1.0f) * select(is_anywhere, reach, scale * entry.half_width);
+    const auto is_within = [&](float factor) {
+        return (std::fabs(along - middle) <= factor * half_length) & (std::fabs(across) <= factor * entry.half_width);
+    };
+    const float per_area = 1.0f / select(known, 4.0f * half_length * entry.half_width, 1.0f);
+    const float density =
+        select(known & is_within(1.0f), (1.0f - anywhere - around) * per_area, 0.0f) +
+        select(known & is_within(kAroundScale), around * per_area / (kAroundScale * kAroundScale), 0.0f) +
+        select((std::fabs(along) <= reach) & (std::fabs(across) <= reach), anywhere / (4.0f * reach * reach), 0.0f);
     return {along, across, density};
 }
 
@@ -89,53 +100,77 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
                              (static_cast<float>(camera.width) * static_cast<float>(camera.height));
 
+    const float all_times =
+        scene_kind == SceneKind::any ? camera.exposed_time + camera.row_time * static_cast<float>(camera.height) : 0.0f;
+
     LensRays<float, N> rays;
     SceneRays<N> shadow;
     ColorLanes<N> color;
-    alignas(kLaneAlignment<float, N>) float place[N], variable[N], time[N];
+    Vec3Lanes<float, N> from;  // the light, seen from the middle of the lens
+    Vec2Lanes<float, N> light_u, entry_u;
+    alignas(kLaneAlignment<float, N>) float place[N], variable[N], time[N], density[N];
     alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];
+    LightPick picks[N];
+    REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const std::uint32_t sample = block * kGhostBlock + first + static_cast<std::uint32_t>(i);
-        const auto random = [&](std::uint32_t of) { return sample_2d(stream, sample, of); };
         number[i] = hash32(stream, sample);
-        const Vec2f when = random(ghost_dimension::time);
-        time[i] = 0;
-        if constexpr (scene_kind == SceneKind::any)
-            time[i] = when.x * (camera.exposed_time + camera.row_time * static_cast<float>(camera.height));
-        place[i] = variable[i] = 0;
-        if constexpr (disperses) {
-            place[i] = when.y * static_cast<float>(camera.dispersion.cell_count);
-            variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, place[i]));
+        light_u.set(i, sample_2d(stream, sample, ghost_dimension::light));
+        entry_u.set(i, sample_2d(stream, sample, ghost_dimension::entry));
+        if constexpr (scene_kind == SceneKind::any || disperses) {
+            const Vec2f when = sample_2d(stream, sample, ghost_dimension::time);
+            time[i] = when.x * all_times;
+            place[i] = disperses ? when.y * static_cast<float>(camera.dispersion.cell_count) : 0.0f;
+        } else {
+            time[i] = place[i] = 0;
         }
-        // A light is chosen for the middle of the lens.
+    }
+    for (int i = 0; i < N; ++i) {
         const LensFrame frame{camera_at(camera, time[i]), camera.front_vertex_m};
         const LightReceiver middle{frame.place_in_scene({0, 0, 0}), {0, 0, 0}, time[i]};
-        const LightPick pick =
-            pick_light(view, middle, light_kinds(view, middle), random(ghost_dimension::light), number[i]);
-        rays.status[i] = static_cast<int>(RayStatus::vignetted);
-        shadow.active[i] = 0;
-        if (!(pick.probability > 0.0f)) continue;
-        const Vec3f from = frame.direction(sample_picked<scene_kind>(view, middle, pick).direction);
-        const float sine = std::sqrt(from.x * from.x + from.y * from.y), angle = std::atan2(sine, -from.z);
-        if (!(angle < ghosts.largest_angle)) continue;
-        const int bin = static_cast<int>(angle / ghosts.largest_angle * kGhostAngles);
+        picks[i] = pick_light(view, middle, light_kinds(view, middle), light_u[i], number[i]);
+        const bool lit = picks[i].probability > 0.0f;
+        from.set(i,
+                 lit ? frame.direction(sample_picked<scene_kind>(view, middle, picks[i]).direction) : Vec3f{0, 0, 1});
+    }
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        // The tangent of half the angle to the axis, infinite behind the camera.
+        const float x = from.x[i], y = from.y[i], z = from.z[i], sine = std::sqrt(x * x + y * y);
+        const float half_tangent = sine / (1.0f - z);
+        const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
+        const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
+                                         static_cast<float>(kGhostAngles));
         const GhostEntry entry =
             ghosts.entries[way_number * kGhostAngles + select(bin < kGhostAngles, bin, kGhostAngles - 1)];
-        const EntryPlace at = entry_place(entry, ghosts.reach, random(ghost_dimension::entry));
-        const Vec2f away = sine > 0.0f ? Vec2f{from.x / sine, from.y / sine} : Vec2f{1, 0};
-        const Vec3f start = {-at.along * from.z * away.x - at.across * away.y,
-                             -at.along * from.z * away.y + at.across * away.x, at.along * sine};
-        // Its light there, which may be near: from a direction of its own, through a plane that is across the first.
-        const LightReceiver here{frame.place_in_scene(start), {0, 0, 0}, time[i]};
-        const LightSample light = sample_picked<scene_kind>(view, here, pick);
+        const EntryPlace at = entry_place(entry, ghosts.reach, entry_u[i]);
+        const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
+        const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
+        rays.origin.set(i, {-at.along * z * away_x - at.across * away_y, -at.along * z * away_y + at.across * away_x,
+                            at.along * sine});
+        rays.direction.set(i, {0, 0, 1});
+        rays.status[i] = select(seen, 0, static_cast<int>(RayStatus::vignetted));
+        density[i] = at.density;
+        if constexpr (disperses)
+            variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, place[i]));
+        shadow.active[i] = 0;
+    }
+    for (int i = 0; i < N; ++i) {
+        if (rays.status[i] != 0) continue;
+        // The light as the place sees it, which may be near: from a direction of its own, through a plane that is
+        // across the first.
+        const LensFrame frame{camera_at(camera, time[i]), camera.front_vertex_m};
+        const LightReceiver here{frame.place_in_scene(rays.origin[i]), {0, 0, 0}, time[i]};
+        const LightSample light = sample_picked<scene_kind>(view, here, picks[i]);
         const Vec3f to_light = frame.direction(light.direction);
-        const float cosine = dot(to_light, from);
-        if (is_black(light.irradiance) || !(cosine > 0.0f)) continue;
-        color.set(i, bounded_light((cosine / (at.density * pixel_area * pick.probability * way.probability)) *
+        const float cosine = dot(to_light, from[i]);
+        if (is_black(light.irradiance) || !(cosine > 0.0f)) {
+            rays.status[i] = static_cast<int>(RayStatus::vignetted);
+            continue;
+        }
+        color.set(i, bounded_light((cosine / (density[i] * pixel_area * picks[i].probability * way.probability)) *
                                    light.irradiance));
-        rays.origin.set(i, start);
         rays.direction.set(i, -to_light);
-        rays.status[i] = 0;
         const bool is_near = light.distance < kFarAway;
         shadow.origin.set(i, here.position);
         shadow.direction.set(i, is_near ? light.distance * light.direction : light.direction);
@@ -168,10 +203,9 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
         if constexpr (scene_kind == SceneKind::any) {
             // A row sees what falls on it while it is exposed.
             const float begin = static_cast<float>(pixel[i] / camera.width) * camera.row_time;
-            const float all = camera.exposed_time + camera.row_time * static_cast<float>(camera.height);
             if (camera.row_time > 0.0f) {
                 if (time[i] < begin || time[i] > begin + camera.exposed_time) continue;
-                c = (all / camera.exposed_time) * c;
+                c = (all_times / camera.exposed_time) * c;
             }
             shadow.number[i] = shadow_ray_number(number[i]);
             shadow.time[i] = time[i];

@@ -50,7 +50,7 @@ def singlet(stop_mm: float) -> rc.Lens:
 
 
 def paraxial_film_height(lens: rc.Lens, height: float, slope: float) -> float:
-    """Of a ray that the singlet's back and front reflect: n'u' = nu - yc(n' - n), the index negative on the way back."""
+    """Of a ray that back and front reflect: n'u' = nu - yc(n' - n), the index negative on the way back."""
     n = 1.6
     front, back = (surface.curvature_per_mm for surface in lens.surfaces[1:])
     way = [(front, 1, n, 6.0), (back, n, -n, -6.0), (front, -n, n, 6.0), (back, n, 1, lens.film_distance_mm)]

@@ -1,0 +1,70 @@
+"""What effects cost: time of the frame benchmark's picture with each, over that without, in one run.
+
+    python benchmarks/effects.py [--device cpu] [--threads 1]
+
+640 x 640 pixels, direct light, 20 samples (cpu) or 400 (a GPU), through every surface of two lenses; a figure is the
+least of the rounds, which take the effects in turn, so that what else the machine does falls on all. Ghosts have a lamp
+in the frame beside the scene's light.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+import warnings
+
+import realcam as rc
+from realcam.bench import frame_camera, frame_scene, machine
+
+EFFECTS: list[tuple[str, ...]] = [(), ("coatings",), ("dispersion",), ("coatings", "dispersion"), ("ghosts",)]
+LENSES = ("double-gauss-50mm", "phone-4mm")
+ROUNDS = 5
+
+
+def seconds_of(session: rc.Session, spp: int) -> float:
+    start = time.perf_counter()
+    session.add(spp)
+    return time.perf_counter() - start
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--device", default="cpu")
+    parser.add_argument("--threads", type=int, default=1, help="of the CPU")
+    words = parser.parse_args()
+    warnings.simplefilter("ignore", UserWarning)
+    spp = 20 if words.device == "cpu" else 400
+    threads = words.threads if words.device == "cpu" else 0
+    scene = frame_scene().with_point_light((1.0, 2.0, -6.0), (100, 100, 100))
+    where = machine()
+    print(f"{where['processor']}, {words.device}; realcam {where['commit']}; {where['date']}.", end=" ")
+    print("Made by benchmarks/effects.py.\n")
+    print("| lens | effects | s | over none |")
+    print("|---|---|---|---|")
+    for name in LENSES:
+        lens = rc.Lens.load(name).with_coating("quarter_wave").focused(5.0)
+        side = min(24.0, *lens.film_mm)
+        film = rc.Film(side, side, (640, 640))
+        camera = frame_camera().replace(lens=lens, film=film)
+        sessions = {
+            effects: rc.Session(scene, camera, device=words.device, threads=threads, effects=effects)
+            for effects in EFFECTS
+        }
+        for session in sessions.values():
+            session.add(1)
+        least = {
+            effects: min(times)
+            for effects, times in zip(
+                EFFECTS,
+                zip(*([seconds_of(sessions[e], spp) for e in EFFECTS] for _ in range(ROUNDS)), strict=True),
+                strict=True,
+            )
+        }
+        for effects, seconds in least.items():
+            print(
+                f"| {name} | {', '.join(effects) or 'none'} | {seconds:.3f} | {seconds / least[()]:.2f} |", flush=True
+            )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../camera/ghost_tables.hpp"
+#include "../embree/fast_pupil_tracer.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+struct Ghost {
+    int first, second;
+    double effective_focal_length, back_focal_distance;
+    std::optional<double> share;  ///< nothing where it was not asked for
+};
+
+Ghost ghost_of(const LensSystem& lens, GhostPair pair, double wavelength_nm, std::optional<double> share = {}) {
+    const GhostPath path = ghost_path(lens, wavelength_nm, pair);
+    return {pair.first, pair.second, path.effective_focal_length, path.back_focal_distance, share};
+}
+
+std::vector<Ghost> ghosts_of(const LensSystem& lens) {
+    const double film_radius = 0.5 * std::hypot(lens.film_width, lens.film_height);
+    const GhostTables tables(lens, film_radius, 0, fast_pupil_tracer(), nullptr);
+    std::vector<Ghost> ghosts;
+    for (std::size_t k = 0; k < tables.pairs().size(); ++k)
+        ghosts.push_back(ghost_of(lens, tables.pairs()[k], lens.wavelength_nm, tables.shares()[k]));
+    std::stable_sort(ghosts.begin(), ghosts.end(), [](const Ghost& a, const Ghost& b) { return a.share > b.share; });
+    return ghosts;
+}
+
+}  // namespace
+
+void bind_ghosts(py::module_& m) {
+    py::class_<Ghost> ghost(
+        m, "Ghost",
+        "Light that two surfaces reflect on its way to the film: first `first`, back towards the "
+        "scene, then `second`,\nin front of it. Surfaces are numbered from 0, as in Lens.surfaces.");
+    def_hashable_value(ghost);
+    ghost.def_readonly("first", &Ghost::first)
+        .def_readonly("second", &Ghost::second)
+        .def_readonly("effective_focal_length_mm", &Ghost::effective_focal_length)
+        .def_readonly("back_focal_distance_mm", &Ghost::back_focal_distance,
+                      "Last vertex to where the ghost of a point at infinity is sharp; negative in front of it.")
+        .def_readonly("share", &Ghost::share,
+                      "What it brings to the film of the light that the lens itself brings there, of light that comes "
+                      "from all sides\nalike: its brightness in veiling glare, and about that of a lamp's ghost over "
+                      "the film. None where Lens.ghost made it.")
+        .def("__repr__", [](const Ghost& g) {
+            return "<realcam.Ghost of surfaces " + std::to_string(g.first) + " and " + std::to_string(g.second) +
+                   ", focal length " + digits(g.effective_focal_length) + " mm, back focal distance " +
+                   digits(g.back_focal_distance) + " mm" + (g.share ? ", share " + digits(*g.share) : "") + '>';
+        });
+    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+        .def(
+            "ghost",
+            [](const LensSystem& lens, int first, int second, std::optional<double> nm) {
+                return ghost_of(lens, {first, second}, wavelength_or_design(lens, nm));
+            },
+            "first"_a, "second"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
+            "The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward "
+            "again.\nSurfaces are numbered from 0, as in Lens.surfaces. Paraxial (R. H. Abd El-Maksoud and J. M. "
+            "Sasian, "
+            "Proc. SPIE 7428,\n742807, 2009). Raises InputError where the two are not refracting surfaces in that "
+            "order.")
+        .def("ghosts", &ghosts_of,
+             "All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares: "
+             "by "
+             "rays through\nboth reflections, with the reflectances of light along the axis. Surfaces of unknown "
+             "coating "
+             "count as bare.\nRaises InputError where an index is not known.");
+}
+
+}  // namespace realcam::bindings
