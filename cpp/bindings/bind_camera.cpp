@@ -33,7 +33,7 @@ std::tuple<double, double, double> triple_of(Vec3d v) {
 
 CameraModel model_from(const std::string& name) {
     if (const auto model = shot::model_named(name)) return *model;
-    throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, thick or full is wanted");
+    throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, mapped, thick or full is wanted");
 }
 
 Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution) {
@@ -171,7 +171,8 @@ void bind_camera(py::module_& m) {
             "look_at"_a = Triple{0, 0, -1}, "up"_a = Triple{0, 1, 0}, "exposure_time_s"_a = 1.0 / 125, "iso"_a = 100.0,
             "model"_a = "full", "shutter_opens_s"_a = 0.0, "readout_time_s"_a = 0.0, "motion"_a = std::vector<Key>(),
             "film: None for the lens's own. position, look_at: metres, scene. iso: sensitivity (ISO 12232).\n"
-            "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"thin\" (ideal lens), \"pinhole\".\n"
+            "model: \"full\" (every surface), \"thick\" (paraxial matrix), \"mapped\" (an ideal lens with\nthe real "
+            "one's distortion and vignetting), \"thin\" (ideal lens), \"pinhole\".\n"
             "shutter_opens_s: time in the scene at which the exposure begins. readout_time_s: of a rolling shutter,\n"
             "the time from the top row of pixels to the bottom one; each is exposed for exposure_time_s.\n"
             "motion: keys (time_s, position, look_at) or (time_s, position, look_at, up) in rising order of time, in\n"

@@ -17,6 +17,7 @@
 #include "camera_view.hpp"
 #include "film_spectrum.hpp"
 #include "ghost_tables.hpp"
+#include "lens_map.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -364,6 +365,7 @@ public:
         }
         if (!pupil_) {
             camera_detail::validate_ideal(camera.lens, camera.model);
+            if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
             return;
         }
         const std::string lens = "lens \"" + camera.lens.name + "\"";
@@ -397,6 +399,7 @@ public:
         view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
         view.thin = thin_lens_of(lens, data);
         view.thick = thick_lens_of(lens, data);
+        if (map_) view.map = map_->view();
         view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
         if (!pupil_) view.axis_irradiance = static_cast<float>(axis_irradiance(lens));
         if (pupil_) view.pupil = pupil_->view();
@@ -454,6 +457,18 @@ private:
         coatings_to_film_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_film, wavelengths, variable);
     }
 
+    void set_map(const PupilTracer& tracer, const CameraSetup* last) {
+        const LensSystem& lens = camera_.lens;
+        if (last && last->map_ && last->has_lens_and_film_of(camera_)) {
+            map_ = last->map_;
+            return;
+        }
+        const FirstOrder data = first_order(lens, lens.wavelength_nm);
+        const double image = static_cast<double>(camera_detail::thin_lens_of(lens, data).image_distance);
+        map_ = std::make_shared<const LensMap>(lens, 0.5 * std::hypot(camera_.film.width_mm, camera_.film.height_mm),
+                                               image, data.entrance_pupil_position, tracer);
+    }
+
     static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
         return {static_cast<Vec3f>(scene_from_camera.origin - origin_m), static_cast<Vec3f>(scene_from_camera.x),
                 static_cast<Vec3f>(scene_from_camera.y), static_cast<Vec3f>(scene_from_camera.z)};
@@ -488,6 +503,7 @@ private:
     std::vector<CoatingPolynomials<kSpectrumTerms>> coatings_to_scene_, coatings_to_film_;
     std::vector<double> pupil_wavelengths_;
     std::shared_ptr<const Pupil> pupil_;
+    std::shared_ptr<const LensMap> map_;  ///< of the model mapped_lens
     std::shared_ptr<const GhostTables> ghosts_;  ///< of a picture with ghosts
 };
 

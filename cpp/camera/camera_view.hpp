@@ -7,6 +7,7 @@
 #include "circle_of_confusion.hpp"
 #include "coating_view.hpp"
 #include "dispersion_view.hpp"
+#include "lens_map_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -14,6 +15,7 @@ namespace REALCAM_NAMESPACE {
 enum class CameraModel : int {
     pinhole,     ///< the entrance pupil's middle: everything sharp
     thin_lens,   ///< an ideal lens in the entrance pupil: defocus only, light falls off with cos^4
+    mapped_lens,  ///< the same with the real lens's distortion and vignetting laid on
     thick_lens,  ///< the paraxial matrix of the real lens, with its two pupils and its real film distance
     full_lens,   ///< every surface of the prescription
 };
@@ -49,6 +51,7 @@ struct CameraView : CameraPlacement {
     float pupil_m;          ///< film to entrance pupil, metres
     ThinLens thin;
     ThickLens thick;
+    LensMapView map;  ///< of a mapped lens; else without nodes
     CircleOfConfusion circle;
     PupilView pupil;
     LensView<float> lens;
@@ -89,6 +92,7 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.dispersion.to_film, view.lens.count);
     move(view.dispersion.film_surfaces, view.lens.count);
     move(view.dispersion.cells, view.dispersion.cell_count);
+    move(view.map.nodes, view.map.count);
     move(view.coatings.one_wavelength, view.lens.count);
     move(view.coatings.to_scene, view.lens.count);
     move(view.coatings.to_film, view.lens.count);

@@ -76,6 +76,14 @@ REALCAM_INLINE LensFrameRay thin_lens_ray(const CameraView& camera, Vec2f film, 
     return {{p.x, p.y, pupil_z}, direction, camera.axis_irradiance * cosine2 * cosine2};
 }
 
+/// The same with the real lens's distortion and vignetting.
+REALCAM_INLINE LensFrameRay mapped_lens_ray(const CameraView& camera, Vec2f film, Vec2f u) {
+    const LensMapNode map = lens_map_at(camera.map, film);
+    LensFrameRay ray = thin_lens_ray(camera, {map.scale * film.x, map.scale * film.y}, u, camera.thin.pupil_radius);
+    ray.weight = map.light;
+    return ray;
+}
+
 REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film, Vec2f u) {
     const ThickLens& lens = camera.thick;
     const Vec2f disc = sample_disc(u);
@@ -165,8 +173,10 @@ REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock
                                 [&](Vec2f film, Vec2f u) { return thin_lens_ray(camera, film, u, 0.0f); });
             break;
         case CameraModel::thin_lens:
+        case CameraModel::mapped_lens:
             generate_ideal_rays(camera, block, rays, [&](Vec2f film, Vec2f u) {
-                return thin_lens_ray(camera, film, u, camera.thin.pupil_radius);
+                return camera.map.count > 0 ? mapped_lens_ray(camera, film, u)
+                                            : thin_lens_ray(camera, film, u, camera.thin.pupil_radius);
             });
             break;
         case CameraModel::thick_lens:

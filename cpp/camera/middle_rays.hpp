@@ -84,8 +84,9 @@ REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>
     }
     for (int i = 0; i < N; ++i) {
         const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f}), middle = {0.0f, 0.0f};
-        LensFrameRay ray = camera.model == CameraModel::thick_lens ? thick_lens_ray(camera, film, middle)
-                                                                   : thin_lens_ray(camera, film, middle, 0.0f);
+        LensFrameRay ray = camera.model == CameraModel::thick_lens    ? thick_lens_ray(camera, film, middle)
+                           : camera.model == CameraModel::mapped_lens ? mapped_lens_ray(camera, film, middle)
+                                                                      : thin_lens_ray(camera, film, middle, 0.0f);
         ray.weight = 1.0f;
         place_ray(camera, rays, i, ray, block.used[i] != 0);
         rays.sampled[i] = rays.passed[i] = block.used[i];

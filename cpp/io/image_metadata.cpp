@@ -20,6 +20,7 @@ std::string name_of(CameraModel model) {
     switch (model) {
         case CameraModel::pinhole: return "pinhole";
         case CameraModel::thin_lens: return "thin";
+        case CameraModel::mapped_lens: return "mapped";
         case CameraModel::thick_lens: return "thick";
         case CameraModel::full_lens: break;
     }

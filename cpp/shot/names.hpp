@@ -10,13 +10,14 @@ namespace realcam::shot {
 
 // The words for camera models, tone curves and light transport, as command line and shot files have them.
 
-inline constexpr const char* kModelNames = "full, thick, thin or pinhole";
+inline constexpr const char* kModelNames = "full, thick, mapped, thin or pinhole";
 inline constexpr const char* kToneNames = "film or linear";
 inline constexpr const char* kTransportNames = "paths or whitted";
 
 inline std::optional<CameraModel> model_named(std::string_view name) {
     if (name == "full") return CameraModel::full_lens;
     if (name == "thick") return CameraModel::thick_lens;
+    if (name == "mapped") return CameraModel::mapped_lens;
     if (name == "thin") return CameraModel::thin_lens;
     if (name == "pinhole") return CameraModel::pinhole;
     return std::nullopt;

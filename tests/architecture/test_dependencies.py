@@ -49,6 +49,7 @@ HOST_ONLY = {
     "camera/ghost_tables.hpp",
     "camera/illuminant.hpp",
     "camera/last_setup.hpp",
+    "camera/lens_map.hpp",
     "camera/picture_angle.hpp",
     "camera/picture_map.hpp",
     "camera/sensor.hpp",

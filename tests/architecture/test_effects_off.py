@@ -1,0 +1,72 @@
+"""An effect that is switched off leaves the GPU's code as if it did not exist.
+
+The kernel without effects is compiled twice: from the sources, and from a copy out of which the effects were cut, with
+all data that they have in a camera. Both must have the same instructions; only places of arguments may differ.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+KERNEL = """
+#include "cuda/render_kernel_template.hpp"
+namespace realcam::render_kernel_detail {
+template __global__ void render<LensKind::plain, SceneKind::plain, 0, false, NoClock>(const __grid_constant__ RenderJob,
+                                                                                      int);
+}
+"""
+# What is cut out of which file: each pattern must be found once.
+CUTS = {
+    "camera/camera_view.hpp": [
+        (r"    DispersionView dispersion;\n    CoatingView coatings;\n", ""),
+        (r"(    move\(view\.(dispersion|coatings)\.\w+, .*\);\n)+", ""),
+        (r"(    move\(view\.(dispersion|coatings)\.\w+, .*\);\n)+", ""),
+    ],
+    "render/effects.hpp": [(r"kCompiledEffects\[\] = \{[^;]*\};", "kCompiledEffects[] = {kNoEffects};")],
+    "render/kind_of.hpp": [(r"    const bool disperses = .*?\n\}\n", "    (void)camera;\n    return {};\n}\n")],
+    "render/advance_path.hpp": [
+        (r'#include "../camera/coated_rays.hpp"\n#include "../camera/dispersed_rays.hpp"\n', ""),
+        (r"    if constexpr \(effects\.dispersion\)\n.*?\n    else\n        generate_rays<", "        generate_rays<"),
+    ],
+    "render/path_state.hpp": [
+        (r"/// The same, of samples that each have a wavelength\..*?\};\n", ""),
+        (r"std::conditional_t<effects\.dispersion, DispersedPathState<N>, PathState<N>>", "PathState<N>"),
+    ],
+    "render/render_samples.hpp": [(r"    if constexpr \(effects\.dispersion\)\n.*?(?=\}\n\n\}  // namespace)", "")],
+    "render/splat_ghosts.hpp": [(r"template <LensKind lens_kind, SceneKind scene_kind, bool disperses.*?\n\}\n", "")],
+}
+
+
+def without_effects(to: Path) -> None:
+    shutil.copytree(ROOT / "cpp", to)
+    for name, cuts in CUTS.items():
+        text = (to / name).read_text()
+        for pattern, instead in cuts:
+            text, count = re.subn(pattern, instead, text, count=1, flags=re.DOTALL if ".*?" in pattern else 0)
+            assert count == 1, f"{name}: nothing to cut where {pattern} is looked for"
+        (to / name).write_text(text)
+
+
+def instructions(include: Path, folder: Path) -> list[str]:
+    source, out = folder / "kernel.cu", folder / "kernel.ptx"
+    source.write_text(KERNEL)
+    command = ["nvcc", "-ptx", "-O3", "-DNDEBUG", "-arch=sm_90", "--expt-relaxed-constexpr", "-std=c++20"]
+    subprocess.run([*command, f"-I{include}", "-o", str(out), str(source)], check=True, capture_output=True)
+    body = out.read_text().split(".visible .entry", 1)[1]
+    # An argument's place, and its size; names that the compiler has made of a file's name.
+    body = re.sub(r"(_param_\d+)(\[\d+\]|\+\d+)", r"\1", body)
+    return re.sub(r"(ld\.param.*)\+\d+\]", r"\1]", body).splitlines()[2:]
+
+
+@pytest.mark.skipif(shutil.which("nvcc") is None, reason="nvcc is not on the path")
+def test_the_kernel_without_effects_is_the_same_where_there_are_none(tmp_path: Path) -> None:
+    without_effects(tmp_path / "cpp")
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    assert instructions(ROOT / "cpp", tmp_path / "a") == instructions(tmp_path / "cpp", tmp_path / "b")
