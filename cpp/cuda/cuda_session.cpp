@@ -71,7 +71,7 @@ private:
         film_ = {};
         stats_ = {};
         for (const auto& renderer : renderers_) renderer->clear_counts();
-        front().clear_ghosts(static_cast<std::int64_t>(width()) * height());
+        front().clear_ghosts(width(), height());
     }
 
     void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop& stop) override {

@@ -25,8 +25,10 @@ public:
     }
 
     /// An empty film of so many pixels.
-    void clear(std::int64_t pixels, CudaStream& stream) {
-        sums_.resize(view_.way_count > 0 ? static_cast<std::size_t>(pixels) : 0);
+    void clear(int width, int height, CudaStream& stream) {
+        width_ = width;
+        height_ = height;
+        sums_.resize(view_.way_count > 0 ? static_cast<std::size_t>(width) * static_cast<std::size_t>(height) : 0);
         blocks_done_.resize(1);
         sums_.clear(stream);
         blocks_done_.clear(stream);
@@ -48,7 +50,7 @@ public:
 
     GhostFilmView seen() const {
         if (sums_.size() == 0) return {};
-        return {sums_.data(), units_per_lux_, blocks_done_.data()};
+        return {sums_.data(), units_per_lux_, blocks_done_.data(), width_, height_};
     }
 
     /// Copies all to the host, and waits for it.
@@ -56,11 +58,14 @@ public:
         std::vector<GhostSum> sums;
         unsigned long long blocks = 0;
         double units_per_lux = 1;
+        int width = 0, height = 0;
 
-        GhostFilmView view() const { return {sums.empty() ? nullptr : sums.data(), units_per_lux, &blocks}; }
+        GhostFilmView view() const {
+            return {sums.empty() ? nullptr : sums.data(), units_per_lux, &blocks, width, height};
+        }
     };
     OnHost download(const CudaStream& stream) const {
-        OnHost here{std::vector<GhostSum>(sums_.size()), 0, units_per_lux_};
+        OnHost here{std::vector<GhostSum>(sums_.size()), 0, units_per_lux_, width_, height_};
         sums_.download(here.sums.data(), stream);
         blocks_done_.download(&here.blocks, stream);
         stream.wait("copying ghosts from it");
@@ -71,6 +76,7 @@ private:
     DeviceArrays arrays_;
     GhostView view_{};
     double units_per_lux_ = 1;
+    int width_ = 0, height_ = 0;
     DeviceArray<GhostSum> sums_;
     DeviceArray<unsigned long long> blocks_done_;
 };

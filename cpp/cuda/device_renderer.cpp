@@ -77,9 +77,9 @@ void DeviceRenderer::set_ghosts(const GhostView* ghosts, double units_per_lux) {
     ghosts_.set(ghosts, units_per_lux, stream_);
 }
 
-void DeviceRenderer::clear_ghosts(std::int64_t pixels) {
+void DeviceRenderer::clear_ghosts(int width, int height) {
     const CurrentDevice current(ordinal_);
-    ghosts_.clear(pixels, stream_);
+    ghosts_.clear(width, height, stream_);
 }
 
 void DeviceRenderer::add_ghosts(const SampleRange& range) {

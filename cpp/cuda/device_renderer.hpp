@@ -35,7 +35,7 @@ public:
 
     /// The ghosts of the pictures that follow, and an empty film for them. Null: they have none.
     void set_ghosts(const GhostView* ghosts, double units_per_lux);
-    void clear_ghosts(std::int64_t pixels);
+    void clear_ghosts(int width, int height);
     /// Starts to add the ghost samples that belong to samples of pixels.
     void add_ghosts(const SampleRange& range);
     DeviceGhosts::OnHost download_ghosts();

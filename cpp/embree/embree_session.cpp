@@ -211,7 +211,8 @@ private:
     }
 
     GhostFilmView ghosts_seen() const {
-        return {ghost_film_.empty() ? nullptr : ghost_film_.data(), ghost_units_per_lux_, &ghost_blocks_};
+        return {ghost_film_.empty() ? nullptr : ghost_film_.data(), ghost_units_per_lux_, &ghost_blocks_,
+                camera_view_.width, camera_view_.height};
     }
 
     /// visit(x, y, some samples) of the tile with that first pixel, until all samples of all tiles were taken.

@@ -82,7 +82,7 @@ def test_a_film_that_is_none(size: tuple[float, float, tuple[int, int]], says: s
         ({"iso": math.nan}, "ISO"),
         ({"iso": 1e300}, "ISO"),
         ({"iso": 1e-300}, "ISO"),
-        ({"model": "fisheye"}, "pinhole, thin, thick or full"),
+        ({"model": "fisheye"}, "pinhole, thin, mapped, thick or full"),
         ({"position": (0, 0, 0), "look_at": (0, 0, 0)}, "look at a point other"),
         ({"up": (0, 0, 2)}, "up direction"),
         ({"up": (0, 0, 0)}, "up direction"),
