@@ -13,6 +13,7 @@ PYBIND11_MODULE(_core, m) {
     bind_trace(m);
     bind_seidel(m);
     bind_analysis(m);
+    bind_psf(m);
     bind_transmission(m);
     bind_camera(m);
     bind_camera_rays(m);
