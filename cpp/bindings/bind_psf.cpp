@@ -151,7 +151,9 @@ void bind_psf(py::module_& m) {
         .def_readonly("rays", &Psf::rays, "Of all wavelengths.")
         .def_property_readonly(
             "energy",
-            [](const Psf& p) { return std::accumulate(p.values.begin(), p.values.end(), 0.0) * p.pitch_um * p.pitch_um; },
+            [](const Psf& p) {
+                return std::accumulate(p.values.begin(), p.values.end(), 0.0) * p.pitch_um * p.pitch_um;
+            },
             "Share of the light on the array: the rest falls beside it.")
         .def(
             "energy_inside",

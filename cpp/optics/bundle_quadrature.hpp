@@ -17,7 +17,6 @@ struct EntryPart {
 
 namespace bundle_quadrature_detail {
 
-
 struct Stretch {
     double from, to;
 };
@@ -84,7 +83,8 @@ inline std::vector<EntryPart> entry_parts(const PointBundle& bundle, BundleSampl
     using namespace bundle_quadrature_detail;
     std::vector<GaussNode> rule;
     for (int i = 0; i < sampling.nodes; ++i) rule.push_back(gauss_node(sampling.nodes, i));
-    const std::size_t half = static_cast<std::size_t>(sampling.spokes + 1) / 2, spokes = bundle.mirrored ? half : 2 * half;
+    const std::size_t half = static_cast<std::size_t>(sampling.spokes + 1) / 2,
+                      spokes = bundle.mirrored ? half : 2 * half;
     const double between = std::numbers::pi / static_cast<double>(half);
     const double area = bundle.reach.x * bundle.reach.y * between * (bundle.mirrored ? 2 : 1);
     std::vector<std::vector<EntryPart>> of_spoke(spokes);

@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kWaves = 256, kWidth = 8, kAtOnce = 4;
+    static constexpr std::size_t kWaves = 256, kWidth = 8, kAtOnce = 4, kTurns = 16;
 
     /// cos and sin of k slope.x x for x = 0, pitch, 2 pitch ..., of each wave.
     void tabulate(const PlaneWave* waves, std::size_t count) {
@@ -80,20 +80,17 @@ private:
     }
 
     void add_to_rows(const PlaneWave* waves, std::size_t count, bool mirrored, std::size_t first, std::size_t last) {
-        if (first >= last) return;
         double re[kWaves] = {}, im[kWaves] = {}, step_re[kWaves] = {}, step_im[kWaves] = {};
         for (std::size_t w = 0; w < count; ++w) {
-            const PlaneWave& wave = waves[w];
-            const double y = grid_.centre.y + grid_.offset(static_cast<int>(first));
-            const double path = wave.path + wave.slope.x * grid_.centre.x + wave.slope.y * y;
-            re[w] = wave.amplitude * std::cos(wave_number_ * path);
-            im[w] = wave.amplitude * std::sin(wave_number_ * path);
-            step_re[w] = std::cos(wave_number_ * wave.slope.y * grid_.pitch);
-            step_im[w] = std::sin(wave_number_ * wave.slope.y * grid_.pitch);
+            step_re[w] = std::cos(wave_number_ * waves[w].slope.y * grid_.pitch);
+            step_im[w] = std::sin(wave_number_ * waves[w].slope.y * grid_.pitch);
         }
-        for (std::size_t row = first; row < last; ++row) {
+        // Phases are turned from row to row, and begin anew at the same rows whatever part of them is asked for: so
+        // sums come out the same whatever the threads.
+        for (std::size_t row = first / kTurns * kTurns; row < last; ++row) {
+            if (row % kTurns == 0) start(waves, count, row, re, im);
             double* sums = sums_.data() + row * 4 * half_;
-            for (std::size_t w = 0; w < count; w += kAtOnce) {
+            for (std::size_t w = 0; row >= first && w < count; w += kAtOnce) {
                 add_four(re + w, im + w, cos_.data() + w * half_, sums, sums + half_);
                 if (!mirrored) add_four(re + w, im + w, sin_.data() + w * half_, sums + 2 * half_, sums + 3 * half_);
             }
@@ -102,6 +99,15 @@ private:
                 im[w] = re[w] * step_im[w] + im[w] * step_re[w];
                 re[w] = turned;
             }
+        }
+    }
+
+    void start(const PlaneWave* waves, std::size_t count, std::size_t row, double* re, double* im) const {
+        const double y = grid_.centre.y + grid_.offset(static_cast<int>(row));
+        for (std::size_t w = 0; w < count; ++w) {
+            const double path = waves[w].path + waves[w].slope.x * grid_.centre.x + waves[w].slope.y * y;
+            re[w] = waves[w].amplitude * std::cos(wave_number_ * path);
+            im[w] = waves[w].amplitude * std::sin(wave_number_ * path);
         }
     }
 

@@ -30,7 +30,6 @@ inline PlaneWaves with_mirror_images(const PlaneWaves& light) {
     return all;
 }
 
-
 /// Phase, in radians, by which the plane waves of a bundle differ on a window of the film: from the middle of what
 /// passes to its edge, at the place where they differ most. `centre` and half the window's side are in mm, from the
 /// chief ray.
@@ -55,6 +54,8 @@ struct LocalWave {
     PointBundle::Entry entry;
     WaveRay wave;
     Vec2<double> by_x, by_y;  ///< derivatives of the slope, 1/mm
+    Vec2<double>
+        at;  ///< where the ray lands, mm from the chief ray: less the derivative of the wave's path by its slope
 
     double determinant() const { return by_x.x * by_y.y - by_x.y * by_y.x; }
     /// The place that has this slope, as far as the derivatives tell.
@@ -62,6 +63,9 @@ struct LocalWave {
         const double dx = slope.x - wave.slope.x, dy = slope.y - wave.slope.y;
         return {entry.x + (dx * by_y.y - dy * by_y.x) / determinant(),
                 entry.y + (dy * by_x.x - dx * by_x.y) / determinant()};
+    }
+    double path_at(Vec2<double> slope) const {
+        return wave.path - at.x * (slope.x - wave.slope.x) - at.y * (slope.y - wave.slope.y);
     }
 };
 
@@ -77,7 +81,7 @@ inline std::optional<LocalWave> local_wave(const PointBundle& bundle, PointBundl
         const Vec2<double> slope = bundle.as_wave(ray).slope;
         return Vec2<double>{(slope.x - wave.slope.x) / step, (slope.y - wave.slope.y) / step};
     };
-    return LocalWave{entry, wave, derivative(rays[1]), derivative(rays[2])};
+    return LocalWave{entry, wave, derivative(rays[1]), derivative(rays[2]), rays[0].at};
 }
 
 /// The bundle's light as plane waves. The amplitude of each is the root of its energy times the range of slopes that it

@@ -26,12 +26,12 @@ public:
 
     bool mirrored;  ///< whether x and -x are alike, as all is round; blades need not be
     ObjectPoint object;
-    Vec2<double> chief;     ///< where the chief ray meets the film, mm from the axis
-    double index;           ///< behind the lens
-    double wave_number;     ///< 2 pi index / wavelength, 1/mm
-    Entry middle, reach;    ///< of a rectangle in the entry plane that what passes lies in, or hardly beyond
+    Vec2<double> chief;  ///< where the chief ray meets the film, mm from the axis
+    double index;  ///< behind the lens
+    double wave_number;  ///< 2 pi index / wavelength, 1/mm
+    Entry middle, reach;  ///< of a rectangle in the entry plane that what passes lies in, or hardly beyond
     Vec2<double> centroid;  ///< of the spot, mm from the chief ray
-    Vec2<double> spot;      ///< half the sides of the rectangle about the chief ray that holds the spot, mm
+    Vec2<double> spot;  ///< half the sides of the rectangle about the chief ray that holds the spot, mm
     Vec2<double> slope_low, slope_high;  ///< of the rays that pass
 
     /// Throws InputError for a field point or wavelength that makes no sense, and where no light reaches the film.

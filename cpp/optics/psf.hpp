@@ -69,14 +69,15 @@ inline BundleSampling checked_sampling(const Part& part, const Psf& psf, std::in
     const double half = 0.5e-3 * psf.size * psf.pitch_um, phase = largest_phase(part.bundle, part.centre, half);
     const auto count = [](BundleSampling s) { return static_cast<double>(s.spokes) * s.nodes; };
     if (!(phase < 1e5) || count(sampling_for(phase)) > kMostWaves)
-        throw InputError("psf: the light is " + std::to_string(std::lround(phase / std::numbers::pi)) +
-                         " waves from its mean somewhere on the array, too many for a sum of rays; give a smaller "
-                         "array, another film_distance_mm or method \"geometric\"");
+        throw InputError("psf: the light's phase differs by " + std::to_string(std::lround(phase / std::numbers::pi)) +
+                         " waves on the array, too many for a sum of rays; give a smaller array, another "
+                         "film_distance_mm or the method \"geometric\"");
     BundleSampling sampling = sampling_for(phase);
     if (rays == 0) return sampling;
     const double least = phase * (0.25 * phase + 1);
     if (static_cast<double>(rays) < least)
-        throw InputError("psf: " + std::to_string(rays) + " rays cannot follow the wavefront over the array: at least " +
+        throw InputError("psf: " + std::to_string(rays) +
+                         " rays cannot follow the wavefront over the array: at least " +
                          std::to_string(static_cast<std::int64_t>(least) + 1) + " are wanted, " +
                          std::to_string(static_cast<std::int64_t>(count(sampling))) + " are good");
     const double more = std::sqrt(static_cast<double>(rays) / count(sampling));
@@ -89,8 +90,7 @@ inline double scale_of(const Part& part) {
     return 1e-6 * part.weight * per_mm2 * per_mm2 / part.light.energy;
 }
 
-inline void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values,
-                      const RayLoop& loop) {
+inline void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values, const RayLoop& loop) {
     values.assign(static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size), 0);
     for (const Part& part : parts) {
         FilmGrid own = grid;
@@ -129,8 +129,8 @@ inline double peak_near(const std::vector<Part>& parts, const Psf& psf, const Ra
 /// Without diffraction: the energy of the rays that land around each point.
 inline void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop) {
     const double spokes = 2 * std::sqrt(static_cast<double>(rays ? rays : 1 << 18));
-    const std::vector<EntryPart> places = entry_parts(
-        part.bundle, {static_cast<int>(std::ceil(spokes)), static_cast<int>(std::ceil(spokes / 4))}, loop);
+    const std::vector<EntryPart> places =
+        entry_parts(part.bundle, {static_cast<int>(std::ceil(spokes)), static_cast<int>(std::ceil(spokes / 4))}, loop);
     std::vector<Vec2<double>> points;
     loop.append_all(points, places.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -147,7 +147,8 @@ inline void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoo
         const double share = places[i].area * part.bundle.energy(places[i].entry);
         const double x = nearest(points[i].x - part.centre.x), y = nearest(points[i].y - part.centre.y);
         energy += share;
-        if (x >= 0 && y >= 0 && x < psf.size && y < psf.size) values[static_cast<std::size_t>(y * psf.size + x)] += share;
+        if (x >= 0 && y >= 0 && x < psf.size && y < psf.size)
+            values[static_cast<std::size_t>(y * psf.size + x)] += share;
     }
     for (std::size_t i = 0; i < values.size(); ++i)
         psf.values[i] += part.weight / (energy * psf.pitch_um * psf.pitch_um) * values[i];
@@ -167,7 +168,8 @@ inline Start start(const LensSystem& lens, const PsfRequest& request, const RayL
     if (request.rays < 0) throw InputError("psf: rays must be a positive number");
     double sum = 0;
     for (const PsfColour& colour : request.colours) {
-        if (!(colour.weight > 0 && colour.weight < kInfinity)) throw InputError("psf: weights must be positive numbers");
+        if (!(colour.weight > 0 && colour.weight < kInfinity))
+            throw InputError("psf: weights must be positive numbers");
         sum += colour.weight;
     }
     Start made;
@@ -175,8 +177,8 @@ inline Start start(const LensSystem& lens, const PsfRequest& request, const RayL
     psf = {request.size, request.pitch_um, {0, 0}, request.colours, {}, std::numeric_limits<double>::quiet_NaN(), 0};
     for (PsfColour& colour : psf.colours) {
         colour.weight /= sum;
-        made.parts.push_back({PointBundle(lens, colour.wavelength_nm, request.field, request.film_distance, loop),
-                              colour.weight});
+        made.parts.push_back(
+            {PointBundle(lens, colour.wavelength_nm, request.field, request.film_distance, loop), colour.weight});
     }
     if (request.centre == PsfCentre::chief) psf.centre_mm = made.parts[0].bundle.chief;
     for (const Part& part : made.parts) {

@@ -16,7 +16,8 @@ inline double energy_inside(const Psf& psf, double radius_um, Vec2<double> about
             if (distance > reach + 0.8) continue;
             int inside = kParts * kParts;
             for (int i = 0; distance > reach - 0.8 && i < kParts * kParts; ++i)
-                inside -= std::hypot(x + (i % kParts + 0.5) / kParts - 0.5, y + (i / kParts + 0.5) / kParts - 0.5) > reach;
+                inside -=
+                    std::hypot(x + (i % kParts + 0.5) / kParts - 0.5, y + (i / kParts + 0.5) / kParts - 0.5) > reach;
             sum += psf.values[static_cast<std::size_t>(row * psf.size + column)] * inside / (kParts * kParts);
         }
     return sum * psf.pitch_um * psf.pitch_um;
