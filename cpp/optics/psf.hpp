@@ -128,7 +128,10 @@ inline double peak_near(const std::vector<Part>& parts, const Psf& psf, const Ra
 
 /// Without diffraction: the energy of the rays that land around each point.
 inline void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop) {
-    const double spokes = 2 * std::sqrt(static_cast<double>(rays ? rays : 1 << 18));
+    const auto points_across = [&](double spot) { return 1 + 2e3 * spot / psf.pitch_um; };
+    const double enough = 16 * points_across(part.bundle.spot.x) * points_across(part.bundle.spot.y);
+    const double count = rays ? static_cast<double>(rays) : std::clamp(enough, 0x1p16, 0x1p22);
+    const double spokes = 2 * std::sqrt(count);
     const std::vector<EntryPart> places =
         entry_parts(part.bundle, {static_cast<int>(std::ceil(spokes)), static_cast<int>(std::ceil(spokes / 4))}, loop);
     std::vector<Vec2<double>> points;
@@ -143,12 +146,16 @@ inline void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoo
     const auto nearest = [&](double mm) { return std::floor(1e3 * mm / psf.pitch_um + psf.size / 2 + 0.5); };
     double energy = 0;
     std::vector<double> values(psf.values.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const double share = places[i].area * part.bundle.energy(places[i].entry);
-        const double x = nearest(points[i].x - part.centre.x), y = nearest(points[i].y - part.centre.y);
+    const auto add = [&](Vec2<double> at, double share) {
+        const double x = nearest(at.x - part.centre.x), y = nearest(at.y - part.centre.y);
         energy += share;
         if (x >= 0 && y >= 0 && x < psf.size && y < psf.size)
             values[static_cast<std::size_t>(y * psf.size + x)] += share;
+    };
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const double share = places[i].area * part.bundle.energy(places[i].entry);
+        add(points[i], part.bundle.mirrored ? 0.5 * share : share);
+        if (part.bundle.mirrored) add({-points[i].x, points[i].y}, 0.5 * share);
     }
     for (std::size_t i = 0; i < values.size(); ++i)
         psf.values[i] += part.weight / (energy * psf.pitch_um * psf.pitch_um) * values[i];

@@ -184,6 +184,22 @@ def test_light_is_conserved_and_described() -> None:
     assert centred.centre_mm == pytest.approx(spot.centroid_mm, abs=1e-3)
 
 
+def test_rays_alone_are_the_spot() -> None:
+    lens = rc.Lens.load("double-gauss-50mm").stopped_down(4)
+    for changed in (lens, lens.with_iris(6, rotation_deg=10)):  # of which the second is not its own mirror image
+        psf = changed.psf(10, method="geometric", object_distance_m=FAR, size=256, pitch_um=0.5, centre="centroid")
+        assert psf.energy == pytest.approx(1, abs=1e-9)
+        assert math.isnan(psf.strehl)
+        spot = changed.spot(10, object_distance_m=FAR, pattern="grid", samples=300)
+        points = 1000 * (spot.points_mm[~np.isnan(spot.points_mm[:, 0])] - psf.centre_mm)
+        light = psf.values / psf.values.sum()
+        for axis, places in ((0, psf.x_um[None, :]), (1, psf.y_um[:, None])):
+            mean = float((light * places).sum())
+            assert mean == pytest.approx(points[:, axis].mean(), abs=0.02)
+            width = math.sqrt(float((light * (places - mean) ** 2).sum()))
+            assert width == pytest.approx(points[:, axis].std(), rel=0.01)
+
+
 def test_a_wavefront_and_its_psf_have_one_strehl_ratio() -> None:
     """Of a small aberration on the axis, where the brightest place is the middle, and the stop is evenly lit."""
     lens = rc.Lens.load("cooke-triplet-50mm").stopped_down(8)
