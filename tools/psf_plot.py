@@ -44,7 +44,7 @@ def save_plot(path: Path) -> None:
     for panel in panels[-1]:
         panel.set_xlabel("x / um")
     figure.colorbar(image, ax=panels, shrink=0.4, label="log10 of the largest value")
-    figure.savefig(path, dpi=90)
+    figure.savefig(path, dpi=72)
 
 
 if __name__ == "__main__":
