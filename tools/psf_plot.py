@@ -1,4 +1,4 @@
-"""The picture of docs/psf.md: the double Gauss at f/2 and f/8, in the middle and at 15 degrees, with and without waves."""
+"""The picture of docs/psf.md: the double Gauss at f/2 and f/8, on the axis and at 15 degrees, waves and rays."""
 
 from __future__ import annotations
 
