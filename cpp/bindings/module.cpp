@@ -14,6 +14,7 @@ PYBIND11_MODULE(_core, m) {
     bind_seidel(m);
     bind_ghosts(m);
     bind_analysis(m);
+    bind_psf(m);
     bind_transmission(m);
     bind_camera(m);
     bind_camera_rays(m);

@@ -9,6 +9,7 @@ rc.render(scene, camera, spp=64).save("photograph.png")
 """
 
 from ._core import (
+    PSF,
     AimedRays,
     ArgumentError,
     Camera,
@@ -58,6 +59,7 @@ from .session import Session
 from .shot import Shot
 
 __all__ = [
+    "PSF",
     "AimedRays",
     "ArgumentError",
     "Camera",

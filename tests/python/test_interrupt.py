@@ -13,6 +13,7 @@ import pytest
 CALLS = {
     "wavefront": "lens.wavefront(5.0, pattern='rings', samples=2048)",
     "spot": "lens.spot(5.0, pattern='rings', samples=2048)",
+    "psf": "lens.psf(5.0, size=2048)",
     "aim": "lens.aim(places)",
     "trace": "[lens.trace(o, d, start='scene') for _ in range(100)]",
 }

@@ -162,6 +162,7 @@ AT_WORK = {
     "generate_rays": "camera.generate_rays(spp=20)",
     "trace": "camera.lens.trace(np.full((3_000_000, 3), (0.0, 0.0, 80.0)), np.full((3_000_000, 3), (0.0, 0.0, -1.0)))",
     "wavefront": "camera.lens.wavefront(5, samples=512)",
+    "psf": "camera.lens.psf(5, size=512)",
     "develop": "rc._core.develop(np.full(30_000_000, 0.02, np.float32), 100.0)",
 }
 
