@@ -114,7 +114,7 @@ class SequentialTrace:
         """Places on the film and shares of the power; 0 where a ray is lost."""
         o, d = origin.copy(), direction.copy()
         s = p = np.ones(len(o))
-        with np.errstate(invalid="ignore", divide="ignore"):
+        with np.errstate(all="ignore"):
             for surface, sign, reflected in way:
                 c, centre = self.c[surface], self.z[surface]
                 # |o + t d - C|^2 = R^2 in curvatures: A t^2 - 2 G t + F = 0.

@@ -10,7 +10,8 @@ import math
 import numpy as np
 import pytest
 import realcam as rc
-from measurement import Measurement, hold
+
+from ..measurement import Measurement, hold
 
 FAR = math.inf
 
