@@ -57,9 +57,9 @@ REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2
     return {along, across, density};
 }
 
-/// What a camera sees of the scene's axes.
+/// The axes of a lens in the scene.
 struct LensFrame {
-    const CameraPlacement camera;
+    CameraPlacement camera;
     float front_vertex_m;
 
     REALCAM_INLINE Vec3f direction(Vec3f scene) const {
@@ -72,13 +72,156 @@ struct LensFrame {
     }
 };
 
-/// A pixel of the film, or none.
+REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
+    return {camera_at(camera, time), camera.front_vertex_m};
+}
+
+/// A pixel of the film, or -1.
 REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
     const float column = 0.5f * static_cast<float>(camera.width) * (1.0f - x / camera.film_half_width);
     const float row = 0.5f * static_cast<float>(camera.height) * (1.0f + y / camera.film_half_height);
     const bool inside = (column >= 0.0f) & (column < static_cast<float>(camera.width)) & (row >= 0.0f) &
                         (row < static_cast<float>(camera.height));
     return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
+}
+
+/// From the begin of the first row's exposure to the end of the last one's.
+REALCAM_INLINE float all_times(const CameraView& camera) {
+    return camera.exposed_time + camera.row_time * static_cast<float>(camera.height);
+}
+
+/// By how much a sample of this time counts on a row of pixels, which sees what falls on it while it is exposed: or, if
+/// that is but a moment, until the next row's.
+REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row, float time) {
+    if (!(camera.row_time > 0.0f)) return 1.0f;
+    const float begin = static_cast<float>(row) * camera.row_time;
+    const float window = select(camera.exposed_time > camera.row_time, camera.exposed_time, camera.row_time);
+    return time >= begin && time <= begin + window ? all_times(camera) / window : 0.0f;
+}
+
+/// Samples on their way from a light to the film.
+template <int N>
+struct GhostSamples {
+    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];
+    alignas(kLaneAlignment<float, N>) float place[N], variable[N];  ///< of the wavelength
+    alignas(kLaneAlignment<float, N>) float time[N];
+    LightPick lights[N];
+    Vec3Lanes<float, N> from;  ///< unit, towards the light, as the middle of the lens sees it; in the lens's axes
+    LensRays<float, N> rays;  ///< first in front of the lens, then behind it
+    alignas(kLaneAlignment<float, N>) float density[N];  ///< of the place where it enters, per mm^2
+    ColorLanes<N> color;  ///< irradiance that its pixel would have if all samples were like it
+    SceneRays<N> shadow;
+};
+
+/// Chooses a light, for the middle of the lens.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camera, std::uint32_t stream,
+                                  std::uint32_t first, GhostSamples<N>& samples) {
+    Vec2Lanes<float, N> u;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i)
+        u.set(i, sample_2d(stream, first + static_cast<std::uint32_t>(i), ghost_dimension::light));
+    for (int i = 0; i < N; ++i) {
+        const LensFrame frame = lens_frame(camera, samples.time[i]);
+        const LightReceiver middle{frame.place_in_scene({0, 0, 0}), {0, 0, 0}, samples.time[i]};
+        LightPick& light = samples.lights[i];
+        light = pick_light(view, middle, light_kinds(view, middle), u[i], samples.number[i]);
+        Vec3f from = {0, 0, 1};  // behind the lens
+        if (light.probability > 0.0f) from = frame.direction(sample_picked<scene_kind>(view, middle, light).direction);
+        samples.from.set(i, from);
+    }
+}
+
+/// Chooses a place in front of the lens through which light of that direction may go this way.
+template <int N>
+REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostEntry* entries, std::uint32_t stream,
+                                   std::uint32_t first, GhostSamples<N>& samples) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec2f u = sample_2d(stream, first + static_cast<std::uint32_t>(i), ghost_dimension::entry);
+        const float x = samples.from.x[i], y = samples.from.y[i], z = samples.from.z[i];
+        const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // no number right behind
+        const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
+        const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
+                                         static_cast<float>(kGhostAngles));
+        const EntryPlace at = entry_place(entries[select(bin < kGhostAngles, bin, kGhostAngles - 1)], ghosts.reach, u);
+        const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
+        const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
+        samples.rays.origin.set(i, {-at.along * z * away_x - at.across * away_y,
+                                    -at.along * z * away_y + at.across * away_x, at.along * sine});
+        samples.rays.direction.set(i, {0, 0, 1});
+        samples.rays.status[i] = select(seen, 0, static_cast<int>(RayStatus::vignetted));
+        samples.density[i] = at.density;
+    }
+}
+
+/// Sends the light from where it really comes to that place. `scale`: of the irradiance there, mm^2.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, float scale, GhostSamples<N>& samples) {
+    LensRays<float, N>& rays = samples.rays;
+    for (int i = 0; i < N; ++i) {
+        if (rays.status[i] != 0) continue;
+        const LensFrame frame = lens_frame(camera, samples.time[i]);
+        const LightReceiver here{frame.place_in_scene(rays.origin[i]), {0, 0, 0}, samples.time[i]};
+        const LightSample light = sample_picked<scene_kind>(view, here, samples.lights[i]);
+        // A light that is near has another direction here, and the plane is across that in the middle.
+        const Vec3f to_light = frame.direction(light.direction);
+        const float cosine = dot(to_light, samples.from[i]);
+        if (is_black(light.irradiance) || !(cosine > 0.0f)) {
+            rays.status[i] = static_cast<int>(RayStatus::vignetted);
+            continue;
+        }
+        const float over = scale * cosine / (samples.density[i] * samples.lights[i].probability);
+        samples.color.set(i, bounded_light(over * light.irradiance));
+        rays.direction.set(i, -to_light);
+        const bool is_near = light.distance < kFarAway;
+        samples.shadow.origin.set(i, here.position);
+        samples.shadow.direction.set(i, is_near ? light.distance * light.direction : light.direction);
+        samples.shadow.far[i] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
+    }
+}
+
+/// Takes the light through the lens.
+template <LensKind lens_kind, bool disperses, int N>
+REALCAM_INLINE void pass_lens(const GhostView& ghosts, const GhostWay& way, GhostSamples<N>& samples,
+                              PassedPower<N>& passed) {
+    const LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
+    if constexpr (disperses)
+        trace_lens<lens_kind>(
+            lens, samples.rays, NoRecord{},
+            GhostMedia<kSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
+                                          samples.variable, passed});
+    else
+        trace_lens<lens_kind>(
+            lens, samples.rays, NoRecord{},
+            GhostMedia<kOneWavelengthTerms, N>{nullptr, ghosts.coatings + way.first, nullptr, passed});
+}
+
+/// The pixels that the light reaches, or -1, and what it brings there if nothing in the scene is in its way.
+template <SceneKind scene_kind, bool disperses, int N>
+REALCAM_INLINE void reach_film(const CameraView& camera, const PassedPower<N>& passed, GhostSamples<N>& samples,
+                               std::int32_t (&pixel)[N]) {
+    for (int i = 0; i < N; ++i) {
+        samples.shadow.active[i] = 0;
+        pixel[i] = -1;
+        if (samples.rays.status[i] != 0) continue;
+        const Vec3f o = samples.rays.origin[i], d = samples.rays.direction[i];
+        const float way = (camera.film_distance - o.z) / d.z;
+        pixel[i] = pixel_at(camera, o.x + way * d.x, o.y + way * d.y);
+        if (pixel[i] < 0) continue;
+        Color c = passed.of_unpolarised(i) * samples.color[i];
+        if constexpr (disperses) {
+            constexpr float kAll[kSharedWavelengths] = {1, 1, 1};
+            c = film_color(camera.dispersion, samples.place[i], 1, kAll, c);
+        }
+        if constexpr (scene_kind == SceneKind::any) {
+            c = exposure_weight(camera, pixel[i] / camera.width, samples.time[i]) * c;
+            samples.shadow.number[i] = shadow_ray_number(samples.number[i]);
+            samples.shadow.time[i] = samples.time[i];
+        }
+        samples.color.set(i, c);
+        samples.shadow.active[i] = is_black(c) ? 0 : 1;
+    }
 }
 
 }  // namespace splat_ghosts_detail
@@ -90,133 +233,42 @@ template <LensKind lens_kind, SceneKind scene_kind, bool disperses, int N, class
 REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& camera, const GhostView& ghosts,
                                     GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
     using namespace splat_ghosts_detail;
-    constexpr int kTerms = disperses ? kSpectrumTerms : kOneWavelengthTerms;
+    // A sequence has 2^32 samples, 2^24 blocks.
     const auto block = static_cast<std::uint32_t>(range.first_block);
     const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
     const int way_number = find_in_cdf(ghosts.cdf, ghosts.way_count, sample_2d(round, block, ghost_dimension::way).x);
     const GhostWay way = ghosts.ways[way_number];
     const std::uint32_t stream = hash32(static_cast<std::uint32_t>(way_number), round);
-    const LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
+    const std::uint32_t first_sample = block * kGhostBlock + first;
     const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
                              (static_cast<float>(camera.width) * static_cast<float>(camera.height));
 
-    const float all_times =
-        scene_kind == SceneKind::any ? camera.exposed_time + camera.row_time * static_cast<float>(camera.height) : 0.0f;
-
-    LensRays<float, N> rays;
-    SceneRays<N> shadow;
-    ColorLanes<N> color;
-    Vec3Lanes<float, N> from;  // the light, seen from the middle of the lens
-    Vec2Lanes<float, N> light_u, entry_u;
-    alignas(kLaneAlignment<float, N>) float place[N], variable[N], time[N], density[N];
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];
-    LightPick picks[N];
+    GhostSamples<N> samples;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const std::uint32_t sample = block * kGhostBlock + first + static_cast<std::uint32_t>(i);
-        number[i] = hash32(stream, sample);
-        light_u.set(i, sample_2d(stream, sample, ghost_dimension::light));
-        entry_u.set(i, sample_2d(stream, sample, ghost_dimension::entry));
+        const std::uint32_t sample = first_sample + static_cast<std::uint32_t>(i);
+        samples.number[i] = hash32(stream, sample);
+        samples.time[i] = samples.place[i] = samples.variable[i] = 0;
         if constexpr (scene_kind == SceneKind::any || disperses) {
-            const Vec2f when = sample_2d(stream, sample, ghost_dimension::time);
-            time[i] = when.x * all_times;
-            place[i] = disperses ? when.y * static_cast<float>(camera.dispersion.cell_count) : 0.0f;
-        } else {
-            time[i] = place[i] = 0;
-        }
-    }
-    for (int i = 0; i < N; ++i) {
-        const LensFrame frame{camera_at(camera, time[i]), camera.front_vertex_m};
-        const LightReceiver middle{frame.place_in_scene({0, 0, 0}), {0, 0, 0}, time[i]};
-        picks[i] = pick_light(view, middle, light_kinds(view, middle), light_u[i], number[i]);
-        const bool lit = picks[i].probability > 0.0f;
-        from.set(i,
-                 lit ? frame.direction(sample_picked<scene_kind>(view, middle, picks[i]).direction) : Vec3f{0, 0, 1});
-    }
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        // The tangent of half the angle to the axis, infinite behind the camera.
-        const float x = from.x[i], y = from.y[i], z = from.z[i], sine = std::sqrt(x * x + y * y);
-        const float half_tangent = sine / (1.0f - z);
-        const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
-        const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
-                                         static_cast<float>(kGhostAngles));
-        const GhostEntry entry =
-            ghosts.entries[way_number * kGhostAngles + select(bin < kGhostAngles, bin, kGhostAngles - 1)];
-        const EntryPlace at = entry_place(entry, ghosts.reach, entry_u[i]);
-        const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
-        const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
-        rays.origin.set(i, {-at.along * z * away_x - at.across * away_y, -at.along * z * away_y + at.across * away_x,
-                            at.along * sine});
-        rays.direction.set(i, {0, 0, 1});
-        rays.status[i] = select(seen, 0, static_cast<int>(RayStatus::vignetted));
-        density[i] = at.density;
-        if constexpr (disperses)
-            variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, place[i]));
-        shadow.active[i] = 0;
-    }
-    for (int i = 0; i < N; ++i) {
-        if (rays.status[i] != 0) continue;
-        // The light as the place sees it, which may be near: from a direction of its own, through a plane that is
-        // across the first.
-        const LensFrame frame{camera_at(camera, time[i]), camera.front_vertex_m};
-        const LightReceiver here{frame.place_in_scene(rays.origin[i]), {0, 0, 0}, time[i]};
-        const LightSample light = sample_picked<scene_kind>(view, here, picks[i]);
-        const Vec3f to_light = frame.direction(light.direction);
-        const float cosine = dot(to_light, from[i]);
-        if (is_black(light.irradiance) || !(cosine > 0.0f)) {
-            rays.status[i] = static_cast<int>(RayStatus::vignetted);
-            continue;
-        }
-        color.set(i, bounded_light((cosine / (density[i] * pixel_area * picks[i].probability * way.probability)) *
-                                   light.irradiance));
-        rays.direction.set(i, -to_light);
-        const bool is_near = light.distance < kFarAway;
-        shadow.origin.set(i, here.position);
-        shadow.direction.set(i, is_near ? light.distance * light.direction : light.direction);
-        shadow.far[i] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
-    }
-
-    PassedPower<N> passed;
-    const GhostMedia<kTerms, N> media = [&] {
-        if constexpr (disperses)
-            return GhostMedia<kTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first, variable,
-                                         passed};
-        else
-            return GhostMedia<kTerms, N>{nullptr, ghosts.coatings + way.first, nullptr, passed};
-    }();
-    trace_lens<lens_kind>(lens, rays, NoRecord{}, media);
-
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t pixel[N], hidden[N];
-    std::int32_t any = 0;
-    for (int i = 0; i < N; ++i) {
-        if (rays.status[i] != 0) continue;
-        const Vec3f o = rays.origin[i], d = rays.direction[i];
-        const float way_to_film = (camera.film_distance - o.z) / d.z;
-        pixel[i] = pixel_at(camera, o.x + way_to_film * d.x, o.y + way_to_film * d.y);
-        if (pixel[i] < 0) continue;
-        Color c = passed.of_unpolarised(i) * color[i];
-        if constexpr (disperses) {
-            constexpr float kAll[kSharedWavelengths] = {1, 1, 1};
-            c = film_color(camera.dispersion, place[i], 1, kAll, c);
-        }
-        if constexpr (scene_kind == SceneKind::any) {
-            // A row sees what falls on it while it is exposed.
-            const float begin = static_cast<float>(pixel[i] / camera.width) * camera.row_time;
-            if (camera.row_time > 0.0f) {
-                if (time[i] < begin || time[i] > begin + camera.exposed_time) continue;
-                c = (all_times / camera.exposed_time) * c;
+            const Vec2f u = sample_2d(stream, sample, ghost_dimension::time);
+            if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * all_times(camera);
+            if constexpr (disperses) {
+                samples.place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
+                samples.variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, samples.place[i]));
             }
-            shadow.number[i] = shadow_ray_number(number[i]);
-            shadow.time[i] = time[i];
         }
-        color.set(i, c);
-        shadow.active[i] = any = 1;
     }
-    if (!any) return;
-    scene.occluded(shadow, hidden);
+    choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
+    choose_entries(ghosts, ghosts.entries + way_number * kGhostAngles, stream, first_sample, samples);
+    send_light<scene_kind>(view, camera, 1.0f / (pixel_area * way.probability), samples);
+    PassedPower<N> passed;
+    pass_lens<lens_kind, disperses>(ghosts, way, samples, passed);
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t pixel[N], hidden[N];
+    reach_film<scene_kind, disperses>(camera, passed, samples, pixel);
+    scene.occluded(samples.shadow, hidden);
     for (int i = 0; i < N; ++i)
-        if (shadow.active[i] && !hidden[i]) splat(pixel[i], color[i], unit_float(hash32(number[i])));
+        if (samples.shadow.active[i] && !hidden[i])
+            splat(pixel[i], samples.color[i], unit_float(hash32(samples.number[i])));
 }
 
 }  // namespace REALCAM_NAMESPACE

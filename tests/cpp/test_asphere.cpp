@@ -26,21 +26,21 @@ Real sag(const Surface& s, Real r) {
     return z;
 }
 
-struct Crossing {
+struct FoundCrossing {
     Real x, y, z, nx, ny, nz;
     int count = 0;  // of crossings inside the rim
 };
 
 // All crossings of a ray inside the rim, by a scan of its whole length for changes of sign and bisection; the
 // first is kept. The normal comes from central differences of the sag.
-Crossing first_crossing(const Surface& s, Vec3d o, Vec3d d) {
+FoundCrossing first_crossing(const Surface& s, Vec3d o, Vec3d d) {
     const Real rim = s.clear_semi_diameter;
     const auto height = [&](Real t, Real& r) {
         const Real x = o.x + t * d.x, y = o.y + t * d.y;
         r = std::sqrt(x * x + y * y);
         return o.z + t * d.z - sag(s, r);
     };
-    Crossing found;
+    FoundCrossing found;
     constexpr int kSteps = 1000;
     const Real reach = 4 * rim;
     Real before = 0, r = 0;
@@ -98,7 +98,7 @@ TEST_CASE("rays meet the aspheres of the phone lens where an independent search 
         const RayTracer trace(lens_of({surface}), LightDirection::to_film);
         int compared = 0;
         for_random_rays(surface, 200, [&](Vec3d o, Vec3d d) {
-            const Crossing truth = first_crossing(surface, o, d);
+            const FoundCrossing truth = first_crossing(surface, o, d);
             if (truth.count != 1) return;  // none, or a ray that grazes and crosses it twice
             const Real cosine = std::fabs(truth.nx * d.x + truth.ny * d.y + truth.nz * d.z);
             const TracedRay ray = trace(o, d);

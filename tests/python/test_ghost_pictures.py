@@ -15,11 +15,11 @@ from . import scenes
 FILM = rc.Film(24, 24, (96, 96))
 
 
-def far_lamp(tangent_x: float, tangent_y: float, distance_m: float = 1e4) -> rc.Scene:
-    """A small lamp of 1 lux at the camera, at these tangents to the axis; nothing else."""
+def far_lamp(tangent_x: float, tangent_y: float, distance_m: float = 1e4, brightness: float = 1.0) -> rc.Scene:
+    """A small lamp of so many lux at the camera, at these tangents to the axis; nothing else."""
     behind = np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]])
     place = (tangent_x * distance_m, tangent_y * distance_m, -distance_m)
-    lux = float(np.dot(place, place))
+    lux = brightness * float(np.dot(place, place))
     return rc.Scene.from_arrays(behind, [[0, 1, 2]]).with_point_light(place, (lux, lux, lux))
 
 
@@ -144,8 +144,8 @@ class SequentialTrace:
             place = o + ((self.lens.film_position_mm - o[:, 2]) / d[:, 2])[:, None] * d
         return place[:, :2], np.nan_to_num((s + p) / 2)
 
-    def flux(self, pair: tuple[int, int], tangent: float, film_mm: float, grid: int) -> float:
-        """lux mm^2 on a square film of a lamp of 1 lux at this tangent."""
+    def flux(self, pair: tuple[int, int], tangent: float, film_mm: float, grid: int, *, disc: bool = False) -> float:
+        """lux mm^2 on a square film, or the disc in it, of a lamp of 1 lux at this tangent."""
         d = np.array([-tangent, 0.0, 1.0]) / np.sqrt(1 + tangent**2)
         reach = self.rim[0] * 1.3
         edge = (np.arange(grid) + 0.5) / grid * 2 * reach - reach
@@ -153,6 +153,8 @@ class SequentialTrace:
         start = np.stack([x, y, np.zeros(grid * grid)], axis=1) - 30 * d
         place, share = self.to_film(start, np.broadcast_to(d, start.shape), self.way(*pair))
         inside = (np.abs(place) <= film_mm / 2).all(axis=1)
+        if disc:
+            inside = np.hypot(place[:, 0], place[:, 1]) <= film_mm / 2
         return float(np.where(inside, share, 0).sum() * (2 * reach / grid) ** 2 * d[2])
 
 
@@ -171,6 +173,25 @@ def test_all_pairs_of_a_double_gauss_bring_as_much_light_as_an_independent_sum(d
                      abs(total / expected - 1), 0.01, ""))  # fmt: skip
 
 
+def test_the_veil_of_a_sky_is_that_of_lamps_all_around() -> None:
+    """The sum of flux(angle) over a half-space: a sky of radiance 1 is a lamp of 1 lux in each steradian."""
+    lens, side, film_mm = singlet(stop_mm=5.0), 48, 24
+    camera = rc.Camera(lens, film=rc.Film(film_mm, film_mm, (side, side)), exposure_time_s=1)
+    effect = {"spp": 1024, "device": "cpu", "seed": 3}
+    light = ghosts(scenes.sky(), camera, **effect) - lit_without_ghosts(scenes.sky(), camera, spp=1024, seed=3)  # type: ignore[arg-type]
+    place = (np.arange(side) + 0.5) * film_mm / side - film_mm / 2
+    inside = np.hypot(place[None, :], place[:, None]) <= film_mm / 2
+    total = (light.mean(axis=2) * inside).sum() * (film_mm / side) ** 2
+    trace = SequentialTrace(lens)
+    nodes, weights = np.polynomial.legendre.leggauss(48)
+    angles = np.radians(89) * (1 + nodes) / 2
+    flux = [trace.flux((2, 1), float(np.tan(angle)), film_mm, 256, disc=True) for angle in angles]
+    expected = float((2 * np.pi * np.sin(angles) * flux) @ weights) * np.radians(89) / 2
+    # The disc's border cuts pixels: a few of 1800, of light that is the same on both sides.
+    hold(Measurement("Effects", "veil of a constant sky by a singlet's ghost", "against a sum over rays in double",
+                     "cpu", "float32", abs(total / expected - 1), 0.01, ""))  # fmt: skip
+
+
 def test_a_lamp_behind_an_object_makes_no_ghost() -> None:
     lens = rc.Lens.load("double-gauss-50mm").focused(2.0)
     camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
@@ -183,3 +204,63 @@ def test_a_lamp_behind_an_object_makes_no_ghost() -> None:
     dark = ghosts(hidden, camera, **without) - lit_without_ghosts(hidden, camera, **without)
     assert bright.sum() > 0
     assert (dark == 0).all()
+
+
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm", "mirror-telephoto-500mm"])
+@pytest.mark.parametrize("tangents", [(0.0, 0.0), (0.4, 0.3), (5.0, 0.0)])
+def test_lamps_anywhere_give_numbers(name: str, tangents: tuple[float, float]) -> None:
+    """On the axis, in the corner, far outside the frame: never below black, and exactly in step with the lamp."""
+    camera = rc.Camera(rc.Lens.load(name).with_coating("bare"), film=rc.Film(36, 24, (30, 20)), exposure_time_s=1)
+    once, brighter = (ghosts(far_lamp(*tangents, brightness=b), camera, spp=4) for b in (1.0, 1e8))
+    assert np.isfinite(once).all()
+    assert (once >= 0).all()
+    # The unit of the sums follows the light, so that the same samples leave the same numbers.
+    np.testing.assert_allclose(brighter, 1e8 * once, rtol=1e-5, atol=1e-9 * brighter.max())
+
+
+def test_a_lamp_behind_the_camera_makes_no_ghost() -> None:
+    behind = far_lamp(0.05, 0.0, distance_m=-1e4)
+    camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM, exposure_time_s=1)
+    assert ghosts(behind, camera, spp=4).sum() == 0
+
+
+@pytest.mark.parametrize("f_number", [2.8, 22.0])
+def test_stopping_down_takes_light_from_ghosts(f_number: float) -> None:
+    lens = rc.Lens.load("double-gauss-50mm").with_iris(blades=7)
+    camera = rc.Camera(lens.stopped_down(f_number), film=FILM, exposure_time_s=1)
+    light = ghosts(far_lamp(0.15, 0.1), camera, spp=16).sum()
+    assert 0 < light < np.inf
+    wide = ghosts(far_lamp(0.15, 0.1), camera.replace(lens=lens), spp=16).sum()
+    assert light < 1.02 * wide
+
+
+def test_the_same_ghosts_each_time_whatever_the_threads() -> None:
+    camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM, exposure_time_s=1)
+    one, two = (ghosts(far_lamp(0.15, 0.1), camera, spp=8, threads=threads) for threads in (1, 2))
+    np.testing.assert_array_equal(one, two)
+
+
+@pytest.mark.parametrize("effect", ["ghosts=2", "ghosts=", "ghosts=-1", "ghosts=nan", "dispersion=1"])
+def test_a_share_that_is_none_is_refused(effect: str) -> None:
+    camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM)
+    with pytest.raises(rc.InputError, match=f'"{effect}" is no effect'):
+        rc.render(scenes.sky(), camera, spp=1, effects=effect)
+
+
+def test_shares_are_told_again() -> None:
+    camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), film=FILM)
+    with pytest.warns(UserWarning, match="ghosts: it is not known what covers surfaces"):
+        assert rc.render(scenes.sky(), camera, spp=1, effects="ghosts=1e-8").effects == ("ghosts=1e-8",)
+
+
+def test_ghosts_are_listed_by_what_they_bring() -> None:
+    bare = rc.Lens.load("double-gauss-50mm").with_coating("bare").ghosts()
+    assert len(bare) == 45
+    shares = [ghost.share or 0.0 for ghost in bare]
+    assert shares == sorted(shares, reverse=True)
+    coated = rc.Lens.load("double-gauss-50mm").with_coating("quarter_wave").ghosts()
+    assert sum(ghost.share or 0.0 for ghost in coated) < 0.1 * sum(shares)
+    first = bare[0]
+    alone = rc.Lens.load("double-gauss-50mm").ghost(first.first, first.second)
+    assert alone.effective_focal_length_mm == first.effective_focal_length_mm
+    assert alone.share is None
