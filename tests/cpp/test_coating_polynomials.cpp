@@ -109,7 +109,7 @@ TEST_CASE("polynomials in cosine and wavelength follow all coatings over the spe
     const WavelengthVariable variable = variable_over(spectrum.range());
     const auto errors_with = [&](const Coating& coating) {
         Errors errors;
-        for (const std::string& name : {"double-gauss-100mm", "phone-4mm", "mirror-telephoto-500mm"}) {
+        for (const char* const name : {"double-gauss-100mm", "phone-4mm", "mirror-telephoto-500mm"}) {
             const LensSystem lens = coated(io::read_lens(name), coating);
             const auto fitted = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_scene, wavelengths, variable);
             for (const WavelengthCell& cell : spectrum.cells()) {

@@ -17,6 +17,7 @@ using namespace realcam;
 using namespace realcam::test;
 
 constexpr WavelengthRange kVisible = {380, 780};
+constexpr float kAll[kSharedWavelengths] = {1, 1, 1};  ///< a lens that passes all light on
 
 DispersionView view_of(const FilmSpectrum& spectrum) {
     return {spectrum.cells().data(),
@@ -105,7 +106,8 @@ TEST_CASE("three wavelengths that share a sample differ from white by what the d
     double squares[3] = {}, alone[3] = {};
     for (int cell = 0; cell < view.cell_count; ++cell) {
         const float place = static_cast<float>(cell) + 0.5f;
-        const Color three = film_color(view, place, 7, {1, 1, 1}), one = film_color(view, place, 1, {1, 1, 1});
+        const Color three = film_color(view, place, 7, kAll, {1, 1, 1}),
+                    one = film_color(view, place, 1, kAll, {1, 1, 1});
         const double of_three[] = {static_cast<double>(three.r), static_cast<double>(three.g),
                                    static_cast<double>(three.b)};
         const double of_one[] = {static_cast<double>(one.r), static_cast<double>(one.g), static_cast<double>(one.b)};
@@ -123,7 +125,7 @@ TEST_CASE("three wavelengths that share a sample differ from white by what the d
 TEST_CASE("a line is one wavelength, and shows all colours in grey") {
     const FilmSpectrum spectrum(Illuminant::line(546.1));
     CHECK(std::fabs(wavelength_at(view_of(spectrum), 0.7f) - 546.1f) < 1e-4f);
-    const Color film = film_color(view_of(spectrum), 0.7f, 1, {0.2f, 0.9f, 0.4f});
+    const Color film = film_color(view_of(spectrum), 0.7f, 1, kAll, {0.2f, 0.9f, 0.4f});
     CHECK(film.r == film.g);
     CHECK(film.g == film.b);
 }
