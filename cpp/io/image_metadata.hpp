@@ -26,7 +26,7 @@ struct ImageMetadata {
     LightTransport transport = LightTransport::paths;
     double clamp_cd_m2 = 0;
     std::string effects, illuminant;  ///< names with commas, and as it was written; empty: none
-    std::string coatings;  ///< of the effect of that name: coating_summary; empty: without
+    std::string coatings;  ///< of the effects coatings and ghosts: coating_summary; empty: without
     std::string denoiser;  ///< what has changed the exposure since it was taken; empty: nothing
 
     /// Names "realcam:..." and values, as they go into every format.
