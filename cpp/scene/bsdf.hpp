@@ -70,7 +70,7 @@ public:
         // is not lost: the share of one passage. Of two angles the lesser, so that nothing is gained. What is lost by
         // that comes back in a lobe of its own, as that of several reflections in MicrofacetReflection does.
         const float coated = through_coat_ < in ? through_coat_ : in;
-        value += (coated * phong_value(eye, shininess, light)) * phong;
+        if (!is_black(phong)) value += (coated * phong_value(eye, shininess, light)) * phong;
         if (share_[2] > 0.0f) value += (coated * specular_weight) * specular.eval(eye, light);
         if (!is_black(lost_under_coat_)) value += light.z * lost_under_coat(light.z) * lost_under_coat_;
         // As below, where the coat is met on the eye's side alone.
