@@ -20,16 +20,9 @@ using namespace realcam::test;
 
 constexpr double kDegree = M_PI / 180, kAiryRing = 3.8317059702075123 / M_PI;
 
-/// A paraboloid mirror of focal length f with its stop at the vertex, and the film `defocus` mm behind the focus on the
-/// light's way. Its f-number is that of the sine of its outermost ray.
-LensSystem paraboloid(double f, double f_number, double defocus = 0) {
-    const double radius = 2 * f * std::tan(0.5 * std::asin(0.5 / f_number));
-    Surface mirror = refracting(-2 * f, 0, Glass::air(), 1.01 * radius);
-    mirror.type = SurfaceType::mirror;
-    mirror.conic = -1;
-    LensSystem lens = lens_of({stop_plane(0, radius), mirror});
-    lens.film_distance = -f - defocus;
-    return lens;
+/// By the f-number of the sine of its outermost ray.
+LensSystem paraboloid_of(double f, double f_number, double defocus = 0) {
+    return paraboloid(f, 2 * f * std::tan(0.5 * std::asin(0.5 / f_number)), defocus);
 }
 
 PsfRequest request_for(const LensSystem& lens, double field_deg = 0) {
@@ -81,7 +74,7 @@ double first_zero(const Psf& psf, bool along_y) {
 
 TEST_CASE("the PSF of a perfect mirror is the closed form, from f/0.7 to f/64") {
     for (const double f_number : {0.7, 1.0, 4.0, 22.0, 64.0}) {
-        const LensSystem lens = paraboloid(100, f_number);
+        const LensSystem lens = paraboloid_of(100, f_number);
         const Psf psf = psf_of(lens, request_for(lens));
         const double peak = perfect(100, f_number, lens.wavelength_nm, 0);
         double worst = 0;
@@ -101,7 +94,7 @@ TEST_CASE("the PSF of a perfect mirror is the closed form, from f/0.7 to f/64") 
 TEST_CASE("Airy's ring, the light inside it, and the modulation of a perfect lens") {
     double worst_ring = 0, worst_light = 0, worst_mtf = 0;
     for (const double f_number : {4.0, 5.6, 8.0, 11.0, 16.0, 22.0}) {
-        const LensSystem lens = paraboloid(100, f_number);
+        const LensSystem lens = paraboloid_of(100, f_number);
         const double detail = 1e-3 * lens.wavelength_nm * f_number;
         PsfRequest request = request_for(lens);
         request.pitch_um = detail / 16;
@@ -134,10 +127,10 @@ TEST_CASE("light on the axis out of focus has the closed form") {
     for (const double f_number : {8.0, 64.0})
         for (const double waves : {-1.5, -1.0, -0.5, -0.25, 0.25, 0.5, 1.0, 1.5}) {
             const double f = 100, radius = 2 * f * std::tan(0.5 * std::asin(0.5 / f_number));
-            const LensSystem sharp = paraboloid(f, f_number);
+            const LensSystem sharp = paraboloid_of(f, f_number);
             const double wave = 1e-6 * sharp.wavelength_nm,
                          defocus = f / (1 - 2 * waves * wave * f / (radius * radius)) - f;
-            const LensSystem lens = paraboloid(f, f_number, defocus);
+            const LensSystem lens = paraboloid_of(f, f_number, defocus);
             PsfRequest request = request_for(lens);
             request.size = 16;
             const double x = M_PI * waves, closed = std::pow(std::sin(x) / x * f / (f + defocus), 2);
@@ -201,14 +194,14 @@ TEST_CASE("light is the same by halves and by more rays") {
 TEST_CASE("all light is on the film") {
     // The share beyond a square of half side a is about 4 sqrt 2 / (pi^3) / (a / detail) of a perfect lens (its rings
     // fall off as q^-3): 1.1% of 128 points at a quarter of the detail.
-    const LensSystem lens = paraboloid(100, 8);
+    const LensSystem lens = paraboloid_of(100, 8);
     const Psf psf = psf_of(lens, request_for(lens));
     double sum = 0;
     for (const double v : psf.values) sum += v * psf.pitch_um * psf.pitch_um;
     CHECK(sum == about(1 - 0.1824 / 16, 1e-3));
-    PsfRequest rays = request_for(paraboloid(100, 8, 0.05));
+    PsfRequest rays = request_for(paraboloid_of(100, 8, 0.05));
     rays.method = PsfMethod::geometric;
-    const Psf geometric = psf_of(paraboloid(100, 8, 0.05), rays);
+    const Psf geometric = psf_of(paraboloid_of(100, 8, 0.05), rays);
     CHECK(energy_inside(geometric, 20) == about(1, 1e-12));
     // An even disc of 50 / 16 um, but for the squares on its edge.
     CHECK(energy_inside(geometric, 0.5 * 50 / 16) == about(0.25, 0.05));

@@ -16,15 +16,6 @@ namespace {
 using namespace realcam;
 using namespace realcam::test;
 
-LensSystem paraboloid(double f, double radius, double defocus) {
-    Surface mirror = refracting(-2 * f, 0, Glass::air(), 1.01 * radius);
-    mirror.type = SurfaceType::mirror;
-    mirror.conic = -1;
-    LensSystem lens = lens_of({stop_plane(0, radius), mirror});
-    lens.film_distance = -f - defocus;
-    return lens;
-}
-
 Spot spot(const LensSystem& lens, const FieldPoint& field, std::vector<PupilPoint> pattern) {
     return spot_of(field_rays(lens, lens.wavelength_nm, field, std::move(pattern)), lens.film_distance);
 }

@@ -35,17 +35,6 @@ double largest(const Wavefront& w) {
     return worst;
 }
 
-/// A paraboloid mirror of focal length f with its stop at the vertex, and the film `defocus` mm behind the focus on the
-/// light's way.
-LensSystem paraboloid(double f, double radius, double defocus = 0) {
-    Surface mirror = refracting(-2 * f, 0, Glass::air(), 1.01 * radius);
-    mirror.type = SurfaceType::mirror;
-    mirror.conic = -1;
-    LensSystem lens = lens_of({stop_plane(0, radius), mirror});
-    lens.film_distance = -f - defocus;
-    return lens;
-}
-
 }  // namespace
 
 TEST_CASE("optical path differences and ray aberrations of the CODE V double Gauss") {

@@ -110,4 +110,15 @@ inline LensSystem lens_of(std::vector<Surface> surfaces) {
     return lens;
 }
 
+/// A paraboloid mirror of focal length f with its stop at the vertex, and the film `defocus` mm behind the focus on the
+/// light's way.
+inline LensSystem paraboloid(double f, double radius, double defocus = 0) {
+    Surface mirror = refracting(-2 * f, 0, Glass::air(), 1.01 * radius);
+    mirror.type = SurfaceType::mirror;
+    mirror.conic = -1;
+    LensSystem lens = lens_of({stop_plane(0, radius), mirror});
+    lens.film_distance = -f - defocus;
+    return lens;
+}
+
 }  // namespace realcam::test
