@@ -72,11 +72,9 @@ void bind_ghosts(py::module_& m) {
             "Proc. SPIE 7428,\n742807, 2009). Raises InputError where the two are not refracting surfaces in that "
             "order.")
         .def("ghosts", &ghosts_of,
-             "All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares: "
-             "by "
-             "rays through\nboth reflections, with the reflectances of light along the axis. Surfaces of unknown "
-             "coating "
-             "count as bare.\nRaises InputError where an index is not known.");
+             "All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares:\n"
+             "by rays through both reflections, with the reflectances of light along the axis. Surfaces of unknown\n"
+             "coating count as bare. Raises InputError where an index is not known.");
 }
 
 }  // namespace realcam::bindings

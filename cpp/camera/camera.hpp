@@ -347,21 +347,19 @@ public:
           effects_(effects),
           path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
         if (effects.illuminant) set_wavelengths(*effects.illuminant);
-        if (effects.coatings) set_coatings();
+        if (effects.coatings) set_coatings(last);
         const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
         for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
         if (last && last->has_pupil_of(camera, pupil_wavelengths_))
             pupil_ = last->pupil_;
         else if (camera.model == CameraModel::full_lens)
-            pupil_ = std::make_shared<const Pupil>(
-                camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm), tracer, pupil_wavelengths_);
+            pupil_ = std::make_shared<const Pupil>(camera.lens, film_radius(), tracer, pupil_wavelengths_);
         if (effects.ghost_share) {
             if (last && last->ghosts_ && last->effects_ == effects && last->has_lens_and_film_of(camera))
                 ghosts_ = last->ghosts_;
             else
-                ghosts_ = std::make_shared<const GhostTables>(
-                    camera.lens, 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm), *effects.ghost_share,
-                    tracer, spectrum_ ? &*spectrum_ : nullptr);
+                ghosts_ = std::make_shared<const GhostTables>(camera.lens, film_radius(), *effects.ghost_share, tracer,
+                                                              spectrum_ ? &*spectrum_ : nullptr);
         }
         if (!pupil_) {
             camera_detail::validate_ideal(camera.lens, camera.model);
@@ -442,8 +440,17 @@ private:
             if (end != pupil_wavelengths_.front()) pupil_wavelengths_.push_back(end);
     }
 
-    void set_coatings() {
+    /// Of the film point furthest from the axis, mm.
+    double film_radius() const { return 0.5 * std::hypot(camera_.film.width_mm, camera_.film.height_mm); }
+
+    void set_coatings(const CameraSetup* last) {
         const LensSystem& lens = camera_.lens;
+        if (last && last->effects_ == effects_ && last->camera_.lens == lens) {
+            coatings_ = last->coatings_;
+            coatings_to_scene_ = last->coatings_to_scene_;
+            coatings_to_film_ = last->coatings_to_film_;
+            return;
+        }
         if (!spectrum_) {
             check_wavelength_in_glasses(lens, lens.wavelength_nm, "coatings");
             coatings_ = fit_coatings<kOneWavelengthTerms>(lens, LightDirection::to_scene, {lens.wavelength_nm});
@@ -465,8 +472,7 @@ private:
         }
         const FirstOrder data = first_order(lens, lens.wavelength_nm);
         const double image = static_cast<double>(camera_detail::thin_lens_of(lens, data).image_distance);
-        map_ = std::make_shared<const LensMap>(lens, 0.5 * std::hypot(camera_.film.width_mm, camera_.film.height_mm),
-                                               image, data.entrance_pupil_position, tracer);
+        map_ = std::make_shared<const LensMap>(lens, film_radius(), image, data.entrance_pupil_position, tracer);
     }
 
     static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {

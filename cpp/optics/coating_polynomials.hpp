@@ -48,6 +48,15 @@ struct alignas(16) CoatingPolynomials {
         }
         return sum;
     }
+
+    /// What is let through. `in`, `beyond`: index times cosine on both sides; `squared_quotient` as of
+    /// fresnel_transmittance; `wavelength`: the WavelengthVariable.
+    REALCAM_INLINE FresnelTransmittance transmittance(float in, float beyond, float squared_quotient,
+                                                      float wavelength) const {
+        const FresnelTransmittance bare = fresnel_transmittance(in, beyond, squared_quotient);
+        const float cosine = scale * select(is_behind != 0, beyond, in) - 1.0f;
+        return {bare.s * at(s, cosine, wavelength), bare.p * at(p, cosine, wavelength)};
+    }
 };
 
 /// What rays have kept of each polarisation: products over the surfaces. Planes of incidence are taken to be the same
@@ -80,13 +89,12 @@ struct CoatedMedia {
 
         /// Takes note of a ray whose index times cosine is `before` in front of the surface and `behind` behind it.
         REALCAM_INLINE void pass(int lane, float before, float behind) const {
-            const float in = std::fabs(before), squared_quotient = 1.0f + this->squared_index_change(lane);
-            const FresnelTransmittance bare = fresnel_transmittance(in, behind, squared_quotient);
-            const float cosine = coating.scale * select(coating.is_behind != 0, behind, in) - 1.0f;
             float wavelength = 0;
             if constexpr (kWavelengthTerms > 1) wavelength = variable[lane];
-            passed.s[lane] *= bare.s * coating.at(coating.s, cosine, wavelength);
-            passed.p[lane] *= bare.p * coating.at(coating.p, cosine, wavelength);
+            const FresnelTransmittance kept =
+                coating.transmittance(std::fabs(before), behind, 1.0f + this->squared_index_change(lane), wavelength);
+            passed.s[lane] *= kept.s;
+            passed.p[lane] *= kept.p;
         }
     };
 

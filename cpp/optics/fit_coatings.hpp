@@ -39,10 +39,10 @@ inline PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, doub
             return is_reflected ? 1 - of.reflectance : of.transmittance;
         };
         const double quotient = beyond * beyond / (before * before), sum_s = in + out, sum_p = quotient * in + out;
-        const bool bare = surface.is_mirror();  // Fresnel's transmittance of a border between two equal media is 1
+        const bool unbent = surface.is_mirror();  // Fresnel's transmittance of a border between two equal media is 1
         x.push_back(scale * component_in(lower) - 1);
-        s.push_back(kept(response.s) * (bare ? 1 : sum_s * sum_s / (4 * in * out)));
-        p.push_back(kept(response.p) * (bare ? 1 : sum_p * sum_p / (4 * quotient * in * out)));
+        s.push_back(kept(response.s) * (unbent ? 1 : sum_s * sum_s / (4 * in * out)));
+        p.push_back(kept(response.p) * (unbent ? 1 : sum_p * sum_p / (4 * quotient * in * out)));
     }
     return {fit_polynomial<kCosineTerms>(x, s), fit_polynomial<kCosineTerms>(x, p)};
 }

@@ -38,11 +38,9 @@ struct GhostMedia {
             const float change = disperses ? coating.other_change.at(x) : coating.other_change.c[0];
             // 0 under total reflection: then nothing is let through, and all is reflected.
             const float other = select(reflects, sqrt_or_zero(in * in + change * coating.index_squared), behind);
-            const FresnelTransmittance bare = fresnel_transmittance(in, other, 1.0f + change);
-            const float cosine = coating.scale * select(coating.is_behind != 0, other, in) - 1.0f;
-            const float s = bare.s * coating.at(coating.s, cosine, x), p = bare.p * coating.at(coating.p, cosine, x);
-            passed.s[lane] *= select(reflects, 1.0f - s, s);
-            passed.p[lane] *= select(reflects, 1.0f - p, p);
+            const FresnelTransmittance through = coating.transmittance(in, other, 1.0f + change, x);
+            passed.s[lane] *= select(reflects, 1.0f - through.s, through.s);
+            passed.p[lane] *= select(reflects, 1.0f - through.p, through.p);
         }
     };
 
