@@ -16,7 +16,15 @@ import warnings
 import realcam as rc
 from realcam.bench import frame_camera, frame_scene, machine
 
-EFFECTS: list[tuple[str, ...]] = [(), ("coatings",), ("dispersion",), ("coatings", "dispersion"), ("ghosts",)]
+EFFECTS: list[tuple[str, ...]] = [
+    (),
+    ("coatings",),
+    ("dispersion",),
+    ("coatings", "dispersion"),
+    ("diffraction",),
+    ("coatings", "dispersion", "diffraction"),
+    ("ghosts",),
+]
 LENSES = ("double-gauss-50mm", "phone-4mm")
 ROUNDS = 5
 

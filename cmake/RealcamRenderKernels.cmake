@@ -3,7 +3,7 @@
 # served by a kernel for any lens and any scene (kernel_for in cpp/cuda/render_kernel.cu).
 function(realcam_add_render_kernels target)
   set(kinds "0 plain plain" "0 plain opaque" "0 plain any" "0 any plain" "0 any opaque" "0 any any")
-  foreach(effects IN ITEMS 1 2 3) # their numbers in kCompiledEffects
+  foreach(effects IN ITEMS 1 2 3 4 5) # their numbers in kCompiledEffects
     list(APPEND kinds "${effects} plain plain" "${effects} any plain" "${effects} any any")
   endforeach()
   foreach(kind IN LISTS kinds)

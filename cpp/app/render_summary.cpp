@@ -55,7 +55,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
     if (!effects.empty()) {
         std::string names;
         for (const std::string& name : effects) names += (names.empty() ? "" : ", ") + name;
-        const auto light = settings.dispersed_light();
+        const auto light = settings.spectral_light();
         line("effects", names + (light ? ", illuminant " + light->text() : ""));
         if (settings.effects.coatings || settings.effects.ghosts) line("coatings", coating_summary(lens));
     }

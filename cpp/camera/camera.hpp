@@ -15,9 +15,11 @@
 #include "../optics/focus.hpp"
 #include "../optics/pupil.hpp"
 #include "camera_view.hpp"
+#include "diffraction_tables.hpp"
 #include "film_spectrum.hpp"
 #include "ghost_tables.hpp"
 #include "lens_map.hpp"
+#include "starburst_tables.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -328,7 +330,9 @@ inline bool lies_near(const Camera& camera, Vec3d origin_m) {
 
 /// What is simulated of the light in the lens besides its refraction at the design wavelength.
 struct LensEffects {
-    std::optional<Illuminant> illuminant;  ///< of a picture with dispersion
+    std::optional<Illuminant> illuminant;  ///< of a picture whose samples have wavelengths: dispersion, diffraction
+    bool dispersion = false;  ///< indices of those wavelengths
+    bool diffraction = false;  ///< by the edges of the aperture
     bool coatings = false;  ///< what the surfaces pass on of the light
     std::optional<double> ghost_share = {};  ///< with ghosts, but for those with less of the lens's light
 
@@ -359,8 +363,9 @@ public:
                 ghosts_ = last->ghosts_;
             else
                 ghosts_ = std::make_shared<const GhostTables>(camera.lens, film_radius(), *effects.ghost_share, tracer,
-                                                              spectrum_ ? &*spectrum_ : nullptr);
+                                                              effects.dispersion ? &*spectrum_ : nullptr);
         }
+        if (effects.diffraction) set_diffraction(tracer, last);
         if (!pupil_) {
             camera_detail::validate_ideal(camera.lens, camera.model);
             if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
@@ -402,15 +407,19 @@ public:
         if (!pupil_) view.axis_irradiance = static_cast<float>(axis_irradiance(lens));
         if (pupil_) view.pupil = pupil_->view();
         view.lens = path_.view();
+        const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
         if (spectrum_) {
             view.dispersion = {spectrum_->cells().data(),
                                static_cast<int>(spectrum_->cells().size()),
                                variable_over(spectrum_->range()),
-                               to_scene_.data(),
-                               to_film_.data(),
-                               film_path_->view().surfaces};
+                               data_of(to_scene_),
+                               data_of(to_film_),
+                               film_path_ ? film_path_->view().surfaces : nullptr};
         }
-        const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+        if (diffraction_) {
+            const double across = std::fabs(static_cast<double>(view.thin.image_distance));
+            view.diffraction = diffraction_->view(camera_.film.width_mm * camera_.film.height_mm / (across * across));
+        }
         view.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
         set_times(view, scene_moves);
         return view;
@@ -419,6 +428,8 @@ public:
     const Camera& camera() const { return camera_; }
     /// Of a picture with ghosts; else null.
     const GhostTables* ghosts() const { return ghosts_.get(); }
+    /// Of a picture with diffraction; else null.
+    const StarburstTables* starbursts() const { return starbursts_.get(); }
 
 private:
     /// Before anything is made from it: a camera without a lens has no surface to begin with.
@@ -430,12 +441,15 @@ private:
     /// Rays of the shortest and of the longest wavelength leave the lens farthest apart.
     void set_wavelengths(const Illuminant& illuminant) {
         spectrum_.emplace(illuminant);
-        const WavelengthRange range = spectrum_->range();
+        // The code for diffraction and coatings together takes the indices of a spectrum: here, of one wavelength.
+        const double design = camera_.lens.wavelength_nm;
+        if (!effects_.dispersion && !effects_.coatings) return;
+        const WavelengthRange range = effects_.dispersion ? spectrum_->range() : WavelengthRange{design, design};
         check_dispersion(camera_.lens, range);
         to_scene_ = index_cubics(camera_.lens, LightDirection::to_scene, range);
         to_film_ = index_cubics(camera_.lens, LightDirection::to_film, range);
         film_path_.emplace(camera_.lens, LightDirection::to_film, camera_.lens.wavelength_nm);
-        pupil_wavelengths_ = {std::clamp(camera_.lens.wavelength_nm, range.first, range.last)};
+        pupil_wavelengths_ = {std::clamp(design, range.first, range.last)};
         for (const double end : {range.first, range.last})
             if (end != pupil_wavelengths_.front()) pupil_wavelengths_.push_back(end);
     }
@@ -462,6 +476,18 @@ private:
         const WavelengthVariable variable = variable_over(spectrum_->range());
         coatings_to_scene_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_scene, wavelengths, variable);
         coatings_to_film_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_film, wavelengths, variable);
+    }
+
+    void set_diffraction(const PupilTracer& tracer, const CameraSetup* last) {
+        const LensSystem& lens = camera_.lens;
+        if (last && last->diffraction_ && last->effects_ == effects_ && last->has_lens_and_film_of(camera_)) {
+            diffraction_ = last->diffraction_;
+            starbursts_ = last->starbursts_;
+            return;
+        }
+        diffraction_ = std::make_shared<const DiffractionTables>(lens, film_radius(), tracer);
+        starbursts_ = std::make_shared<const StarburstTables>(
+            lens, film_radius(), StarburstTables::Light{*spectrum_, effects_.dispersion, effects_.coatings}, tracer);
     }
 
     void set_map(const PupilTracer& tracer, const CameraSetup* last) {
@@ -502,7 +528,7 @@ private:
     LensEffects effects_;
     LensPath<float> path_;
     std::vector<CameraPlacement> keys_;  ///< positions relative to the first
-    std::optional<FilmSpectrum> spectrum_;  ///< of a picture with dispersion, as what follows
+    std::optional<FilmSpectrum> spectrum_;  ///< of a picture whose samples have wavelengths, as what follows
     std::vector<IndexCubic> to_scene_, to_film_;
     std::optional<LensPath<float>> film_path_;
     std::vector<CoatingPolynomials<kOneWavelengthTerms>> coatings_;
@@ -511,6 +537,8 @@ private:
     std::shared_ptr<const Pupil> pupil_;
     std::shared_ptr<const LensMap> map_;  ///< of the model mapped_lens
     std::shared_ptr<const GhostTables> ghosts_;  ///< of a picture with ghosts
+    std::shared_ptr<const DiffractionTables> diffraction_;  ///< of a picture with diffraction, as the next
+    std::shared_ptr<const StarburstTables> starbursts_;
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -6,6 +6,7 @@
 #include "../optics/pupil_view.hpp"
 #include "circle_of_confusion.hpp"
 #include "coating_view.hpp"
+#include "diffraction_view.hpp"
 #include "dispersion_view.hpp"
 #include "lens_map_view.hpp"
 
@@ -62,6 +63,7 @@ struct CameraView : CameraPlacement {
     int key_count;
     DispersionView dispersion;
     CoatingView coatings;
+    DiffractionView diffraction;
 };
 
 /// The camera at a time of the exposure. Between two keys its axes are interpolated, and made unit and right-angled
@@ -80,6 +82,11 @@ REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
     return dot(camera.position - point, camera.backward);
 }
 
+/// Of its lens, in the scene.
+REALCAM_INLINE Vec3f front_vertex(const CameraPlacement& camera, float front_vertex_m) {
+    return camera.position - front_vertex_m * camera.backward;
+}
+
 /// A camera's view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.
 template <class Copy>
 CameraView with_copied_arrays(CameraView view, Copy&& copy) {
@@ -96,6 +103,10 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.coatings.one_wavelength, view.lens.count);
     move(view.coatings.to_scene, view.lens.count);
     move(view.coatings.to_film, view.lens.count);
+    const int diffracting = view.diffraction.radii * view.diffraction.azimuths;
+    move(view.diffraction.nodes, diffracting);
+    move(view.diffraction.entries, diffracting * kDiffractionEntries);
+    move(view.diffraction.edges, diffracting * kDiffractionEdges);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
     return view;

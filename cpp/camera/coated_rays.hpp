@@ -9,7 +9,7 @@ REALCAM_HD inline void generate_coated_rays(const CameraView& camera, const Samp
                                             CameraRays<N>& rays) {
     LensRays<float, N> inside;
     PassedPower<N> passed;
-    start_lens_rays(camera, block, inside, rays);
+    start_lens_rays(camera, block, PixelPoints<N>{camera, block}, inside, rays);
     trace_lens<lens_kind>(
         camera.lens, inside, NoRecord{},
         CoatedMedia<OneWavelength, kOneWavelengthTerms, N>{{}, camera.coatings.one_wavelength, nullptr, passed});

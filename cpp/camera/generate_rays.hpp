@@ -34,6 +34,8 @@ inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce
 inline constexpr std::uint32_t roulette = 0x10000;
 /// Of the time, for which most samples have no use; its second number is the wavelength's.
 inline constexpr std::uint32_t time = 0x20000;
+/// Two pairs of diffraction's.
+inline constexpr std::uint32_t diffraction = 0x30000;
 
 /// The first of a bounce.
 REALCAM_INLINE constexpr std::uint32_t of_bounce(int bounce) {
@@ -111,28 +113,38 @@ REALCAM_INLINE void place_ray(const CameraView& camera, CameraRays<N>& rays, int
     rays.weight[lane] = select(lit, ray.weight, 0.0f);
 }
 
-template <int N, class RayOf>
-REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
-                                           RayOf&& ray_of) {
+/// The film point of each sample: anywhere in its pixel.
+template <int N>
+struct PixelPoints {
+    const CameraView& camera;
+    const SampleBlock<N>& block;
+
+    REALCAM_INLINE Vec2f operator[](int lane) const {
+        return film_point(camera, block.column[lane], block.row[lane], block.random(lane, dimension::film));
+    }
+};
+
+template <int N, class Points, class RayOf>
+REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                           CameraRays<N>& rays, RayOf&& ray_of) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool used = block.used[i] != 0;
-        const Vec2f film = film_point(camera, block.column[i], block.row[i], block.random(i, dimension::film));
-        place_ray(camera, rays, i, ray_of(film, block.random(i, dimension::pupil)), used);
+        place_ray(camera, rays, i, ray_of(film[i], block.random(i, dimension::pupil)), used);
         rays.sampled[i] = rays.passed[i] = block.used[i];
     }
 }
 
 /// Rays from film and pupil, in front of the last surface.
-template <int N>
-REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, LensRays<float, N>& inside,
-                                    CameraRays<N>& rays) {
+template <int N, class Points>
+REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                    LensRays<float, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec2f film = film_point(camera, block.column[i], block.row[i], block.random(i, dimension::film));
+        const Vec2f at = film[i];
         const Vec2f u = block.random(i, dimension::pupil);
-        const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);
-        inside.origin.set(i, {film.x, film.y, camera.film_distance});
+        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.x, u.y);
+        inside.origin.set(i, {at.x, at.y, camera.film_distance});
         inside.direction.set(i, pupil.direction);
         rays.weight[i] = pupil.weight;
     }
@@ -155,36 +167,44 @@ REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<flo
     }
 }
 
-template <LensKind lens_kind, int N>
-REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
+template <LensKind lens_kind, int N, class Points>
+REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                          CameraRays<N>& rays) {
     LensRays<float, N> inside;
-    start_lens_rays(camera, block, inside, rays);
+    start_lens_rays(camera, block, film, inside, rays);
     trace_lens<lens_kind>(camera.lens, inside);
     place_lens_rays(camera, inside, rays);
+}
+
+/// Samples the pupil as film points see it and takes the rays through the lens. `film`[lane]: the point of a lane, mm.
+template <LensKind lens_kind, int N, class Points>
+REALCAM_HD inline void generate_rays_from(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                          CameraRays<N>& rays) {
+    switch (camera.model) {
+        case CameraModel::pinhole:
+            generate_ideal_rays(camera, block, film, rays,
+                                [&](Vec2f at, Vec2f u) { return thin_lens_ray(camera, at, u, 0.0f); });
+            break;
+        case CameraModel::thin_lens:
+        case CameraModel::mapped_lens:
+            generate_ideal_rays(camera, block, film, rays, [&](Vec2f at, Vec2f u) {
+                return camera.map.count > 0 ? mapped_lens_ray(camera, at, u)
+                                            : thin_lens_ray(camera, at, u, camera.thin.pupil_radius);
+            });
+            break;
+        case CameraModel::thick_lens:
+            generate_ideal_rays(camera, block, film, rays,
+                                [&](Vec2f at, Vec2f u) { return thick_lens_ray(camera, at, u); });
+            break;
+        case CameraModel::full_lens: generate_lens_rays<lens_kind>(camera, block, film, rays); break;
+    }
 }
 
 /// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the
 /// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `lens_kind`: any, or the lens's own.
 template <LensKind lens_kind = LensKind::any, int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
-    switch (camera.model) {
-        case CameraModel::pinhole:
-            generate_ideal_rays(camera, block, rays,
-                                [&](Vec2f film, Vec2f u) { return thin_lens_ray(camera, film, u, 0.0f); });
-            break;
-        case CameraModel::thin_lens:
-        case CameraModel::mapped_lens:
-            generate_ideal_rays(camera, block, rays, [&](Vec2f film, Vec2f u) {
-                return camera.map.count > 0 ? mapped_lens_ray(camera, film, u)
-                                            : thin_lens_ray(camera, film, u, camera.thin.pupil_radius);
-            });
-            break;
-        case CameraModel::thick_lens:
-            generate_ideal_rays(camera, block, rays,
-                                [&](Vec2f film, Vec2f u) { return thick_lens_ray(camera, film, u); });
-            break;
-        case CameraModel::full_lens: generate_lens_rays<lens_kind>(camera, block, rays); break;
-    }
+    generate_rays_from<lens_kind>(camera, block, PixelPoints<N>{camera, block}, rays);
 }
 
 }  // namespace REALCAM_NAMESPACE

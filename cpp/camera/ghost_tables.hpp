@@ -1,116 +1,17 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
-#include <optional>
 #include <vector>
 
 #include "../math/append_cdf.hpp"
 #include "../optics/fit_coatings.hpp"
 #include "../optics/ghost.hpp"
-#include "../optics/pupil_tracer.hpp"
+#include "entry_search.hpp"
 #include "film_spectrum.hpp"
-#include "ghost_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 namespace ghost_tables_detail {
-
-/// A ray from the film that has left the lens by some way.
-struct FoundRay {
-    float half_tangent;   ///< of its angle to the axis
-    float along,
-        across;  ///< place in the plane across it, through the front vertex: away from the axis, and beside, mm
-    float etendue;        ///< mm^2 sr
-};
-
-/// Looks for where light has to enter: by rays back from the film, because there their bundles are wide, while those of
-/// a fisheye are a hundredth of its front. Lens and circle of film are round, so that one radius of the film is enough.
-struct EntrySearch {
-    static constexpr int kRadii = 64, kColumns = 24, kRows = kColumns / 2;
-
-    double film_radius, film_distance;  ///< mm
-    double rear_reach;  ///< radius of a circle in the last vertex plane through which all light goes to the film
-    const PupilTracer& tracer;
-
-    std::vector<FoundRay> along(const LensView<float>& way_back) const {
-        constexpr int kCount = kRadii * kColumns * kRows;
-        std::vector<FoundRay> found;
-        for (int first = 0; first < kCount; first += PupilTracer::kBlock) {
-            PupilTracer::Rays rays;
-            float etendue[PupilTracer::kBlock];
-            for (int k = 0; k < PupilTracer::kBlock; ++k) start(first + k, k, rays, etendue[k]);
-            tracer.trace(way_back, rays);
-            for (int k = 0; k < PupilTracer::kBlock; ++k)
-                if (rays.status[k] == 0)
-                    found.push_back(found_ray(rays.origin[k], normalized(rays.direction[k]), etendue[k]));
-        }
-        return found;
-    }
-
-private:
-    static_assert(kRadii * kColumns * kRows % PupilTracer::kBlock == 0);
-
-    /// From the middle of each ring of film in evenly spaced direction cosines to the circle behind the lens.
-    void start(int number, int lane, PupilTracer::Rays& rays, float& etendue) const {
-        const int radius = number / (kColumns * kRows), square = number % (kColumns * kRows);
-        const double ring = film_radius / kRadii, r = (radius + 0.5) * ring;
-        const auto cosine_to = [&](double away) { return away / std::hypot(away, film_distance); };
-        const double low = cosine_to(-rear_reach - r), high = cosine_to(rear_reach - r), most = cosine_to(rear_reach);
-        const double column = (high - low) / kColumns, row = most / kRows;
-        const double x = low + (square % kColumns + 0.5) * column, y = (square / kColumns + 0.5) * row;
-        const double z2 = 1 - x * x - y * y;
-        rays.origin.set(lane, static_cast<Vec3f>(Vec3d{r, 0, film_distance}));
-        rays.direction.set(lane, static_cast<Vec3f>(Vec3d{x, y, -std::sqrt(std::max(z2, 0.0))}));
-        rays.status[lane] = z2 > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
-        // Twice, for the other half of the circle.
-        etendue = static_cast<float>(2 * 2 * std::numbers::pi * r * ring * column * row);
-    }
-
-    static FoundRay found_ray(Vec3f o, Vec3f d, float etendue) {
-        const float sine = std::sqrt(d.x * d.x + d.y * d.y);
-        const Vec2f away = sine > 0 ? Vec2f{d.x / sine, d.y / sine} : Vec2f{1, 0};
-        const float along = dot(o, Vec3f{-d.z * away.x, -d.z * away.y, sine});
-        return {sine / (1 - d.z), along, -away.y * o.x + away.x * o.y, etendue};
-    }
-};
-
-/// Where light enters whose rays were found, in even steps up to the largest half tangent. A margin of a sixteenth on
-/// each side, and the neighbours' rectangles, for what lies between the rays.
-inline std::array<GhostEntry, kGhostAngles> entries_of(const std::vector<FoundRay>& rays, float largest_half_tangent) {
-    std::array<GhostEntry, kGhostAngles> own{}, entries{};
-    for (const FoundRay& ray : rays) {
-        const int bin = static_cast<int>(ray.half_tangent / largest_half_tangent * static_cast<float>(kGhostAngles));
-        GhostEntry& entry = own[static_cast<std::size_t>(std::clamp(bin, 0, kGhostAngles - 1))];
-        if (entry.half_width == 0) entry = {ray.along, ray.along, 0};
-        entry.low = std::min(entry.low, ray.along);
-        entry.high = std::max(entry.high, ray.along);
-        // Never 0, which means that there is none.
-        entry.half_width = std::max({entry.half_width, std::fabs(ray.across), 1e-6f});
-    }
-    for (int i = 0; i < kGhostAngles; ++i) {
-        GhostEntry& entry = entries[static_cast<std::size_t>(i)];
-        for (int j = std::max(0, i - 1); j <= std::min(kGhostAngles - 1, i + 1); ++j) {
-            const GhostEntry& other = own[static_cast<std::size_t>(j)];
-            if (other.half_width == 0) continue;
-            if (entry.half_width == 0) entry = other;
-            entry = {std::min(entry.low, other.low), std::max(entry.high, other.high),
-                     std::max(entry.half_width, other.half_width)};
-        }
-        const float margin = 0.0625f * std::max(entry.high - entry.low, entry.half_width);
-        entry.low -= margin;
-        entry.high += margin;
-        entry.half_width += entry.half_width > 0 ? margin : 0;
-    }
-    return entries;
-}
-
-inline double etendue_of(const std::vector<FoundRay>& rays) {
-    double sum = 0;
-    for (const FoundRay& ray : rays) sum += static_cast<double>(ray.etendue);
-    return sum;
-}
 
 /// Number of a crossing among all that a ghost's way may have.
 inline std::size_t number_of(const Crossing& crossing) {
@@ -139,12 +40,8 @@ public:
     GhostTables(const LensSystem& lens, double film_radius, double least_share, const PupilTracer& tracer,
                 const FilmSpectrum* spectrum) {
         using namespace ghost_tables_detail;
-        const Surface &front = lens.surfaces.front(), &rear = lens.surfaces.back();
-        const auto radius_of = [](const Surface& surface) {
-            return std::hypot(surface.clear_semi_diameter, surface.sag(surface.clear_semi_diameter));
-        };
-        reach_ = static_cast<float>(1.02 * radius_of(front));
-        const EntrySearch search{film_radius, lens.film_distance, 1.02 * radius_of(rear), tracer};
+        reach_ = entry_reach(lens);
+        const EntrySearch search(lens, film_radius, tracer);
         std::vector<GhostPair> pairs;
         std::vector<double> axial;
         for (const GhostPair pair : ghost_pairs(lens)) {
@@ -161,8 +58,7 @@ public:
             found[k] = search.along(LensPath<float>(lens, way, LightDirection::to_scene, lens.wavelength_nm).view());
         });
         for (const std::vector<FoundRay>& rays : found)
-            for (const FoundRay& ray : rays) largest_half_tangent_ = std::max(largest_half_tangent_, ray.half_tangent);
-        largest_half_tangent_ *= 1 + 1.0f / kGhostAngles;
+            largest_half_tangent_ = std::max(largest_half_tangent_, largest_half_tangent_of(rays));
         make_crossings(lens, spectrum);
         for (std::size_t k = 0; k < pairs.size(); ++k) {
             const double share = axial[k] * etendue_of(found[k]) / etendue_of(found.back());
@@ -190,7 +86,8 @@ public:
                 largest_half_tangent_,
                 reach_,
                 iris_,
-                kind_};
+                kind_,
+                false};
     }
 
     const std::vector<GhostPair>& pairs() const { return pairs_; }

@@ -21,7 +21,7 @@ struct GhostWay {
     float probability;          ///< with which a sample takes it
 };
 
-/// The ghosts of a lens, for light on its way to the film. Lengths in mm.
+/// The ghosts of a lens, for light on its way to the film; or the lens's own way, for starbursts. Lengths in mm.
 struct GhostView {
     const GhostWay* ways;
     int way_count;
@@ -30,12 +30,13 @@ struct GhostView {
     int crossing_count;
     const SurfaceView<float>* surfaces;  ///< of all crossings of all ways, as the next three
     const GhostCoating<kOneWavelengthTerms>* coatings;
-    const IndexCubic* indices;  ///< of a picture with dispersion, as the next; else null
-    const GhostCoating<kSpectrumTerms>* spectral_coatings;
+    const IndexCubic* indices;  ///< where samples have wavelengths, as the next; else null
+    const GhostCoating<kSpectrumTerms>* spectral_coatings;  ///< null: surfaces pass on all light
     float largest_half_tangent;  ///< of the angle between axis and light from which any ghost comes
     float reach;  ///< radius of a circle that holds all places where light enters, mm
     Iris<float> iris;
     LensKind kind;
+    bool diffracts;  ///< the light is spread as the camera's DiffractionView says
 };
 
 /// A ghost view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.

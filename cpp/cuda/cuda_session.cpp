@@ -57,13 +57,17 @@ private:
         }
         const CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
         for (const auto& renderer : renderers_) renderer->set_camera(view);
-        const GhostTables* const ghosts = setup_->ghosts();
-        if (ghosts) {
-            const GhostView ghost_view = ghosts->view();
-            front().set_ghosts(&ghost_view, ghost_units_per_lux(scene_.placed().view(), view, ghost_view));
-        } else {
-            front().set_ghosts(nullptr, 1);
-        }
+        set_splats(view);
+    }
+
+    void set_splats(const CameraView& camera) {
+        GhostView ghosts, starbursts;
+        const auto source_of = [&](const auto* tables, GhostView& view) -> DeviceRenderer::SplatSource {
+            if (!tables) return {};
+            view = tables->view();
+            return {&view, ghost_units_per_lux(scene_.placed().view(), camera, view)};
+        };
+        front().set_splats(source_of(setup_->ghosts(), ghosts), source_of(setup_->starbursts(), starbursts));
     }
 
     void clear() override {
@@ -71,7 +75,7 @@ private:
         film_ = {};
         stats_ = {};
         for (const auto& renderer : renderers_) renderer->clear_counts();
-        front().clear_ghosts(width(), height());
+        front().clear_splats(width(), height());
     }
 
     void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop& stop) override {
@@ -85,7 +89,7 @@ private:
             expose_band(row, rows, range, stop, done);
             if (kept) front().download_film(kept);
         }
-        front().add_ghosts(range);
+        front().splat(range);
         for (const auto& renderer : renderers_) renderer->wait();
         stats_.seconds += seconds_since(exposing);
     }
@@ -124,7 +128,7 @@ private:
         if (!fits()) throw DeviceError("the film is larger than the GPU's memory");
         for (const SampleRange& range : ranges) {
             front().add({0, height(), range.first, range.count}, settings_of(range));
-            front().add_ghosts(range);
+            front().splat(range);
         }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);
@@ -142,7 +146,7 @@ private:
             image.depth.resize(pixels);
             front().develop(camera().exposure_time_s, image.exposure.data(), image.depth.data());
         } else {
-            image = developed(film_, width(), height(), camera().exposure_time_s, front().download_ghosts().view());
+            image = developed(film_, width(), height(), camera().exposure_time_s, front().download_splats().view());
         }
         collect_counts();
         image.stats = stats_;

@@ -11,7 +11,7 @@
 
 namespace realcam {
 
-/// The ghosts of one GPU's picture. All functions throw DeviceError.
+/// The ghosts, or the starbursts, of one GPU's picture. All functions throw DeviceError.
 class DeviceGhosts {
 public:
     /// The host's copy may go afterwards. Null: the picture has none.
@@ -38,13 +38,12 @@ public:
     void add(const DeviceScene& scene, const CameraView& camera, const volatile int* stop, const SampleRange& range,
              CudaStream& stream) {
         if (sums_.size() == 0) return;
-        const std::uint64_t per_sample = ghost_blocks_per_sample(camera.width, camera.height);
         constexpr std::uint64_t kLaunch = 1 << 14;
-        const std::uint64_t end = (std::uint64_t{range.first} + range.count) * per_sample;
-        for (std::uint64_t block = range.first * per_sample; block < end; block += kLaunch)
+        const GhostBlocks blocks = ghost_blocks(camera, range, view_.diffracts);
+        for (std::uint64_t block = blocks.first; block < blocks.end; block += kLaunch)
             launch_splat_ghosts(
                 {scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), blocks_done_.data(), block,
-                 static_cast<std::uint32_t>(std::min(kLaunch, end - block)), range.seed, units_per_lux_},
+                 static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, units_per_lux_},
                 stream);
     }
 

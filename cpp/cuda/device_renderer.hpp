@@ -33,12 +33,22 @@ public:
     void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_camera(const CameraView& camera);
 
-    /// The ghosts of the pictures that follow, and an empty film for them. Null: they have none.
-    void set_ghosts(const GhostView* ghosts, double units_per_lux);
-    void clear_ghosts(int width, int height);
-    /// Starts to add the ghost samples that belong to samples of pixels.
-    void add_ghosts(const SampleRange& range);
-    DeviceGhosts::OnHost download_ghosts();
+    /// What is traced from lights on. Without a view there is nothing.
+    struct SplatSource {
+        const GhostView* view = nullptr;
+        double units_per_lux = 1;
+    };
+    /// Of the pictures that follow, and an empty film for them.
+    void set_splats(const SplatSource& ghosts, const SplatSource& starbursts);
+    void clear_splats(int width, int height);
+    /// Starts to add the samples that belong to those of pixels.
+    void splat(const SampleRange& range);
+    struct SplatsOnHost {
+        DeviceGhosts::OnHost ghosts, starbursts;
+
+        SplattedLight view() const { return {ghosts.view(), starbursts.view()}; }
+    };
+    SplatsOnHost download_splats();
 
     /// Makes room for all that exposing, merging and developing so many pixels takes. Throws OutOfDeviceMemory.
     void reserve_film(std::int64_t pixels, bool merges);
@@ -101,7 +111,7 @@ private:
     DeviceScene scene_;
     DeviceArrays camera_arrays_;
     CameraView camera_{};
-    DeviceGhosts ghosts_;
+    DeviceGhosts ghosts_, starbursts_;
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<LayerSum> layer_sums_;
     DeviceArray<MiddleSurface> middle_surfaces_;

@@ -8,14 +8,14 @@ namespace realcam {
 namespace {
 
 /// A block of threads takes one block of samples, whose way through the lens is the same.
-template <SceneKind scene_kind, bool instanced, bool disperses>
+template <SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock) splat_ghosts_of(const __grid_constant__ GhostJob job) {
     __shared__ int stopped;
     if (threadIdx.x == 0) stopped = *job.stop;
     __syncthreads();
     if (stopped) return;
     BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
-    splat_ghosts<LensKind::any, scene_kind, disperses, 1>(
+    splat_ghosts<LensKind::any, scene_kind, has_wavelengths, 1>(
         job.scene, job.camera, job.ghosts, {job.first_block + blockIdx.x, job.seed}, threadIdx.x, scene,
         [&](std::int32_t pixel, Color lux, float dither) {
             const float channels[3] = {lux.r, lux.g, lux.b};
@@ -30,12 +30,11 @@ __global__ void __launch_bounds__(kGhostBlock) splat_ghosts_of(const __grid_cons
 
 void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream) {
     const bool plain = kind_of(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
-    const bool disperses = job.camera.dispersion.cell_count > 0;
-    const auto kernel =
-        plain
-            ? (disperses ? splat_ghosts_of<SceneKind::plain, false, true>
-                         : splat_ghosts_of<SceneKind::plain, false, false>)
-            : (disperses ? splat_ghosts_of<SceneKind::any, true, true> : splat_ghosts_of<SceneKind::any, true, false>);
+    const bool has_wavelengths = job.ghosts.indices != nullptr;
+    const auto kernel = plain ? (has_wavelengths ? splat_ghosts_of<SceneKind::plain, false, true>
+                                                 : splat_ghosts_of<SceneKind::plain, false, false>)
+                              : (has_wavelengths ? splat_ghosts_of<SceneKind::any, true, true>
+                                                 : splat_ghosts_of<SceneKind::any, true, false>);
     kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);
     check_cuda(cudaGetLastError(), "starting to trace ghosts");
 }

@@ -12,20 +12,20 @@
 namespace realcam {
 namespace {
 
-__global__ void develop(const PixelSum* sums, GhostFilmView ghosts, std::int64_t pixels, double exposure_time_s,
+__global__ void develop(const PixelSum* sums, SplattedLight splatted, std::int64_t pixels, double exposure_time_s,
                         float* exposure, float* depth) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
-    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, ghosts.irradiance(i, c));
+    for (int c = 0; c < 3; ++c) exposure[3 * i + c] = sums[i].exposure(c, exposure_time_s, splatted.irradiance(i, c));
     depth[i] = sums[i].mean_depth();
 }
 
-__global__ void develop_codes(const PixelSum* sums, GhostFilmView ghosts, std::int64_t pixels, double exposure_time_s,
+__global__ void develop_codes(const PixelSum* sums, SplattedLight splatted, std::int64_t pixels, double exposure_time_s,
                               double iso, ToneCurve curve, std::uint8_t* codes) {
     const std::int64_t i = thread_index();
     if (i >= pixels) return;
     for (int c = 0; c < 3; ++c)
-        codes[3 * i + c] = sums[i].code(c, exposure_time_s, iso, curve, ghosts.irradiance(i, c));
+        codes[3 * i + c] = sums[i].code(c, exposure_time_s, iso, curve, splatted.irradiance(i, c));
 }
 
 __global__ void count(const PixelSum* sums, std::int64_t pixels, std::int64_t* counts) {
@@ -61,7 +61,7 @@ RenderKernel kernel_with_effects(SceneKind scene_kind, LensKind lens_kind, bool 
 RenderKernel kernel_for(const RenderJob& job, bool timed) {
     using Chooser = RenderKernel (*)(SceneKind, LensKind, bool, bool);
     static constexpr Chooser kChoosers[] = {kernel_without_effects, kernel_with_effects<1>, kernel_with_effects<2>,
-                                            kernel_with_effects<3>};
+                                            kernel_with_effects<3>, kernel_with_effects<4>, kernel_with_effects<5>};
     static_assert(kCompiledEffects[0] == kNoEffects && std::size(kChoosers) == std::size(kCompiledEffects));
     return kChoosers[number_of(effects_of(job.camera))](kind_of(job.scene, job.camera), job.camera.lens.kind,
                                                         job.scene.instance_count > 0, timed);
@@ -84,16 +84,16 @@ void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
     check_cuda(cudaGetLastError(), "starting to render");
 }
 
-void launch_develop(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels, double exposure_time_s,
+void launch_develop(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels, double exposure_time_s,
                     float* exposure, float* depth, cudaStream_t stream) {
-    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, ghosts, pixels, exposure_time_s, exposure, depth);
+    develop<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, splatted, pixels, exposure_time_s, exposure, depth);
     check_cuda(cudaGetLastError(), "starting to develop");
 }
 
-void launch_develop_codes(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels,
+void launch_develop_codes(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels,
                           double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes,
                           cudaStream_t stream) {
-    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, ghosts, pixels, exposure_time_s, iso, curve,
+    develop_codes<<<blocks_for(pixels), kBlockSize, 0, stream>>>(sums, splatted, pixels, exposure_time_s, iso, curve,
                                                                  codes);
     check_cuda(cudaGetLastError(), "starting to develop");
 }

@@ -39,11 +39,11 @@ void check_render_code();
 void launch_render(const RenderJob& job, bool timed, cudaStream_t stream);
 
 /// Sums as exposure (3 per pixel, lux seconds) and depth (metres).
-void launch_develop(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels, double exposure_time_s,
+void launch_develop(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels, double exposure_time_s,
                     float* exposure, float* depth, cudaStream_t stream);
 
 /// The same as 8-bit sRGB (3 per pixel).
-void launch_develop_codes(const PixelSum* sums, const GhostFilmView& ghosts, std::int64_t pixels,
+void launch_develop_codes(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels,
                           double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes,
                           cudaStream_t stream);
 

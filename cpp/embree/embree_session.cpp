@@ -32,6 +32,13 @@ DeviceError rtc_error(RTCError code) {
     return DeviceError(text + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(code)));
 }
 
+/// What was traced from lights on. Of a picture without that, no sums.
+struct SplatFilm {
+    std::vector<GhostSum> sums;  ///< of all pixels
+    unsigned long long blocks = 0;  ///< in them
+    double units_per_lux = 1;
+};
+
 class EmbreeSession final : public Session {
 public:
     EmbreeSession() : device_(rtcNewDevice(nullptr)) {
@@ -69,14 +76,14 @@ private:
         const Film& film = camera().film;
         const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
         film_.assign(pixels, PixelSum{});
-        ghost_film_.assign(settings().effects.ghosts ? pixels : 0, GhostSum{});
-        ghost_blocks_ = 0;
+        ghosts_ = {std::vector<GhostSum>(settings().effects.ghosts ? pixels : 0), 0, 1};
+        starbursts_ = {std::vector<GhostSum>(settings().effects.diffraction ? pixels : 0), 0, 1};
         stats_ = {};
     }
 
     void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop&) override {
         expose(range, settings(), done);
-        expose_ghosts(range, settings());
+        splat(range, settings());
     }
 
     void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
@@ -112,10 +119,10 @@ private:
             std::atomic<std::int64_t> done{0};
             for (const SampleRange& range : ranges) {
                 expose(range, settings, done);
-                expose_ghosts(range, settings);
+                splat(range, settings);
             }
             if (is_stopped()) throw Cancelled();
-            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, ghosts_seen());
+            return developed_codes(film_, dials.exposure_time_s, dials.iso, curve, splatted());
         };
         const Film& film = camera().film;
         try {
@@ -127,8 +134,7 @@ private:
     }
 
     Image develop() override {
-        Image image =
-            developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, ghosts_seen());
+        Image image = developed(film_, camera().film.width, camera().film.height, camera().exposure_time_s, splatted());
         image.stats = stats_;
         image.stats.device = name();
         return image;
@@ -182,14 +188,19 @@ private:
         });
     }
 
-    void expose_ghosts(const SampleRange& range, const RenderSettings& settings) {
-        if (ghost_film_.empty() || setup_->ghosts()->pairs().empty()) return;
-        const GhostView ghosts = setup_->ghosts()->view();
+    /// Adds what belongs to these samples of each pixel.
+    void splat(const SampleRange& range, const RenderSettings& settings) {
+        if (!ghosts_.sums.empty() && !setup_->ghosts()->pairs().empty())
+            splat_on(ghosts_, setup_->ghosts()->view(), range, settings);
+        if (!starbursts_.sums.empty()) splat_on(starbursts_, setup_->starbursts()->view(), range, settings);
+    }
+
+    void splat_on(SplatFilm& film, const GhostView& ghosts, const SampleRange& range, const RenderSettings& settings) {
         const SceneView scene = scene_->placed().view();
-        ghost_units_per_lux_ = ghost_units_per_lux(scene, camera_view_, ghosts);
-        const std::uint64_t per_sample = ghost_blocks_per_sample(camera_view_.width, camera_view_.height);
+        film.units_per_lux = ghost_units_per_lux(scene, camera_view_, ghosts);
+        const GhostBlocks blocks = ghost_blocks(camera_view_, range, ghosts.diffracts);
         constexpr std::uint64_t kVisit = 64;
-        const std::uint64_t first = range.first * per_sample, count = range.count * per_sample;
+        const std::uint64_t count = blocks.end - blocks.first;
         arena(settings).execute([&] {
             tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, [&](std::uint64_t visit) {
                 realcam_ghosts job{};
@@ -197,22 +208,25 @@ private:
                 job.camera_view = &camera_view_;
                 job.ghost_view = &ghosts;
                 job.embree_scene = scene_->handle();
-                job.first_block = first + visit * kVisit;
+                job.first_block = blocks.first + visit * kVisit;
                 job.block_count = std::min(kVisit, count - visit * kVisit);
                 job.seed = range.seed;
-                job.units_per_lux = ghost_units_per_lux_;
+                job.units_per_lux = film.units_per_lux;
                 job.stopped = &is_raised;
                 job.stop = &stop_.flag();
-                job.sums = ghost_film_.data();
+                job.sums = film.sums.data();
                 kernels().splat_ghosts(&job);
-                std::atomic_ref(ghost_blocks_) += job.blocks_done;
+                std::atomic_ref(film.blocks) += job.blocks_done;
             });
         });
     }
 
-    GhostFilmView ghosts_seen() const {
-        return {ghost_film_.empty() ? nullptr : ghost_film_.data(), ghost_units_per_lux_, &ghost_blocks_,
-                camera_view_.width, camera_view_.height};
+    SplattedLight splatted() const {
+        const auto seen = [&](const SplatFilm& film) {
+            return GhostFilmView{film.sums.empty() ? nullptr : film.sums.data(), film.units_per_lux, &film.blocks,
+                                 camera_view_.width, camera_view_.height};
+        };
+        return {seen(ghosts_), seen(starbursts_)};
     }
 
     /// visit(x, y, some samples) of the tile with that first pixel, until all samples of all tiles were taken.
@@ -289,9 +303,7 @@ private:
     CameraView camera_view_{};
     SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
-    std::vector<GhostSum> ghost_film_;  ///< empty without ghosts
-    unsigned long long ghost_blocks_ = 0;  ///< in it
-    double ghost_units_per_lux_ = 1;
+    SplatFilm ghosts_, starbursts_;
     std::mutex stats_mutex_;
     RenderStats stats_;
 };

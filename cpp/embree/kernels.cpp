@@ -184,7 +184,7 @@ void see_middle_surfaces_of_tile(realcam_tile* tile) {
     });
 }
 
-template <SceneKind scene_kind, bool disperses>
+template <SceneKind scene_kind, bool has_wavelengths>
 void splat_ghosts_with(realcam_ghosts* job) {
     const SceneView view = *static_cast<const SceneView*>(job->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(job->camera_view);
@@ -201,7 +201,7 @@ void splat_ghosts_with(realcam_ghosts* job) {
     static_assert(kGhostBlock % kLanes == 0);
     for (std::uint64_t i = 0; i < job->block_count && !job->stopped(job->stop); ++i) {
         for (std::uint32_t first = 0; first < kGhostBlock; first += kLanes)
-            splat_ghosts<LensKind::any, scene_kind, disperses, kLanes>(
+            splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(
                 view, camera, ghosts, {job->first_block + i, job->seed}, first, scene, splat);
         ++job->blocks_done;
     }
@@ -210,14 +210,14 @@ void splat_ghosts_with(realcam_ghosts* job) {
 
 void splat_ghosts_of(realcam_ghosts* job) {
     const auto& camera = *static_cast<const CameraView*>(job->camera_view);
-    const bool disperses = camera.dispersion.cell_count > 0;
+    const bool has_wavelengths = static_cast<const GhostView*>(job->ghost_view)->indices != nullptr;
     switch (kind_of(*static_cast<const SceneView*>(job->scene_view), camera)) {
         case SceneKind::plain:
-            return disperses ? splat_ghosts_with<SceneKind::plain, true>(job)
-                             : splat_ghosts_with<SceneKind::plain, false>(job);
+            return has_wavelengths ? splat_ghosts_with<SceneKind::plain, true>(job)
+                                   : splat_ghosts_with<SceneKind::plain, false>(job);
         default:
-            return disperses ? splat_ghosts_with<SceneKind::any, true>(job)
-                             : splat_ghosts_with<SceneKind::any, false>(job);
+            return has_wavelengths ? splat_ghosts_with<SceneKind::any, true>(job)
+                                   : splat_ghosts_with<SceneKind::any, false>(job);
     }
 }
 

@@ -52,7 +52,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.clamp_cd_m2 = static_cast<double>(settings.clamp);
     for (const std::string& name : names_of(settings.effects))
         metadata.effects += (metadata.effects.empty() ? "" : ",") + name;
-    if (const auto light = settings.dispersed_light()) metadata.illuminant = light->text();
+    if (const auto light = settings.spectral_light()) metadata.illuminant = light->text();
     if (settings.effects.coatings || settings.effects.ghosts) metadata.coatings = coating_summary(camera.lens);
     return metadata;
 }

@@ -2,7 +2,7 @@
 #include <type_traits>
 
 #include "../camera/coated_rays.hpp"
-#include "../camera/dispersed_rays.hpp"
+#include "../camera/diffracted_rays.hpp"
 #include "scatter_plain_paths.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -27,6 +27,18 @@ REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int l
         path.rays.active[lane] = 0;
 }
 
+/// What the edges of the aperture diffract of the lights is looked for from the lights on, too (splat_ghosts.hpp). A
+/// sample that looks for it meets lights as one that draws directions with the density at which both ways are as good.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void set_first_density(const CameraView& camera, bool from_edge, int lane, PathState<N>& path) {
+    Vec3f front = front_vertex(camera, camera.front_vertex_m);
+    if constexpr (scene_kind == SceneKind::any)
+        front = front_vertex(camera_at(camera, path.rays.time[lane]), camera.front_vertex_m);
+    path.pdf[lane] = select(from_edge, camera.diffraction.splat_density, kDelta);
+    path.receiver_position.set(lane, front);
+    path.receiver_normal.set(lane, {0, 0, 0});
+}
+
 template <int N>
 REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
     std::int32_t any = 0;
@@ -40,8 +52,14 @@ REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N>
 REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block,
                                    PathStateWith<N, effects>& path, PathResults<N>& results) {
+    using namespace advance_path_detail;
     CameraRays<N> camera_rays;
-    if constexpr (effects.dispersion)
+    [[maybe_unused]] std::conditional_t<effects.diffraction, DiffractedPoints<N>, NoKicks> film;
+    if constexpr (effects.diffraction && effects.dispersion)
+        generate_rays_with_all<lens_kind>(camera, block, film, path.wavelengths, camera_rays);
+    else if constexpr (effects.diffraction)
+        generate_diffracted_rays<lens_kind>(camera, block, film, path.wavelengths, camera_rays);
+    else if constexpr (effects.dispersion)
         generate_dispersed_rays<lens_kind, effects.coatings>(camera, block, path.wavelengths, camera_rays);
     else if constexpr (effects.coatings)
         generate_coated_rays<lens_kind>(camera, block, camera_rays);
@@ -57,6 +75,7 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
         path.weight[i] = camera_rays.weight[i];
         path.throughput.set(i, grey(camera_rays.weight[i]));
         path.pdf[i] = kDelta;
+        if constexpr (effects.diffraction) set_first_density<scene_kind>(camera, film.from_edge[i] != 0, i, path);
         path.absorption.set(i, {0, 0, 0});
         results.irradiance.set(i, {0, 0, 0});
         results.depth[i] = kFarAway;

@@ -22,7 +22,7 @@ struct EffectInfo {
     constexpr bool is_on() const { return EffectChoice{}.*member; }
 };
 
-inline constexpr std::array<EffectInfo, 5> kEffects = {{
+inline constexpr std::array<EffectInfo, 6> kEffects = {{
     {"dispersion",
      "each sample has a wavelength of its own, for which every glass has its own index; needs glasses with more than "
      "one index, nothing of the scene, and the camera model full",
@@ -39,6 +39,11 @@ inline constexpr std::array<EffectInfo, 5> kEffects = {{
      "ghosts=1e-8 leaves out those with less "
      "than 1e-8 of the lens's light, where ghosts alone means 1e-6",
      &EffectChoice::ghosts, &EffectChoice::ghost_share},
+    {"diffraction",
+     "the edges of the aperture spread light of each wavelength over the film, and make stars of lamps; needs nothing "
+     "of "
+     "lens, scene and camera",
+     &EffectChoice::diffraction},
     {"motion_blur",
      "what moves while the shutter is open is blurred; needs objects or a camera that move; on unless left out, "
      "as -motion_blur",

@@ -8,21 +8,34 @@ namespace REALCAM_NAMESPACE {
 struct Effects {
     bool dispersion = false;
     bool coatings = false;
+    bool diffraction = false;
 
     constexpr bool operator==(const Effects&) const = default;
+    /// Whether samples have a wavelength each.
+    constexpr bool have_wavelengths() const { return dispersion || diffraction; }
+    constexpr bool hold(const Effects& other) const {
+        return dispersion >= other.dispersion && coatings >= other.coatings && diffraction >= other.diffraction;
+    }
 };
 
 inline constexpr Effects kNoEffects = {};
 
-/// The sets for which there is code.
+/// The sets for which there is code, the smaller ones first. That of all does without what a camera does not have.
 inline constexpr Effects kCompiledEffects[] = {
-    kNoEffects, {.dispersion = true}, {.coatings = true}, {.dispersion = true, .coatings = true}};
+    kNoEffects,
+    {.dispersion = true},
+    {.coatings = true},
+    {.dispersion = true, .coatings = true},
+    {.diffraction = true},
+    {.dispersion = true, .coatings = true, .diffraction = true},
+};
 
-/// Its place in kCompiledEffects, for kernels: nvcc writes no code that launches one whose argument is of a class.
-constexpr int number_of(const Effects& compiled) {
+/// The place in kCompiledEffects of the first that holds these. A number, for kernels: nvcc writes no code that
+/// launches one whose argument is of a class.
+constexpr int number_of(const Effects& wanted) {
     int number = 0;
     for (const Effects& set : kCompiledEffects) {
-        if (set == compiled) break;
+        if (set.hold(wanted)) break;
         ++number;
     }
     return number;

@@ -14,7 +14,7 @@ using FilmSums = std::vector<PixelSum>;
 
 /// Exposure and depth of a film, without what the picture cost.
 inline Image developed(const FilmSums& film, int width, int height, double exposure_time_s,
-                       const GhostFilmView& ghosts = {}) {
+                       const SplattedLight& splatted = {}) {
     Image image;
     image.width = width;
     image.height = height;
@@ -23,7 +23,7 @@ inline Image developed(const FilmSums& film, int width, int height, double expos
     for (std::size_t i = 0; i < film.size(); ++i) {
         for (int channel = 0; channel < 3; ++channel)
             image.exposure.push_back(
-                film[i].exposure(channel, exposure_time_s, ghosts.irradiance(static_cast<std::int64_t>(i), channel)));
+                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel)));
         image.depth.push_back(film[i].mean_depth());
     }
     return image;
@@ -31,13 +31,13 @@ inline Image developed(const FilmSums& film, int width, int height, double expos
 
 /// A film as 8-bit sRGB, 3 per pixel.
 inline std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso,
-                                                 ToneCurve curve, const GhostFilmView& ghosts = {}) {
+                                                 ToneCurve curve, const SplattedLight& splatted = {}) {
     std::vector<std::uint8_t> codes;
     codes.reserve(3 * film.size());
     for (std::size_t i = 0; i < film.size(); ++i)
         for (int channel = 0; channel < 3; ++channel)
             codes.push_back(film[i].code(channel, exposure_time_s, iso, curve,
-                                         ghosts.irradiance(static_cast<std::int64_t>(i), channel)));
+                                         splatted.irradiance(static_cast<std::int64_t>(i), channel)));
     return codes;
 }
 

@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "../math/color.hpp"
+#include "sample_range.hpp"
 #include "splat_ghosts.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -31,16 +32,20 @@ REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float d
     return static_cast<std::int64_t>(units < kMost ? std::floor(units) : kMost);
 }
 
-/// The ghosts of a picture, to be added to what its samples saw.
+/// The ghosts or the starbursts of a picture, to be added to what its samples saw.
 struct GhostFilmView {
     const GhostSum* sums = nullptr;  ///< of all pixels; null: there are none
     double units_per_lux = 1;
     const unsigned long long* blocks = nullptr;  ///< of kGhostBlock samples of the whole film, that are in the sums
     int width = 0, height = 0;                   ///< pixels
 
+    REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
+        return sums && *blocks > 0 ? irradiance_of(static_cast<double>(sums[pixel].units[channel])) : 0;
+    }
+
     /// Smoothed by one pixel (a binomial filter of five by five), which costs ghosts no detail worth the name and takes
     /// as much noise from them as thirteen times the samples would.
-    REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
+    REALCAM_HD double smooth_irradiance(std::int64_t pixel, int channel) const {
         if (!sums || *blocks == 0) return 0;
         constexpr double kWeights[] = {1, 4, 6, 4, 1}, kSum = 256;
         const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
@@ -52,14 +57,36 @@ struct GhostFilmView {
                 units += kWeights[y + 2] * kWeights[x + 2] *
                          static_cast<double>(sums[first + inside(column + x, width)].units[channel]);
         }
-        return units / (kSum * units_per_lux * static_cast<double>(*blocks) * kGhostBlock);
+        return irradiance_of(units / kSum);
+    }
+
+private:
+    REALCAM_HD double irradiance_of(double units) const {
+        return units / (units_per_lux * static_cast<double>(*blocks) * kGhostBlock);
     }
 };
 
-/// One sample of ghosts for each sample of a pixel: neighbours share them, because ghosts have no fine detail.
-inline std::uint64_t ghost_blocks_per_sample(int width, int height) {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    return (pixels + kGhostBlock - 1) / kGhostBlock;
+/// All light of a picture that was traced from the lights on.
+struct SplattedLight {
+    GhostFilmView ghosts, starbursts;
+
+    REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
+        return ghosts.smooth_irradiance(pixel, channel) + starbursts.irradiance(pixel, channel);
+    }
+};
+
+/// Blocks of samples of the whole film.
+struct GhostBlocks {
+    std::uint64_t first, end;
+};
+
+/// Those that belong to some samples of each pixel: one ghost sample for each of them. Starbursts are few
+/// places of the film.
+inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, bool of_starbursts) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height),
+                        per_block = kGhostBlock * (of_starbursts ? kSamplesPerSplat : 1);
+    const auto up_to = [&](std::uint64_t samples) { return (samples * pixels + per_block - 1) / per_block; };
+    return {up_to(range.first), up_to(std::uint64_t{range.first} + range.count)};
 }
 
 }  // namespace REALCAM_NAMESPACE

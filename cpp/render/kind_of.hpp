@@ -12,8 +12,9 @@ inline SceneKind kind_of(const SceneView& scene, const CameraView& camera) {
 
 /// The effects for which a camera was made ready.
 inline Effects effects_of(const CameraView& camera) {
-    const bool disperses = camera.dispersion.cell_count > 0;
-    return {disperses, disperses ? camera.coatings.to_scene != nullptr : camera.coatings.one_wavelength != nullptr};
+    const bool disperses = camera.dispersion.to_scene != nullptr;
+    const bool has_coatings = camera.coatings.one_wavelength || camera.coatings.to_scene;
+    return {disperses, has_coatings, camera.diffraction.radii > 0};
 }
 
 }  // namespace REALCAM_NAMESPACE

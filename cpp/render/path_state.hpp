@@ -58,6 +58,6 @@ struct DispersedPathState : PathState<N> {
 
 /// What paths with these effects carry.
 template <int N, Effects effects>
-using PathStateWith = std::conditional_t<effects.dispersion, DispersedPathState<N>, PathState<N>>;
+using PathStateWith = std::conditional_t<effects.have_wavelengths(), DispersedPathState<N>, PathState<N>>;
 
 }  // namespace REALCAM_NAMESPACE

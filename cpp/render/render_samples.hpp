@@ -16,7 +16,7 @@ REALCAM_HD inline void render_samples(const SceneView& view, const CameraView& c
     begin_paths<lens_kind, scene_kind, effects>(camera, block, path, results);
     for (int bounce = 0; advance_paths<scene_kind>(view, camera, settings, block, bounce, scene, probe, path, results);)
         ++bounce;
-    if constexpr (effects.dispersion)
+    if constexpr (effects.have_wavelengths())
         for (int i = 0; i < N; ++i)
             results.irradiance.set(
                 i, film_color<effects.coatings>(camera.dispersion, path.wavelengths, i, results.irradiance[i]));

@@ -21,14 +21,14 @@ struct RenderSettings {
     float clamp = 0;  ///< see PathSettings
     LayerSet layers = {};
     EffectChoice effects = {};
-    std::optional<Illuminant> illuminant = {};  ///< of the effect dispersion; none: D65, the white of RGB
+    std::optional<Illuminant> illuminant = {};  ///< of dispersion and diffraction; none: D65, the white of RGB
 
-    /// The light of a picture with dispersion; nothing without.
-    std::optional<Illuminant> dispersed_light() const {
-        return effects.dispersion ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
+    /// The light of a picture whose samples have wavelengths; nothing of others.
+    std::optional<Illuminant> spectral_light() const {
+        return effects.have_wavelengths() ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
     }
     LensEffects lens_effects() const {
-        return {dispersed_light(), effects.coatings,
+        return {spectral_light(), effects.dispersion, effects.diffraction, effects.coatings,
                 effects.ghosts ? std::optional(effects.ghost_share) : std::nullopt};
     }
     PathSettings path() const { return {max_bounces, transport, clamp}; }
@@ -47,8 +47,8 @@ inline void validate(const RenderSettings& settings) {
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
-    if (settings.illuminant && !settings.effects.dispersion)
-        throw InputError("illuminant belongs to the effect dispersion, which is not switched on");
+    if (settings.illuminant && !settings.effects.have_wavelengths())
+        throw InputError("illuminant belongs to the effects dispersion and diffraction, which are not switched on");
 }
 
 /// Throws InputError where the camera cannot have an effect of the settings.

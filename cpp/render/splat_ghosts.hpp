@@ -3,12 +3,13 @@
 #include "../math/cdf.hpp"
 #include "../scene/light.hpp"
 #include "effects.hpp"
-#include "path_state.hpp"
+#include "met_light.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-// Ghosts of lights, forward: from a light through a place in front of the lens, along one ghost's way, to wherever on
-// the film it ends. All samples of a block take the same way, so that they run as vector code.
+// Ghosts and starbursts of lights, forward: from a light through a place in front of the lens, along one ghost's way or
+// the lens's own, to wherever on the film it ends. All samples of a block take the same way, so that they run as vector
+// code.
 
 /// So many samples in a row take the same way.
 inline constexpr std::uint32_t kGhostBlock = 256;
@@ -22,7 +23,7 @@ struct GhostRange {
 namespace splat_ghosts_detail {
 
 namespace ghost_dimension {
-inline constexpr std::uint32_t way = 0, light = 1, entry = 2, time = 3;
+inline constexpr std::uint32_t way = 0, light = 1, entry = 2, time = 3, diffraction = 4;
 }
 
 /// Share of the samples that enter somewhere about the entry's rectangle, and share of those that enter anywhere: for
@@ -32,7 +33,7 @@ inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale 
 /// A place in front of the lens, in the plane across light of one direction.
 struct EntryPlace {
     float along, across;  ///< away from the axis, and across that, mm
-    float density;        ///< per mm^2
+    float density;  ///< per mm^2
 };
 
 REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
@@ -109,6 +110,8 @@ struct GhostSamples {
     Vec3Lanes<float, N> from;  ///< unit, towards the light, as the middle of the lens sees it; in the lens's axes
     LensRays<float, N> rays;  ///< first in front of the lens, then behind it
     alignas(kLaneAlignment<float, N>) float density[N];  ///< of the place where it enters, per mm^2
+    alignas(kLaneAlignment<float, N>) float light_density[N];  ///< of its place on the lights, per steradian; kDelta:
+                                                               ///< no ray meets it
     ColorLanes<N> color;  ///< irradiance that its pixel would have if all samples were like it
     SceneRays<N> shadow;
 };
@@ -127,7 +130,14 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
         LightPick& light = samples.lights[i];
         light = pick_light(view, middle, light_kinds(view, middle), u[i], samples.number[i]);
         Vec3f from = {0, 0, 1};  // behind the lens
-        if (light.probability > 0.0f) from = frame.direction(sample_picked<scene_kind>(view, middle, light).direction);
+        samples.light_density[i] = kDelta;
+        if (light.probability > 0.0f) {
+            const LightSample sample = sample_picked<scene_kind>(view, middle, light);
+            from = frame.direction(sample.direction);
+            // Of area lights that are seen from the side, kDelta says that there is no light.
+            if (light.kind == LightKind::area || light.kind == LightKind::environment)
+                samples.light_density[i] = sample.pdf < kDelta ? light.probability * sample.pdf : 0.0f;
+        }
         samples.from.set(i, from);
     }
 }
@@ -182,24 +192,53 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
 }
 
 /// Takes the light through the lens.
-template <LensKind lens_kind, bool disperses, int N>
+template <LensKind lens_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void pass_lens(const GhostView& ghosts, const GhostWay& way, GhostSamples<N>& samples,
                               PassedPower<N>& passed) {
     const LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
-    if constexpr (disperses)
-        trace_lens<lens_kind>(
-            lens, samples.rays, NoRecord{},
-            GhostMedia<kSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
-                                          samples.variable, passed});
-    else
+    if constexpr (has_wavelengths) {
+        if (ghosts.spectral_coatings)
+            trace_lens<lens_kind>(
+                lens, samples.rays, NoRecord{},
+                GhostMedia<kSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
+                                              samples.variable, passed});
+        else
+            trace_lens<lens_kind>(lens, samples.rays, NoRecord{},
+                                  ManyWavelengths{ghosts.indices + way.first, samples.variable});
+    } else {
         trace_lens<lens_kind>(
             lens, samples.rays, NoRecord{},
             GhostMedia<kOneWavelengthTerms, N>{nullptr, ghosts.coatings + way.first, nullptr, passed});
+    }
+}
+
+/// Where light that geometrical optics brings to `film` goes by diffraction, and how much of it. Of lights that rays
+/// meet it is what the edges of the aperture diffract, and as much of that as samples of pixels leave to splats
+/// (set_first_density); of the others it is all.
+template <int N>
+REALCAM_INLINE Vec2f diffracted(const CameraView& camera, Vec2f film, Vec2f u, Vec2f v, int lane,
+                                GhostSamples<N>& samples) {
+    const float nm = wavelength_at(camera.dispersion, samples.place[lane]);
+    const bool all = samples.light_density[lane] == kDelta;
+    Vec2f kick;
+    float weight;
+    if (all & ((samples.number[lane] & 1u) != 0)) {
+        const DiffractionKick drawn = draw_kick(camera.diffraction, film, u, v);
+        kick = drawn.mm_per_nm;
+        weight = drawn.from_edge ? 0.0f : 2.0f;
+    } else {
+        const EdgeKick edge = draw_edge_kick(camera.diffraction, film, nm, u, v);
+        kick = edge.mm_per_nm;
+        weight = edge.weight * (all ? 2.0f : mis_weight(samples.light_density[lane], camera.diffraction.splat_density));
+    }
+    samples.color.set(lane, weight * samples.color[lane]);
+    return {film.x + nm * kick.x, film.y + nm * kick.y};
 }
 
 /// The pixels that the light reaches, or -1, and what it brings there if nothing in the scene is in its way.
-template <SceneKind scene_kind, bool disperses, int N>
-REALCAM_INLINE void reach_film(const CameraView& camera, const PassedPower<N>& passed, GhostSamples<N>& samples,
+template <SceneKind scene_kind, bool has_wavelengths, int N>
+REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts, std::uint32_t stream,
+                               std::uint32_t first, const PassedPower<N>& passed, GhostSamples<N>& samples,
                                std::int32_t (&pixel)[N]) {
     for (int i = 0; i < N; ++i) {
         samples.shadow.active[i] = 0;
@@ -207,10 +246,18 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const PassedPower<N>& p
         if (samples.rays.status[i] != 0) continue;
         const Vec3f o = samples.rays.origin[i], d = samples.rays.direction[i];
         const float way = (camera.film_distance - o.z) / d.z;
-        pixel[i] = pixel_at(camera, o.x + way * d.x, o.y + way * d.y);
+        Vec2f film = {o.x + way * d.x, o.y + way * d.y};
+        if constexpr (has_wavelengths) {
+            if (ghosts.diffracts) {
+                const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
+                film = diffracted(camera, film, sample_2d(stream, sample, ghost_dimension::diffraction),
+                                  sample_2d(stream, sample, ghost_dimension::diffraction + 1), i, samples);
+            }
+        }
+        pixel[i] = pixel_at(camera, film.x, film.y);
         if (pixel[i] < 0) continue;
         Color c = passed.of_unpolarised(i) * samples.color[i];
-        if constexpr (disperses) {
+        if constexpr (has_wavelengths) {
             constexpr float kAll[kSharedWavelengths] = {1, 1, 1};
             c = film_color(camera.dispersion, samples.place[i], 1, kAll, c);
         }
@@ -229,7 +276,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const PassedPower<N>& p
 /// Takes N samples of a block, from number `first` in it: splat(pixel, irradiance, dither) for each that lights a
 /// pixel. The irradiance is that which the pixel would have if each sample were like this one; `dither`: a random
 /// number. `SceneT`: as in advance_paths.
-template <LensKind lens_kind, SceneKind scene_kind, bool disperses, int N, class SceneT, class Splat>
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
 REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& camera, const GhostView& ghosts,
                                     GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
     using namespace splat_ghosts_detail;
@@ -249,10 +296,10 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
         const std::uint32_t sample = first_sample + static_cast<std::uint32_t>(i);
         samples.number[i] = hash32(stream, sample);
         samples.time[i] = samples.place[i] = samples.variable[i] = 0;
-        if constexpr (scene_kind == SceneKind::any || disperses) {
+        if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
             const Vec2f u = sample_2d(stream, sample, ghost_dimension::time);
             if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * all_times(camera);
-            if constexpr (disperses) {
+            if constexpr (has_wavelengths) {
                 samples.place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
                 samples.variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, samples.place[i]));
             }
@@ -262,9 +309,9 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     choose_entries(ghosts, ghosts.entries + way_number * kGhostAngles, stream, first_sample, samples);
     send_light<scene_kind>(view, camera, 1.0f / (pixel_area * way.probability), samples);
     PassedPower<N> passed;
-    pass_lens<lens_kind, disperses>(ghosts, way, samples, passed);
+    pass_lens<lens_kind, has_wavelengths>(ghosts, way, samples, passed);
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t pixel[N], hidden[N];
-    reach_film<scene_kind, disperses>(camera, passed, samples, pixel);
+    reach_film<scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
     scene.occluded(samples.shadow, hidden);
     for (int i = 0; i < N; ++i)
         if (samples.shadow.active[i] && !hidden[i])

@@ -139,8 +139,8 @@ private:
         const std::vector<std::string> effects = table_.texts("effects");
         table_.checked("effects", [&] { settings.effects = effects_named(effects); });
         table_.checked("illuminant", [&] { settings.illuminant = read_illuminant(); });
-        if (settings.illuminant && !settings.effects.dispersion)
-            table_.fail("illuminant belongs to the effect dispersion, which is not switched on",
+        if (settings.illuminant && !settings.effects.have_wavelengths())
+            table_.fail("illuminant belongs to the effects dispersion and diffraction, which are not switched on",
                         table_.find("illuminant"));
         table_.checked(settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(settings); });
         const std::vector<std::string> layers = table_.texts("layers");

@@ -54,8 +54,8 @@ def render(
     too dark; 0: never. threads: 0 for all.
     layers: names of what else Image.layers is to hold, or "all" (docs/layers.md).
     effects: names of what else is simulated (rc.effects() lists them; docs/dispersion.md). Warns of what the lens
-    cannot give of them. illuminant: of dispersion, the spectrum of all light: "D65", "A", "FL2", a wavelength in nm, or
-    (wavelength_nm, power) pairs; None: D65.
+    cannot give of them. illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "A", "FL2", a
+    wavelength in nm, or (wavelength_nm, power) pairs; None: D65.
     progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
     0 to 1, and stops the render where it returns False. Warns of a scene without light.
 

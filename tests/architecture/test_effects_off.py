@@ -24,22 +24,30 @@ template __global__ void render<LensKind::plain, SceneKind::plain, 0, false, NoC
 # What is cut out of which file: each pattern must be found once.
 CUTS = {
     "camera/camera_view.hpp": [
-        (r"    DispersionView dispersion;\n    CoatingView coatings;\n", ""),
+        (r"    DispersionView dispersion;\n    CoatingView coatings;\n    DiffractionView diffraction;\n", ""),
         (r"(    move\(view\.(dispersion|coatings)\.\w+, .*\);\n)+", ""),
         (r"(    move\(view\.(dispersion|coatings)\.\w+, .*\);\n)+", ""),
+        (r"    const int diffracting = .*\n(    move\(view\.diffraction\.\w+, .*\);\n)+", ""),
     ],
     "render/effects.hpp": [(r"kCompiledEffects\[\] = \{[^;]*\};", "kCompiledEffects[] = {kNoEffects};")],
     "render/kind_of.hpp": [(r"    const bool disperses = .*?\n\}\n", "    (void)camera;\n    return {};\n}\n")],
     "render/advance_path.hpp": [
-        (r'#include "../camera/coated_rays.hpp"\n#include "../camera/dispersed_rays.hpp"\n', ""),
-        (r"    if constexpr \(effects\.dispersion\)\n.*?\n    else\n        generate_rays<", "        generate_rays<"),
+        (r'#include "../camera/coated_rays.hpp"\n#include "../camera/diffracted_rays.hpp"\n', ""),
+        (r"/// What the edges of the aperture diffract of the lights.*?\n\}\n", ""),
+        (r"    \[\[maybe_unused\]\] std::conditional_t<.*?\n    else\n        gen", "        gen"),
+        (r"        if constexpr \(effects\.diffraction\)\n? *set_first_density<.*?;\n", ""),
     ],
     "render/path_state.hpp": [
         (r"/// The same, of samples that each have a wavelength\..*?\};\n", ""),
-        (r"std::conditional_t<effects\.dispersion, DispersedPathState<N>, PathState<N>>", "PathState<N>"),
+        (r"std::conditional_t<effects\.have_wavelengths\(\), DispersedPathState<N>, PathState<N>>", "PathState<N>"),
     ],
-    "render/render_samples.hpp": [(r"    if constexpr \(effects\.dispersion\)\n.*?(?=\}\n\n\}  // namespace)", "")],
-    "render/splat_ghosts.hpp": [(r"template <LensKind lens_kind, SceneKind scene_kind, bool disperses.*?\n\}\n", "")],
+    "render/render_samples.hpp": [
+        (r"    if constexpr \(effects\.have_wavelengths\(\)\)\n.*?(?=\}\n\n\}  // namespace)", "")
+    ],
+    "render/splat_ghosts.hpp": [
+        (r"/// Where light that geometrical optics brings to .*?(?=\}  // namespace splat_ghosts_detail)", ""),
+        (r"template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths.*?\n\}\n", ""),
+    ],
 }
 
 

@@ -290,3 +290,17 @@ def test_ghosts_agree(scene: str, dispersion: bool) -> None:
     assert one.sum() > 0
     np.testing.assert_allclose(other.sum(), one.sum(), rtol=3e-3)
     assert np.sqrt(((one - other) ** 2).mean()) <= 0.05 * np.sqrt((one**2).mean())
+
+
+@needs_gpu
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("effects", [{"diffraction"}, {"diffraction", "dispersion", "coatings"}])
+def test_pictures_with_diffraction_agree(scene: str, effects: set[str]) -> None:
+    """A splat that passes a pixel's border by less than its rounding is next door: as of ghosts."""
+    lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").with_iris(blades=6).stopped_down(11).focused(4.0)
+    camera = rc.Camera(lens, film=rc.Film(36, 24, (60, 40)), position=(0, 1, 3), look_at=(0, 0.6, -2))
+    one, other = pictures(SCENES[scene](), camera, ("cpu", "cuda"), spp=256, max_bounces=1, effects=sorted(effects))
+    a, b = one.pixels.astype(float), other.pixels.astype(float)
+    assert one.stats.sampled_rays == other.stats.sampled_rays
+    np.testing.assert_allclose(b.mean(axis=(0, 1)), a.mean(axis=(0, 1)), rtol=1e-3)
+    assert np.sqrt(((a - b) ** 2).mean() / (a**2).mean()) <= 2e-2

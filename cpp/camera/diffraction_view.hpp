@@ -1,0 +1,151 @@
+#pragma once
+#include <cstdint>
+
+#include "../math/alias_table.hpp"
+#include "../math/sincos.hpp"
+#include "../optics/diffraction_cells.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Pieces of edge that an aperture may have.
+inline constexpr int kDiffractionEdges = 320;
+/// Places in a film point's alias tables: that of the edges, then that of the cells.
+inline constexpr int kDiffractionEntries = kDiffractionEdges + kDiffractionCells;
+
+/// The lens's aperture as a film point sees it.
+struct DiffractionNode {
+    float mm_per_nm;  ///< on the film, for one period over the aperture's width and each nm of wavelength
+    float edge_share;  ///< of the light, that is spread beyond the cells
+};
+
+/// Diffraction of a lens at film points of even radii and, if blades make it differ, azimuths. Without diffraction
+/// there are no radii.
+struct DiffractionView {
+    const DiffractionNode* nodes;  ///< radii x azimuths
+    const AliasEntry* entries;     ///< kDiffractionEntries of each node
+    const DiffractionEdge* edges;  ///< kDiffractionEdges of each node
+    int radii;
+    int azimuths;  ///< 1: what is seen turns with the film point's azimuth
+    float radii_per_mm;
+    float largest_radius;  ///< of a film point, mm
+    float splat_density;  ///< per steradian, with which lights are to be chosen that splats find better than samples do
+};
+
+/// Samples of pixels for each splat of a light.
+inline constexpr int kSamplesPerSplat = 32;
+
+namespace diffraction_detail {
+
+/// The node that stands for a film point: one of its neighbours, drawn as often as it is near.
+REALCAM_INLINE std::int32_t node_at(const DiffractionView& view, Vec2f film, float u, float v) {
+    const float radius = sqrt_or_zero(film.x * film.x + film.y * film.y);
+    const auto ring = static_cast<std::int32_t>(radius * view.radii_per_mm + u);
+    const std::int32_t row = select(ring < view.radii, ring, view.radii - 1);
+    // An angle from 0 to 4, along a square instead of a circle.
+    const float around = std::fabs(film.x) + std::fabs(film.y);
+    const float y = quotient(film.y, select(around > 0.0f, around, 1.0f));
+    const float angle = select(film.x < 0.0f, 2.0f - y, select(y < 0.0f, 4.0f + y, y));
+    const auto sector = static_cast<std::int32_t>(0.25f * static_cast<float>(view.azimuths) * angle + v);
+    return row * view.azimuths + select(sector < view.azimuths, sector, 0);
+}
+
+/// A frequency along a straight edge, in periods over its length, with the density sinc^2: a fit to the inverse of its
+/// cumulative probability, which is right within 3%, and in its tails exactly.
+REALCAM_INLINE float frequency_along_edge(float u) {
+    const float share = std::fabs(2.0f * u - 1.0f);
+    const float size = share * (0.5f + share * (-0.34473f + share * (-0.44109f + share * 0.38714f)));
+    const float frequency = quotient(size, select(share < 0.9999f, 1.0f - share, 0.0001f));
+    return select(u < 0.5f, -frequency, frequency);
+}
+
+/// What is left of a random number when its first eight bits, or so many times eight, are used.
+REALCAM_INLINE float behind_bits(float u, float scale) {
+    const float scaled = scale * u;
+    return scaled - static_cast<float>(static_cast<std::int32_t>(scaled));
+}
+
+REALCAM_INLINE float ring_edge_squared(std::int32_t ring) {
+    const std::int32_t beyond = ring - kDiffractionThinRings;
+    const float f =
+        kDiffractionFineStep * static_cast<float>(ring + select(beyond > 0, (kDiffractionThickness - 1) * beyond, 0));
+    return f * f;
+}
+
+/// In periods over the aperture's width.
+REALCAM_INLINE Vec2f cell_frequency(std::int32_t cell, Vec2f u) {
+    const std::int32_t ring = cell / kDiffractionAzimuths, azimuth = cell - ring * kDiffractionAzimuths;
+    const float low = ring_edge_squared(ring), high = ring_edge_squared(ring + 1);
+    const float f = sqrt_or_zero(low + u.x * (high - low));
+    const Vec2f way =
+        cos_sin_of_turn((static_cast<float>(azimuth) + u.y) * static_cast<float>(0.5 / kDiffractionAzimuths));
+    return {f * way.x, f * way.y};
+}
+
+/// `f`: along the edge's normal.
+REALCAM_INLINE Vec2f edge_frequency(const DiffractionEdge& edge, float f, float place, float u) {
+    const float turns = edge.angle + place * edge.turn;
+    const Vec2f normal = cos_sin_of_turn(turns - select(turns >= 1.0f, 1.0f, select(turns < 0.0f, -1.0f, 0.0f)));
+    const float along = edge.spread * frequency_along_edge(u);
+    return {f * normal.x - along * normal.y, f * normal.y + along * normal.x};
+}
+
+/// For the film's axes, where the lens is the same all around.
+REALCAM_INLINE Vec2f turned_with(Vec2f film, int azimuths, Vec2f v) {
+    const float squared = film.x * film.x + film.y * film.y;
+    const bool turns = (azimuths == 1) & (squared > 0.0f);
+    const float inverse = quotient(1.0f, sqrt_or_zero(select(turns, squared, 1.0f)));
+    const float x = select(turns, film.x * inverse, 1.0f), y = select(turns, film.y * inverse, 0.0f);
+    return {x * v.x - y * v.y, y * v.x + x * v.y};
+}
+
+}  // namespace diffraction_detail
+
+/// By how much diffraction moves light on the film.
+struct DiffractionKick {
+    Vec2f mm_per_nm;  ///< for each nm of wavelength
+    std::int32_t from_edge;  ///< 1: further than the cells reach
+};
+
+/// Draws one for light of a film point, with the power that its aperture diffracts there as density.
+REALCAM_INLINE DiffractionKick draw_kick(const DiffractionView& view, Vec2f film, Vec2f u, Vec2f v) {
+    using namespace diffraction_detail;
+    const std::int32_t at = node_at(view, film, u.y, behind_bits(u.y, 0x1p8f));
+    const DiffractionNode& node = view.nodes[at];
+    const bool is_edge = u.x < node.edge_share;
+    const float fresh =
+        select(is_edge, u.x, u.x - node.edge_share) / select(is_edge, node.edge_share, 1.0f - node.edge_share);
+    const std::int32_t drawn =
+        draw_entry(view.entries, at * kDiffractionEntries + select(is_edge, 0, kDiffractionEdges),
+                   select(is_edge, kDiffractionEdges, kDiffractionCells), fresh);
+    const float side = select(v.y < 0.5f, 1.0f, -1.0f), place = behind_bits(v.y, 2.0f);
+    const Vec2f in_cell = cell_frequency(select(is_edge, 0, drawn), {v.x, place});
+    const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + select(is_edge, drawn, 0)],
+                                           quotient(kDiffractionReach, 1.0f - v.x), place, behind_bits(u.y, 0x1p16f));
+    const float scale = side * node.mm_per_nm;
+    const Vec2f kick = {scale * select(is_edge, from_edge.x, in_cell.x),
+                        scale * select(is_edge, from_edge.y, in_cell.y)};
+    return {turned_with(film, view.azimuths, kick), select(is_edge, 1, 0)};
+}
+
+/// One that comes from an edge, as often near the cells as, in the logarithm, anywhere up to the whole film.
+struct EdgeKick {
+    Vec2f mm_per_nm;
+    float weight;  ///< share of all light over that of the draws
+};
+
+REALCAM_INLINE EdgeKick draw_edge_kick(const DiffractionView& view, Vec2f film, float nm, Vec2f u, Vec2f v) {
+    using namespace diffraction_detail;
+    const std::int32_t at = node_at(view, film, u.y, behind_bits(u.y, 0x1p8f));
+    const DiffractionNode& node = view.nodes[at];
+    const std::int32_t edge = draw_entry(view.entries, at * kDiffractionEntries, kDiffractionEdges, u.x);
+    const float most = quotient(2.0f * view.largest_radius, node.mm_per_nm * nm);
+    const float range = std::log(quotient(most > kDiffractionReach ? most : kDiffractionReach, kDiffractionReach));
+    const float ratio = std::exp(v.x * range);
+    const float side = select(v.y < 0.5f, 1.0f, -1.0f), scale = side * node.mm_per_nm;
+    const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + edge], kDiffractionReach * ratio,
+                                           behind_bits(v.y, 2.0f), behind_bits(u.y, 0x1p16f));
+    return {turned_with(film, view.azimuths, {scale * from_edge.x, scale * from_edge.y}),
+            node.edge_share * range / ratio};
+}
+
+}  // namespace REALCAM_NAMESPACE
