@@ -63,6 +63,7 @@ HOST_ONLY = {
     "math/fit_polynomial.hpp",
     "math/motion.hpp",
     "math/uniform_keys.hpp",
+    "optics/asphere_start.hpp",
     "optics/best_focus.hpp",
     "optics/bundle_quadrature.hpp",
     "optics/clearance.hpp",
