@@ -134,8 +134,12 @@ REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
             const HeightRay<T> ray{per_height[i], plane[i], change[i], spread[i]};
-            const T z = height[i], from = rays.origin.z[i];
-            const Sag<T> sag = asphere_sag(surface, surface.search_squared * ray.share(z));
+            const Vec3<T> o = rays.origin[i];
+            // The point that the ray is given, because the normal has to be that point's, however far o is.
+            const T parameter = (height[i] - o.z) * per_height[i];
+            const Vec3<T> at = o + parameter * rays.direction[i];
+            const T z = at.z, from = o.z;
+            const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
             const T f = z - sag.height, slope = T(2) * sag.derivative;
             const T rise = T(1) - slope * surface.search_squared * ray.half_derivative(z);
             // Newton's method for the inverse itself, instead of a division.
@@ -145,10 +149,10 @@ REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const
                                 (std::fabs(from) + std::fabs(z - from) + sag.size +
                                  T(0.0625) * (surface.sag_max - surface.sag_min)) -
                             std::fabs(f);
-            hits.parameter[i] = (z - from) * per_height[i];
+            hits.parameter[i] = parameter;
             hits.slope[i] = slope;
             hits.slack[i] = slack;
-            height[i] = select(slack < T(0), z - f * inverse, z);
+            height[i] = select(slack < T(0), z - f * inverse, height[i]);
             inverse_rise[i] = inverse;
             const int alive = static_cast<int>(rays.status[i] == 0);
             searching |= alive & static_cast<int>(slack < T(0));
