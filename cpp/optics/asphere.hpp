@@ -158,9 +158,8 @@ REALCAM_INLINE void improve_search(const SurfaceView<T>& surface, Vec3<T> o, Vec
 /// `slack`: by how much the search ended within its tolerance. A hit counts where that is not negative and the ray
 /// crosses in the right direction; one number says both, because gcc does not vectorise a chain of truth values here.
 template <class T>
-REALCAM_INLINE SurfaceHit<T> asphere_hit(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T t, T slack) {
+REALCAM_INLINE SurfaceHit<T> asphere_hit(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T t, T slope, T slack) {
     const Vec3<T> at = o + t * p;
-    const T slope = T(2) * asphere_sag(surface, at.x * at.x + at.y * at.y).derivative;
     const Vec3<T> normal = normalized(Vec3<T>{-slope * at.x, -slope * at.y, T(1)});
     const T along_normal = dot(p, normal);
     const T crossing = along_normal * surface.direction_sign_in;

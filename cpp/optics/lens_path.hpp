@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "asphere_start.hpp"
 #include "crossing.hpp"
 #include "lens_system.hpp"
 #include "lens_trace.hpp"
@@ -98,6 +99,7 @@ private:
             view.aspheric[i] = static_cast<T>(surface.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
         view.sag_min = static_cast<T>(low - margin);
         view.sag_max = static_cast<T>(high + margin);
+        set_start(view, surface);
     }
 
     static void set_media(SurfaceView<T>& view, double before, double after, double direction_sign_in,

@@ -1,7 +1,7 @@
 #pragma once
 #include <type_traits>
 
-#include "asphere.hpp"
+#include "asphere_newton.hpp"
 #include "index_cubic.hpp"
 #include "lens_view.hpp"
 #include "ray_status.hpp"
@@ -102,53 +102,133 @@ REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, const Boundary
     }
 }
 
+/// Where N rays meet an asphere.
+template <class T, int N>
+struct AsphereHits {
+    alignas(kLaneAlignment<T, N>) T parameter[N];
+    alignas(kLaneAlignment<T, N>) T slope[N];  ///< d height / d r, over r
+    alignas(kLaneAlignment<T, N>) T slack[N];  ///< by how much the search ended within its tolerance
+};
+
+/// Newton's method without a bracket, for the rays that cross the surface once. Leaves all others, and those that it
+/// has not brought within their tolerance, with a slack that is NaN or negative. Returns their number.
+template <class T, int N>
+REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
+                                            AsphereHits<T, N>& hits) {
+    alignas(kLaneAlignment<T, N>) T per_height[N], plane[N], change[N], spread[N], height[N], inverse_rise[N];
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const HeightRay<T> ray = height_ray(surface, rays.origin[i], rays.direction[i]);
+        T inverse = 0;
+        const T z = start_height(surface, ray, inverse);
+        // NaN is never within its tolerance, nor does it keep the others searching.
+        height[i] = select(crosses_once(surface, ray), z, std::numeric_limits<T>::quiet_NaN());
+        inverse_rise[i] = inverse;
+        per_height[i] = ray.per_height;
+        plane[i] = ray.plane, change[i] = ray.change, spread[i] = ray.spread;
+    }
+    int left = 0;
+    for (int count = 0; count < kHeightSteps; ++count) {
+        int searching = 0;
+        left = 0;
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            const HeightRay<T> ray{per_height[i], plane[i], change[i], spread[i]};
+            const Vec3<T> o = rays.origin[i];
+            // The point that the ray is given, because the normal has to be that point's, however far o is.
+            const T parameter = (height[i] - o.z) * per_height[i];
+            const Vec3<T> at = o + parameter * rays.direction[i];
+            const T z = at.z, from = o.z;
+            const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
+            const T f = z - sag.height, slope = T(2) * sag.derivative;
+            const T rise = T(1) - slope * surface.search_squared * ray.half_derivative(z);
+            // Newton's method for the inverse itself, instead of a division.
+            const T inverse = inverse_rise[i] * (T(2) - rise * inverse_rise[i]);
+            // The least that improve_search allows.
+            const T slack = T(4) * std::numeric_limits<T>::epsilon() *
+                                (std::fabs(from) + std::fabs(z - from) + sag.size +
+                                 T(0.0625) * (surface.sag_max - surface.sag_min)) -
+                            std::fabs(f);
+            hits.parameter[i] = parameter;
+            hits.slope[i] = slope;
+            hits.slack[i] = slack;
+            height[i] = select(slack < T(0), z - f * inverse, height[i]);
+            inverse_rise[i] = inverse;
+            const int alive = static_cast<int>(rays.status[i] == 0);
+            searching |= alive & static_cast<int>(slack < T(0));
+            left += alive & static_cast<int>(!(slack >= T(0)));
+        }
+        if (searching == 0) break;
+    }
+    return left;
+}
+
+/// The search in a bracket, for the rays whose crossing is still to be found. They are brought together, so that few
+/// take little time and many are vector code.
+template <class T, int N>
+REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
+                                          AsphereHits<T, N>& hits) {
+    AsphereSearch<T, N> search;
+    Vec3Lanes<T, N> origin{}, direction{};  // zeros, because gcc fears that a lane is read before it is written
+    alignas(kLaneAlignment<T, N>) T outside[N];
+    int lane_of[N], count = 0;
+    for (int i = 0; i < N; ++i) {
+        if (rays.status[i] != 0 || hits.slack[i] >= T(0)) continue;
+        origin.set(count, rays.origin[i]);
+        direction.set(count, rays.direction[i]);
+        lane_of[count++] = i;
+    }
+    REALCAM_LANES
+    for (int i = 0; i < count; ++i)
+        outside[i] = begin_search(surface, origin[i], direction[i], search.t[i], search.below[i], search.above[i]);
+    for (int i = 0; i < count; ++i) {
+        if (!(outside[i] > T(0))) continue;
+        const bool found =
+            find_bracket(surface, origin[i], direction[i], search.t[i], search.below[i], search.above[i]);
+        // One that goes through, though not inside: it meets the plane outside, and is vignetted there.
+        const bool through = outside[i] < kSideways<T> / 2;
+        if (!found && !through) search.t[i] = search.below[i] = search.above[i] = std::numeric_limits<T>::quiet_NaN();
+    }
+    for (int step = 0; step < kMaxAsphereSteps<T>; ++step) {
+        const bool halve = step >= kNewtonSteps && step % 2 == 0;
+        int searching = 0;
+        REALCAM_LANES
+        for (int i = 0; i < count; ++i) {
+            improve_search(surface, origin[i], direction[i], halve, search.t[i], search.below[i], search.above[i],
+                           search.residual[i], search.tolerance[i]);
+            searching |= static_cast<int>(search.residual[i] > search.tolerance[i]);
+        }
+        if (searching == 0) break;
+    }
+    for (int i = 0; i < count; ++i) {
+        const int lane = lane_of[i];
+        const Vec3<T> at = origin[i] + search.t[i] * direction[i];
+        hits.parameter[lane] = search.t[i];
+        hits.slope[lane] = T(2) * asphere_sag(surface, at.x * at.x + at.y * at.y).derivative;
+        hits.slack[lane] = search.tolerance[i] - search.residual[i];
+    }
+}
+
 template <class T, int N, class Boundary, class Record>
 REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Boundary& boundary, LensRays<T, N>& rays,
                                      Record& record) {
-    AsphereSearch<T, N> search;
-    alignas(kLaneAlignment<T, N>) T outside[N];
-    int ended = 0, uncertain = 0;
+    int ended = 0;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         rays.origin.z[i] -= surface.shift;
         ended += static_cast<int>(rays.status[i] != 0);
     }
     if (ended == N) return;
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        outside[i] =
-            begin_search(surface, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
-        uncertain |= static_cast<int>(rays.status[i] == 0) & static_cast<int>(outside[i] > T(0));
-    }
-    for (int i = 0; uncertain && i < N; ++i) {
-        if (rays.status[i] != 0 || !(outside[i] > T(0))) continue;
-        const bool found =
-            find_bracket(surface, rays.origin[i], rays.direction[i], search.t[i], search.below[i], search.above[i]);
-        // One that goes through, though not inside: it meets the plane outside, and is vignetted there.
-        const bool through = outside[i] < kSideways<T> / 2;
-        if (!found && !through) search.t[i] = search.below[i] = search.above[i] = std::numeric_limits<T>::quiet_NaN();
-    }
-    for (int count = 0; count < kMaxAsphereSteps<T>; ++count) {
-        const bool halve = count >= kNewtonSteps && count % 2 == 0;
-        int searching = 0;
-        REALCAM_LANES
-        for (int i = 0; i < N; ++i) {
-            improve_search(surface, rays.origin[i], rays.direction[i], halve, search.t[i], search.below[i],
-                           search.above[i], search.residual[i], search.tolerance[i]);
-            searching |=
-                static_cast<int>(rays.status[i] == 0) & static_cast<int>(search.residual[i] > search.tolerance[i]);
-        }
-        if (searching == 0) break;
-    }
+    AsphereHits<T, N> hits;
+    if (find_single_crossings(surface, rays, hits) > 0) search_in_brackets(surface, rays, hits);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec3<T> o = rays.origin[i];
         const Vec3<T> p = rays.direction[i];
-        const T slack = search.tolerance[i] - search.residual[i];
-        const SurfaceHit<T> hit = asphere_hit(surface, o, p, search.t[i], slack);
-        // Without a bracket both are NaN.
-        const int failure =
-            select(slack < T(0), static_cast<int>(RayStatus::no_convergence), static_cast<int>(RayStatus::missed));
+        const SurfaceHit<T> hit = asphere_hit(surface, o, p, hits.parameter[i], hits.slope[i], hits.slack[i]);
+        // Without a bracket the slack is NaN.
+        const int failure = select(hits.slack[i] < T(0), static_cast<int>(RayStatus::no_convergence),
+                                   static_cast<int>(RayStatus::missed));
         cross_surface<LensKind::any>(surface, boundary, rays, record, i, o, p, hit, failure);
     }
 }

@@ -7,6 +7,7 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr int kMaxAsphericTerms = 8;
 inline constexpr int kMaxIrisBlades = 24;
+inline constexpr int kStartTerms = 8;  ///< of the polynomial from which the search on an asphere starts
 
 enum class SurfaceShape : int { sphere, conic, asphere };
 
@@ -33,6 +34,12 @@ struct alignas(16) SurfaceView {
     /// Of u^2, u^3, ..., u = r^2 / search_squared, mm; zeros after the last. The polynomial's own coefficients leave
     /// the range of float32 where surfaces are large or small.
     T aspheric[kMaxAsphericTerms];
+    T inner_share;  ///< aspheres: a part of search_squared, out to which the surface may be less steep than beyond
+    /// Aspheres: a ray crosses the surface once where the squared tangent of its angle with the axis, over
+    /// search_squared, is less than this; for rays that stay in the inner part, and for all. 0: not known of any.
+    T crossed_once_inside, crossed_once;
+    T start_parabola;  ///< aspheres: the sag is about this times u, mm
+    T start[kStartTerms];  ///< and nearly these times u, u^2, ..., with the conic's part
 };
 
 /// The opening of the aperture stop: n blades whose inner edges are arcs of one curvature.

@@ -68,6 +68,7 @@ HOST_ONLY = {
     "math/motion.hpp",
     "math/uniform_keys.hpp",
     "optics/aperture_diffraction.hpp",
+    "optics/asphere_start.hpp",
     "optics/best_focus.hpp",
     "optics/bundle_quadrature.hpp",
     "optics/clearance.hpp",
