@@ -14,9 +14,8 @@ inline constexpr std::size_t kLaneAlignment = N > 1 ? 64 : alignof(T);
 /// scalar code for what is left over.
 template <int N>
 REALCAM_INLINE constexpr int whole_vectors(int count) {
-    if constexpr (N == 1) return 1;
-    constexpr int kWidest = 16;
-    static_assert(N == 1 || N % kWidest == 0);
+    constexpr int kWidest = 16;  // floats of AVX-512
+    static_assert(N % kWidest == 0);
     return (count + kWidest - 1) & -kWidest;
 }
 

@@ -83,16 +83,16 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     std::int32_t darkens[N];  // surfaces that show nothing but shadows
 
     if constexpr (scene_kind == SceneKind::any) {
-        const int places = N > 1 ? path.count : 1;
+        const int places = path.places();
         for (int i = 0; i < places; ++i) path.rays.number[i] = ray_number(block, path.lane(i), bounce);
     }
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     meet_surfaces<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
-    if (path.count == 0) return false;
-    const int places = N > 1 ? path.count : 1;
-    if constexpr (N > 1) {
+    if (path.count == 0) return false;  // on a GPU, lest what only paths that go on need is kept in registers
+    const int places = path.places();
+    if constexpr (N > 1) {  // also of the places that are not in use
         REALCAM_LANES
         for (int i = 0; i < N; ++i) shadow.rays.active[i] = 0;
     }

@@ -4,8 +4,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the paths of a block have met in a scene of any materials: in lanes for those that GlossyBsdf describes, which
-/// most do, and one by one for all others.
+/// What the paths of a block have met in a scene that is not plain: in lanes what GlossyBsdf describes, and point by
+/// point all else, whose lanes are black.
 template <int N>
 struct GlossySurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
@@ -23,7 +23,7 @@ struct GlossySurfaces {
         set(place, is_glossy[place] ? glossy_surface(point) : GlossySurface{});
         if (!is_glossy[place]) others.set(place, point);
     }
-    /// Gives a place that no path uses the numbers of one that is in use: vector code looks them up in tables.
+    /// Gives a place that no path uses the numbers of one that is in use.
     REALCAM_INLINE void copy(int from, int to) {
         position.set(to, position[from]);
         geometric_normal.set(to, geometric_normal[from]);

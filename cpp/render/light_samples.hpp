@@ -1,10 +1,11 @@
 #pragma once
+#include "environment_samples.hpp"
 #include "met_light.hpp"
 #include "path_numbers.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-// sample_light for all paths of a block at once: what area lights and a constant environment ask for is vector code.
+// sample_light for all paths of a block at once: what area lights and the environment ask for is vector code.
 
 template <int N>
 struct LightSamples {
@@ -25,6 +26,13 @@ struct LightSamples {
 };
 
 namespace light_samples_detail {
+
+REALCAM_INLINE LightSample select(bool condition, const LightSample& a, const LightSample& b) {
+    using realcam::select;
+    return {select(condition, a.direction, b.direction), select(condition, a.distance, b.distance),
+            select(condition, a.reach, b.reach), select(condition, a.irradiance, b.irradiance),
+            select(condition, a.pdf, b.pdf)};
+}
 
 enum class Source : std::int32_t { none, area, sky, other };
 
@@ -117,6 +125,11 @@ REALCAM_INLINE AreaLight placed_area_light(const SceneView& scene, const AreaLig
     return light;
 }
 
+/// Whether the places in its tables can be counted in 32 bits.
+REALCAM_INLINE bool fits_lanes(const EnvironmentView& environment) {
+    return !environment.pixels || std::int64_t{environment.height} * (environment.width + 1) < (1 << 30);
+}
+
 /// As pick_light does for one receiver.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void pick_lights(const SceneView& scene, const SurfacesT& surfaces, const PathState<N>& path,
@@ -132,7 +145,7 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const SurfacesT& surface
         picked.probability[i] = pick.probability;
         if (pick.kind == LightKind::area)
             picked.set_area(i, placed_area_light<scene_kind>(scene, scene.areas[pick.index], pick.u, receiver.time));
-        else if (pick.kind == LightKind::environment && !scene.environment.pixels)
+        else if (pick.kind == LightKind::environment && fits_lanes(scene.environment))
             picked.set_sky(i);
         else
             picked.set_other(i, sample_picked<scene_kind>(scene, receiver, pick));
@@ -141,8 +154,8 @@ REALCAM_INLINE void pick_lights(const SceneView& scene, const SurfacesT& surface
 
 }  // namespace light_samples_detail
 
-/// A sample for each path. `SurfacesT` has positions and normals, and is_in_lanes(place), which leaves others out; those
-/// get no light. `u` and `seed(place)`: as sample_light's.
+/// A sample for each path whose surface is_in_lanes(place); others get no light. `u` and `seed(place)`: as
+/// sample_light's.
 template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
 REALCAM_INLINE void sample_lights(const SceneView& scene, const SurfacesT& surfaces, const PathState<N>& path,
                                   const PathNumbers<N>& u, const Seeds& seed, LightSamples<N>& samples) {
@@ -165,18 +178,22 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const SurfacesT& surfa
         }
     }
     if (picked.any_sky) {
-        const Color radiance = scene.environment.constant;
-        REALCAM_LANES
-        for (int i = 0; i < places; ++i) {
+        const auto set = [&](int i, const LightSample& sky) {
             const bool is_sky = picked.source[i] == Source::sky;
-            const Vec3f direction = sample_cosine(surfaces.normal[i], picked.u[i]);
-            const float pdf = cosine_pdf(surfaces.normal[i], direction);
-            samples.direction.set(i, select(is_sky, direction, samples.direction[i]));
-            samples.irradiance.set(
-                i, select(is_sky, select(pdf > 0.0f, 1.0f / pdf, 0.0f) * radiance, samples.irradiance[i]));
-            samples.distance[i] = select(is_sky, kFarAway, samples.distance[i]);
-            samples.reach[i] = select(is_sky, 1.0f, samples.reach[i]);
-            samples.pdf[i] = select(is_sky, pdf, samples.pdf[i]);
+            samples.set(i, select(is_sky, sky, samples[i]));
+        };
+        if (scene.environment.pixels) {
+            const EnvironmentSamples<N> sky(scene.environment, picked.u, places);
+            REALCAM_LANES
+            for (int i = 0; i < places; ++i) set(i, sky[i]);
+        } else {
+            const Color radiance = scene.environment.constant;
+            REALCAM_LANES
+            for (int i = 0; i < places; ++i) {
+                const Vec3f direction = sample_cosine(surfaces.normal[i], picked.u[i]);
+                const float pdf = cosine_pdf(surfaces.normal[i], direction);
+                set(i, {direction, kFarAway, 1.0f, select(pdf > 0.0f, 1.0f / pdf, 0.0f) * radiance, pdf});
+            }
         }
     }
     if (picked.any_other) {

@@ -60,6 +60,27 @@ REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBl
     return {width * width / number, unit_float(block.bits(lane, kFootprintSalt))};
 }
 
+/// Collects the light of an environment's image along rays that have met nothing, which thereby end. In two turns, so
+/// that memory is asked for many pixels at once.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& settings, int bounce, const Hits<N>& hits,
+                                 PathState<N>& path, PathResults<N>& results) {
+    std::int32_t ending[N], count = 0;
+    EnvironmentPixel pixels[N];
+    for (int i = 0; i < path.count; ++i) {
+        if (!path.rays.active[i] || hits.triangle[i] != kNoTriangle) continue;
+        path.rays.active[i] = 0;
+        pixels[count] = environment_pixel(view.environment, path.rays.direction[i]);
+        ending[count++] = i;
+    }
+    for (int k = 0; k < count; ++k) {
+        const int i = ending[k], lane = path.lane(i);
+        const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
+        const Color light = environment_image_light<scene_kind>(view, path, i, pixels[k]);
+        results.irradiance.set(lane, results.irradiance[lane] + clamped(light, limit));
+    }
+}
+
 }  // namespace meet_surfaces_detail
 
 /// Collects what comes along the rays, from emitters that they have met or from the environment, and makes the points
@@ -69,7 +90,11 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
                                   const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,
                                   PathResults<N>& results, SurfacesT& surfaces) {
     using namespace meet_surfaces_detail;
-    const int places = N > 1 ? path.count : 1;
+    if constexpr (N > 1) {
+        if (view.has_environment && view.environment.pixels)
+            end_at_image<scene_kind>(view, settings, bounce, hits, path, results);
+    }
+    const int places = path.places();
     path.count = 0;
     for (int i = 0; i < places; ++i) {
         if (!path.rays.active[i]) continue;

@@ -54,6 +54,8 @@ struct PathState {
         for (int i = 0; i < N; ++i) lane_[i] = i;
     }
 
+    /// As count, but where the path is known to be there, a constant for a GPU.
+    REALCAM_INLINE int places() const { return N > 1 ? count : 1; }
     /// Which sample of the block a path belongs to.
     REALCAM_INLINE int lane(int place) const {
         if constexpr (N > 1) return lane_[place];

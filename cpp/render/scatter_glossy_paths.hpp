@@ -8,8 +8,8 @@ namespace REALCAM_NAMESPACE {
 namespace scatter_glossy_paths_detail {
 
 /// Light and the next ray for surfaces that GlossyBsdf describes, as scatter_path finds them for one path. Others keep
-/// their paths. Numbers that are 1 or 0 stand for questions that are the same for all lanes: gcc makes no vector code of
-/// a loop that asks them.
+/// their paths. Numbers that are 1 or 0 stand for questions that are the same for all lanes: gcc makes no vector code
+/// of a loop that asks them.
 template <int N>
 REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
                                    const LightSamples<N>& lights, const PathNumbers<N>& u, PathState<N>& path,
@@ -26,7 +26,8 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, con
         const Vec3f normal = surfaces.normal[i], arriving = path.rays.direction[i];
         const GlossyBsdf bsdf(surfaces.glossy(i), normal, place.geometric_normal, -arriving);
         const float diffuse_albedo = diffuse_sends * bsdf.diffuse_albedo(),
-                    specular_albedo = specular_sends * bsdf.specular_albedo(), albedo = diffuse_albedo + specular_albedo;
+                    specular_albedo = specular_sends * bsdf.specular_albedo(),
+                    albedo = diffuse_albedo + specular_albedo;
         const float diffuse_share = select(albedo > 0.0f, diffuse_albedo / albedo, 0.0f),
                     specular_share = select(albedo > 0.0f, specular_albedo / albedo, 0.0f);
         const auto pdf_of = [&](const GlossyBsdf::Value& v) {
@@ -74,6 +75,7 @@ REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettin
     const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light),
         scatter_numbers(block, path, first_dimension + dimension::scatter);
     const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
+    // What fills the last vector is looked up in tables too, and so must be numbers.
     for (int i = path.count; i < whole_vectors<N>(path.count); ++i) {
         surfaces.copy(0, i);
         path.rays.direction.set(i, path.rays.direction[0]);

@@ -109,7 +109,7 @@ REALCAM_INLINE void scatter_paths(const SceneView& view, const PathSettings& set
     const std::uint32_t first_dimension = dimension::of_bounce(bounce);
     const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light),
         scatter_numbers(block, path, first_dimension + dimension::scatter);
-    const int places = N > 1 ? path.count : 1;
+    const int places = path.places();
     for (int i = 0; i < places; ++i)
         darkens[i] = scatter_at<scene_kind>(view, settings, bounce, i, surfaces.points[i], light_numbers,
                                             scatter_numbers, block.bits(path.lane(i), first_dimension), path, shadow);

@@ -55,7 +55,7 @@ REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSetting
     const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
     LightSamples<N> lights;
     sample_lights<SceneKind::plain>(view, surfaces, path,
- PathNumbers<N>(block, path, first_dimension + dimension::light), seed, lights);
+                                    PathNumbers<N>(block, path, first_dimension + dimension::light), seed, lights);
     const PathNumbers<N> u(block, path, first_dimension + dimension::scatter);
     if (!surfaces.has_phong) {
         const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
@@ -65,8 +65,8 @@ REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSetting
     for (int i = 0; i < path.count; ++i) {
         PlainBsdf bsdf{surfaces.normal[i], surfaces.geometric_normal[i], -path.rays.direction[i], surfaces.diffuse[i],
                        surfaces.phong[i],  surfaces.shininess[i]};
-        scatter_path(settings, bounce, i, surfaces[i], {surfaces.position[i], surfaces.normal[i]}, bsdf,
-                     lights[i], u, unit_float(seed(i)), path, shadow);
+        scatter_path(settings, bounce, i, surfaces[i], {surfaces.position[i], surfaces.normal[i]}, bsdf, lights[i], u,
+                     unit_float(seed(i)), path, shadow);
     }
 }
 

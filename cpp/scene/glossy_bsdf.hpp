@@ -9,7 +9,7 @@ struct GlossySurface {
     Color f0 = {0, 0, 0};  ///< reflectance of a dielectric's facets at normal incidence
     float f90 = 0;         ///< and at grazing incidence
     float metallic = 0;    ///< share of the surface that is metal
-    float alpha = 1;       ///< not below kSmoothAlpha
+    float alpha = 1;       ///< of the facets, not below kSmoothAlpha
 };
 
 /// Whether GlossyBsdf can describe what is at a point.
@@ -25,13 +25,12 @@ REALCAM_INLINE GlossySurface glossy_surface(const SurfacePoint& point) {
     using namespace make_bsdf_detail;
     const Material& m = *point.material;
     if (m.model == MaterialModel::phong) return {point.diffuse, {0, 0, 0}, 0.0f, 0.0f, 1.0f};
-    return {unit_range(point.diffuse),
-            unit_range((point.specular_weight * normal_reflectance(m.ior)) * point.specular), point.specular_weight,
-            unit_range(point.metallic), alpha_of(point.roughness)};
+    return {unit_range(point.diffuse), unit_range((point.specular_weight * normal_reflectance(m.ior)) * point.specular),
+            point.specular_weight, unit_range(point.metallic), alpha_of(point.roughness)};
 }
 
-/// Bsdf of most opaque surfaces: Lambert's lobe under one of rough microfacets. Without branches, so that it becomes
-/// vector code for many points; where a direction is not possible its numbers mean nothing, and are not used.
+/// What Bsdf is for most opaque surfaces: Lambert's lobe under one of rough microfacets. Without branches, so that it
+/// becomes vector code for many points; on a GPU, and for other materials, Bsdf does the same.
 class GlossyBsdf {
 public:
     /// What goes to a direction: BSDF times cosine of either lobe, and their densities per steradian. Zero where the
@@ -67,6 +66,7 @@ public:
     REALCAM_INLINE Value eval(Vec3f to_light) const {
         const Vec3f light = frame_.to_local(to_light);
         const bool is_possible = (light.z > 0.0f) & (dot(geometric_normal_, to_light) > 0.0f);
+        // Of a direction below, too, tables are read.
         const float cosine = select(is_possible, light.z, 1.0f), pdf = 0.3183098862f * cosine;
         const GgxAlbedo to_light_facets = inlined_ggx_albedo(cosine, alpha_);
         const Color diffuse = pdf * diffuse_ * (grey(1.0f) - above_diffuse_.albedo(to_light_facets));
@@ -75,8 +75,8 @@ public:
         const float visible = 1.0f / (1.0f + lambda), both = 1.0f / (1.0f + lambda + ggx_lambda(light, alpha_));
         const float lost_twice = (1.0f - to_eye_.all) * (1.0f - to_light_facets.all);
         const float several = select(lost_ > 1e-6f, lost_twice * pdf / lost_, 0.0f);
-        const Color specular =
-            (density * both) * schlick(reflectance_.f0, reflectance_.f90, dot(eye_, h)) + several * reflectance_.multiple;
+        const Color specular = (density * both) * schlick(reflectance_.f0, reflectance_.f90, dot(eye_, h)) +
+                               several * reflectance_.multiple;
         const float specular_pdf = to_eye_.all * visible * density + (1.0f - to_eye_.all) * (2.0f * kSpherePdf);
         const Color none = {0, 0, 0};
         return {select(is_possible, diffuse, none), select(is_possible, specular, none), select(is_possible, pdf, 0.0f),
@@ -94,6 +94,7 @@ public:
     }
 
 private:
+    /// As make_bsdf's, which has a branch.
     REALCAM_INLINE static Vec3f visible_normal(Vec3f normal, Vec3f to_eye) {
         constexpr float kLeastCosine = 1e-3f;
         const float cosine = dot(normal, to_eye);

@@ -132,7 +132,8 @@ inline constexpr AddedLight kAddedLights[] = {
      [](Scene& s) {
          s.environment.width = 4;
          s.environment.height = 2;
-         s.environment.pixels = {{1, 2, 3}, {9, 9, 9}, {0, 1, 0}, {2, 2, 2}, {1, 1, 1}, {0, 0, 0}, {3, 1, 2}, {1, 0, 1}};
+         s.environment.pixels = {{1, 2, 3}, {9, 9, 9}, {0, 1, 0}, {2, 2, 2},
+                                 {1, 1, 1}, {0, 0, 0}, {3, 1, 2}, {1, 0, 1}};
      }},
 };
 

@@ -69,8 +69,9 @@ struct Wall {
     Material (*material)();
 };
 
-const Wall kWalls[] = {{"rough metal", rough_metal}, {"varnished", varnished}, {"mixed", mixed},   {"coated", coated},
-                       {"glass", rough_glass},       {"mirror", mirror},       {"polished", polished}, {"phong", phong}};
+const Wall kWalls[] = {{"rough metal", rough_metal}, {"varnished", varnished}, {"mixed", mixed},
+                       {"coated", coated},           {"glass", rough_glass},   {"mirror", mirror},
+                       {"polished", polished},       {"phong", phong}};
 
 /// A floor of rough metal, a wall, and a Lambertian plate before it; the lamp shines up, too.
 Scene room(const Material& wall) {
