@@ -20,6 +20,10 @@ struct SampleBlock {
     REALCAM_INLINE Vec2f random(int lane, std::uint32_t dimension) const {
         return sample_2d(stream[lane], sample[lane], dimension);
     }
+    /// Random bits of a sample that are in no sequence.
+    REALCAM_INLINE std::uint32_t bits(int lane, std::uint32_t salt) const {
+        return hash32(stream[lane] ^ sample[lane], salt);
+    }
 };
 
 /// The random sequence of a pixel.

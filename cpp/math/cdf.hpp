@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "lanes.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -27,12 +29,56 @@ struct CdfChoice {
     float fresh;  ///< a random number in (0, 1), made of what the choice left over
 };
 
+template <int N>
+struct CdfChoices {
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t index[N];
+    alignas(kLaneAlignment<float, N>) float probability[N], fresh[N];
+
+    REALCAM_INLINE CdfChoice operator[](int lane) const { return {index[lane], probability[lane], fresh[lane]}; }
+};
+
+/// The entry between two cumulative probabilities, with u between them.
+REALCAM_INLINE CdfChoice cdf_choice(int index, float below, float above, float u) {
+    const float probability = above - below;
+    // From the middle of the random number's step: an entry of one step would give 0 for ever.
+    const float fresh = (u - below + 0x1p-25f) / probability;
+    return {index, probability, select(fresh < 1.0f, fresh, 0x1.fffffep-1f)};
+}
+
 REALCAM_INLINE CdfChoice choose_from_cdf(const float* cdf, int count, float u) {
     const int index = find_in_cdf(cdf, count, u);
-    const float probability = cdf[index + 1] - cdf[index];
-    // From the middle of the random number's step: an entry of one step would give 0 for ever.
-    const float fresh = (u - cdf[index] + 0x1p-25f) / probability;
-    return {index, probability, select(fresh < 1.0f, fresh, 0x1.fffffep-1f)};
+    return cdf_choice(index, cdf[index], cdf[index + 1], u);
+}
+
+/// The same for many numbers, all in step, which is vector code and waits for memory for many at once. `tables`: of the
+/// same length, one of which begins at `begin[i]`.
+template <int N>
+REALCAM_INLINE void choose_from_cdfs(const float* tables, const std::int32_t (&begin)[N], int count,
+                                     const float (&u)[N], int places, CdfChoices<N>& chosen) {
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t first[N], last[N];
+    REALCAM_LANES
+    for (int i = 0; i < places; ++i) {
+        first[i] = begin[i];
+        last[i] = begin[i] + count;
+    }
+    for (int width = count; width > 1; width = (width + 1) / 2) {
+        REALCAM_LANES
+        for (int i = 0; i < places; ++i) {
+            const std::int32_t middle = first[i] + (last[i] - first[i]) / 2;
+            // Where only one is left, that is the middle, and stays.
+            const bool is_below = tables[middle] <= u[i];
+            first[i] = select(is_below, middle, first[i]);
+            last[i] = select(is_below, last[i], middle);
+        }
+    }
+    REALCAM_LANES
+    for (int i = 0; i < places; ++i) {
+        const std::int32_t at = first[i];
+        const CdfChoice choice = cdf_choice(at - begin[i], tables[at], tables[at + 1], u[i]);
+        chosen.index[i] = choice.index;
+        chosen.probability[i] = choice.probability;
+        chosen.fresh[i] = choice.fresh;
+    }
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -10,6 +10,15 @@ namespace REALCAM_NAMESPACE {
 template <class T, int N>
 inline constexpr std::size_t kLaneAlignment = N > 1 ? 64 : alignof(T);
 
+/// The first `count` of N lanes, and those beside them that a vector register holds too: a loop to this number needs no
+/// scalar code for what is left over.
+template <int N>
+REALCAM_INLINE constexpr int whole_vectors(int count) {
+    constexpr int kWidest = 16;  // floats of AVX-512
+    static_assert(N % kWidest == 0);
+    return (count + kWidest - 1) & -kWidest;
+}
+
 /// N vectors in structure-of-arrays form: what one vector register loads lies side by side.
 /// A GPU thread uses N = 1, and the arrays become registers.
 template <class T, int N>

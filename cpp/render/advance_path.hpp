@@ -3,6 +3,7 @@
 
 #include "../camera/coated_rays.hpp"
 #include "../camera/diffracted_rays.hpp"
+#include "scatter_glossy_paths.hpp"
 #include "scatter_plain_paths.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -16,15 +17,15 @@ inline constexpr int kFirstRoulette = 3;
 
 /// Ends a path with the probability that its throughput has lost.
 template <int N>
-REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int lane, PathState<N>& path) {
-    const Color throughput = path.throughput[lane];
-    const float kept = largest(throughput) / path.weight[lane];
+REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int place, PathState<N>& path) {
+    const Color throughput = path.throughput[place];
+    const float kept = largest(throughput) / path.weight[place];
     if (!(kept < 1.0f)) return;
-    const float u = block.random(lane, dimension::roulette + static_cast<std::uint32_t>(bounce)).x;
+    const float u = block.random(path.lane(place), dimension::roulette + static_cast<std::uint32_t>(bounce)).x;
     if (u < kept)
-        path.throughput.set(lane, (1.0f / kept) * throughput);
+        path.throughput.set(place, (1.0f / kept) * throughput);
     else
-        path.rays.active[lane] = 0;
+        path.rays.active[place] = 0;
 }
 
 /// What the edges of the aperture diffract of the lights is looked for from the lights on, too (splat_ghosts.hpp). A
@@ -93,42 +94,51 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
                                      const SampleBlock<N>& block, int bounce, SceneT&& scene, Probe&& probe,
                                      PathState<N>& path, PathResults<N>& results) {
     using namespace advance_path_detail;
-    constexpr bool kPlainLanes = scene_kind == SceneKind::plain && N > 1;
+    constexpr bool kIsPlain = scene_kind == SceneKind::plain;
     Hits<N> hits;
-    std::conditional_t<kPlainLanes, PlainSurfaces<N>, Surfaces<N>> surfaces;
+    std::conditional_t<N == 1, Surfaces<N>, std::conditional_t<kIsPlain, PlainSurfaces<N>, GlossySurfaces<N>>> surfaces;
     ShadowRays<N> shadow;
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
     std::int32_t darkens[N];  // surfaces that show nothing but shadows
 
     if constexpr (scene_kind == SceneKind::any) {
-        number_rays(block, bounce, path.rays);
-        for (int i = 0; i < N; ++i) {
-            shadow.rays.number[i] = shadow_ray_number(hash32(path.rays.number[i]));
-            shadow.rays.time[i] = path.rays.time[i];
-        }
+        const int places = path.places();
+        for (int i = 0; i < places; ++i) path.rays.number[i] = ray_number(block, path.lane(i), bounce);
     }
     probe.enter(RenderStage::scene);
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     meet_surfaces<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
-    if constexpr (N == 1) {  // else the compiler keeps in registers what only paths that go on need
-        if (!surfaces.scatters[0]) return false;
+    if (path.count == 0) return false;  // on a GPU, lest what only paths that go on need is kept in registers
+    const int places = path.places();
+    if constexpr (N > 1) {  // also of the places that are not in use
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) shadow.rays.active[i] = 0;
     }
-    if constexpr (kPlainLanes)
+    if constexpr (scene_kind == SceneKind::any) {
+        for (int i = 0; i < places; ++i) {
+            shadow.rays.number[i] = shadow_ray_number(hash32(path.rays.number[i]));
+            shadow.rays.time[i] = path.rays.time[i];
+        }
+    }
+    if constexpr (N == 1)
+        scatter_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
+    else if constexpr (kIsPlain)
         scatter_plain_paths(view, settings, block, bounce, surfaces, path, shadow);
     else
-        scatter_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
+        scatter_glossy_paths<scene_kind>(view, settings, block, bounce, surfaces, path, shadow, darkens);
     if (bounce >= kFirstRoulette) {
-        for (int i = 0; i < N; ++i)
+        for (int i = 0; i < places; ++i)
             if (path.rays.active[i]) play_roulette(block, bounce, i, path);
     }
     if (any_active(shadow.rays)) {
         probe.enter(RenderStage::scene);
         scene.occluded(shadow.rays, hidden);
         probe.enter(RenderStage::other);
-        for (int i = 0; i < N; ++i) {
+        for (int i = 0; i < places; ++i) {
+            const int lane = path.lane(i);
             if (shadow.rays.active[i] & !hidden[i])
-                results.irradiance.set(i, results.irradiance[i] + shadow.unshadowed[i]);
+                results.irradiance.set(lane, results.irradiance[lane] + shadow.unshadowed[i]);
             if constexpr (scene_kind == SceneKind::any) {
                 if (darkens[i] & shadow.rays.active[i] & hidden[i]) path.rays.active[i] = 0;
             }

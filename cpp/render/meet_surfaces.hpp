@@ -8,9 +8,8 @@ namespace REALCAM_NAMESPACE {
 template <int N>
 struct Surfaces {
     SurfacePoint points[N];
-    std::int32_t scatters[N];  ///< 1 where the path goes on from here
 
-    REALCAM_INLINE void set(int lane, const SurfacePoint& point) { points[lane] = point; }
+    REALCAM_INLINE void set(int place, const SurfacePoint& point) { points[place] = point; }
 };
 
 /// Likewise in a plain scene, for vector code.
@@ -19,22 +18,22 @@ struct PlainSurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> diffuse, phong;
     alignas(kLaneAlignment<float, N>) float self_offset[N], shininess[N];
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t scatters[N];
     bool has_phong = false;  ///< any of them
 
-    REALCAM_INLINE void set(int lane, const SurfacePoint& point) {
-        position.set(lane, point.position);
-        geometric_normal.set(lane, point.geometric_normal);
-        normal.set(lane, point.normal);
-        diffuse.set(lane, point.diffuse);
-        phong.set(lane, point.material->specular);
-        self_offset[lane] = point.self_offset;
-        shininess[lane] = point.material->shininess;
+    REALCAM_INLINE void set(int place, const SurfacePoint& point) {
+        position.set(place, point.position);
+        geometric_normal.set(place, point.geometric_normal);
+        normal.set(place, point.normal);
+        diffuse.set(place, point.diffuse);
+        phong.set(place, point.material->specular);
+        self_offset[place] = point.self_offset;
+        shininess[place] = point.material->shininess;
         has_phong |= !is_black(point.material->specular);
     }
-    REALCAM_INLINE SurfacePlace place(int lane) const {
-        return {position[lane], geometric_normal[lane], self_offset[lane]};
+    REALCAM_INLINE SurfacePlace operator[](int place) const {
+        return {position[place], geometric_normal[place], self_offset[place]};
     }
+    REALCAM_INLINE bool is_in_lanes(int) const { return true; }
 };
 
 namespace meet_surfaces_detail {
@@ -58,36 +57,63 @@ REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBl
     const float pixel = 2.0f * camera.film_half_width / static_cast<float>(camera.width);
     const auto number = static_cast<float>(block.sample[lane]) + 1.0f;
     const float width = pixel / camera.thin.image_distance;
-    return {width * width / number, unit_float(hash32(block.stream[lane] ^ block.sample[lane], kFootprintSalt))};
+    return {width * width / number, unit_float(block.bits(lane, kFootprintSalt))};
+}
+
+/// Collects the light of an environment's image along rays that have met nothing, which thereby end. In two turns, so
+/// that memory is asked for many pixels at once.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void end_at_image(const SceneView& view, const PathSettings& settings, int bounce, const Hits<N>& hits,
+                                 PathState<N>& path, PathResults<N>& results) {
+    std::int32_t ending[N], count = 0;
+    EnvironmentPixel pixels[N];
+    for (int i = 0; i < path.count; ++i) {
+        if (!path.rays.active[i] || hits.triangle[i] != kNoTriangle) continue;
+        path.rays.active[i] = 0;
+        pixels[count] = environment_pixel(view.environment, path.rays.direction[i]);
+        ending[count++] = i;
+    }
+    for (int k = 0; k < count; ++k) {
+        const int i = ending[k], lane = path.lane(i);
+        const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
+        const Color light = environment_image_light<scene_kind>(view, path, i, pixels[k]);
+        results.irradiance.set(lane, results.irradiance[lane] + clamped(light, limit));
+    }
 }
 
 }  // namespace meet_surfaces_detail
 
 /// Collects what comes along the rays, from emitters that they have met or from the environment, and makes the points
-/// ready from which paths go on.
+/// ready from which paths go on. Those paths take the first places.
 template <SceneKind scene_kind, int N, class SurfacesT>
 REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camera, const PathSettings& settings,
                                   const SampleBlock<N>& block, int bounce, const Hits<N>& hits, PathState<N>& path,
                                   PathResults<N>& results, SurfacesT& surfaces) {
     using namespace meet_surfaces_detail;
-    for (int i = 0; i < N; ++i) {
-        surfaces.scatters[i] = 0;
+    if constexpr (N > 1) {
+        if (view.has_environment && view.environment.pixels)
+            end_at_image<scene_kind>(view, settings, bounce, hits, path, results);
+    }
+    const int places = path.places();
+    path.count = 0;
+    for (int i = 0; i < places; ++i) {
         if (!path.rays.active[i]) continue;
         path.rays.active[i] = 0;
         const Hit hit = hits[i];
+        const int lane = path.lane(i);
         const Vec3f direction = path.rays.direction[i];
         const float time = time_of<scene_kind>(path, i);
         const float limit = bounce > 0 ? settings.clamp * path.weight[i] : 0.0f;
         if (hit.triangle == kNoTriangle) {
             if (view.has_environment)
                 results.irradiance.set(
-                    i, results.irradiance[i] + clamped(environment_light<scene_kind>(view, path, i), limit));
+                    lane, results.irradiance[lane] + clamped(environment_light<scene_kind>(view, path, i), limit));
             continue;
         }
         const SurfacePoint point = surface_point<scene_kind>(view, hit, path.rays.origin[i], direction, time, [&] {
-            return bounce == 0 ? film_footprint(camera, block, i) : Footprint{};
+            return bounce == 0 ? film_footprint(camera, block, lane) : Footprint{};
         });
-        surfaces.set(i, point);
+        surfaces.set(N > 1 ? path.count : 0, point);
         if constexpr (scene_kind != SceneKind::plain) {
             const Color absorption = path.absorption[i];
             if (!is_black(absorption))
@@ -95,9 +121,9 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
         }
         if (!is_black(point.emission))
             results.irradiance.set(
-                i, results.irradiance[i] + clamped(emitter_light<scene_kind>(view, path, i, hit, point), limit));
-        if (bounce == 0) results.depth[i] = depth_at<scene_kind>(camera, point.position, time);
-        surfaces.scatters[i] = bounce <= settings.max_bounces;
+                lane, results.irradiance[lane] + clamped(emitter_light<scene_kind>(view, path, i, hit, point), limit));
+        if (bounce == 0) results.depth[lane] = depth_at<scene_kind>(camera, point.position, time);
+        if (bounce <= settings.max_bounces) path.template move<scene_kind>(i, path.count++);
     }
 }
 

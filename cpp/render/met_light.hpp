@@ -44,6 +44,18 @@ REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N
     return (weight * path.throughput[lane]) * environment_radiance(scene.environment, direction);
 }
 
+/// Likewise of an environment's image, in whose pixel the ray ends.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathState<N>& path, int lane,
+                                             EnvironmentPixel pixel) {
+    const float pdf = path.pdf[lane];
+    float weight = 1.0f;
+    if (pdf < kDelta)
+        weight = mis_weight(pdf, light_kinds(scene, receiver_of<scene_kind>(path, lane)).environment_probability *
+                                     environment_image_pdf(scene.environment, pixel, path.rays.direction[lane]));
+    return (weight * path.throughput[lane]) * pixel_radiance(scene.environment, pixel);
+}
+
 /// Light that the emitter at a hit sends along the ray of a lane.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& path, int lane, Hit hit,

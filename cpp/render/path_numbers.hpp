@@ -1,23 +1,24 @@
 #pragma once
-#include "../camera/generate_rays.hpp"
+#include "path_state.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// The numbers of a dimension: for many lanes all at once, which is vector code, also for those that have no use for
-/// them. A GPU's thread draws them when it wants them, because it has no registers in which to keep them.
+/// The numbers of a dimension for each path: for many all at once, which is vector code. A GPU's thread draws them when
+/// it wants them, because it has no registers in which to keep them.
 template <int N>
 class PathNumbers {
 public:
-    REALCAM_INLINE PathNumbers(const SampleBlock<N>& block, std::uint32_t dimension)
+    REALCAM_INLINE PathNumbers(const SampleBlock<N>& block, const PathState<N>& path, std::uint32_t dimension)
         : block_(block), dimension_(dimension) {
         if constexpr (N > 1) {
+            const int places = whole_vectors<N>(path.count);
             REALCAM_LANES
-            for (int i = 0; i < N; ++i) kept_.set(i, block.random(i, dimension));
+            for (int i = 0; i < places; ++i) kept_.set(i, block.random(path.lane(i), dimension));
         }
     }
-    REALCAM_INLINE Vec2f operator[](int lane) const {
-        if constexpr (N > 1) return kept_[lane];
-        return block_.random(lane, dimension_);
+    REALCAM_INLINE Vec2f operator[](int place) const {
+        if constexpr (N > 1) return kept_[place];
+        return block_.random(0, dimension_);
     }
 
 private:

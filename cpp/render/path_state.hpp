@@ -21,12 +21,10 @@ struct SceneRays {
     alignas(kLaneAlignment<float, N>) float time[N];  ///< share of the exposure (see instance_at.hpp)
 };
 
-/// Numbers the rays of a bounce; those of the camera are bounce 0.
+/// The number of the ray that a sample sends out at a bounce; the camera's is bounce 0.
 template <int N>
-REALCAM_INLINE void number_rays(const SampleBlock<N>& block, int bounce, SceneRays<N>& rays) {
-    for (int i = 0; i < N; ++i)
-        rays.number[i] =
-            path_ray_number(hash32(block.stream[i] ^ block.sample[i], ~static_cast<std::uint32_t>(bounce)));
+REALCAM_INLINE std::uint32_t ray_number(const SampleBlock<N>& block, int lane, int bounce) {
+    return path_ray_number(block.bits(lane, ~static_cast<std::uint32_t>(bounce)));
 }
 
 /// What a block of paths saw. Irradiance per sample: its mean over a pixel's samples is the pixel's irradiance.
@@ -39,15 +37,52 @@ struct PathResults {
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N], passed[N];
 };
 
-/// Paths on their way from the film into the scene: the next ray of each, and what is known of the way up to it.
+/// Paths on their way from the film into the scene: the next ray of each, and what is known of the way up to it. At
+/// each surface those that have ended give their places to others, so that the first ones are in use.
 template <int N>
 struct PathState {
+    int count = N;  ///< places in use, some of them perhaps by paths that have ended since
     SceneRays<N> rays;
     ColorLanes<N> throughput;  ///< irradiance on the film for a unit of radiance that comes along the ray
     alignas(kLaneAlignment<float, N>) float weight[N];  ///< the throughput with which the path began
     alignas(kLaneAlignment<float, N>) float pdf[N];  ///< with which the ray's direction was drawn, per steradian
     Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< of the surface that the ray left (LightReceiver)
     ColorLanes<N> absorption;  ///< of the medium that the ray is in, per metre
+
+    REALCAM_INLINE PathState() {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) lane_[i] = i;
+    }
+
+    /// As count, but where the path is known to be there, a constant for a GPU.
+    REALCAM_INLINE int places() const { return N > 1 ? count : 1; }
+    /// Which sample of the block a path belongs to.
+    REALCAM_INLINE int lane(int place) const {
+        if constexpr (N > 1) return lane_[place];
+        return 0;
+    }
+    /// Moves what a path at a surface still needs of its way there.
+    template <SceneKind scene_kind>
+    REALCAM_INLINE void move(int from, int to) {
+        if constexpr (N > 1) {
+            lane_[to] = lane_[from];
+            rays.direction.set(to, rays.direction[from]);
+            throughput.set(to, throughput[from]);
+            weight[to] = weight[from];
+            if constexpr (scene_kind != SceneKind::plain) absorption.set(to, absorption[from]);
+            if constexpr (scene_kind == SceneKind::any) {
+                rays.time[to] = rays.time[from];
+                rays.number[to] = rays.number[from];
+                // Of a ray that goes on through a surface that shows nothing but shadows:
+                pdf[to] = pdf[from];
+                receiver_position.set(to, receiver_position[from]);
+                receiver_normal.set(to, receiver_normal[from]);
+            }
+        }
+    }
+
+private:
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t lane_[N];
 };
 
 /// The same, of samples that each have a wavelength.

@@ -67,45 +67,52 @@ REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightRec
 
 }  // namespace scatter_paths_detail
 
+/// Scatters a path at a point. `seed`: of the sample at this bounce. Returns whether the surface shows nothing but
+/// shadows.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE bool scatter_at(const SceneView& view, const PathSettings& settings, int bounce, int place,
+                               const SurfacePoint& point, const PathNumbers<N>& light_numbers,
+                               const PathNumbers<N>& scatter_numbers, std::uint32_t seed, PathState<N>& path,
+                               ShadowRays<N>& shadow) {
+    using namespace scatter_paths_detail;
+    const Vec3f direction = path.rays.direction[place];
+    const float time = time_of<scene_kind>(path, place);
+    if constexpr (scene_kind == SceneKind::any) {
+        if (point.material->only_shadows) {
+            // What is behind is seen as far as the light here is not hidden. The ray keeps its direction, and so the
+            // density of that.
+            const LightSample light =
+                light_by_illuminance<scene_kind>(view, {point.position, point.normal, time}, seed);
+            shadow.set(place, point, light, {0, 0, 0});
+            shadow.rays.active[place] = !is_black(light.irradiance);
+            path.rays.origin.set(place, ray_start(point, direction));
+            path.rays.active[place] = 1;
+            return true;
+        }
+    }
+    auto bsdf = make_bsdf<scene_kind>(point, -direction);
+    const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
+    const LightSample light = sample_light<scene_kind>(view, receiver, light_numbers[place], seed);
+    const bool refracted = scatter_path(settings, bounce, place, point, receiver, bsdf, light, scatter_numbers,
+                                        unit_float(seed), path, shadow);
+    if constexpr (scene_kind != SceneKind::plain) {
+        if (refracted) path.absorption.set(place, point.is_front ? point.material->absorption : Color{0, 0, 0});
+    }
+    return false;
+}
+
 /// Scatters the paths that have met a surface. `darkens`: 1 for those whose surface shows nothing but shadows.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void scatter_paths(const SceneView& view, const PathSettings& settings, const SampleBlock<N>& block,
                                   int bounce, const Surfaces<N>& surfaces, PathState<N>& path, ShadowRays<N>& shadow,
                                   std::int32_t (&darkens)[N]) {
-    using namespace scatter_paths_detail;
     const std::uint32_t first_dimension = dimension::of_bounce(bounce);
-    const PathNumbers<N> light_numbers(block, first_dimension + dimension::light),
-        scatter_numbers(block, first_dimension + dimension::scatter);
-    for (int i = 0; i < N; ++i) {
-        shadow.rays.active[i] = darkens[i] = 0;
-        if (!surfaces.scatters[i]) continue;
-        const SurfacePoint& point = surfaces.points[i];
-        const Vec3f direction = path.rays.direction[i];
-        const float time = time_of<scene_kind>(path, i);
-        const std::uint32_t seed = hash32(block.stream[i] ^ block.sample[i], first_dimension);
-        if constexpr (scene_kind == SceneKind::any) {
-            darkens[i] = point.material->only_shadows;
-            if (darkens[i]) {
-                // What is behind is seen as far as the light here is not hidden. The ray keeps its direction, and so
-                // the density of that.
-                const LightSample light =
-                    light_by_illuminance<scene_kind>(view, {point.position, point.normal, time}, seed);
-                shadow.set(i, point, light, {0, 0, 0});
-                shadow.rays.active[i] = !is_black(light.irradiance);
-                path.rays.origin.set(i, ray_start(point, direction));
-                path.rays.active[i] = 1;
-                continue;
-            }
-        }
-        auto bsdf = make_bsdf<scene_kind>(point, -direction);
-        const LightReceiver receiver = {point.position, bsdf.is_opaque() ? point.normal : Vec3f{0, 0, 0}, time};
-        const LightSample light = sample_light<scene_kind>(view, receiver, light_numbers[i], seed);
-        const bool refracted = scatter_path(settings, bounce, i, point, receiver, bsdf, light, scatter_numbers,
-                                            unit_float(seed), path, shadow);
-        if constexpr (scene_kind != SceneKind::plain) {
-            if (refracted) path.absorption.set(i, point.is_front ? point.material->absorption : Color{0, 0, 0});
-        }
-    }
+    const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light),
+        scatter_numbers(block, path, first_dimension + dimension::scatter);
+    const int places = path.places();
+    for (int i = 0; i < places; ++i)
+        darkens[i] = scatter_at<scene_kind>(view, settings, bounce, i, surfaces.points[i], light_numbers,
+                                            scatter_numbers, block.bits(path.lane(i), first_dimension), path, shadow);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,5 +1,5 @@
 #pragma once
-#include "plain_light_samples.hpp"
+#include "light_samples.hpp"
 #include "scatter_paths.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -13,30 +13,27 @@ REALCAM_INLINE void scatter_lambert(const PathSettings& settings, int bounce, co
                                     const LightSamples<N>& lights, const PathNumbers<N>& u, PathState<N>& path,
                                     ShadowRays<N>& shadow) {
     const float clamp = bounce > 0 ? settings.clamp : 0.0f;
+    const int count = path.count, places = whole_vectors<N>(count);
     REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        const SurfacePlace place = surfaces.place(i);
+    for (int i = 0; i < places; ++i) {
+        const SurfacePlace place = surfaces[i];
         const Vec3f normal = surfaces.normal[i];
         const LightSample light = lights[i];
         const float density = cosine_pdf(normal, light.direction);
-        const bool is_seen = (surfaces.scatters[i] != 0) & (dot(place.geometric_normal, light.direction) > 0.0f);
+        const bool is_seen = (i < count) & (dot(place.geometric_normal, light.direction) > 0.0f);
         const float weight = goes_on ? mis_weight(light.pdf, density) : 1.0f;
         const Color seen = (weight * density) * surfaces.diffuse[i] * path.throughput[i] * light.irradiance;
         shadow.set(i, place, light, clamped(select(is_seen, seen, Color{0, 0, 0}), clamp * path.weight[i]));
     }
-    if (!goes_on) {
-        REALCAM_LANES
-        for (int i = 0; i < N; ++i) path.rays.active[i] = 0;
-        return;
-    }
+    if (!goes_on) return;
     REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        const SurfacePlace place = surfaces.place(i);
+    for (int i = 0; i < places; ++i) {
+        const SurfacePlace place = surfaces[i];
         const Vec3f normal = surfaces.normal[i], direction = sample_cosine(normal, u[i]);
         const float density = cosine_pdf(normal, direction);
         const float above = select(density > 0.0f, dot(place.geometric_normal, direction), 0.0f);
         const Color throughput = path.throughput[i] * surfaces.diffuse[i];
-        path.rays.active[i] = select(above > 0.0f, select(is_black(throughput), 0, surfaces.scatters[i]), 0);
+        path.rays.active[i] = (above > 0.0f) & (i < count) & !is_black(throughput) ? 1 : 0;
         path.throughput.set(i, throughput);
         path.rays.origin.set(i, ray_start(place, direction));
         path.rays.direction.set(i, direction);
@@ -55,22 +52,21 @@ REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSetting
                                         PathState<N>& path, ShadowRays<N>& shadow) {
     using namespace scatter_plain_paths_detail;
     const std::uint32_t first_dimension = dimension::of_bounce(bounce);
-    const auto seed = [&](int i) { return hash32(block.stream[i] ^ block.sample[i], first_dimension); };
+    const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
     LightSamples<N> lights;
-    sample_lights(view, surfaces, PathNumbers<N>(block, first_dimension + dimension::light), seed, lights);
-    const PathNumbers<N> u(block, first_dimension + dimension::scatter);
+    sample_lights<SceneKind::plain>(view, surfaces, path,
+                                    PathNumbers<N>(block, path, first_dimension + dimension::light), seed, lights);
+    const PathNumbers<N> u(block, path, first_dimension + dimension::scatter);
     if (!surfaces.has_phong) {
         const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
         return goes_on ? scatter_lambert<true>(settings, bounce, surfaces, lights, u, path, shadow)
                        : scatter_lambert<false>(settings, bounce, surfaces, lights, u, path, shadow);
     }
-    for (int i = 0; i < N; ++i) {
-        shadow.rays.active[i] = 0;
-        if (!surfaces.scatters[i]) continue;
+    for (int i = 0; i < path.count; ++i) {
         PlainBsdf bsdf{surfaces.normal[i], surfaces.geometric_normal[i], -path.rays.direction[i], surfaces.diffuse[i],
                        surfaces.phong[i],  surfaces.shininess[i]};
-        scatter_path(settings, bounce, i, surfaces.place(i), {surfaces.position[i], surfaces.normal[i]}, bsdf,
-                     lights[i], u, unit_float(seed(i)), path, shadow);
+        scatter_path(settings, bounce, i, surfaces[i], {surfaces.position[i], surfaces.normal[i]}, bsdf, lights[i], u,
+                     unit_float(seed(i)), path, shadow);
     }
 }
 

@@ -39,7 +39,7 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
     SceneRays<N> rays;
     Hits<N> hits;
     generate_exposed_rays(camera, block, camera_rays, rays.time);
-    number_rays(block, 0, rays);
+    for (int i = 0; i < N; ++i) rays.number[i] = ray_number(block, i, 0);
     trace_to_surfaces(camera_rays, scene, rays, hits);
     for (int i = 0; i < N; ++i) {
         results.weight[i] = camera_rays.passed[i] ? camera_rays.weight[i] : 0.0f;

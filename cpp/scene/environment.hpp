@@ -40,31 +40,37 @@ REALCAM_INLINE float pixel_pdf(const EnvironmentView& environment, float probabi
     return probability / (area * sine);
 }
 
-/// Density of sample_environment_image, per steradian.
-REALCAM_INLINE float environment_image_pdf(const EnvironmentView& environment, Vec3f direction) {
-    const EnvironmentPixel pixel = environment_pixel(environment, direction);
+/// Density of sample_environment_image, per steradian, in a direction in which this pixel lies.
+REALCAM_INLINE float environment_image_pdf(const EnvironmentView& environment, EnvironmentPixel pixel,
+                                           Vec3f direction) {
     const float* row = environment.marginal_cdf + pixel.row;
     const float* column = conditional_cdf_of(environment, pixel.row) + pixel.column;
     const float sine = std::sqrt(direction.x * direction.x + direction.z * direction.z);
     return pixel_pdf(environment, (row[1] - row[0]) * (column[1] - column[0]), sine);
 }
 
+REALCAM_INLINE float environment_image_pdf(const EnvironmentView& environment, Vec3f direction) {
+    return environment_image_pdf(environment, environment_pixel(environment, direction), direction);
+}
+
+/// A direction inside a pixel that was chosen.
+REALCAM_INLINE LightSample sample_in_pixel(const EnvironmentView& environment, CdfChoice row, CdfChoice column,
+                                           Color radiance) {
+    const float across = (static_cast<float>(column.index) + column.fresh) / static_cast<float>(environment.width);
+    const float down = (static_cast<float>(row.index) + row.fresh) / static_cast<float>(environment.height);
+    // From the map's left edge, half a turn behind the direction that its azimuth is counted from.
+    const Vec2f azimuth = cos_sin_of_turn(across);
+    // At one, down is rounded to where the sine is zero.
+    const Vec2f polar = cos_sin_of_turn(0.5f * select(down < 0.99999994f, down, 0.99999994f));
+    const float pdf = pixel_pdf(environment, row.probability * column.probability, polar.y);
+    return {{-polar.y * azimuth.y, polar.x, polar.y * azimuth.x}, kFarAway, 1.0f, (1.0f / pdf) * radiance, pdf};
+}
+
 /// Chooses a pixel by its light, and a direction inside it.
 REALCAM_INLINE LightSample sample_environment_image(const EnvironmentView& environment, Vec2f u) {
     const CdfChoice row = choose_from_cdf(environment.marginal_cdf, environment.height, u.y);
     const CdfChoice column = choose_from_cdf(conditional_cdf_of(environment, row.index), environment.width, u.x);
-    const float across = (static_cast<float>(column.index) + column.fresh) / static_cast<float>(environment.width);
-    const float down = (static_cast<float>(row.index) + row.fresh) / static_cast<float>(environment.height);
-    const float azimuth = 6.283185307f * (across - 0.5f);
-    // The float nearest to pi lies past it, where the sine is negative.
-    const float polar = select(down < 0.99999994f, 3.141592654f * down, 3.1415925f);
-    const float sine = std::sin(polar);
-    const float pdf = pixel_pdf(environment, row.probability * column.probability, sine);
-    return {{sine * std::sin(azimuth), std::cos(polar), -sine * std::cos(azimuth)},
-            kFarAway,
-            1.0f,
-            (1.0f / pdf) * pixel_radiance(environment, {row.index, column.index}),
-            pdf};
+    return sample_in_pixel(environment, row, column, pixel_radiance(environment, {row.index, column.index}));
 }
 
 /// Density of sample_environment, per steradian.

@@ -29,7 +29,8 @@ struct TablePlace {
 REALCAM_INLINE TablePlace table_place(float position, int count) {
     const float scaled = position * static_cast<float>(count - 1);
     const int index = static_cast<int>(scaled);
-    const int held = select(index < 0, 0, select(index < count - 2, index, count - 2));
+    // One after the other, and not of floats: else gcc makes branches of it, and no vector code.
+    const int above = select(index > 0, index, 0), held = select(above < count - 2, above, count - 2);
     const float fraction = scaled - static_cast<float>(held);
     return {held, select(fraction < 0.0f, 0.0f, select(fraction > 1.0f, 1.0f, fraction))};
 }
@@ -59,15 +60,15 @@ REALCAM_INLINE float between(float a, float b, float fraction) {
 }
 
 REALCAM_INLINE float read_table(const float* table, TablePlace row, TablePlace column, int columns = kColumns) {
-    const float *upper = table + row.index * columns + column.index, *lower = upper + columns;
-    return between(between(upper[0], upper[1], column.fraction), between(lower[0], lower[1], column.fraction),
-                   row.fraction);
+    const int upper = row.index * columns + column.index, lower = upper + columns;
+    return between(between(table[upper], table[upper + 1], column.fraction),
+                   between(table[lower], table[lower + 1], column.fraction), row.fraction);
 }
 
 }  // namespace ggx_albedo_detail
 
-/// Seen at this cosine.
-REALCAM_HD inline GgxAlbedo ggx_albedo(float cosine, float alpha) {
+/// Seen at this cosine. Within the loops that are to become vector code.
+REALCAM_INLINE GgxAlbedo inlined_ggx_albedo(float cosine, float alpha) {
     using namespace ggx_albedo_detail;
     static constexpr float kAll[] = {REALCAM_GGX_ALBEDO};
     static constexpr float kGrazingOfAll[] = {REALCAM_GGX_SCHLICK};
@@ -77,8 +78,13 @@ REALCAM_HD inline GgxAlbedo ggx_albedo(float cosine, float alpha) {
     return {all, all * read_table(kGrazingOfAll, row, table_place(std::sqrt(cosine), kColumns))};
 }
 
+/// Likewise, for all others.
+REALCAM_HD inline GgxAlbedo ggx_albedo(float cosine, float alpha) {
+    return inlined_ggx_albedo(cosine, alpha);
+}
+
 /// Over all directions of view, weighted by their cosines.
-REALCAM_HD inline GgxAlbedo ggx_mean_albedo(float alpha) {
+REALCAM_INLINE GgxAlbedo inlined_ggx_mean_albedo(float alpha) {
     using namespace ggx_albedo_detail;
     static constexpr float kLoss[] = {REALCAM_GGX_MEAN_LOSS};  // over alpha^2
     static constexpr float kGrazing[] = {REALCAM_GGX_MEAN_SCHLICK};
@@ -86,6 +92,11 @@ REALCAM_HD inline GgxAlbedo ggx_mean_albedo(float alpha) {
     const int i = row.index;
     return {1.0f - alpha * alpha * between(kLoss[i], kLoss[i + 1], row.fraction),
             between(kGrazing[i], kGrazing[i + 1], row.fraction)};
+}
+
+/// Likewise.
+REALCAM_HD inline GgxAlbedo ggx_mean_albedo(float alpha) {
+    return inlined_ggx_mean_albedo(alpha);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "../../cpp/render/environment_samples.hpp"
 #include "../../cpp/scene/light.hpp"
 #include "../../cpp/scene/render_space_scene.hpp"
 #include "bare_scene.hpp"
@@ -152,4 +153,31 @@ TEST_CASE("sample_environment_image follows environment_pdf") {
             CHECK((sample.irradiance.r >= 0 && std::isfinite(sample.irradiance.r)));
         }
     }
+}
+
+TEST_CASE("many samples of an image at once are those that it gives one by one") {
+    constexpr int kLanes = 64;
+    Uniform uniform(7);
+    for (int height = 1; height <= 9; ++height)
+        for (int width = 1; width <= 17; ++width) {
+            const Scene scene =
+                under_image(height, width, uneven(height * width, static_cast<unsigned>(17 * height + width)));
+            const RenderSpaceScene placed(scene, {0, 0, 0});
+            const EnvironmentView e = placed.view().environment;
+            const std::vector<Vec2f> extreme = extreme_inputs();
+            Vec2Lanes<float, kLanes> u;
+            for (int i = 0; i < kLanes; ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                u.set(i, k < extreme.size() ? extreme[k] : static_cast<Vec2f>(uniform.pair()));
+            }
+            const EnvironmentSamples<kLanes> samples(e, u, kLanes);
+            for (int i = 0; i < kLanes; ++i) {
+                const LightSample a = samples[i], b = sample_environment_image(e, u[i]);
+                // Compilers may fuse a product and a sum in one of them: a few roundings of sine and cosine.
+                CHECK(length(a.direction - b.direction) < 3e-7f);
+                const float sine = std::hypot(b.direction.x, b.direction.z), error = 3e-7f / sine;
+                CHECK(std::fabs(a.pdf / b.pdf - 1) < error);
+                CHECK(std::fabs(a.irradiance.r - b.irradiance.r) <= error * b.irradiance.r);
+            }
+        }
 }

@@ -1,11 +1,11 @@
 #pragma once
-#include "meet_surfaces.hpp"
+#include "environment_samples.hpp"
+#include "met_light.hpp"
 #include "path_numbers.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-// sample_light for all lanes of a block at once, in scenes that are plain: what area lights and a constant environment
-// ask for is vector code.
+// sample_light for all paths of a block at once: what area lights and the environment ask for is vector code.
 
 template <int N>
 struct LightSamples {
@@ -25,7 +25,14 @@ struct LightSamples {
     }
 };
 
-namespace plain_light_samples_detail {
+namespace light_samples_detail {
+
+REALCAM_INLINE LightSample select(bool condition, const LightSample& a, const LightSample& b) {
+    using realcam::select;
+    return {select(condition, a.direction, b.direction), select(condition, a.distance, b.distance),
+            select(condition, a.reach, b.reach), select(condition, a.irradiance, b.irradiance),
+            select(condition, a.pdf, b.pdf)};
+}
 
 enum class Source : std::int32_t { none, area, sky, other };
 
@@ -40,6 +47,7 @@ struct PickedLights {
     Vec3Lanes<float, N> corner, edge_u, edge_v, normal;
     ColorLanes<N> radiance;
     alignas(kLaneAlignment<float, N>) float area[N], margin[N];
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t is_two_sided[N];
     bool any_area = false, any_sky = false, any_other = false;
 
     REALCAM_INLINE void set_area(int lane, const AreaLight& light) {
@@ -52,6 +60,7 @@ struct PickedLights {
         radiance.set(lane, light.radiance);
         area[lane] = light.area;
         margin[lane] = light.margin;
+        is_two_sided[lane] = light.is_two_sided;
     }
     REALCAM_INLINE void set_sky(int lane) {
         source[lane] = Source::sky;
@@ -72,23 +81,25 @@ struct PickedLights {
 template <int N>
 class LightKindsLanes {
 public:
-    REALCAM_INLINE LightKindsLanes(const SceneView& scene, const PlainSurfaces<N>& surfaces) {
+    template <class SurfacesT>
+    REALCAM_INLINE LightKindsLanes(const SceneView& scene, const SurfacesT& surfaces, int count) {
+        const int places = whole_vectors<N>(count);
         alignas(kLaneAlignment<float, N>) float local[N] = {}, suns[N] = {};
         if (count_light_kinds(scene) > 1) {
             if (scene.light_node_count > 0) {
                 const LightNode all = scene.light_nodes[0];
                 REALCAM_LANES
-                for (int i = 0; i < N; ++i)
+                for (int i = 0; i < places; ++i)
                     local[i] = light_importance(all, {surfaces.position[i], surfaces.normal[i]});
             }
             for (int k = 0; k < scene.sun_count; ++k) {
                 const SunLight sun = scene.suns[k];
                 REALCAM_LANES
-                for (int i = 0; i < N; ++i) suns[i] += sun_importance(sun, surfaces.normal[i]);
+                for (int i = 0; i < places; ++i) suns[i] += sun_importance(sun, surfaces.normal[i]);
             }
         }
         REALCAM_LANES
-        for (int i = 0; i < N; ++i) {
+        for (int i = 0; i < places; ++i) {
             const LightKinds kinds = light_kinds(scene, local[i], suns[i]);
             even_[i] = kinds.shares.even;
             scale_[i] = kinds.shares.scale;
@@ -104,42 +115,60 @@ private:
     alignas(kLaneAlignment<float, N>) float even_[N], scale_[N], local_[N], environment_[N];
 };
 
+/// Where it is at a time, with the radiance of the place that these numbers choose.
+template <SceneKind scene_kind>
+REALCAM_INLINE AreaLight placed_area_light(const SceneView& scene, const AreaLight& stored, Vec2f u, float time) {
+    AreaLight light = stored;
+    if constexpr (scene_kind == SceneKind::any) light = area_light_at(scene, stored, time);
+    const Vec2f place = sample_triangle(u);
+    light.radiance = emitted_radiance<scene_kind>(scene, light, place.x, place.y);
+    return light;
+}
+
+/// Whether the places in its tables can be counted in 32 bits.
+REALCAM_INLINE bool fits_lanes(const EnvironmentView& environment) {
+    return !environment.pixels || std::int64_t{environment.height} * (environment.width + 1) < (1 << 30);
+}
+
 /// As pick_light does for one receiver.
-template <int N, class Seeds>
-REALCAM_INLINE void pick_lights(const SceneView& scene, const PlainSurfaces<N>& surfaces, const PathNumbers<N>& u,
-                                const Seeds& seed, PickedLights<N>& picked) {
-    const LightKindsLanes<N> kinds(scene, surfaces);
-    for (int i = 0; i < N; ++i) {
+template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
+REALCAM_INLINE void pick_lights(const SceneView& scene, const SurfacesT& surfaces, const PathState<N>& path,
+                                const PathNumbers<N>& u, const Seeds& seed, PickedLights<N>& picked) {
+    const LightKindsLanes<N> kinds(scene, surfaces, path.count);
+    for (int i = 0; i < path.count; ++i) {
         picked.source[i] = Source::none;
-        if (!surfaces.scatters[i]) continue;
-        const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i]};
+        if (!surfaces.is_in_lanes(i)) continue;
+        const LightReceiver receiver = {surfaces.position[i], surfaces.normal[i], time_of<scene_kind>(path, i)};
         const LightPick pick = pick_light(scene, receiver, kinds[i], u[i], seed(i));
         if (!(pick.probability > 0.0f)) continue;
         picked.u.set(i, pick.u);
         picked.probability[i] = pick.probability;
         if (pick.kind == LightKind::area)
-            picked.set_area(i, scene.areas[pick.index]);
-        else if (pick.kind == LightKind::environment && !scene.environment.pixels)
+            picked.set_area(i, placed_area_light<scene_kind>(scene, scene.areas[pick.index], pick.u, receiver.time));
+        else if (pick.kind == LightKind::environment && fits_lanes(scene.environment))
             picked.set_sky(i);
         else
-            picked.set_other(i, sample_picked<SceneKind::plain>(scene, receiver, pick));
+            picked.set_other(i, sample_picked<scene_kind>(scene, receiver, pick));
     }
 }
 
-}  // namespace plain_light_samples_detail
+}  // namespace light_samples_detail
 
-/// A sample for each surface on which a path scatters; elsewhere black. `u` and `seed(lane)`: as sample_light's.
-template <int N, class Seeds>
-REALCAM_INLINE void sample_lights(const SceneView& scene, const PlainSurfaces<N>& surfaces, const PathNumbers<N>& u,
-                                  const Seeds& seed, LightSamples<N>& samples) {
-    using namespace plain_light_samples_detail;
+/// A sample for each path whose surface is_in_lanes(place); others get no light. `u` and `seed(place)`: as
+/// sample_light's.
+template <SceneKind scene_kind, int N, class SurfacesT, class Seeds>
+REALCAM_INLINE void sample_lights(const SceneView& scene, const SurfacesT& surfaces, const PathState<N>& path,
+                                  const PathNumbers<N>& u, const Seeds& seed, LightSamples<N>& samples) {
+    using namespace light_samples_detail;
     PickedLights<N> picked;
-    pick_lights(scene, surfaces, u, seed, picked);
+    pick_lights<scene_kind>(scene, surfaces, path, u, seed, picked);
+    const int count = path.count, places = whole_vectors<N>(count);
     if (picked.any_area) {
         REALCAM_LANES
-        for (int i = 0; i < N; ++i) {
+        for (int i = 0; i < places; ++i) {
+            const bool on_both_sides = scene_kind != SceneKind::plain && picked.is_two_sided[i] != 0;
             const WayToLight way =
-                way_to(picked.area_light(i), false, surfaces.position[i], sample_triangle(picked.u[i]));
+                way_to(picked.area_light(i), on_both_sides, surfaces.position[i], sample_triangle(picked.u[i]));
             const float scale = 1.0f / way.pdf;
             samples.direction.set(i, way.direction);
             samples.irradiance.set(i, select(way.cosine > 0.0f, scale, 0.0f) * picked.radiance[i]);
@@ -149,26 +178,30 @@ REALCAM_INLINE void sample_lights(const SceneView& scene, const PlainSurfaces<N>
         }
     }
     if (picked.any_sky) {
-        const Color radiance = scene.environment.constant;
-        REALCAM_LANES
-        for (int i = 0; i < N; ++i) {
+        const auto set = [&](int i, const LightSample& sky) {
             const bool is_sky = picked.source[i] == Source::sky;
-            const Vec3f direction = sample_cosine(surfaces.normal[i], picked.u[i]);
-            const float pdf = cosine_pdf(surfaces.normal[i], direction);
-            samples.direction.set(i, select(is_sky, direction, samples.direction[i]));
-            samples.irradiance.set(
-                i, select(is_sky, select(pdf > 0.0f, 1.0f / pdf, 0.0f) * radiance, samples.irradiance[i]));
-            samples.distance[i] = select(is_sky, kFarAway, samples.distance[i]);
-            samples.reach[i] = select(is_sky, 1.0f, samples.reach[i]);
-            samples.pdf[i] = select(is_sky, pdf, samples.pdf[i]);
+            samples.set(i, select(is_sky, sky, samples[i]));
+        };
+        if (scene.environment.pixels) {
+            const EnvironmentSamples<N> sky(scene.environment, picked.u, places);
+            REALCAM_LANES
+            for (int i = 0; i < places; ++i) set(i, sky[i]);
+        } else {
+            const Color radiance = scene.environment.constant;
+            REALCAM_LANES
+            for (int i = 0; i < places; ++i) {
+                const Vec3f direction = sample_cosine(surfaces.normal[i], picked.u[i]);
+                const float pdf = cosine_pdf(surfaces.normal[i], direction);
+                set(i, {direction, kFarAway, 1.0f, select(pdf > 0.0f, 1.0f / pdf, 0.0f) * radiance, pdf});
+            }
         }
     }
     if (picked.any_other) {
-        for (int i = 0; i < N; ++i)
+        for (int i = 0; i < count; ++i)
             if (picked.source[i] == Source::other) samples.set(i, picked.others[i]);
     }
     REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
+    for (int i = 0; i < places; ++i) {
         const float probability = picked.probability[i];
         const bool is_lit = (picked.source[i] != Source::none) & (probability > 0.0f);
         samples.irradiance.set(

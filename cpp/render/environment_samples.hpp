@@ -1,0 +1,33 @@
+#pragma once
+#include "../scene/environment.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// sample_environment_image for many random numbers at once, as vector code.
+template <int N>
+class EnvironmentSamples {
+public:
+    REALCAM_INLINE EnvironmentSamples(const EnvironmentView& environment, const Vec2Lanes<float, N>& u, int places)
+        : environment_(environment) {
+        alignas(kLaneAlignment<std::int32_t, N>) std::int32_t begin[N];
+        REALCAM_LANES
+        for (int i = 0; i < places; ++i) begin[i] = 0;
+        choose_from_cdfs(environment.marginal_cdf, begin, environment.height, u.y, places, row_);
+        REALCAM_LANES
+        for (int i = 0; i < places; ++i) begin[i] = row_.index[i] * (environment.width + 1);
+        choose_from_cdfs(environment.conditional_cdf, begin, environment.width, u.x, places, column_);
+        for (int i = 0; i < places; ++i)
+            radiance_.set(i, pixel_radiance(environment, {row_.index[i], column_.index[i]}));
+    }
+
+    REALCAM_INLINE LightSample operator[](int place) const {
+        return sample_in_pixel(environment_, row_[place], column_[place], radiance_[place]);
+    }
+
+private:
+    const EnvironmentView& environment_;
+    CdfChoices<N> row_, column_;
+    ColorLanes<N> radiance_;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,53 @@
+#pragma once
+#include "../scene/glossy_bsdf.hpp"
+#include "meet_surfaces.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What the paths of a block have met in a scene that is not plain: in lanes what GlossyBsdf describes, and point by
+/// point all else, whose lanes are black.
+template <int N>
+struct GlossySurfaces {
+    Vec3Lanes<float, N> position, geometric_normal, normal;
+    ColorLanes<N> base, f0;
+    alignas(kLaneAlignment<float, N>) float self_offset[N], f90[N], metallic[N], alpha[N];
+    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t is_glossy[N];
+    Surfaces<N> others;
+
+    REALCAM_INLINE void set(int place, const SurfacePoint& point) {
+        position.set(place, point.position);
+        geometric_normal.set(place, point.geometric_normal);
+        normal.set(place, point.normal);
+        self_offset[place] = point.self_offset;
+        is_glossy[place] = realcam::is_glossy(point);
+        set(place, is_glossy[place] ? glossy_surface(point) : GlossySurface{});
+        if (!is_glossy[place]) others.set(place, point);
+    }
+    /// Gives a place that no path uses the numbers of one that is in use.
+    REALCAM_INLINE void copy(int from, int to) {
+        position.set(to, position[from]);
+        geometric_normal.set(to, geometric_normal[from]);
+        normal.set(to, normal[from]);
+        self_offset[to] = self_offset[from];
+        is_glossy[to] = 0;
+        set(to, glossy(from));
+    }
+    REALCAM_INLINE SurfacePlace operator[](int place) const {
+        return {position[place], geometric_normal[place], self_offset[place]};
+    }
+    REALCAM_INLINE GlossySurface glossy(int place) const {
+        return {base[place], f0[place], f90[place], metallic[place], alpha[place]};
+    }
+    REALCAM_INLINE bool is_in_lanes(int place) const { return is_glossy[place] != 0; }
+
+private:
+    REALCAM_INLINE void set(int place, const GlossySurface& surface) {
+        base.set(place, surface.base);
+        f0.set(place, surface.f0);
+        f90[place] = surface.f90;
+        metallic[place] = surface.metallic;
+        alpha[place] = surface.alpha;
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,94 @@
+#pragma once
+#include "glossy_surfaces.hpp"
+#include "light_samples.hpp"
+#include "scatter_paths.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+namespace scatter_glossy_paths_detail {
+
+/// Light and the next ray for surfaces that GlossyBsdf describes, as scatter_path finds them for one path. Others keep
+/// their paths. Numbers that are 1 or 0 stand for questions that are the same for all lanes: gcc makes no vector code
+/// of a loop that asks them.
+template <int N>
+REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, const GlossySurfaces<N>& surfaces,
+                                   const LightSamples<N>& lights, const PathNumbers<N>& u, PathState<N>& path,
+                                   ShadowRays<N>& shadow) {
+    const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
+    // What sends out a ray: after the last bounce rough lobes alone, and for mirrors alone none of these.
+    const float diffuse_sends = goes_on ? 1.0f : 0.0f;
+    const float specular_sends = settings.transport == LightTransport::whitted ? 0.0f : 1.0f;
+    const float clamp = bounce > 0 ? settings.clamp : 0.0f;
+    const int places = whole_vectors<N>(path.count);
+    REALCAM_LANES
+    for (int i = 0; i < places; ++i) {
+        const SurfacePlace place = surfaces[i];
+        const Vec3f normal = surfaces.normal[i], arriving = path.rays.direction[i];
+        const GlossyBsdf bsdf(surfaces.glossy(i), normal, place.geometric_normal, -arriving);
+        const float diffuse_albedo = diffuse_sends * bsdf.diffuse_albedo(),
+                    specular_albedo = specular_sends * bsdf.specular_albedo(),
+                    albedo = diffuse_albedo + specular_albedo;
+        const float diffuse_share = select(albedo > 0.0f, diffuse_albedo / albedo, 0.0f),
+                    specular_share = select(albedo > 0.0f, specular_albedo / albedo, 0.0f);
+        const auto pdf_of = [&](const GlossyBsdf::Value& v) {
+            return diffuse_share * v.diffuse_pdf + specular_share * v.specular_pdf;
+        };
+        const LightSample light = lights[i];
+        const Color throughput = path.throughput[i];
+        const GlossyBsdf::Value to_light = bsdf.eval(light.direction);
+        const float weight = mis_weight(light.pdf, pdf_of(to_light));
+        const float diffuse_weight = diffuse_sends * weight + (1.0f - diffuse_sends);
+        const Color scattered = diffuse_weight * to_light.diffuse + weight * to_light.specular;
+        const Color seen = scattered * throughput * light.irradiance;
+        const bool is_used = surfaces.is_glossy[i] != 0;
+        shadow.set(i, place, light, clamped(select(is_used, seen, Color{0, 0, 0}), clamp * path.weight[i]));
+
+        Vec2f number = u[i];
+        const bool is_diffuse = number.x < diffuse_share;
+        number.x = select(is_diffuse, number.x / diffuse_share, (number.x - diffuse_share) / specular_share);
+        number.x = select(number.x < 0x1.fffffep-1f, number.x, 0x1.fffffep-1f);
+        const Vec3f direction = bsdf.sample(is_diffuse, number);
+        const GlossyBsdf::Value value = bsdf.eval(direction);
+        const float pdf = pdf_of(value);
+        // The diffuse lobe that sends no ray is left out.
+        const Color sum = diffuse_sends * value.diffuse + value.specular;
+        const Color next = select(pdf > 0.0f, (1.0f / pdf) * throughput * sum, Color{0, 0, 0});
+        path.rays.active[i] = is_used & !is_black(next) ? 1 : 0;
+        path.throughput.set(i, select(is_used, next, throughput));
+        path.rays.origin.set(i, ray_start(place, direction));
+        path.rays.direction.set(i, select(is_used, direction, arriving));
+        path.pdf[i] = select(is_used, pdf, path.pdf[i]);
+        path.receiver_position.set(i, select(is_used, place.position, path.receiver_position[i]));
+        path.receiver_normal.set(i, select(is_used, normal, path.receiver_normal[i]));
+    }
+}
+
+}  // namespace scatter_glossy_paths_detail
+
+/// scatter_paths for many lanes: as vector code for surfaces that GlossyBsdf describes.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void scatter_glossy_paths(const SceneView& view, const PathSettings& settings,
+                                         const SampleBlock<N>& block, int bounce, GlossySurfaces<N>& surfaces,
+                                         PathState<N>& path, ShadowRays<N>& shadow, std::int32_t (&darkens)[N]) {
+    using namespace scatter_glossy_paths_detail;
+    const std::uint32_t first_dimension = dimension::of_bounce(bounce);
+    const PathNumbers<N> light_numbers(block, path, first_dimension + dimension::light),
+        scatter_numbers(block, path, first_dimension + dimension::scatter);
+    const auto seed = [&](int i) { return block.bits(path.lane(i), first_dimension); };
+    // What fills the last vector is looked up in tables too, and so must be numbers.
+    for (int i = path.count; i < whole_vectors<N>(path.count); ++i) {
+        surfaces.copy(0, i);
+        path.rays.direction.set(i, path.rays.direction[0]);
+    }
+    LightSamples<N> lights;
+    sample_lights<scene_kind>(view, surfaces, path, light_numbers, seed, lights);
+    scatter_glossy(settings, bounce, surfaces, lights, scatter_numbers, path, shadow);
+    for (int i = 0; i < path.count; ++i) {
+        darkens[i] = 0;
+        if (!surfaces.is_glossy[i])
+            darkens[i] = scatter_at<scene_kind>(view, settings, bounce, i, surfaces.others.points[i], light_numbers,
+                                                scatter_numbers, seed(i), path, shadow);
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,114 @@
+#pragma once
+#include "make_bsdf.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What a GlossyBsdf is made of: those parameters of a material, at one point, that its lobes depend on.
+struct GlossySurface {
+    Color base = {0, 0, 0};  ///< reflectance of Lambert's lobe, or of a metal's facets at normal incidence
+    Color f0 = {0, 0, 0};  ///< reflectance of a dielectric's facets at normal incidence
+    float f90 = 0;         ///< and at grazing incidence
+    float metallic = 0;    ///< share of the surface that is metal
+    float alpha = 1;       ///< of the facets, not below kSmoothAlpha
+};
+
+/// Whether GlossyBsdf can describe what is at a point.
+REALCAM_INLINE bool is_glossy(const SurfacePoint& point) {
+    const Material& m = *point.material;
+    if (m.only_shadows || point.transmission > 0.0f) return false;
+    if (m.model == MaterialModel::phong) return is_black(point.specular) && is_black(m.mirror);
+    return !(point.clearcoat > 0.0f) && make_bsdf_detail::alpha_of(point.roughness) >= kSmoothAlpha;
+}
+
+/// For a point that is_glossy.
+REALCAM_INLINE GlossySurface glossy_surface(const SurfacePoint& point) {
+    using namespace make_bsdf_detail;
+    const Material& m = *point.material;
+    if (m.model == MaterialModel::phong) return {point.diffuse, {0, 0, 0}, 0.0f, 0.0f, 1.0f};
+    return {unit_range(point.diffuse), unit_range((point.specular_weight * normal_reflectance(m.ior)) * point.specular),
+            point.specular_weight, unit_range(point.metallic), alpha_of(point.roughness)};
+}
+
+/// What Bsdf is for most opaque surfaces: Lambert's lobe under one of rough microfacets. Without branches, so that it
+/// becomes vector code for many points; on a GPU, and for other materials, Bsdf does the same.
+class GlossyBsdf {
+public:
+    /// What goes to a direction: BSDF times cosine of either lobe, and their densities per steradian. Zero where the
+    /// direction is not above the surface.
+    struct Value {
+        Color diffuse, specular;
+        float diffuse_pdf, specular_pdf;
+    };
+
+    /// `normal`: of the surface, turned to the eye.
+    REALCAM_INLINE GlossyBsdf(const GlossySurface& surface, Vec3f normal, Vec3f geometric_normal, Vec3f to_eye)
+        : frame_(visible_normal(normal, to_eye)),
+          geometric_normal_(geometric_normal),
+          eye_(frame_.to_local(to_eye)),
+          alpha_(surface.alpha),
+          to_eye_(inlined_ggx_albedo(eye_.z, alpha_)) {
+        const GgxAlbedo mean = inlined_ggx_mean_albedo(alpha_);
+        lost_ = 1.0f - mean.all;
+        above_diffuse_ = FacetReflectance::between(surface.f0, surface.f90, lost_);
+        reflectance_ = mix(above_diffuse_, FacetReflectance::between(surface.base, 1.0f, lost_), surface.metallic);
+        const Color left_to_eye = grey(1.0f) - above_diffuse_.albedo(to_eye_);
+        const Color left = grey(1.0f) - above_diffuse_.albedo(mean), diffuse = (1.0f - surface.metallic) * surface.base;
+        const auto held = [](float v) { return select(v > 1e-4f, v, 1e-4f); };
+        diffuse_ = diffuse * left_to_eye / Color{held(left.r), held(left.g), held(left.b)};
+        diffuse_albedo_ = largest(diffuse * left_to_eye);
+        specular_albedo_ = largest(reflectance_.albedo(to_eye_));
+    }
+
+    /// Reflectances by which a lobe is chosen.
+    REALCAM_INLINE float diffuse_albedo() const { return diffuse_albedo_; }
+    REALCAM_INLINE float specular_albedo() const { return specular_albedo_; }
+
+    REALCAM_INLINE Value eval(Vec3f to_light) const {
+        const Vec3f light = frame_.to_local(to_light);
+        const bool is_possible = (light.z > 0.0f) & (dot(geometric_normal_, to_light) > 0.0f);
+        // Of a direction below, too, tables are read.
+        const float cosine = select(is_possible, light.z, 1.0f), pdf = 0.3183098862f * cosine;
+        const GgxAlbedo to_light_facets = inlined_ggx_albedo(cosine, alpha_);
+        const Color diffuse = pdf * diffuse_ * (grey(1.0f) - above_diffuse_.albedo(to_light_facets));
+        const Vec3f h = normalized(eye_ + light);
+        const float density = ggx_density(h, alpha_) / (4.0f * eye_.z), lambda = ggx_lambda(eye_, alpha_);
+        const float visible = 1.0f / (1.0f + lambda), both = 1.0f / (1.0f + lambda + ggx_lambda(light, alpha_));
+        const float lost_twice = (1.0f - to_eye_.all) * (1.0f - to_light_facets.all);
+        const float several = select(lost_ > 1e-6f, lost_twice * pdf / lost_, 0.0f);
+        const Color specular = (density * both) * schlick(reflectance_.f0, reflectance_.f90, dot(eye_, h)) +
+                               several * reflectance_.multiple;
+        const float specular_pdf = to_eye_.all * visible * density + (1.0f - to_eye_.all) * (2.0f * kSpherePdf);
+        const Color none = {0, 0, 0};
+        return {select(is_possible, diffuse, none), select(is_possible, specular, none), select(is_possible, pdf, 0.0f),
+                select(is_possible, specular_pdf, 0.0f)};
+    }
+
+    /// A direction of one of the lobes, which may lie below the surface.
+    REALCAM_INLINE Vec3f sample(bool is_diffuse, Vec2f u) const {
+        const Vec3f h = sample_ggx(eye_, alpha_, {u.x / to_eye_.all, u.y});
+        const Vec3f mirrored = (2.0f * dot(eye_, h)) * h - eye_;
+        const float fresh = (u.x - to_eye_.all) / (1.0f - to_eye_.all);
+        const Vec3f even = sample_sphere({select(fresh < 1.0f, 0.5f * fresh, 0.5f), u.y});
+        const Vec3f specular = select(u.x < to_eye_.all, mirrored, even);
+        return frame_.to_world(select(is_diffuse, sample_cosine({0, 0, 1}, u), specular));
+    }
+
+private:
+    /// As make_bsdf's, which has a branch.
+    REALCAM_INLINE static Vec3f visible_normal(Vec3f normal, Vec3f to_eye) {
+        constexpr float kLeastCosine = 1e-3f;
+        const float cosine = dot(normal, to_eye);
+        return select(cosine >= kLeastCosine, normal, normalized(normal + (kLeastCosine - cosine) * to_eye));
+    }
+
+    ShadingFrame frame_;
+    Vec3f geometric_normal_;
+    Vec3f eye_;  ///< local
+    float alpha_, lost_;
+    GgxAlbedo to_eye_;
+    FacetReflectance above_diffuse_, reflectance_;
+    Color diffuse_;  ///< reflectance, times what depends on the direction of view alone
+    float diffuse_albedo_, specular_albedo_;
+};
+
+}  // namespace REALCAM_NAMESPACE
