@@ -234,6 +234,7 @@ def test_effects_are_listed() -> None:
         "dispersion",
         "coatings",
         "ghosts",
+        "diffraction",
         "motion_blur",
         "rolling_shutter",
     ]
@@ -258,10 +259,10 @@ def test_what_makes_no_picture_is_an_error() -> None:
         rc.render(scenes.sky(), camera, spp=1, **settings)  # type: ignore[arg-type]
 
     with pytest.raises(
-        rc.InputError, match='unknown effect "glare"; some of dispersion, coatings, ghosts, -motion_blur'
+        rc.InputError, match='unknown effect "glare"; some of dispersion, coatings, ghosts, diffraction, -motion_blur'
     ):
         taken(effects=["glare"])
-    with pytest.raises(rc.InputError, match="illuminant belongs to the effect dispersion"):
+    with pytest.raises(rc.InputError, match="illuminant belongs to the effects dispersion and diffraction"):
         taken(illuminant="A")
     with pytest.raises(
         rc.InputError, match="dispersion: the camera's model is an ideal lens; the model full is wanted"
@@ -302,5 +303,5 @@ def test_metadata_session_and_shot_file(tmp_path: Path) -> None:
     shot = rc.Shot.load(tmp_path / "a.toml")
     assert (shot.effects, shot.illuminant) == (("dispersion",), "400:1,700:2.5")
     (tmp_path / "b.toml").write_text(text + "illuminant = 546\n")
-    with pytest.raises(rc.InputError, match=r"b\.toml:5: illuminant belongs to the effect dispersion"):
+    with pytest.raises(rc.InputError, match=r"b\.toml:5: illuminant belongs to the effects dispersion and diffraction"):
         rc.Shot.load(tmp_path / "b.toml")
