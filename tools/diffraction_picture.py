@@ -35,7 +35,7 @@ def night() -> rc.Scene:
         materials=[rc.Material(diffuse=(0.5, 0.5, 0.5))]
         + [rc.Material(emission=tuple(3e6 * np.array(color))) for _, color in lamps],
     )
-    return scene.with_texture(0, texture).with_environment(4.0)
+    return scene.with_texture(0, texture).with_environment(12.0)
 
 
 def save_picture(path: Path) -> None:

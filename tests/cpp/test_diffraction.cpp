@@ -88,7 +88,7 @@ TEST_CASE("a circle's light within each ring is Airy's") {
     }
     // The light beyond the cells is that of stationary phase, which leaves out what its rings vary by: at the sixth
     // period, 2 / (pi^2 6) times 1 / (12 pi).
-    hold({"Diffraction", "light of a circle within a ring, against Airy's", "60 rings", "core", "float64", worst, 1e-3,
+    hold({"Effects", "light of a circle within a ring, against Airy's", "60 rings", "core", "float64", worst, 1e-3,
           "of all"});
     CHECK(std::fabs((darkest + 0.5) / 24.0 - 1.2197) <= 0.5 / 24);
 }
@@ -101,9 +101,9 @@ TEST_CASE("cells and edges together have all light") {
         simple = std::max(simple, std::fabs(diffraction_of({outline(corners)}).found_share - 1));
     for (const double inner : {0.3, 0.5, 0.6})
         obstructed = std::max(obstructed, std::fabs(diffraction_of(ring(inner)).found_share - 1));
-    hold({"Diffraction", "light in the cells and beyond, before it is scaled", "a circle and 5 polygons", "core",
-          "float64", simple, 0.002, "of all"});
-    hold({"Diffraction", "the same, obstructed apertures", "3 rings", "core", "float64", obstructed, 0.01, "of all"});
+    hold({"Effects", "light in the cells and beyond, before it is scaled", "a circle and 5 polygons", "core", "float64",
+          simple, 0.002, "of all"});
+    hold({"Effects", "the same, obstructed apertures", "3 rings", "core", "float64", obstructed, 0.01, "of all"});
 }
 
 TEST_CASE("draws have Airy's share in the first dark ring, and a perfect lens's contrast") {
@@ -117,7 +117,7 @@ TEST_CASE("draws have Airy's share in the first dark ring, and a perfect lens's 
         for (int k = 0; k < kFrequencies; ++k)
             contrast[k] += std::cos(2 * kPi * (k + 1) / 10.0 * static_cast<double>(f.y));
     }
-    hold({"Diffraction", "light drawn within Airy's first dark ring, 83.78%", "1048576 draws", "core", "float32",
+    hold({"Effects", "light drawn within Airy's first dark ring, 83.78%", "1048576 draws", "core", "float32",
           std::fabs(inside / kCount - 0.83778), 0.003, "of all"});
     double worst = 0;
     for (int k = 0; k < kFrequencies; ++k) {
@@ -126,8 +126,8 @@ TEST_CASE("draws have Airy's share in the first dark ring, and a perfect lens's 
         worst = std::max(worst, std::fabs(contrast[k] / kCount - perfect));
     }
     // Noise is 0.0007; a cell of a 24th of a period takes sinc(nu / 24), and one of an 8th, further out, sinc(nu / 8).
-    hold({"Diffraction", "contrast of a perfect lens from draws", "9 frequencies up to 0.9 of the limit", "core",
-          "float32", worst, 0.006, "contrast"});
+    hold({"Effects", "contrast of a perfect lens from draws", "9 frequencies up to 0.9 of the limit", "core", "float32",
+          worst, 0.006, "contrast"});
 }
 
 TEST_CASE("blades make as many spikes as they have normals") {
@@ -192,6 +192,6 @@ TEST_CASE("edge draws have the light that all draws have beyond the cells") {
         beyond_weighted += periods(edge.mm_per_nm) > 20 ? static_cast<double>(edge.weight) : 0.0;
     }
     // Draws: sqrt(0.034 / 2^18) and sqrt(0.01 / 2^18); the film ends at 2 mm, 460 periods, and has the rest.
-    hold({"Diffraction", "light beyond the cells, by two ways of drawing", "262144 draws of each", "core", "float32",
+    hold({"Effects", "light beyond the cells, by two ways of drawing", "262144 draws of each", "core", "float32",
           std::max(std::fabs(all - weighted), std::fabs(beyond_all - beyond_weighted)) / kCount, 0.0012, "of all"});
 }
