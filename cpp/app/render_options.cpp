@@ -168,7 +168,8 @@ void add_render_options(CLI::App& command, RenderWords& w) {
            "What else is simulated or, with a minus, left out, separated by commas after a \"=\": " + effect_names(),
            "NAMES");
     option("--illuminant", w.illuminant,
-           "Of dispersion and diffraction, the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]", "SPECTRUM");
+           "Of dispersion and diffraction, the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]",
+           "SPECTRUM");
     option("--threads", w.threads, "0: all [0]", "N");
     option("--device", w.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1 [auto]", "DEVICE");
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");

@@ -63,7 +63,8 @@ void set_start(SurfaceView<T>& view, const Surface& surface) {
     constexpr int kPoints = 64;
     std::vector<double> u, height_over_u;
     for (int i = 0; i < kPoints; ++i) {
-        u.push_back(0.5 - 0.5 * std::cos(std::numbers::pi * (i + 0.5) / kPoints));  // dense at both ends, where a fit is worst
+        u.push_back(
+            0.5 - 0.5 * std::cos(std::numbers::pi * (i + 0.5) / kPoints));  // dense at both ends, where a fit is worst
         height_over_u.push_back(surface.sag(reach * std::sqrt(u.back())) / u.back());
     }
     view.start_parabola = static_cast<T>(fit_polynomial<1>(u, height_over_u)[0]);
