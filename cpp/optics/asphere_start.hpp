@@ -25,9 +25,9 @@ double steepest_slope(const SurfaceView<T>& view, double share_of_radius) {
         // Rounding can take an edge past the conic's end.
         const double radicand = std::max(0.0, 1 - static_cast<double>(view.conic_factor) * c * c * r * r);
         Slopes slopes{c * r / std::sqrt(radicand), 0, 0};
-        for (int i = 0; i < kMaxAsphericTerms; ++i) {
-            const double slope =
-                (4 + 2 * i) * static_cast<double>(view.aspheric[i]) * std::pow(share, 3 + 2 * i) / reach;
+        double power = share * share * share / reach;
+        for (int i = 0; i < kMaxAsphericTerms; ++i, power *= share * share) {
+            const double slope = (4 + 2 * i) * static_cast<double>(view.aspheric[i]) * power;
             (slope > 0 ? slopes.rising : slopes.falling) += slope;
         }
         return slopes;
