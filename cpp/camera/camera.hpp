@@ -441,9 +441,9 @@ private:
     /// Rays of the shortest and of the longest wavelength leave the lens farthest apart.
     void set_wavelengths(const Illuminant& illuminant) {
         spectrum_.emplace(illuminant);
+        if (!effects_.dispersion && !effects_.coatings) return;
         // The code for diffraction and coatings together takes the indices of a spectrum: here, of one wavelength.
         const double design = camera_.lens.wavelength_nm;
-        if (!effects_.dispersion && !effects_.coatings) return;
         const WavelengthRange range = effects_.dispersion ? spectrum_->range() : WavelengthRange{design, design};
         check_dispersion(camera_.lens, range);
         to_scene_ = index_cubics(camera_.lens, LightDirection::to_scene, range);

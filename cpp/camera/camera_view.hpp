@@ -82,7 +82,7 @@ REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
     return dot(camera.position - point, camera.backward);
 }
 
-/// Of its lens, in the scene.
+/// Where the lens's front vertex is in the placed scene, metres.
 REALCAM_INLINE Vec3f front_vertex(const CameraPlacement& camera, float front_vertex_m) {
     return camera.position - front_vertex_m * camera.backward;
 }

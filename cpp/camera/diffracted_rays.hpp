@@ -53,8 +53,7 @@ REALCAM_HD inline void generate_diffracted_rays(const CameraView& camera, const 
         for (int i = 0; i < N; ++i) {
             const float nm = wavelength_at(view, shared_place(view, wavelengths.place[i], step));
             const Vec2f from = film[i], kick = film.kicks[i];
-            const bool is_shared =
-                dispersed_rays_detail::lies_in_pixel(camera, block, i, {from.x + nm * kick.x, from.y + nm * kick.y});
+            const bool is_shared = lies_in_pixel(camera, block, i, {from.x + nm * kick.x, from.y + nm * kick.y});
             wavelengths.shares[i] |= select(is_shared, 1 << step, 0);
         }
     }

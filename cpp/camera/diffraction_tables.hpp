@@ -35,7 +35,7 @@ public:
             auto& here = found[static_cast<std::size_t>(node)];
             // At the edge of the image, where the light is a crescent, the aperture is taken as it is further in.
             if (!here && node >= azimuths_) here = found[static_cast<std::size_t>(node - azimuths_)];
-            if (!here) throw InputError("diffraction: no light passes lens \"" + lens.name + "\" to the film's middle");
+            if (!here) throw no_light(lens);
             add(*here);
         }
     }
@@ -55,6 +55,9 @@ public:
 private:
     static constexpr int kRadii = 12, kRadiiWithBlades = 5, kAzimuths = 8;
 
+    static InputError no_light(const LensSystem& lens) {
+        return InputError("diffraction: no light passes lens \"" + lens.name + "\" to the film's middle");
+    }
     static bool has_blades(const LensSystem& lens) { return lens.iris.blades > 0 && !lens.is_wide_open(); }
 
     double radius_of(int row) const { return film_radius_ * row / (radii_ - 1); }
@@ -70,8 +73,7 @@ private:
         std::vector<PupilBox> boxes;
         for (int row = 0; row < radii_; ++row) {
             const std::optional<PupilBox> box = search.look(radius_of(row), track);
-            if (!box && boxes.empty())
-                throw InputError("diffraction: no light passes lens \"" + lens.name + "\" to the film's middle");
+            if (!box && boxes.empty()) throw no_light(lens);
             boxes.push_back(box ? *box : boxes.back());
         }
         return boxes;

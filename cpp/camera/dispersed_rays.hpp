@@ -15,8 +15,6 @@ namespace REALCAM_NAMESPACE {
 /// Nothing takes samples elsewhere on the film than to their pixels.
 struct NoKicks {};
 
-namespace dispersed_rays_detail {
-
 /// Whether a film point lies in the pixel of a sample.
 template <int N>
 REALCAM_INLINE bool lies_in_pixel(const CameraView& camera, const SampleBlock<N>& block, int lane, Vec2f film) {
@@ -26,6 +24,8 @@ REALCAM_INLINE bool lies_in_pixel(const CameraView& camera, const SampleBlock<N>
     const float column = columns_per_mm * (film.x - corner.x), row = rows_per_mm * (film.y - corner.y);
     return (column >= 0.0f) & (column < 1.0f) & (row >= 0.0f) & (row < 1.0f);
 }
+
+namespace dispersed_rays_detail {
 
 /// Takes rays through the lens, each with its WavelengthVariable. `passed`: what they keep, if the lens is `coated`.
 template <LensKind lens_kind, bool coated, int N>

@@ -15,7 +15,7 @@ struct GhostSum {
 /// The unit is one 2^36th of the irradiance that all light would bring to a pixel which passed through the whole front
 /// of the lens to it alone: ghosts are 1e4 to 1e8 times dimmer.
 inline double ghost_units_per_lux(const SceneView& scene, const CameraView& camera, const GhostView& ghosts) {
-    const LightReceiver middle{camera.position - camera.front_vertex_m * camera.backward, {0, 0, 0}};
+    const LightReceiver middle{front_vertex(camera, camera.front_vertex_m), {0, 0, 0}};
     double light = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
     if (scene.light_node_count > 0) light += static_cast<double>(light_importance(scene.light_nodes[0], middle));
     for (int i = 0; i < scene.sun_count; ++i) light += static_cast<double>(luminance(scene.suns[i].illuminance));
@@ -80,8 +80,8 @@ struct GhostBlocks {
     std::uint64_t first, end;
 };
 
-/// Those that belong to some samples of each pixel: one ghost sample for each of them. Starbursts are few
-/// places of the film.
+/// Those that belong to some samples of each pixel: one ghost sample for each of them, and fewer of
+/// starbursts, which are few places of the film.
 inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, bool of_starbursts) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height),
                         per_block = kGhostBlock * (of_starbursts ? kSamplesPerSplat : 1);

@@ -33,7 +33,7 @@ inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale 
 /// A place in front of the lens, in the plane across light of one direction.
 struct EntryPlace {
     float along, across;  ///< away from the axis, and across that, mm
-    float density;  ///< per mm^2
+    float density;        ///< per mm^2
 };
 
 REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
@@ -126,7 +126,7 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
         u.set(i, sample_2d(stream, first + static_cast<std::uint32_t>(i), ghost_dimension::light));
     for (int i = 0; i < N; ++i) {
         const LensFrame frame = lens_frame(camera, samples.time[i]);
-        const LightReceiver middle{frame.place_in_scene({0, 0, 0}), {0, 0, 0}, samples.time[i]};
+        const LightReceiver middle{front_vertex(frame.camera, frame.front_vertex_m), {0, 0, 0}, samples.time[i]};
         LightPick& light = samples.lights[i];
         light = pick_light(view, middle, light_kinds(view, middle), u[i], samples.number[i]);
         Vec3f from = {0, 0, 1};  // behind the lens
