@@ -33,7 +33,7 @@ inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale 
 /// A place in front of the lens, in the plane across light of one direction.
 struct EntryPlace {
     float along, across;  ///< away from the axis, and across that, mm
-    float density;        ///< per mm^2
+    float density;  ///< per mm^2
 };
 
 REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
