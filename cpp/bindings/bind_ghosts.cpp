@@ -5,6 +5,7 @@
 
 #include "../camera/ghost_tables.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
+#include "../optics/ghost.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
@@ -27,9 +28,11 @@ Ghost ghost_of(const LensSystem& lens, GhostPair pair, double wavelength_nm, std
     return {pair.first, pair.second, path.effective_focal_length, path.back_focal_distance, share};
 }
 
-std::vector<Ghost> ghosts_of(const LensSystem& lens) {
+std::vector<Ghost> ghosts_of(const LensSystem& lens, double film_reflectance) {
+    if (!(film_reflectance >= 0 && film_reflectance <= 1))
+        throw InputError("film_reflectance must be a share from 0 to 1");
     const double film_radius = 0.5 * std::hypot(lens.film_width, lens.film_height);
-    const GhostTables tables(lens, film_radius, 0, fast_pupil_tracer(), nullptr);
+    const GhostTables tables(lens, film_radius, {true, film_reflectance, 0}, fast_pupil_tracer(), nullptr);
     std::vector<Ghost> ghosts;
     for (std::size_t k = 0; k < tables.pairs().size(); ++k)
         ghosts.push_back(ghost_of(lens, tables.pairs()[k], lens.wavelength_nm, tables.shares()[k]));
@@ -40,10 +43,11 @@ std::vector<Ghost> ghosts_of(const LensSystem& lens) {
 }  // namespace
 
 void bind_ghosts(py::module_& m) {
-    py::class_<Ghost> ghost(
-        m, "Ghost",
-        "Light that two surfaces reflect on its way to the film: first `first`, back towards the "
-        "scene, then `second`,\nin front of it. Surfaces are numbered from 0, as in Lens.surfaces.");
+    py::class_<Ghost> ghost(m, "Ghost",
+                            "Light that two surfaces reflect on its way to the film: first `first`, back towards the "
+                            "scene, then `second`,\nin front of it. Surfaces are numbered from 0, as in Lens.surfaces; "
+                            "the film has the number behind the "
+                            "last one's.");
     def_hashable_value(ghost);
     ghost.def_readonly("first", &Ghost::first)
         .def_readonly("second", &Ghost::second)
@@ -67,14 +71,15 @@ void bind_ghosts(py::module_& m) {
             },
             "first"_a, "second"_a, py::kw_only(), "wavelength_nm"_a = py::none(),
             "The ghost of light that surface `first` reflects back, and surface `second`, in front of it, forward "
-            "again.\nSurfaces are numbered from 0, as in Lens.surfaces. Paraxial (R. H. Abd El-Maksoud and J. M. "
-            "Sasian, "
-            "Proc. SPIE 7428,\n742807, 2009). Raises InputError where the two are not refracting surfaces in that "
-            "order.")
-        .def("ghosts", &ghosts_of,
+            "again.\nSurfaces are numbered from 0, as in Lens.surfaces; `first` may be the film, with the number "
+            "behind the "
+            "last one's.\nParaxial (R. H. Abd El-Maksoud and J. M. Sasian, Proc. SPIE 7428, 742807, 2009). Raises "
+            "InputError where the two\nare not refracting surfaces, or the film and one, in that order.")
+        .def("ghosts", &ghosts_of, py::kw_only(), "film_reflectance"_a = 0,
              "All ghosts that reach the lens's film at the design wavelength, the brightest first, with their shares:\n"
              "by rays through both reflections, with the reflectances of light along the axis. Surfaces of unknown\n"
-             "coating count as bare. Raises InputError where an index is not known.");
+             "coating count as bare. With a film that reflects some share of the light as a mirror does, also those of "
+             "film and\nsurface. Raises InputError where an index is not known.");
 }
 
 }  // namespace realcam::bindings

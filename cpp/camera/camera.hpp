@@ -334,7 +334,7 @@ struct LensEffects {
     bool dispersion = false;  ///< indices of those wavelengths
     bool diffraction = false;  ///< by the edges of the aperture
     bool coatings = false;  ///< what the surfaces pass on of the light
-    std::optional<double> ghost_share = {};  ///< with ghosts, but for those with less of the lens's light
+    std::optional<GhostChoice> ghosts = {};
 
     bool operator==(const LensEffects&) const = default;
 };
@@ -358,11 +358,11 @@ public:
             pupil_ = last->pupil_;
         else if (camera.model == CameraModel::full_lens)
             pupil_ = std::make_shared<const Pupil>(camera.lens, film_radius(), tracer, pupil_wavelengths_);
-        if (effects.ghost_share) {
+        if (effects.ghosts) {
             if (last && last->ghosts_ && last->effects_ == effects && last->has_lens_and_film_of(camera))
                 ghosts_ = last->ghosts_;
             else
-                ghosts_ = std::make_shared<const GhostTables>(camera.lens, film_radius(), *effects.ghost_share, tracer,
+                ghosts_ = std::make_shared<const GhostTables>(camera.lens, film_radius(), *effects.ghosts, tracer,
                                                               effects.dispersion ? &*spectrum_ : nullptr);
         }
         if (effects.diffraction) set_diffraction(tracer, last);

@@ -4,10 +4,12 @@
 #include <vector>
 
 #include "../math/append_cdf.hpp"
+#include "../optics/axial_share.hpp"
+#include "../optics/film_mirror.hpp"
 #include "../optics/fit_coatings.hpp"
-#include "../optics/ghost.hpp"
 #include "entry_search.hpp"
 #include "film_spectrum.hpp"
+#include "ghost_choice.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -31,30 +33,37 @@ inline std::vector<Crossing> all_crossings(const LensSystem& lens) {
 
 }  // namespace ghost_tables_detail
 
-/// The ghosts of a lens made ready for pictures. Owns the memory of its view.
+/// The ghosts of a lens made ready for pictures. Owns the memory of its views.
 class GhostTables {
 public:
-    /// `film_radius`: of a circle that holds the film, mm. `spectrum`: of a picture with dispersion. Ghosts that bring
-    /// less than `least_share` of the light that the lens itself brings to the film, from all sides alike, are left
-    /// out. Throws InputError where an index is not known.
-    GhostTables(const LensSystem& lens, double film_radius, double least_share, const PupilTracer& tracer,
-                const FilmSpectrum* spectrum) {
+    /// `film_radius`: of a circle that holds the film, mm. `spectrum`: of a picture with dispersion. Throws InputError
+    /// where an index is not known.
+    GhostTables(const LensSystem& of_lens, double film_radius, const GhostChoice& choice, const PupilTracer& tracer,
+                const FilmSpectrum* spectrum)
+        : film_radius_(static_cast<float>(film_radius)),
+          film_index_(static_cast<float>(of_lens.indices(of_lens.wavelength_nm).back())),
+          entry_reach_(entry_reach(of_lens)),
+          exit_reach_(static_cast<float>(exit_reach(of_lens))) {
         using namespace ghost_tables_detail;
-        reach_ = entry_reach(lens);
-        const EntrySearch search(lens, film_radius, tracer);
+        const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
         std::vector<GhostPair> pairs;
         std::vector<double> axial;
-        for (const GhostPair pair : ghost_pairs(lens)) {
-            // A way that no more light can take than ten times what the lens itself takes is not worth the search.
-            const double share = axial_share(lens, pair);
-            if (!(10 * share > least_share)) continue;
-            pairs.push_back(pair);
-            axial.push_back(share);
-        }
+        const auto look_at = [&](const std::vector<GhostPair>& wanted) {
+            for (const GhostPair pair : wanted) {
+                // A way that no more light can take than ten times what the lens itself takes is not worth the search.
+                const double share = axial_share(lens, crossings_of(of_lens, pair), lens.wavelength_nm);
+                if (!(10 * share > choice.least_share)) continue;
+                pairs.push_back(pair);
+                axial.push_back(share);
+            }
+        };
+        if (choice.of_lens) look_at(ghost_pairs(of_lens));
+        if (choice.film_reflectance > 0) look_at(film_ghost_pairs(of_lens));
+        const EntrySearch search(of_lens, film_radius, tracer);
         std::vector<std::vector<FoundRay>> found(pairs.size() + 1);  // the last of the lens itself
         tracer.for_each(static_cast<int>(found.size()), [&](int i) {
             const auto k = static_cast<std::size_t>(i);
-            const std::vector<Crossing> way = k < pairs.size() ? crossings_of(lens, pairs[k]) : crossings_of(lens);
+            const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k]) : crossings_of(of_lens);
             found[k] = search.along(LensPath<float>(lens, way, LightDirection::to_scene, lens.wavelength_nm).view());
         });
         for (const std::vector<FoundRay>& rays : found)
@@ -62,56 +71,60 @@ public:
         make_crossings(lens, spectrum);
         for (std::size_t k = 0; k < pairs.size(); ++k) {
             const double share = axial[k] * etendue_of(found[k]) / etendue_of(found.back());
-            if (!(share > least_share)) continue;
+            if (!(share > choice.least_share)) continue;
+            pairs_.push_back(pairs[k]);
             shares_.push_back(share);
-            add(lens, pairs[k], entries_of(found[k], largest_half_tangent_));
+            const std::vector<Crossing> way = crossings_of(of_lens, pairs[k]);
+            const auto path = [&](LightDirection direction) {
+                return LensPath<float>(lens, way, direction, lens.wavelength_nm);
+            };
+            add(to_film_, path(LightDirection::to_film), way, entries_of(found[k], largest_half_tangent_));
+            add(to_scene_, path(LightDirection::to_scene), reversed(way), exits_of(found[k]));
         }
         set_probabilities();
-        const LensPath<float> straight(lens, LightDirection::to_film, lens.wavelength_nm);
+        const LensPath<float> straight(of_lens, LightDirection::to_film, lens.wavelength_nm);
         iris_ = straight.view().iris;
         kind_ = straight.view().kind;
     }
 
-    GhostView view() const {
-        const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
-        return {ways_.data(),
-                static_cast<int>(ways_.size()),
-                cdf_.data(),
-                entries_.data(),
-                static_cast<int>(surfaces_.size()),
-                surfaces_.data(),
-                data_of(coatings_),
-                data_of(indices_),
-                data_of(spectral_coatings_),
-                largest_half_tangent_,
-                reach_,
-                iris_,
-                kind_,
-                false};
-    }
+    /// Ghosts of lights.
+    GhostView view() const { return view_of(to_film_, GhostLight::of_lights, entry_reach_); }
+    /// Ghosts of what objects reflect.
+    GhostView view_of_objects() const { return view_of(to_scene_, GhostLight::of_objects, exit_reach_); }
 
     const std::vector<GhostPair>& pairs() const { return pairs_; }
     /// Of the light that the lens itself brings to the film, from all sides alike: what each pair brings.
     const std::vector<double>& shares() const { return shares_; }
 
 private:
-    using Crossings = std::vector<Crossing>;
+    /// The ways of all ghosts for light that goes to the film, or back from there to the scene.
+    struct Ways {
+        std::vector<GhostWay> ways;
+        std::vector<GhostEntry> entries;
+        std::vector<SurfaceView<float>> surfaces;
+        std::vector<GhostCoating<kOneWavelengthTerms>> coatings;
+        std::vector<IndexCubic> indices;
+        std::vector<GhostCoating<kSpectrumTerms>> spectral_coatings;
+    };
 
-    /// Of light along the axis: the product of what the surfaces reflect and let pass.
-    static double axial_share(const LensSystem& lens, GhostPair pair) {
-        const std::vector<double> indices = lens.indices(lens.wavelength_nm);
-        double share = 1;
-        for (const Crossing& crossing : crossings_of(lens, pair)) {
-            const auto index = static_cast<std::size_t>(crossing.surface);
-            if (!lens.surfaces[index].bends_light()) continue;
-            const CoatedSurface surface =
-                coated_surface(lens, index, lens.wavelength_nm,
-                               crossing.in_order ? LightDirection::to_film : LightDirection::to_scene, indices);
-            const PolarisedResponse response = surface.at(1);
-            share *= crossing.is_reflected || surface.is_mirror() ? response.mean_reflectance()
-                                                                  : response.mean_transmittance();
-        }
-        return share;
+    GhostView view_of(const Ways& of, GhostLight light, float reach) const {
+        const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+        return {light,
+                of.ways.data(),
+                static_cast<int>(of.ways.size()),
+                cdf_.data(),
+                of.entries.data(),
+                static_cast<int>(of.surfaces.size()),
+                of.surfaces.data(),
+                data_of(of.coatings),
+                data_of(of.indices),
+                data_of(of.spectral_coatings),
+                largest_half_tangent_,
+                film_radius_,
+                film_index_,
+                reach,
+                iris_,
+                kind_};
     }
 
     /// What light does at each crossing that a way may have.
@@ -139,20 +152,19 @@ private:
         }
     }
 
-    void add(const LensSystem& lens, GhostPair pair, const std::array<GhostEntry, kGhostAngles>& entries) {
-        const std::vector<Crossing> crossings = crossings_of(lens, pair);
-        const LensPath<float> path(lens, crossings, LightDirection::to_film, lens.wavelength_nm);
+    /// `crossings`: in the order in which light meets them that goes along `path`.
+    void add(Ways& to, const LensPath<float>& path, const std::vector<Crossing>& crossings,
+             const GhostEntries& entries) {
         const LensView<float> way = path.view();
-        pairs_.push_back(pair);
-        ways_.push_back({static_cast<std::int32_t>(surfaces_.size()), way.count, 0});
-        surfaces_.insert(surfaces_.end(), way.surfaces, way.surfaces + way.count);
-        entries_.insert(entries_.end(), entries.begin(), entries.end());
+        to.ways.push_back({static_cast<std::int32_t>(to.surfaces.size()), way.count, 0});
+        to.surfaces.insert(to.surfaces.end(), way.surfaces, way.surfaces + way.count);
+        to.entries.insert(to.entries.end(), entries.begin(), entries.end());
         for (const Crossing& crossing : crossings) {
             const std::size_t number = ghost_tables_detail::number_of(crossing);
-            if (!all_coatings_.empty()) coatings_.push_back(all_coatings_[number]);
+            if (!all_coatings_.empty()) to.coatings.push_back(all_coatings_[number]);
             if (all_indices_.empty()) continue;
-            indices_.push_back(all_indices_[number]);
-            spectral_coatings_.push_back(all_spectral_[number]);
+            to.indices.push_back(all_indices_[number]);
+            to.spectral_coatings.push_back(all_spectral_[number]);
         }
     }
 
@@ -165,20 +177,20 @@ private:
         for (const double share : shares_)
             weights.push_back(0.9 * share / sum + 0.1 / static_cast<double>(shares_.size()));
         append_cdf(weights, cdf_);
-        for (std::size_t k = 0; k < ways_.size(); ++k) ways_[k].probability = cdf_[k + 1] - cdf_[k];
+        for (Ways* of : {&to_film_, &to_scene_})
+            for (std::size_t k = 0; k < weights.size(); ++k) of->ways[k].probability = cdf_[k + 1] - cdf_[k];
     }
 
     std::vector<GhostPair> pairs_;
     std::vector<double> shares_;
-    std::vector<GhostWay> ways_;
+    Ways to_film_, to_scene_;
     std::vector<float> cdf_;
-    std::vector<GhostEntry> entries_;
-    std::vector<SurfaceView<float>> surfaces_;
-    std::vector<GhostCoating<kOneWavelengthTerms>> coatings_, all_coatings_;
-    std::vector<IndexCubic> indices_, all_indices_;
-    std::vector<GhostCoating<kSpectrumTerms>> spectral_coatings_, all_spectral_;
-    Crossings all_;  ///< of which the all_... are, by ghost_tables_detail::number_of
-    float largest_half_tangent_ = 0, reach_ = 0;
+    std::vector<Crossing> all_;  ///< of which the next three are, by ghost_tables_detail::number_of
+    std::vector<GhostCoating<kOneWavelengthTerms>> all_coatings_;
+    std::vector<IndexCubic> all_indices_;
+    std::vector<GhostCoating<kSpectrumTerms>> all_spectral_;
+    float film_radius_, film_index_, entry_reach_, exit_reach_;
+    float largest_half_tangent_ = 0;
     Iris<float> iris_{};
     LensKind kind_ = LensKind::any;
 };

@@ -6,11 +6,13 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// In how many steps of the tangent of half its angle to the axis light is looked at that becomes ghosts.
-inline constexpr int kGhostAngles = 64;
+/// In how many steps of the tangent of half its angle to the axis light is looked at that becomes ghosts, or of the
+/// film's radius places on the film to which it comes.
+inline constexpr int kGhostBins = 64;
 
 /// Where light of one direction has to enter to reach the film by one ghost's way: a rectangle in the plane across the
 /// light through the front vertex, mm. `low`, `high`: away from the axis; across it, from -half_width to half_width.
+/// Or, in the plane of the last vertex, where light leaves the lens that reaches one place of the film.
 struct GhostEntry {
     float low, high, half_width;  ///< half_width 0: nowhere
 };
@@ -21,22 +23,31 @@ struct GhostWay {
     float probability;          ///< with which a sample takes it
 };
 
-/// The ghosts of a lens, for light on its way to the film; or the lens's own way, for starbursts. Lengths in mm.
+/// Which light is traced apart from the samples of pixels, and from where.
+enum class GhostLight : std::int32_t {
+    of_lights,   ///< ghosts of the scene's lights, from these
+    starbursts,  ///< the lights themselves, spread by the edges of the aperture, from the lights
+    of_objects,  ///< ghosts of what objects reflect, from the film
+};
+
+/// The ghosts of a lens, or the lens's own way, for starbursts. Lengths in mm.
 struct GhostView {
+    GhostLight light;
     const GhostWay* ways;
     int way_count;
     const float* cdf;  ///< of the ways' probabilities, way_count + 1
-    const GhostEntry* entries;  ///< kGhostAngles of each way
+    const GhostEntry* entries;  ///< kGhostBins of each way
     int crossing_count;
     const SurfaceView<float>* surfaces;  ///< of all crossings of all ways, as the next three
     const GhostCoating<kOneWavelengthTerms>* coatings;
     const IndexCubic* indices;  ///< where samples have wavelengths, as the next; else null
     const GhostCoating<kSpectrumTerms>* spectral_coatings;  ///< null: surfaces pass on all light
     float largest_half_tangent;  ///< of the angle between axis and light from which any ghost comes
-    float reach;  ///< radius of a circle that holds all places where light enters, mm
+    float film_radius;           ///< of a circle that holds the film
+    float film_index;            ///< of the medium before the film
+    float reach;  ///< radius of a circle that holds all places where samples enter the lens
     Iris<float> iris;
     LensKind kind;
-    bool diffracts;  ///< the light is spread as the camera's DiffractionView says
 };
 
 /// A ghost view with every array replaced by a copy elsewhere: `copy(pointer, count)` returns where to.
@@ -47,7 +58,7 @@ GhostView with_copied_arrays(GhostView view, Copy&& copy) {
     };
     move(view.ways, view.way_count);
     move(view.cdf, view.way_count + 1);
-    move(view.entries, view.way_count * kGhostAngles);
+    move(view.entries, view.way_count * kGhostBins);
     move(view.surfaces, view.crossing_count);
     move(view.coatings, view.crossing_count);
     move(view.indices, view.crossing_count);

@@ -36,7 +36,8 @@ public:
 
     GhostView view() const {
         const LensView<float> lens = path_.view();
-        return {&way_,
+        return {GhostLight::starbursts,
+                &way_,
                 1,
                 kCdf.data(),
                 entries_.data(),
@@ -46,10 +47,11 @@ public:
                 indices_.data(),
                 coatings_.empty() ? nullptr : coatings_.data(),
                 largest_half_tangent_,
+                0,
+                1,
                 reach_,
                 lens.iris,
-                lens.kind,
-                true};
+                lens.kind};
     }
 
 private:
@@ -69,7 +71,7 @@ private:
 
     LensPath<float> path_;
     GhostWay way_;
-    std::array<GhostEntry, kGhostAngles> entries_{};
+    GhostEntries entries_{};
     std::vector<IndexCubic> indices_;
     std::vector<GhostCoating<kSpectrumTerms>> coatings_;
     float largest_half_tangent_ = 0, reach_;

@@ -61,13 +61,22 @@ private:
     }
 
     void set_splats(const CameraView& camera) {
-        GhostView ghosts, starbursts;
-        const auto source_of = [&](const auto* tables, GhostView& view) -> DeviceRenderer::SplatSource {
-            if (!tables) return {};
-            view = tables->view();
+        GhostView ghosts, ghosts_of_objects, starbursts;
+        const auto source_of = [&](const GhostView& view) -> DeviceRenderer::SplatSource {
             return {&view, ghost_units_per_lux(scene_.placed().view(), camera, view)};
         };
-        front().set_splats(source_of(setup_->ghosts(), ghosts), source_of(setup_->starbursts(), starbursts));
+        DeviceRenderer::SplatSource sources[3];
+        if (setup_->ghosts()) {
+            ghosts = setup_->ghosts()->view();
+            ghosts_of_objects = setup_->ghosts()->view_of_objects();
+            sources[0] = source_of(ghosts);
+            sources[1] = source_of(ghosts_of_objects);
+        }
+        if (setup_->starbursts()) {
+            starbursts = setup_->starbursts()->view();
+            sources[2] = source_of(starbursts);
+        }
+        front().set_splats(sources[0], sources[1], sources[2]);
     }
 
     void clear() override {
@@ -89,7 +98,7 @@ private:
             expose_band(row, rows, range, stop, done);
             if (kept) front().download_film(kept);
         }
-        front().splat(range);
+        front().splat(range, settings().path());
         for (const auto& renderer : renderers_) renderer->wait();
         stats_.seconds += seconds_since(exposing);
     }
@@ -128,7 +137,7 @@ private:
         if (!fits()) throw DeviceError("the film is larger than the GPU's memory");
         for (const SampleRange& range : ranges) {
             front().add({0, height(), range.first, range.count}, settings_of(range));
-            front().splat(range);
+            front().splat(range, settings().path());
         }
         const std::shared_ptr<DeviceFrame> frame =
             make_on_device<DeviceFrame>(front().ordinal(), camera().film, samples(), pool_);

@@ -11,7 +11,7 @@
 
 namespace realcam {
 
-/// The ghosts, or the starbursts, of one GPU's picture. All functions throw DeviceError.
+/// Ghosts or starbursts of one GPU's picture. All functions throw DeviceError.
 class DeviceGhosts {
 public:
     /// The host's copy may go afterwards. Null: the picture has none.
@@ -36,15 +36,16 @@ public:
 
     /// Starts to take the samples that belong to so many of each pixel.
     void add(const DeviceScene& scene, const CameraView& camera, const volatile int* stop, const SampleRange& range,
-             CudaStream& stream) {
+             const PathSettings& settings, CudaStream& stream) {
         if (sums_.size() == 0) return;
         constexpr std::uint64_t kLaunch = 1 << 14;
-        const GhostBlocks blocks = ghost_blocks(camera, range, view_.diffracts);
+        const GhostBlocks blocks = ghost_blocks(camera, range, view_.light);
+        const auto launch = view_.light == GhostLight::of_objects ? launch_gather_ghosts : launch_splat_ghosts;
         for (std::uint64_t block = blocks.first; block < blocks.end; block += kLaunch)
-            launch_splat_ghosts(
-                {scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), blocks_done_.data(), block,
-                 static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, units_per_lux_},
-                stream);
+            launch({scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), blocks_done_.data(), block,
+                    static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, settings,
+                    units_per_lux_},
+                   stream);
     }
 
     GhostFilmView seen() const {

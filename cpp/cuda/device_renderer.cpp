@@ -72,27 +72,30 @@ void DeviceRenderer::set_camera(const CameraView& camera) {
         camera, [&](const auto* from, std::size_t count) { return camera_arrays_.copy(from, count, stream_); });
 }
 
-void DeviceRenderer::set_splats(const SplatSource& ghosts, const SplatSource& starbursts) {
+void DeviceRenderer::set_splats(const SplatSource& ghosts, const SplatSource& ghosts_of_objects,
+                                const SplatSource& starbursts) {
     const CurrentDevice current(ordinal_);
     ghosts_.set(ghosts.view, ghosts.units_per_lux, stream_);
+    ghosts_of_objects_.set(ghosts_of_objects.view, ghosts_of_objects.units_per_lux, stream_);
     starbursts_.set(starbursts.view, starbursts.units_per_lux, stream_);
 }
 
 void DeviceRenderer::clear_splats(int width, int height) {
     const CurrentDevice current(ordinal_);
     ghosts_.clear(width, height, stream_);
+    ghosts_of_objects_.clear(width, height, stream_);
     starbursts_.clear(width, height, stream_);
 }
 
-void DeviceRenderer::splat(const SampleRange& range) {
+void DeviceRenderer::splat(const SampleRange& range, const PathSettings& settings) {
     const CurrentDevice current(ordinal_);
-    ghosts_.add(scene_, camera_, stop_.data(), range, stream_);
-    starbursts_.add(scene_, camera_, stop_.data(), range, stream_);
+    for (DeviceGhosts* light : {&ghosts_, &ghosts_of_objects_, &starbursts_})
+        light->add(scene_, camera_, stop_.data(), range, settings, stream_);
 }
 
 DeviceRenderer::SplatsOnHost DeviceRenderer::download_splats() {
     const CurrentDevice current(ordinal_);
-    return {ghosts_.download(stream_), starbursts_.download(stream_)};
+    return {ghosts_.download(stream_), ghosts_of_objects_.download(stream_), starbursts_.download(stream_)};
 }
 
 void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
@@ -162,8 +165,8 @@ void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
 void DeviceRenderer::develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {
     const CurrentDevice current(ordinal_);
     codes_.resize(3 * sums_.size());
-    launch_develop_codes(sums_.data(), {ghosts_.seen(), starbursts_.seen()}, static_cast<std::int64_t>(sums_.size()),
-                         exposure_time_s, iso, curve, codes_.data(), stream_);
+    launch_develop_codes(sums_.data(), splatted(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, iso, curve,
+                         codes_.data(), stream_);
     codes_.download(codes, stream_);
 }
 
@@ -191,8 +194,8 @@ void DeviceRenderer::download_film(PixelSum* to) {
 
 void DeviceRenderer::develop_here(double exposure_time_s, float* exposure, float* depth) {
     const CurrentDevice current(ordinal_);
-    launch_develop(sums_.data(), {ghosts_.seen(), starbursts_.seen()}, static_cast<std::int64_t>(sums_.size()),
-                   exposure_time_s, exposure, depth, stream_);
+    launch_develop(sums_.data(), splatted(), static_cast<std::int64_t>(sums_.size()), exposure_time_s, exposure, depth,
+                   stream_);
 }
 
 void DeviceRenderer::develop(double exposure_time_s, float* exposure, float* depth) {

@@ -39,14 +39,14 @@ public:
         double units_per_lux = 1;
     };
     /// Of the pictures that follow, and an empty film for them.
-    void set_splats(const SplatSource& ghosts, const SplatSource& starbursts);
+    void set_splats(const SplatSource& ghosts, const SplatSource& ghosts_of_objects, const SplatSource& starbursts);
     void clear_splats(int width, int height);
     /// Starts to add the samples that belong to those of pixels.
-    void splat(const SampleRange& range);
+    void splat(const SampleRange& range, const PathSettings& settings);
     struct SplatsOnHost {
-        DeviceGhosts::OnHost ghosts, starbursts;
+        DeviceGhosts::OnHost ghosts, ghosts_of_objects, starbursts;
 
-        SplattedLight view() const { return {ghosts.view(), starbursts.view()}; }
+        SplattedLight view() const { return {ghosts.view(), ghosts_of_objects.view(), starbursts.view()}; }
     };
     SplatsOnHost download_splats();
 
@@ -103,6 +103,8 @@ private:
     /// Starts to add samples to `sums`, those of the part's first row.
     void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, bool timed);
 
+    SplattedLight splatted() const { return {ghosts_.seen(), ghosts_of_objects_.seen(), starbursts_.seen()}; }
+
     LayerJob layer_job(const FilmPart& part, std::uint32_t seed) const;
 
     int ordinal_;
@@ -111,7 +113,7 @@ private:
     DeviceScene scene_;
     DeviceArrays camera_arrays_;
     CameraView camera_{};
-    DeviceGhosts ghosts_, starbursts_;
+    DeviceGhosts ghosts_, ghosts_of_objects_, starbursts_;
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<LayerSum> layer_sums_;
     DeviceArray<MiddleSurface> middle_surfaces_;

@@ -1,8 +1,8 @@
-#include "ghost_kernels.hpp"
-
 #include "../render/kind_of.hpp"
 #include "bvh_scene.hpp"
 #include "cuda_error.hpp"
+#include "ghost_kernels.hpp"
+#include "ghost_sums.hpp"
 
 namespace realcam {
 namespace {
@@ -10,20 +10,11 @@ namespace {
 /// A block of threads takes one block of samples, whose way through the lens is the same.
 template <SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock) splat_ghosts_of(const __grid_constant__ GhostJob job) {
-    __shared__ int stopped;
-    if (threadIdx.x == 0) stopped = *job.stop;
-    __syncthreads();
-    if (stopped) return;
+    if (is_stopped(job)) return;
     BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
-    splat_ghosts<LensKind::any, scene_kind, has_wavelengths, 1>(
-        job.scene, job.camera, job.ghosts, {job.first_block + blockIdx.x, job.seed}, threadIdx.x, scene,
-        [&](std::int32_t pixel, Color lux, float dither) {
-            const float channels[3] = {lux.r, lux.g, lux.b};
-            for (int c = 0; c < 3; ++c)
-                atomicAdd(reinterpret_cast<unsigned long long*>(&job.sums[pixel].units[c]),
-                          static_cast<unsigned long long>(ghost_units(channels[c], job.units_per_lux, dither)));
-        });
-    if (threadIdx.x == 0) atomicAdd(job.blocks_done, 1ull);
+    splat_ghosts<LensKind::any, scene_kind, has_wavelengths, 1>(job.scene, job.camera, job.ghosts, range_of(job),
+                                                                threadIdx.x, scene, GhostSplat{job});
+    count_block(job);
 }
 
 }  // namespace

@@ -18,10 +18,12 @@ struct GhostJob {
     unsigned long long* blocks_done;
     std::uint64_t first_block;
     std::uint32_t block_count, seed;
+    PathSettings settings;
     double units_per_lux;
 };
 
-/// Throws DeviceError.
+/// From the lights on, or from the film on, as the job's GhostView says. Both throw DeviceError.
 void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream);
+void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream);
 
 }  // namespace realcam

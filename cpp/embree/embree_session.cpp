@@ -76,8 +76,12 @@ private:
         const Film& film = camera().film;
         const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
         film_.assign(pixels, PixelSum{});
-        ghosts_ = {std::vector<GhostSum>(settings().effects.ghosts ? pixels : 0), 0, 1};
-        starbursts_ = {std::vector<GhostSum>(settings().effects.diffraction ? pixels : 0), 0, 1};
+        const auto empty_film = [&](bool wanted) {
+            return SplatFilm{std::vector<GhostSum>(wanted ? pixels : 0), 0, 1};
+        };
+        ghosts_ = empty_film(settings().effects.have_ghosts());
+        ghosts_of_objects_ = empty_film(settings().effects.have_ghosts());
+        starbursts_ = empty_film(settings().effects.diffraction);
         stats_ = {};
     }
 
@@ -190,15 +194,18 @@ private:
 
     /// Adds what belongs to these samples of each pixel.
     void splat(const SampleRange& range, const RenderSettings& settings) {
-        if (!ghosts_.sums.empty() && !setup_->ghosts()->pairs().empty())
+        if (!ghosts_.sums.empty() && !setup_->ghosts()->pairs().empty()) {
             splat_on(ghosts_, setup_->ghosts()->view(), range, settings);
+            splat_on(ghosts_of_objects_, setup_->ghosts()->view_of_objects(), range, settings);
+        }
         if (!starbursts_.sums.empty()) splat_on(starbursts_, setup_->starbursts()->view(), range, settings);
     }
 
     void splat_on(SplatFilm& film, const GhostView& ghosts, const SampleRange& range, const RenderSettings& settings) {
         const SceneView scene = scene_->placed().view();
         film.units_per_lux = ghost_units_per_lux(scene, camera_view_, ghosts);
-        const GhostBlocks blocks = ghost_blocks(camera_view_, range, ghosts.diffracts);
+        const GhostBlocks blocks = ghost_blocks(camera_view_, range, ghosts.light);
+        const PathSettings path = settings.path();
         constexpr std::uint64_t kVisit = 64;
         const std::uint64_t count = blocks.end - blocks.first;
         arena(settings).execute([&] {
@@ -211,6 +218,7 @@ private:
                 job.first_block = blocks.first + visit * kVisit;
                 job.block_count = std::min(kVisit, count - visit * kVisit);
                 job.seed = range.seed;
+                job.path_settings = &path;
                 job.units_per_lux = film.units_per_lux;
                 job.stopped = &is_raised;
                 job.stop = &stop_.flag();
@@ -226,7 +234,7 @@ private:
             return GhostFilmView{film.sums.empty() ? nullptr : film.sums.data(), film.units_per_lux, &film.blocks,
                                  camera_view_.width, camera_view_.height};
         };
-        return {seen(ghosts_), seen(starbursts_)};
+        return {seen(ghosts_), seen(ghosts_of_objects_), seen(starbursts_)};
     }
 
     /// visit(x, y, some samples) of the tile with that first pixel, until all samples of all tiles were taken.
@@ -303,7 +311,7 @@ private:
     CameraView camera_view_{};
     SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
-    SplatFilm ghosts_, starbursts_;
+    SplatFilm ghosts_, ghosts_of_objects_, starbursts_;
     std::mutex stats_mutex_;
     RenderStats stats_;
 };

@@ -8,6 +8,7 @@
 #include "../camera/ray_request.hpp"
 #include "../camera/sensor_request.hpp"
 #include "../optics/trace_request.hpp"
+#include "../render/gather_ghosts.hpp"
 #include "../render/ghost_film.hpp"
 #include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
@@ -184,8 +185,10 @@ void see_middle_surfaces_of_tile(realcam_tile* tile) {
     });
 }
 
-template <SceneKind scene_kind, bool has_wavelengths>
-void splat_ghosts_with(realcam_ghosts* job) {
+/// take(view, camera, ghosts, range, first, scene, splat) for each kLanes of the samples, from number `first` in a
+/// block.
+template <SceneKind scene_kind, class Take>
+void for_ghosts_of(realcam_ghosts* job, Take&& take) {
     const SceneView view = *static_cast<const SceneView*>(job->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(job->camera_view);
     const GhostView ghosts = *static_cast<const GhostView*>(job->ghost_view);
@@ -200,17 +203,36 @@ void splat_ghosts_with(realcam_ghosts* job) {
     };
     static_assert(kGhostBlock % kLanes == 0);
     for (std::uint64_t i = 0; i < job->block_count && !job->stopped(job->stop); ++i) {
+        const GhostRange range{job->first_block + i, job->seed};
         for (std::uint32_t first = 0; first < kGhostBlock; first += kLanes)
-            splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(
-                view, camera, ghosts, {job->first_block + i, job->seed}, first, scene, splat);
+            take(view, camera, ghosts, range, first, scene, splat);
         ++job->blocks_done;
     }
     job->rays += scene.rays_traced;
 }
 
+template <SceneKind scene_kind, bool has_wavelengths>
+void splat_ghosts_with(realcam_ghosts* job) {
+    for_ghosts_of<scene_kind>(
+        job, [](auto&... with) { splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
+}
+
+template <bool has_wavelengths>
+void gather_ghosts_with(realcam_ghosts* job) {
+    const PathSettings settings = *static_cast<const PathSettings*>(job->path_settings);
+    for_ghosts_of<SceneKind::any>(job, [&](const auto& view, const auto& camera, const auto& ghosts, const auto& range,
+                                           std::uint32_t first, auto& scene, const auto& splat) {
+        gather_ghosts<LensKind::any, SceneKind::any, has_wavelengths, kLanes>(view, camera, settings, ghosts, range,
+                                                                              first, scene, splat);
+    });
+}
+
 void splat_ghosts_of(realcam_ghosts* job) {
     const auto& camera = *static_cast<const CameraView*>(job->camera_view);
-    const bool has_wavelengths = static_cast<const GhostView*>(job->ghost_view)->indices != nullptr;
+    const auto& ghosts = *static_cast<const GhostView*>(job->ghost_view);
+    const bool has_wavelengths = ghosts.indices != nullptr;
+    if (ghosts.light == GhostLight::of_objects)
+        return has_wavelengths ? gather_ghosts_with<true>(job) : gather_ghosts_with<false>(job);
     switch (kind_of(*static_cast<const SceneView*>(job->scene_view), camera)) {
         case SceneKind::plain:
             return has_wavelengths ? splat_ghosts_with<SceneKind::plain, true>(job)

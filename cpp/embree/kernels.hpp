@@ -29,6 +29,7 @@ struct realcam_ghosts {
     void* embree_scene;       // RTCScene
     std::uint64_t first_block, block_count;
     std::uint32_t seed;
+    const void* path_settings;  // PathSettings
     double units_per_lux;
     int (*stopped)(const void* stop);  // asked before each block; what is left then is left out
     const void* stop;

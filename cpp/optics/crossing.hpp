@@ -29,12 +29,17 @@ private:
 };
 
 /// Two refracting surfaces, from 0 at the front, that reflect light on its way to the film: first the one nearer to the
-/// film.
+/// film. The film itself, which reflects first, has the number behind the last surface's.
 struct GhostPair {
     int first, second;
 
     bool operator==(const GhostPair&) const = default;
 };
+
+/// Whether the number of a GhostPair is the film's.
+inline bool is_film(const LensSystem& lens, int surface) {
+    return surface == static_cast<int>(lens.surfaces.size());
+}
 
 /// Of light on its way to the film, which every surface lets pass or sends on as a mirror.
 inline std::vector<Crossing> crossings_of(const LensSystem& lens) {
@@ -43,11 +48,11 @@ inline std::vector<Crossing> crossings_of(const LensSystem& lens) {
     return crossings;
 }
 
-/// Of light on its way to the film that the two reflect.
+/// Of light on its way to the film that the two reflect. The film is a mirror (with_film_mirror).
 inline std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair) {
     std::vector<Crossing> crossings;
     for (int i = 0; i < pair.first; ++i) crossings.push_back({i, true, false});
-    crossings.push_back({pair.first, true, true});
+    crossings.push_back({pair.first, true, !is_film(lens, pair.first)});
     for (int i = pair.first - 1; i > pair.second; --i) crossings.push_back({i, false, false});
     crossings.push_back({pair.second, false, true});
     for (int i = pair.second + 1; i < static_cast<int>(lens.surfaces.size()); ++i)
@@ -63,16 +68,27 @@ inline std::vector<Crossing> reversed(std::vector<Crossing> way) {
     return way;
 }
 
-/// All pairs of refracting surfaces.
-inline std::vector<GhostPair> ghost_pairs(const LensSystem& lens) {
+/// All pairs whose first surface has one of these numbers and refracts, or is the film.
+inline std::vector<GhostPair> ghost_pairs(const LensSystem& lens, int first_begin, int first_end) {
     std::vector<GhostPair> pairs;
     const auto refracts = [&](int i) {
         return lens.surfaces[static_cast<std::size_t>(i)].type == SurfaceType::refracting;
     };
-    for (int first = 1; first < static_cast<int>(lens.surfaces.size()); ++first)
+    for (int first = first_begin; first < first_end; ++first)
         for (int second = 0; second < first; ++second)
-            if (refracts(first) && refracts(second)) pairs.push_back({first, second});
+            if ((is_film(lens, first) || refracts(first)) && refracts(second)) pairs.push_back({first, second});
     return pairs;
+}
+
+/// All pairs of refracting surfaces.
+inline std::vector<GhostPair> ghost_pairs(const LensSystem& lens) {
+    return ghost_pairs(lens, 1, static_cast<int>(lens.surfaces.size()));
+}
+
+/// All pairs of the film and a refracting surface.
+inline std::vector<GhostPair> film_ghost_pairs(const LensSystem& lens) {
+    const int film = static_cast<int>(lens.surfaces.size());
+    return ghost_pairs(lens, film, film + 1);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "crossing.hpp"
+#include "film_mirror.hpp"
 #include "paraxial.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -16,20 +17,21 @@ struct GhostPath {
 ///
 /// A paraxial ray meets the surfaces one by one; at each reflection, a mirror's too, the index changes its sign (R. H.
 /// Abd El-Maksoud and J. M. Sasian, "Paraxial ghost image analysis", Proc. SPIE 7428, 742807, 2009). Throws InputError
-/// where the two are not refracting surfaces in that order.
+/// where the two are not refracting surfaces, or the film and one of these, in that order.
 inline GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pair) {
     const int count = static_cast<int>(lens.surfaces.size());
-    const auto surface = [&](int i) -> const Surface& { return lens.surfaces[static_cast<std::size_t>(i)]; };
-    if (!(0 <= pair.second && pair.second < pair.first && pair.first < count))
+    if (!(0 <= pair.second && pair.second < pair.first && pair.first <= count))
         throw InputError(
             "a ghost is reflected by two surfaces, the first time by the one nearer to the film: wanted are "
-            "numbers with 0 <= second < first < " +
-            std::to_string(count));
+            "numbers with 0 <= second < first <= " +
+            std::to_string(count) + ", the last of which is the film's");
     for (const int i : {pair.first, pair.second})
-        if (surface(i).type != SurfaceType::refracting)
+        if (!is_film(lens, i) && lens.surfaces[static_cast<std::size_t>(i)].type != SurfaceType::refracting)
             throw InputError("surface " + std::to_string(i) +
                              " is no refracting one; a ghost is light that a refracting surface reflects");
-    const std::vector<double> n = lens.indices(wavelength_nm), z = lens.vertices();
+    const LensSystem with_film = with_film_mirror(lens, 1, kLongest);
+    const auto surface = [&](int i) -> const Surface& { return with_film.surfaces[static_cast<std::size_t>(i)]; };
+    const std::vector<double> n = with_film.indices(wavelength_nm), z = with_film.vertices();
     ParaxialRay ray{1, 0};
     double direction_sign = 1;  // of the light along z
     double at = 0;              // z of the vertex that it met last

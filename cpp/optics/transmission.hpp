@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "axial_share.hpp"
 #include "field_rays.hpp"
 #include "polarised_ray.hpp"
 
@@ -51,13 +52,7 @@ inline BundleTransmission bundle_transmission(const LensSystem& lens, double wav
 /// incidence. An obstruction on the axis counts for nothing here.
 inline double axial_transmittance(const LensSystem& lens, double wavelength_nm) {
     check_wavelength_in_glasses(lens, wavelength_nm, "transmission");
-    double product = 1;
-    for (const auto& surface : coated_surfaces(lens, wavelength_nm, LightDirection::to_film)) {
-        if (!surface) continue;
-        const PolarisedResponse response = surface->at(1);
-        product *= surface->is_mirror() ? response.s.reflectance : response.s.transmittance;
-    }
-    return product;
+    return axial_share(lens, crossings_of(lens), wavelength_nm);
 }
 
 /// Share of the stop's area through which light from the axis at infinity passes: less than 1 where a central

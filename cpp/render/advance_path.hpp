@@ -5,6 +5,7 @@
 #include "../camera/diffracted_rays.hpp"
 #include "scatter_glossy_paths.hpp"
 #include "scatter_plain_paths.hpp"
+#include "start_paths.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -28,18 +29,6 @@ REALCAM_INLINE void play_roulette(const SampleBlock<N>& block, int bounce, int p
         path.rays.active[place] = 0;
 }
 
-/// What the edges of the aperture diffract of the lights is looked for from the lights on, too (splat_ghosts.hpp). A
-/// sample that looks for it meets lights as one that draws directions with the density at which both ways are as good.
-template <SceneKind scene_kind, int N>
-REALCAM_INLINE void set_first_density(const CameraView& camera, bool from_edge, int lane, PathState<N>& path) {
-    Vec3f front = front_vertex(camera, camera.front_vertex_m);
-    if constexpr (scene_kind == SceneKind::any)
-        front = front_vertex(camera_at(camera, path.rays.time[lane]), camera.front_vertex_m);
-    path.pdf[lane] = select(from_edge, camera.diffraction.splat_density, kDelta);
-    path.receiver_position.set(lane, front);
-    path.receiver_normal.set(lane, {0, 0, 0});
-}
-
 template <int N>
 REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
     std::int32_t any = 0;
@@ -53,7 +42,6 @@ REALCAM_INLINE bool any_active(const SceneRays<N>& rays) {
 template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects, int N>
 REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block,
                                    PathStateWith<N, effects>& path, PathResults<N>& results) {
-    using namespace advance_path_detail;
     CameraRays<N> camera_rays;
     [[maybe_unused]] std::conditional_t<effects.diffraction, DiffractedPoints<N>, NoKicks> film;
     if constexpr (effects.diffraction && effects.dispersion)
@@ -67,22 +55,14 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
     else
         generate_rays<lens_kind>(camera, block, camera_rays);
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, block, camera_rays, path.rays.time);
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        path.rays.origin.set(i, camera_rays.origin[i]);
-        path.rays.direction.set(i, camera_rays.direction[i]);
-        path.rays.far[i] = kFarAway;
-        path.rays.active[i] = camera_rays.passed[i];
-        path.weight[i] = camera_rays.weight[i];
-        path.throughput.set(i, grey(camera_rays.weight[i]));
-        path.pdf[i] = kDelta;
-        if constexpr (effects.diffraction) set_first_density<scene_kind>(camera, film.from_edge[i] != 0, i, path);
-        path.absorption.set(i, {0, 0, 0});
-        results.irradiance.set(i, {0, 0, 0});
-        results.depth[i] = kFarAway;
-        results.weight[i] = camera_rays.weight[i];
-        results.sampled[i] = camera_rays.sampled[i];
-        results.passed[i] = camera_rays.passed[i];
+    start_paths(camera_rays, path, results);
+    // The edges of the aperture spread the light of lamps, which is looked for with the density at which both ways are
+    // as good.
+    if constexpr (effects.diffraction) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i)
+            set_first_density<scene_kind>(
+                camera, select(film.from_edge[i] != 0, camera.diffraction.splat_density, kDelta), i, path);
     }
 }
 

@@ -22,7 +22,7 @@ struct EffectInfo {
     constexpr bool is_on() const { return EffectChoice{}.*member; }
 };
 
-inline constexpr std::array<EffectInfo, 6> kEffects = {{
+inline constexpr std::array<EffectInfo, 7> kEffects = {{
     {"dispersion",
      "each sample has a wavelength of its own, for which every glass has its own index; needs glasses with more than "
      "one index, nothing of the scene, and the camera model full",
@@ -34,11 +34,14 @@ inline constexpr std::array<EffectInfo, 6> kEffects = {{
      "model full",
      &EffectChoice::coatings},
     {"ghosts",
-     "light that two surfaces of the lens reflect on its way to the film, from all lights of the scene; needs coatings "
-     "in the lens file (glass of which it says nothing is taken as bare), lights, and the camera model full; "
-     "ghosts=1e-8 leaves out those with less "
-     "than 1e-8 of the lens's light, where ghosts alone means 1e-6",
+     "light that two surfaces of the lens reflect on its way to the film, from all lights and objects of the scene; "
+     "needs coatings in the lens file (glass of which it says nothing is taken as bare), lights, and the camera model "
+     "full; ghosts=1e-8 leaves out those with less than 1e-8 of the lens's light, where ghosts alone means 1e-6",
      &EffectChoice::ghosts, &EffectChoice::ghost_share},
+    {"film_reflection",
+     "light that the film or sensor reflects like a mirror, and then a surface of the lens back to it; needs what "
+     "ghosts needs; film_reflection=0.1 reflects a tenth, where film_reflection alone means 0.05",
+     &EffectChoice::film_reflection, &EffectChoice::film_reflectance},
     {"diffraction",
      "the edges of the aperture spread light of each wavelength over the film, and make stars of lamps; needs nothing "
      "of "
@@ -150,9 +153,12 @@ inline std::vector<std::string> effect_notices(const EffectChoice& effects, cons
     }
     std::vector<int> unknown = surfaces_with_unknown_coating(lens);
     for (int& surface : unknown) ++surface;
-    if ((effects.coatings || effects.ghosts) && !unknown.empty())
-        notices.push_back(std::string(effects.coatings ? "coatings" : "ghosts") + ": it is not known what covers " +
-                          surfaces_text(unknown, lens) + "; glass is taken as bare, and a mirror as perfect");
+    if ((effects.coatings || effects.have_ghosts()) && !unknown.empty())
+        notices.push_back(std::string(effects.coatings ? "coatings"
+                                      : effects.ghosts ? "ghosts"
+                                                       : "film_reflection") +
+                          ": it is not known what covers " + surfaces_text(unknown, lens) +
+                          "; glass is taken as bare, and a mirror as perfect");
     return notices;
 }
 

@@ -45,10 +45,13 @@ constexpr int number_of(const Effects& wanted) {
 struct EffectChoice : Effects {
     bool ghosts = false;  ///< what two surfaces of the lens reflect: found apart from the samples of pixels
     double ghost_share = 1e-6;  ///< ghosts that bring less of the lens's light to the film are left out
+    bool film_reflection = false;  ///< ghosts of the film and a surface
+    double film_reflectance = 0.05;
     bool motion_blur = true;  ///< else each row of pixels sees the scene in the middle of its exposure
     bool rolling_shutter = true;  ///< else the shutter's readout time is 0
 
     constexpr bool operator==(const EffectChoice&) const = default;
+    constexpr bool have_ghosts() const { return ghosts || film_reflection; }
 };
 
 }  // namespace REALCAM_NAMESPACE

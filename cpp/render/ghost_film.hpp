@@ -66,25 +66,32 @@ private:
     }
 };
 
-/// All light of a picture that was traced from the lights on.
+/// All light of a picture that was traced apart from the samples of its pixels.
 struct SplattedLight {
-    GhostFilmView ghosts, starbursts;
+    GhostFilmView ghosts, ghosts_of_objects, starbursts;
 
     REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
-        return ghosts.smooth_irradiance(pixel, channel) + starbursts.irradiance(pixel, channel);
+        return ghosts.smooth_irradiance(pixel, channel) + ghosts_of_objects.smooth_irradiance(pixel, channel) +
+               starbursts.irradiance(pixel, channel);
     }
 };
+
+/// So many samples of pixels have one sample of objects' ghosts.
+inline constexpr int kSamplesPerGather = 16;
 
 /// Blocks of samples of the whole film.
 struct GhostBlocks {
     std::uint64_t first, end;
 };
 
-/// Those that belong to some samples of each pixel: one ghost sample for each of them, and fewer of
-/// starbursts, which are few places of the film.
-inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, bool of_starbursts) {
+/// Those that belong to some samples of each pixel: one of lights' ghosts for each sample; fewer of starbursts, which
+/// are few places of the film, and of objects' ghosts, which are dim and have no sharp edges.
+inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, GhostLight light) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height),
-                        per_block = kGhostBlock * (of_starbursts ? kSamplesPerSplat : 1);
+                        per_sample = light == GhostLight::starbursts   ? kSamplesPerSplat
+                                     : light == GhostLight::of_objects ? kSamplesPerGather
+                                                                       : 1,
+                        per_block = kGhostBlock * per_sample;
     const auto up_to = [&](std::uint64_t samples) { return (samples * pixels + per_block - 1) / per_block; };
     return {up_to(range.first), up_to(std::uint64_t{range.first} + range.count)};
 }

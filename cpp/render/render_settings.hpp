@@ -28,8 +28,11 @@ struct RenderSettings {
         return effects.have_wavelengths() ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
     }
     LensEffects lens_effects() const {
-        return {spectral_light(), effects.dispersion, effects.diffraction, effects.coatings,
-                effects.ghosts ? std::optional(effects.ghost_share) : std::nullopt};
+        return {spectral_light(), effects.dispersion, effects.diffraction, effects.coatings, ghost_choice()};
+    }
+    std::optional<GhostChoice> ghost_choice() const {
+        if (!effects.have_ghosts()) return std::nullopt;
+        return GhostChoice{effects.ghosts, effects.film_reflection ? effects.film_reflectance : 0, effects.ghost_share};
     }
     PathSettings path() const { return {max_bounces, transport, clamp}; }
 };
@@ -55,10 +58,11 @@ inline void validate(const RenderSettings& settings) {
 inline void validate_effects(const RenderSettings& settings, const Camera& camera) {
     if (camera.model == CameraModel::full_lens) return;
     const EffectChoice& effects = settings.effects;
-    if (effects.dispersion || effects.coatings || effects.ghosts)
+    if (effects.dispersion || effects.coatings || effects.have_ghosts())
         throw InputError(std::string(effects.dispersion ? "dispersion"
                                      : effects.coatings ? "coatings"
-                                                        : "ghosts") +
+                                     : effects.ghosts   ? "ghosts"
+                                                        : "film_reflection") +
                          ": the camera's model is an ideal lens; the model full is wanted");
 }
 

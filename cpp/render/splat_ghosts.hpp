@@ -1,61 +1,18 @@
 #pragma once
-#include "../camera/ghost_view.hpp"
-#include "../math/cdf.hpp"
 #include "../scene/light.hpp"
-#include "effects.hpp"
+#include "ghost_ways.hpp"
 #include "met_light.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 // Ghosts and starbursts of lights, forward: from a light through a place in front of the lens, along one ghost's way or
-// the lens's own, to wherever on the film it ends. All samples of a block take the same way, so that they run as vector
-// code.
-
-/// So many samples in a row take the same way.
-inline constexpr std::uint32_t kGhostBlock = 256;
-
-/// Ghost samples, of the whole film together.
-struct GhostRange {
-    std::uint64_t first_block;
-    std::uint32_t seed;
-};
+// the lens's own, to wherever on the film it ends.
 
 namespace splat_ghosts_detail {
 
+/// Dimension pairs of the random sequence, behind that of the way.
 namespace ghost_dimension {
-inline constexpr std::uint32_t way = 0, light = 1, entry = 2, time = 3, diffraction = 4;
-}
-
-/// Share of the samples that enter somewhere about the entry's rectangle, and share of those that enter anywhere: for
-/// what the rectangles have missed.
-inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale = 3;
-
-/// A place in front of the lens, in the plane across light of one direction.
-struct EntryPlace {
-    float along, across;  ///< away from the axis, and across that, mm
-    float density;  ///< per mm^2
-};
-
-REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
-    const bool known = entry.half_width > 0.0f;
-    const float middle = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);
-    const float anywhere = select(known, kAnywhere, 1.0f), around = select(known, kAround, 0.0f);
-    const bool is_anywhere = u.x < anywhere, is_around = u.x < anywhere + around;
-    const float begin = select(is_anywhere, 0.0f, select(is_around, anywhere, anywhere + around));
-    const float share = select(is_anywhere, anywhere, select(is_around, around, 1.0f - anywhere - around));
-    const float scale = select(is_around, kAroundScale, 1.0f), fresh = (u.x - begin) / share;
-    const float along =
-        select(is_anywhere, 0.0f, middle) + (2.0f * fresh - 1.0f) * select(is_anywhere, reach, scale * half_length);
-    const float across = (2.0f * u.y - 1.0f) * select(is_anywhere, reach, scale * entry.half_width);
-    const auto is_within = [&](float factor) {
-        return (std::fabs(along - middle) <= factor * half_length) & (std::fabs(across) <= factor * entry.half_width);
-    };
-    const float per_area = 1.0f / select(known, 4.0f * half_length * entry.half_width, 1.0f);
-    const float density =
-        select(known & is_within(1.0f), (1.0f - anywhere - around) * per_area, 0.0f) +
-        select(known & is_within(kAroundScale), around * per_area / (kAroundScale * kAroundScale), 0.0f) +
-        select((std::fabs(along) <= reach) & (std::fabs(across) <= reach), anywhere / (4.0f * reach * reach), 0.0f);
-    return {along, across, density};
+inline constexpr std::uint32_t light = 1, entry = 2, time = 3, diffraction = 4;
 }
 
 /// The axes of a lens in the scene.
@@ -153,8 +110,8 @@ REALCAM_INLINE void choose_entries(const GhostView& ghosts, const GhostEntry* en
         const float sine = std::sqrt(x * x + y * y), half_tangent = sine / (1.0f - z);  // no number right behind
         const bool seen = (half_tangent < ghosts.largest_half_tangent) & (z < 0.9f);
         const int bin = static_cast<int>(select(seen, half_tangent / ghosts.largest_half_tangent, 0.0f) *
-                                         static_cast<float>(kGhostAngles));
-        const EntryPlace at = entry_place(entries[select(bin < kGhostAngles, bin, kGhostAngles - 1)], ghosts.reach, u);
+                                         static_cast<float>(kGhostBins));
+        const EntryPlace at = entry_place(entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach, u);
         const float inverse = 1.0f / select(sine > 0.0f, sine, 1.0f);
         const float away_x = select(sine > 0.0f, x * inverse, 1.0f), away_y = y * inverse;
         samples.rays.origin.set(i, {-at.along * z * away_x - at.across * away_y,
@@ -188,27 +145,6 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
         samples.shadow.origin.set(i, here.position);
         samples.shadow.direction.set(i, is_near ? light.distance * light.direction : light.direction);
         samples.shadow.far[i] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
-    }
-}
-
-/// Takes the light through the lens.
-template <LensKind lens_kind, bool has_wavelengths, int N>
-REALCAM_INLINE void pass_lens(const GhostView& ghosts, const GhostWay& way, GhostSamples<N>& samples,
-                              PassedPower<N>& passed) {
-    const LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
-    if constexpr (has_wavelengths) {
-        if (ghosts.spectral_coatings)
-            trace_lens<lens_kind>(
-                lens, samples.rays, NoRecord{},
-                GhostMedia<kSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
-                                              samples.variable, passed});
-        else
-            trace_lens<lens_kind>(lens, samples.rays, NoRecord{},
-                                  ManyWavelengths{ghosts.indices + way.first, samples.variable});
-    } else {
-        trace_lens<lens_kind>(
-            lens, samples.rays, NoRecord{},
-            GhostMedia<kOneWavelengthTerms, N>{nullptr, ghosts.coatings + way.first, nullptr, passed});
     }
 }
 
@@ -248,7 +184,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         const float way = (camera.film_distance - o.z) / d.z;
         Vec2f film = {o.x + way * d.x, o.y + way * d.y};
         if constexpr (has_wavelengths) {
-            if (ghosts.diffracts) {
+            if (ghosts.light == GhostLight::starbursts) {
                 const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
                 film = diffracted(camera, film, sample_2d(stream, sample, ghost_dimension::diffraction),
                                   sample_2d(stream, sample, ghost_dimension::diffraction + 1), i, samples);
@@ -280,13 +216,8 @@ template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N,
 REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& camera, const GhostView& ghosts,
                                     GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
     using namespace splat_ghosts_detail;
-    // A sequence has 2^32 samples, 2^24 blocks.
-    const auto block = static_cast<std::uint32_t>(range.first_block);
-    const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
-    const int way_number = find_in_cdf(ghosts.cdf, ghosts.way_count, sample_2d(round, block, ghost_dimension::way).x);
-    const GhostWay way = ghosts.ways[way_number];
-    const std::uint32_t stream = hash32(static_cast<std::uint32_t>(way_number), round);
-    const std::uint32_t first_sample = block * kGhostBlock + first;
+    const GhostBlock block = ghost_block(ghosts, range);
+    const std::uint32_t stream = block.stream, first_sample = block.first_sample + first;
     const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
                              (static_cast<float>(camera.width) * static_cast<float>(camera.height));
 
@@ -306,10 +237,10 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
         }
     }
     choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
-    choose_entries(ghosts, ghosts.entries + way_number * kGhostAngles, stream, first_sample, samples);
-    send_light<scene_kind>(view, camera, 1.0f / (pixel_area * way.probability), samples);
+    choose_entries(ghosts, block.entries, stream, first_sample, samples);
+    send_light<scene_kind>(view, camera, 1.0f / (pixel_area * block.way.probability), samples);
     PassedPower<N> passed;
-    pass_lens<lens_kind, has_wavelengths>(ghosts, way, samples, passed);
+    pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
     alignas(kLaneAlignment<std::int32_t, N>) std::int32_t pixel[N], hidden[N];
     reach_film<scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
     scene.occluded(samples.shadow, hidden);

@@ -83,6 +83,8 @@ HOST_ONLY = {
     "optics/fit_coatings.hpp",
     "optics/focus.hpp",
     "optics/ghost.hpp",
+    "optics/axial_share.hpp",
+    "optics/film_mirror.hpp",
     "optics/glass.hpp",
     "optics/glass_resonances.hpp",
     "optics/iris_shape.hpp",

@@ -33,9 +33,8 @@ CUTS = {
     "render/kind_of.hpp": [(r"    const bool disperses = .*?\n\}\n", "    (void)camera;\n    return {};\n}\n")],
     "render/advance_path.hpp": [
         (r'#include "../camera/coated_rays.hpp"\n#include "../camera/diffracted_rays.hpp"\n', ""),
-        (r"/// What the edges of the aperture diffract of the lights.*?\n\}\n", ""),
         (r"    \[\[maybe_unused\]\] std::conditional_t<.*?\n    else\n        gen", "        gen"),
-        (r"        if constexpr \(effects\.diffraction\)\n? *set_first_density<.*?;\n", ""),
+        (r"    // The edges of the aperture spread.*?\n    \}\n", ""),
     ],
     "render/path_state.hpp": [
         (r"/// The same, of samples that each have a wavelength\..*?\};\n", ""),

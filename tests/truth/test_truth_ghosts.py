@@ -43,7 +43,18 @@ def test_ghost_of_a_plate(plate_mm: float) -> None:
     assert ghost.back_focal_distance_mm == pytest.approx(first.back_focal_distance_mm - 2 * plate_mm / index, rel=1e-12)
 
 
-@pytest.mark.parametrize("pair", [(1, 2), (2, 2), (2, -1), (5, 1), (2, 0)])
+@pytest.mark.parametrize("pair", [(1, 2), (2, 2), (2, -1), (6, 1), (2, 0)])
 def test_what_makes_no_ghost_is_refused(pair: tuple[int, int]) -> None:
     with pytest.raises(rc.InputError, match="ghost"):
         lens_and_plate().ghost(*pair)
+
+
+def test_a_film_ghost_by_hand() -> None:
+    """Between the film and a plane face at distance d light goes 2 d further than it would."""
+    lens = lens_and_plate()
+    first = lens.first_order()
+    film, last = len(lens.surfaces), len(lens.surfaces) - 1
+    ghost = lens.ghost(film, last)
+    expected = first.back_focal_distance_mm - 2 * lens.film_distance_mm
+    assert ghost.effective_focal_length_mm == pytest.approx(first.effective_focal_length_mm, rel=1e-12)
+    assert ghost.back_focal_distance_mm == pytest.approx(expected, rel=1e-12)

@@ -1,0 +1,27 @@
+#include "../render/gather_ghosts.hpp"
+#include "bvh_scene.hpp"
+#include "cuda_error.hpp"
+#include "ghost_sums.hpp"
+
+namespace realcam {
+namespace {
+
+/// For any scene: these samples are few, and kernels with whole paths take long to compile.
+template <bool has_wavelengths>
+__global__ void __launch_bounds__(kGhostBlock) gather_ghosts_of(const __grid_constant__ GhostJob job) {
+    if (is_stopped(job)) return;
+    BvhScene<SceneKind::any, true> scene{job.scene, job.bvh, 0};
+    gather_ghosts<LensKind::any, SceneKind::any, has_wavelengths, 1>(
+        job.scene, job.camera, job.settings, job.ghosts, range_of(job), threadIdx.x, scene, GhostSplat{job});
+    count_block(job);
+}
+
+}  // namespace
+
+void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream) {
+    const auto kernel = job.ghosts.indices ? gather_ghosts_of<true> : gather_ghosts_of<false>;
+    kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);
+    check_cuda(cudaGetLastError(), "starting to trace ghosts of objects");
+}
+
+}  // namespace realcam

@@ -1,0 +1,36 @@
+#pragma once
+#include "ghost_kernels.hpp"
+
+// What the kernels of ghosts have in common, for nvcc alone. A block of threads takes one block of samples, whose way
+// through the lens is the same.
+
+namespace realcam {
+
+/// Asked by all threads of a block together.
+__device__ inline bool is_stopped(const GhostJob& job) {
+    __shared__ int stopped;
+    if (threadIdx.x == 0) stopped = *job.stop;
+    __syncthreads();
+    return stopped != 0;
+}
+
+__device__ inline GhostRange range_of(const GhostJob& job) {
+    return {job.first_block + blockIdx.x, job.seed};
+}
+
+struct GhostSplat {
+    const GhostJob& job;
+
+    __device__ void operator()(std::int32_t pixel, Color lux, float dither) const {
+        const float channels[3] = {lux.r, lux.g, lux.b};
+        for (int c = 0; c < 3; ++c)
+            atomicAdd(reinterpret_cast<unsigned long long*>(&job.sums[pixel].units[c]),
+                      static_cast<unsigned long long>(ghost_units(channels[c], job.units_per_lux, dither)));
+    }
+};
+
+__device__ inline void count_block(const GhostJob& job) {
+    if (threadIdx.x == 0) atomicAdd(job.blocks_done, 1ull);
+}
+
+}  // namespace realcam

@@ -1,0 +1,110 @@
+#pragma once
+#include "advance_path.hpp"
+#include "ghost_ways.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Ghosts of what objects reflect, backward: from the film along one ghost's way into the scene, where a path begins as
+// it does behind the lens. What a ray meets of the lights themselves is left to samples that begin there
+// (splat_ghosts.hpp), except where these cannot find it.
+
+namespace gather_ghosts_detail {
+
+/// Less than that of any light: weighed against it, what a ray meets of a light counts for nothing.
+inline constexpr float kLeftToLights = 1e-30f;
+
+struct NoProbe {
+    REALCAM_HD void enter(RenderStage) {}
+};
+
+/// Samples anywhere on the film, and the rays through the last vertex plane to them; back along which they go.
+template <int N>
+struct FilmRays {
+    SampleBlock<N> block;
+    LensRays<float, N> rays;
+    alignas(kLaneAlignment<float, N>) float weight[N];  ///< times radiance: irradiance on the film
+};
+
+template <int N>
+REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& ghosts, const GhostBlock& block,
+                                    std::uint32_t first, FilmRays<N>& film) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        film.block.stream[i] = block.stream;
+        film.block.sample[i] = block.first_sample + first + static_cast<std::uint32_t>(i);
+        film.block.used[i] = 1;
+        const Vec2f u = film.block.random(i, dimension::film);
+        const int column = static_cast<int>(u.x * static_cast<float>(camera.width));
+        const int row = static_cast<int>(u.y * static_cast<float>(camera.height));
+        film.block.column[i] = select(column < camera.width, column, camera.width - 1);
+        film.block.row[i] = select(row < camera.height, row, camera.height - 1);
+        const float x = (1.0f - 2.0f * u.x) * camera.film_half_width, y = (2.0f * u.y - 1.0f) * camera.film_half_height;
+        const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
+        const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
+        const int bin = static_cast<int>(radius / ghosts.film_radius * static_cast<float>(kGhostBins));
+        const EntryPlace at = entry_place(block.entries[select(bin < kGhostBins, bin, kGhostBins - 1)], ghosts.reach,
+                                          film.block.random(i, dimension::pupil));
+        const float to_x = at.along * out_x - at.across * out_y - x, to_y = at.along * out_y + at.across * out_x - y;
+        const float to_z = -camera.film_distance, squared = to_x * to_x + to_y * to_y + to_z * to_z;
+        const float scale = ghosts.film_index / std::sqrt(squared), cosine2 = to_z * to_z / squared;
+        film.rays.origin.set(i, {x, y, camera.film_distance});
+        film.rays.direction.set(i, {scale * to_x, scale * to_y, scale * to_z});
+        film.rays.status[i] = 0;
+        film.weight[i] = ghosts.film_index * ghosts.film_index * cosine2 / (squared * at.density);
+    }
+}
+
+}  // namespace gather_ghosts_detail
+
+/// Takes N samples of a block, from number `first` in it: splat(pixel, irradiance, dither) as of splat_ghosts.
+/// `SceneT`: as in advance_paths.
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
+REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& camera, const PathSettings& settings,
+                                     const GhostView& ghosts, GhostRange range, std::uint32_t first, SceneT&& scene,
+                                     Splat&& splat) {
+    using namespace gather_ghosts_detail;
+    const GhostBlock block = ghost_block(ghosts, range);
+    FilmRays<N> film;
+    start_film_rays(camera, ghosts, block, first, film);
+    [[maybe_unused]] alignas(kLaneAlignment<float, N>) float place[N], variable[N];  // of the wavelength
+    if constexpr (has_wavelengths) {
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            place[i] = film.block.random(i, dimension::time).y * static_cast<float>(camera.dispersion.cell_count);
+            variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, place[i]));
+        }
+    }
+    PassedPower<N> passed;
+    pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, film.rays, variable, passed);
+    CameraRays<N> camera_rays;
+    // Each pixel as if it had all the samples, of which it has but some.
+    const float scale = static_cast<float>(camera.width) * static_cast<float>(camera.height) / block.way.probability;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        camera_rays.weight[i] =
+            select(film.rays.status[i] == 0, scale * passed.of_unpolarised(i) * film.weight[i], 0.0f);
+        camera_rays.sampled[i] = 1;
+    }
+    place_lens_rays(camera, film.rays, camera_rays);
+    PathState<N> path;
+    PathResults<N> results;
+    if constexpr (scene_kind == SceneKind::any) expose_rays(camera, film.block, camera_rays, path.rays.time);
+    start_paths(camera_rays, path, results);
+    for (int i = 0; i < N; ++i) set_first_density<scene_kind>(camera, kLeftToLights, i, path);
+    NoProbe probe;
+    for (int bounce = 0;
+         advance_paths<scene_kind>(view, camera, settings, film.block, bounce, scene, probe, path, results);)
+        ++bounce;
+    for (int i = 0; i < N; ++i) {
+        Color c = results.irradiance[i];
+        if (is_black(c)) continue;
+        if constexpr (has_wavelengths) {
+            constexpr float kAll[kSharedWavelengths] = {1, 1, 1};
+            c = film_color(camera.dispersion, place[i], 1, kAll, c);
+        }
+        const std::int32_t pixel = film.block.row[i] * camera.width + film.block.column[i];
+        splat(pixel, c, unit_float(film.block.bits(i, 0)));
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,94 @@
+#pragma once
+#include "../camera/ghost_view.hpp"
+#include "../math/cdf.hpp"
+#include "../math/random.hpp"
+#include "../optics/lens_trace.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// The ways of ghosts through the lens, for samples from the lights on (splat_ghosts.hpp) and for samples from the film
+// on (gather_ghosts.hpp). All samples of a block take the same way, so that they run as vector code.
+
+/// So many samples in a row take the same way.
+inline constexpr std::uint32_t kGhostBlock = 256;
+
+/// Ghost samples, of the whole film together.
+struct GhostRange {
+    std::uint64_t first_block;
+    std::uint32_t seed;
+};
+
+/// What the samples of a block have in common.
+struct GhostBlock {
+    GhostWay way;
+    const GhostEntry* entries;   ///< of that way
+    std::uint32_t stream, first_sample;
+};
+
+/// The first of a range. A sequence has 2^32 samples, 2^24 blocks.
+REALCAM_INLINE GhostBlock ghost_block(const GhostView& ghosts, GhostRange range) {
+    const auto block = static_cast<std::uint32_t>(range.first_block);
+    const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
+    const int number = find_in_cdf(ghosts.cdf, ghosts.way_count, sample_2d(round, block, 0).x);
+    return {ghosts.ways[number], ghosts.entries + number * kGhostBins,
+            hash32(static_cast<std::uint32_t>(number), round), block * kGhostBlock};
+}
+
+namespace ghost_ways_detail {
+
+/// Share of the samples that enter somewhere about the entry's rectangle, and share of those that enter anywhere: for
+/// what the rectangles have missed.
+inline constexpr float kAround = 1.0f / 16, kAnywhere = 1.0f / 64, kAroundScale = 3;
+
+}  // namespace ghost_ways_detail
+
+/// A place in the plane of a GhostEntry.
+struct EntryPlace {
+    float along, across;  ///< away from the axis, and across that, mm
+    float density;  ///< per mm^2
+};
+
+REALCAM_INLINE EntryPlace entry_place(const GhostEntry& entry, float reach, Vec2f u) {
+    using namespace ghost_ways_detail;
+    const bool known = entry.half_width > 0.0f;
+    const float middle = 0.5f * (entry.low + entry.high), half_length = 0.5f * (entry.high - entry.low);
+    const float anywhere = select(known, kAnywhere, 1.0f), around = select(known, kAround, 0.0f);
+    const bool is_anywhere = u.x < anywhere, is_around = u.x < anywhere + around;
+    const float begin = select(is_anywhere, 0.0f, select(is_around, anywhere, anywhere + around));
+    const float share = select(is_anywhere, anywhere, select(is_around, around, 1.0f - anywhere - around));
+    const float scale = select(is_around, kAroundScale, 1.0f), fresh = (u.x - begin) / share;
+    const float along =
+        select(is_anywhere, 0.0f, middle) + (2.0f * fresh - 1.0f) * select(is_anywhere, reach, scale * half_length);
+    const float across = (2.0f * u.y - 1.0f) * select(is_anywhere, reach, scale * entry.half_width);
+    const auto is_within = [&](float factor) {
+        return (std::fabs(along - middle) <= factor * half_length) & (std::fabs(across) <= factor * entry.half_width);
+    };
+    const float per_area = 1.0f / select(known, 4.0f * half_length * entry.half_width, 1.0f);
+    const float density =
+        select(known & is_within(1.0f), (1.0f - anywhere - around) * per_area, 0.0f) +
+        select(known & is_within(kAroundScale), around * per_area / (kAroundScale * kAroundScale), 0.0f) +
+        select((std::fabs(along) <= reach) & (std::fabs(across) <= reach), anywhere / (4.0f * reach * reach), 0.0f);
+    return {along, across, density};
+}
+
+/// Takes rays along a way. `variable`: of each ray's wavelength.
+template <LensKind lens_kind, bool has_wavelengths, int N>
+REALCAM_INLINE void pass_ghost_way(const GhostView& ghosts, const GhostWay& way, LensRays<float, N>& rays,
+                                   const float (&variable)[N], PassedPower<N>& passed) {
+    const LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
+    if constexpr (has_wavelengths) {
+        if (ghosts.spectral_coatings)
+            trace_lens<lens_kind>(
+                lens, rays, NoRecord{},
+                GhostMedia<kSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
+                                              variable, passed});
+        else
+            trace_lens<lens_kind>(lens, rays, NoRecord{}, ManyWavelengths{ghosts.indices + way.first, variable});
+    } else {
+        trace_lens<lens_kind>(
+            lens, rays, NoRecord{},
+            GhostMedia<kOneWavelengthTerms, N>{nullptr, ghosts.coatings + way.first, nullptr, passed});
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE

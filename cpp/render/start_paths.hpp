@@ -1,0 +1,40 @@
+#pragma once
+#include "../camera/generate_rays.hpp"
+#include "path_state.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Light that is looked for from the lights on, too (splat_ghosts.hpp), is weighed between both ways: a ray that leaves
+/// the lens meets lights as one whose direction was drawn with that density.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void set_first_density(const CameraView& camera, float density, int lane, PathState<N>& path) {
+    Vec3f front = front_vertex(camera, camera.front_vertex_m);
+    if constexpr (scene_kind == SceneKind::any)
+        front = front_vertex(camera_at(camera, path.rays.time[lane]), camera.front_vertex_m);
+    path.pdf[lane] = density;
+    path.receiver_position.set(lane, front);
+    path.receiver_normal.set(lane, {0, 0, 0});
+}
+
+/// Rays that have left the lens become paths.
+template <int N>
+REALCAM_INLINE void start_paths(const CameraRays<N>& camera_rays, PathState<N>& path, PathResults<N>& results) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        path.rays.origin.set(i, camera_rays.origin[i]);
+        path.rays.direction.set(i, camera_rays.direction[i]);
+        path.rays.far[i] = kFarAway;
+        path.rays.active[i] = camera_rays.passed[i];
+        path.weight[i] = camera_rays.weight[i];
+        path.throughput.set(i, grey(camera_rays.weight[i]));
+        path.pdf[i] = kDelta;
+        path.absorption.set(i, {0, 0, 0});
+        results.irradiance.set(i, {0, 0, 0});
+        results.depth[i] = kFarAway;
+        results.weight[i] = camera_rays.weight[i];
+        results.sampled[i] = camera_rays.sampled[i];
+        results.passed[i] = camera_rays.passed[i];
+    }
+}
+
+}  // namespace REALCAM_NAMESPACE
