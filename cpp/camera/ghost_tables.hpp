@@ -88,9 +88,15 @@ public:
     }
 
     /// Ghosts of lights.
-    GhostView view() const { return view_of(to_film_, GhostLight::of_lights, entry_reach_); }
-    /// Ghosts of what objects reflect.
-    GhostView view_of_objects() const { return view_of(to_scene_, GhostLight::of_objects, exit_reach_); }
+    GhostView view() const { return view_of(to_film_, GhostLight::of_lights, 1, entry_reach_); }
+    /// Ghosts of what objects reflect. Of one sample they have the noise of their share of all light: so many samples
+    /// as that share are enough, that the noise of the picture is hardly more.
+    GhostView view_of_objects() const {
+        double share = 0;
+        for (const double of_pair : shares_) share += of_pair;
+        const auto samples = static_cast<std::int32_t>(std::clamp(1 / share, 16.0, 256.0));
+        return view_of(to_scene_, GhostLight::of_objects, samples, exit_reach_);
+    }
 
     const std::vector<GhostPair>& pairs() const { return pairs_; }
     /// Of the light that the lens itself brings to the film, from all sides alike: what each pair brings.
@@ -107,9 +113,10 @@ private:
         std::vector<GhostCoating<kSpectrumTerms>> spectral_coatings;
     };
 
-    GhostView view_of(const Ways& of, GhostLight light, float reach) const {
+    GhostView view_of(const Ways& of, GhostLight light, std::int32_t pixel_samples, float reach) const {
         const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
         return {light,
+                pixel_samples,
                 of.ways.data(),
                 static_cast<int>(of.ways.size()),
                 cdf_.data(),

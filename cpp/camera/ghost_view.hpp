@@ -33,6 +33,7 @@ enum class GhostLight : std::int32_t {
 /// The ghosts of a lens, or the lens's own way, for starbursts. Lengths in mm.
 struct GhostView {
     GhostLight light;
+    std::int32_t pixel_samples;  ///< so many samples of pixels have one of these
     const GhostWay* ways;
     int way_count;
     const float* cdf;  ///< of the ways' probabilities, way_count + 1

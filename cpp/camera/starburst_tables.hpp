@@ -37,6 +37,7 @@ public:
     GhostView view() const {
         const LensView<float> lens = path_.view();
         return {GhostLight::starbursts,
+                kSamplesPerSplat,
                 &way_,
                 1,
                 kCdf.data(),

@@ -8,7 +8,7 @@ namespace {
 
 /// For any scene: these samples are few, and kernels with whole paths take long to compile.
 template <bool has_wavelengths>
-__global__ void __launch_bounds__(kGhostBlock) gather_ghosts_of(const __grid_constant__ GhostJob job) {
+__global__ void __launch_bounds__(kGhostBlock, 2) gather_ghosts_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;
     BvhScene<SceneKind::any, true> scene{job.scene, job.bvh, 0};
     gather_ghosts<LensKind::any, SceneKind::any, has_wavelengths, 1>(

@@ -9,7 +9,7 @@ namespace {
 
 /// A block of threads takes one block of samples, whose way through the lens is the same.
 template <SceneKind scene_kind, bool instanced, bool has_wavelengths>
-__global__ void __launch_bounds__(kGhostBlock) splat_ghosts_of(const __grid_constant__ GhostJob job) {
+__global__ void __launch_bounds__(kGhostBlock, 2) splat_ghosts_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;
     BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
     splat_ghosts<LensKind::any, scene_kind, has_wavelengths, 1>(job.scene, job.camera, job.ghosts, range_of(job),

@@ -204,7 +204,7 @@ private:
     void splat_on(SplatFilm& film, const GhostView& ghosts, const SampleRange& range, const RenderSettings& settings) {
         const SceneView scene = scene_->placed().view();
         film.units_per_lux = ghost_units_per_lux(scene, camera_view_, ghosts);
-        const GhostBlocks blocks = ghost_blocks(camera_view_, range, ghosts.light);
+        const GhostBlocks blocks = ghost_blocks(camera_view_, range, ghosts);
         const PathSettings path = settings.path();
         constexpr std::uint64_t kVisit = 64;
         const std::uint64_t count = blocks.end - blocks.first;

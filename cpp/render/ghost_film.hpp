@@ -76,22 +76,15 @@ struct SplattedLight {
     }
 };
 
-/// So many samples of pixels have one sample of objects' ghosts.
-inline constexpr int kSamplesPerGather = 16;
-
 /// Blocks of samples of the whole film.
 struct GhostBlocks {
     std::uint64_t first, end;
 };
 
-/// Those that belong to some samples of each pixel: one of lights' ghosts for each sample; fewer of starbursts, which
-/// are few places of the film, and of objects' ghosts, which are dim and have no sharp edges.
-inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, GhostLight light) {
+/// Those that belong to some samples of each pixel.
+inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, const GhostView& ghosts) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height),
-                        per_sample = light == GhostLight::starbursts   ? kSamplesPerSplat
-                                     : light == GhostLight::of_objects ? kSamplesPerGather
-                                                                       : 1,
-                        per_block = kGhostBlock * per_sample;
+                        per_block = kGhostBlock * static_cast<std::uint64_t>(ghosts.pixel_samples);
     const auto up_to = [&](std::uint64_t samples) { return (samples * pixels + per_block - 1) / per_block; };
     return {up_to(range.first), up_to(std::uint64_t{range.first} + range.count)};
 }
