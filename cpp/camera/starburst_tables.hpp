@@ -4,6 +4,7 @@
 
 #include "../optics/fit_coatings.hpp"
 #include "../optics/lens_dispersion.hpp"
+#include "diffraction_view.hpp"
 #include "entry_search.hpp"
 #include "film_spectrum.hpp"
 
