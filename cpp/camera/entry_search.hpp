@@ -17,7 +17,8 @@ struct FoundRay {
     Vec2f front;  ///< place in the plane across it, through the front vertex: away from the axis, and beside, mm
     int film_ring;  ///< of kGhostBins, in which it began
     Vec2f rear;  ///< place in the plane of the last vertex: towards its film point, and beside, mm
-    float etendue;  ///< mm^2 sr
+    Vec2f cosines, square;  ///< of its direction at the film: towards the radius, and beside; sides of its square
+    float etendue;          ///< mm^2 sr
 };
 
 namespace entry_search_detail {
@@ -40,10 +41,10 @@ inline float entry_reach(const LensSystem& lens) {
 }
 
 /// Looks for where light has to enter: by rays back from the film, because there their bundles are wide, while those of
-/// a fisheye are a hundredth of its front. Lens and circle of film are round, so that one radius of the film is enough.
+/// a fisheye are a hundredth of its front. Lens and circle of film are round, so that one radius of the film is enough;
+/// blades are taken for the circle around their opening. A ghost's bundle may be narrow: it is looked for with the stop
+/// wide open first, then with its own, and at last in the rectangle that holds what was found.
 struct EntrySearch {
-    static constexpr int kRadii = kGhostBins, kColumns = 24, kRows = kColumns / 2;
-
     /// `film_radius`: of a circle that holds the film, mm.
     EntrySearch(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
         : film_radius(film_radius),
@@ -52,15 +53,53 @@ struct EntrySearch {
           rear_reach(exit_reach(lens)),
           tracer(tracer) {}
 
-    /// `way_back`: from the film to the scene.
-    std::vector<FoundRay> along(const LensView<float>& way_back) const {
-        constexpr int kCount = kRadii * kColumns * kRows;
+    /// `way`: of light to the film; `lens`: to whose surfaces it belongs.
+    std::vector<FoundRay> along(const LensSystem& lens, const std::vector<Crossing>& way) const {
+        const LensSystem round = with_round_stop(lens);
+        LensSystem open = round;
+        open.stop_semi_diameter = open.stop().clear_semi_diameter;
+        Directions directions;
+        for (int ring = 0; ring < kGhostBins; ++ring) directions[static_cast<std::size_t>(ring)] = all_directions(ring);
+        directions = around(traced<kFew>(open, way, directions), directions);
+        directions = around(traced<kFew>(round, way, directions), directions);
+        return traced<kMany>(round, way, directions);
+    }
+
+private:
+    /// Rows of directions that are looked along; there are twice as many columns.
+    static constexpr int kFew = 8, kMany = 12;
+
+    /// Direction cosines: from low to high along the film point's radius, from 0 to `across` beside it. None: across 0.
+    struct Rectangle {
+        double low, high, across;
+    };
+    using Directions = std::array<Rectangle, kGhostBins>;  ///< of each ring of the film
+
+    double radius_of(int ring) const { return (ring + 0.5) * film_radius / kGhostBins; }
+
+    /// To the circle behind the lens.
+    Rectangle all_directions(int ring) const {
+        const double r = radius_of(ring);
+        const auto cosine_to = [&](double away) { return away / std::hypot(away, film_distance); };
+        return {cosine_to(-rear_reach - r), cosine_to(rear_reach - r), cosine_to(rear_reach)};
+    }
+
+    template <int kRows>
+    std::vector<FoundRay> traced(const LensSystem& lens, const std::vector<Crossing>& way,
+                                 const Directions& directions) const {
+        constexpr int kPerRing = 2 * kRows * kRows, kCount = kGhostBins * kPerRing;
+        static_assert(kCount % PupilTracer::kBlock == 0);
+        const LensPath<float> back(lens, way, LightDirection::to_scene, lens.wavelength_nm);
         std::vector<FoundRay> found;
         for (int first = 0; first < kCount; first += PupilTracer::kBlock) {
             PupilTracer::Rays rays;
             FoundRay looked[PupilTracer::kBlock];
-            for (int k = 0; k < PupilTracer::kBlock; ++k) start(first + k, k, rays, looked[k]);
-            tracer.trace(way_back, rays);
+            for (int k = 0; k < PupilTracer::kBlock; ++k) {
+                const int ring = (first + k) / kPerRing, square = (first + k) % kPerRing;
+                looked[k].film_ring = ring;
+                start(directions[static_cast<std::size_t>(ring)], kRows, square, k, rays, looked[k]);
+            }
+            tracer.trace(back.view(), rays);
             for (int k = 0; k < PupilTracer::kBlock; ++k) {
                 if (rays.status[k] != 0) continue;
                 set_front(rays.origin[k], normalized(rays.direction[k]), looked[k]);
@@ -70,22 +109,17 @@ struct EntrySearch {
         return found;
     }
 
-private:
-    static_assert(kRadii * kColumns * kRows % PupilTracer::kBlock == 0);
-
-    /// From the middle of each ring of film in evenly spaced direction cosines to the circle behind the lens.
-    void start(int number, int lane, PupilTracer::Rays& rays, FoundRay& ray) const {
-        const int radius = number / (kColumns * kRows), square = number % (kColumns * kRows);
-        const double ring = film_radius / kRadii, r = (radius + 0.5) * ring;
-        const auto cosine_to = [&](double away) { return away / std::hypot(away, film_distance); };
-        const double low = cosine_to(-rear_reach - r), high = cosine_to(rear_reach - r), most = cosine_to(rear_reach);
-        const double column = (high - low) / kColumns, row = most / kRows;
-        const double x = low + (square % kColumns + 0.5) * column, y = (square / kColumns + 0.5) * row;
+    /// From the middle of a ring of film along the middle of one of the squares of a rectangle.
+    void start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays, FoundRay& ray) const {
+        const double r = radius_of(ray.film_ring), ring = film_radius / kGhostBins;
+        const double column = (in.high - in.low) / (2 * rows), row = in.across / rows;
+        const double x = in.low + (square % (2 * rows) + 0.5) * column, y = (square / (2 * rows) + 0.5) * row;
         const double z2 = 1 - x * x - y * y, z = std::sqrt(std::max(z2, 0.0));
         rays.origin.set(lane, static_cast<Vec3f>(Vec3d{r, 0, film_distance}));
         rays.direction.set(lane, static_cast<Vec3f>(film_index * Vec3d{x, y, -z}));
-        rays.status[lane] = z2 > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
-        ray.film_ring = radius;
+        rays.status[lane] = z2 > 0 && row > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        ray.cosines = {static_cast<float>(x), static_cast<float>(y)};
+        ray.square = {static_cast<float>(column), static_cast<float>(row)};
         ray.rear = {static_cast<float>(r + x / z * film_distance), static_cast<float>(y / z * film_distance)};
         // Twice, for the other half of the circle.
         ray.etendue = static_cast<float>(2 * 2 * std::numbers::pi * r * ring * column * row);
@@ -96,6 +130,41 @@ private:
         const Vec2f away = sine > 0 ? Vec2f{d.x / sine, d.y / sine} : Vec2f{1, 0};
         ray.half_tangent = sine / (1 - d.z);
         ray.front = {dot(o, Vec3f{-d.z * away.x, -d.z * away.y, sine}), -away.y * o.x + away.x * o.y};
+    }
+
+    /// What holds the squares of all rays that were found in a ring or beside it; where there are none, as before.
+    static Directions around(const std::vector<FoundRay>& rays, const Directions& before) {
+        Directions own{}, around{};
+        const auto unite = [](Rectangle& a, const Rectangle& b) {
+            if (b.across == 0) return;
+            a = a.across == 0
+                    ? b
+                    : Rectangle{std::min(a.low, b.low), std::max(a.high, b.high), std::max(a.across, b.across)};
+        };
+        for (const FoundRay& ray : rays) {
+            const double x = static_cast<double>(ray.cosines.x), y = static_cast<double>(ray.cosines.y);
+            const double wide = 1.5 * static_cast<double>(ray.square.x), high = 1.5 * static_cast<double>(ray.square.y);
+            unite(own[static_cast<std::size_t>(ray.film_ring)], {x - wide, x + wide, y + high});
+        }
+        for (int ring = 0; ring < kGhostBins; ++ring) {
+            Rectangle& here = around[static_cast<std::size_t>(ring)];
+            for (int beside = std::max(0, ring - 1); beside <= std::min(kGhostBins - 1, ring + 1); ++beside)
+                unite(here, own[static_cast<std::size_t>(beside)]);
+            if (here.across == 0) here = before[static_cast<std::size_t>(ring)];
+        }
+        return around;
+    }
+
+    /// Whose stop is the circle around what its blades leave open.
+    static LensSystem with_round_stop(LensSystem lens) {
+        if (lens.iris.blades == 0 || lens.is_wide_open()) return lens;
+        const double rim = lens.stop().clear_semi_diameter;
+        const Iris<double> open = open_iris(lens.iris, lens.stop_semi_diameter, rim);
+        const double corner =
+            opening_radius(open.apothem, open.curvature, std::cos(std::numbers::pi / lens.iris.blades));
+        lens.stop_semi_diameter = std::min(corner, rim);
+        lens.iris.blades = 0;
+        return lens;
     }
 
     double film_radius, film_distance;  ///< mm

@@ -64,7 +64,7 @@ public:
         tracer.for_each(static_cast<int>(found.size()), [&](int i) {
             const auto k = static_cast<std::size_t>(i);
             const auto way = k < pairs.size() ? crossings_of(of_lens, pairs[k]) : crossings_of(of_lens);
-            found[k] = search.along(LensPath<float>(lens, way, LightDirection::to_scene, lens.wavelength_nm).view());
+            found[k] = search.along(lens, way);
         });
         for (const std::vector<FoundRay>& rays : found)
             largest_half_tangent_ = std::max(largest_half_tangent_, largest_half_tangent_of(rays));
@@ -89,12 +89,12 @@ public:
 
     /// Ghosts of lights.
     GhostView view() const { return view_of(to_film_, GhostLight::of_lights, 1, entry_reach_); }
-    /// Ghosts of what objects reflect. Of one sample they have the noise of their share of all light: so many samples
-    /// as that share are enough, that the noise of the picture is hardly more.
+    /// Ghosts of what objects reflect. They are that share of the light, and so is their noise: twice as many samples as
+    /// that share of the pixels' are enough for the noise of the picture to be hardly more.
     GhostView view_of_objects() const {
         double share = 0;
         for (const double of_pair : shares_) share += of_pair;
-        const auto samples = static_cast<std::int32_t>(std::clamp(1 / share, 16.0, 256.0));
+        const auto samples = static_cast<std::int32_t>(std::clamp(0.5 / share, 16.0, 256.0));
         return view_of(to_scene_, GhostLight::of_objects, samples, exit_reach_);
     }
 

@@ -24,8 +24,7 @@ public:
         : path_(lens, LightDirection::to_film, lens.wavelength_nm),
           way_{0, path_.view().count, 1},
           reach_(entry_reach(lens)) {
-        const LensPath<float> back(lens, LightDirection::to_scene, lens.wavelength_nm);
-        const std::vector<FoundRay> found = EntrySearch(lens, film_radius, tracer).along(back.view());
+        const std::vector<FoundRay> found = EntrySearch(lens, film_radius, tracer).along(lens, crossings_of(lens));
         largest_half_tangent_ = largest_half_tangent_of(found);
         entries_ = entries_of(found, largest_half_tangent_);
         const double design = lens.wavelength_nm;

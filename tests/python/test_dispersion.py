@@ -234,6 +234,7 @@ def test_effects_are_listed() -> None:
         "dispersion",
         "coatings",
         "ghosts",
+        "film_reflection",
         "diffraction",
         "motion_blur",
         "rolling_shutter",
@@ -259,7 +260,8 @@ def test_what_makes_no_picture_is_an_error() -> None:
         rc.render(scenes.sky(), camera, spp=1, **settings)  # type: ignore[arg-type]
 
     with pytest.raises(
-        rc.InputError, match='unknown effect "glare"; some of dispersion, coatings, ghosts, diffraction, -motion_blur'
+        rc.InputError,
+        match='unknown effect "glare"; some of dispersion, coatings, ghosts, film_reflection, diffraction',
     ):
         taken(effects=["glare"])
     with pytest.raises(rc.InputError, match="illuminant belongs to the effects dispersion and diffraction"):
