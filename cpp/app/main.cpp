@@ -23,6 +23,7 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", "realcam " REALCAM_VERSION);
     app.require_subcommand(1);
     realcam::app::add_render_command(app);
+    realcam::app::add_plan_command(app);
     realcam::app::add_lens_command(app);
     CLI::App* devices = app.add_subcommand("devices", "List the devices that render");
     const auto as_json = std::make_shared<bool>(false);

@@ -6,8 +6,13 @@
 #include <memory>
 
 #include "../devices/devices.hpp"
+#include "../embree/fast_pupil_tracer.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/free_memory.hpp"
+#include "../io/json_writer.hpp"
+#include "../plan/make_plan.hpp"
+#include "../plan/plan_text.hpp"
+#include "../plan/quality.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
@@ -58,17 +63,19 @@ public:
 
     void photograph() {
         const auto start = std::chrono::steady_clock::now();
-        const shot::ShotRequest request = understand(words_);
+        shot::ShotRequest request = understand(words_);
         check_outputs(words_.outputs);
         check_apart(words_.outputs,
                     {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
         Camera camera = camera_of(request);
         check_memory(camera.film, request.settings.layers);
         const auto session = make_session(words_.device);  // first, because reading a scene may take long
-        shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
-        if (shot.has_daylight)
-            say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
-                "cd/m^2");
+        shot::Shot shot = set_up_shot(request, std::move(camera));
+        if (request.settings.effects.is_automatic) {
+            const Plan plan = planned(*session, shot, request, {});
+            apply(plan, shot.camera, request.settings);
+            if (words_.explains) std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
+        }
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens))
             say("warning: " + notice);
         // Until here nothing is on disk, and a signal may simply end the program.
@@ -79,7 +86,67 @@ public:
         std::fputs(summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
     }
 
+    void plan(const std::string& quality, bool as_json) {
+        shot::ShotRequest request = understand(words_);
+        request.settings.effects.is_automatic = true;
+        const auto thresholds = quality_named(quality);
+        if (!thresholds) throw InputError("--quality: \"" + quality + "\": " + kQualityNames + " is wanted");
+        Camera camera = camera_of(request);
+        const auto session = make_session(words_.device);
+        shot::Shot shot = set_up_shot(request, std::move(camera));
+        const Plan plan = planned(*session, shot, request, *thresholds);
+        std::fputs((as_json ? json_of(plan) : text_of(plan, io::name_of(plan.model))).c_str(), stdout);
+    }
+
 private:
+    shot::Shot set_up_shot(const shot::ShotRequest& request, Camera camera) const {
+        shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
+        if (shot.has_daylight)
+            say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
+                "cd/m^2");
+        return shot;
+    }
+
+    /// Meters first, because sizes in codes depend on the exposure.
+    static Plan planned(Session& session, shot::Shot& shot, const shot::ShotRequest& request,
+                        const PlanThresholds& thresholds) {
+        shot::ShotRequest without_effects = request;
+        without_effects.settings.effects = {};
+        without_effects.settings.illuminant.reset();
+        const bool was_metered = shot.is_metered;
+        if (!was_metered) meter(shot, without_effects, session, {});
+        const PlanRequest wanted{request.settings.effects, thresholds, shot.camera.model == CameraModel::full_lens};
+        return make_plan(session, shot.scene, shot.camera, without_effects.settings, wanted, fast_pupil_tracer());
+    }
+
+    static std::string json_of(const Plan& plan) {
+        io::JsonWriter json;
+        json.begin_object().key("model").text(io::name_of(plan.model)).key("effects").begin_array();
+        for (const std::string& name : names_of(plan.effects)) json.text(name);
+        json.end().key("decisions").begin_array();
+        for (const PlanDecision& decision : plan.decisions) {
+            json.begin_object()
+                .key("effect")
+                .text(decision.name)
+                .key("size")
+                .number(decision.size)
+                .key("threshold")
+                .number(decision.threshold)
+                .key("unit")
+                .text(name_of(decision.unit))
+                .key("decision")
+                .text(decision.is_kept ? "kept" : "left out")
+                .key("by")
+                .text(decision.by == DecidedBy::user ? "user" : "planner")
+                .key("time_share")
+                .number(decision.time)
+                .key("reason")
+                .text(decision.reason)
+                .end();
+        }
+        return json.end().end().finish() + '\n';
+    }
+
     Assembly read_scene(const shot::ShotRequest& request) const {
         std::vector<std::string> pictures;
         const shot::PictureReaders readers = {[&](const std::string& path, std::span<const std::uint8_t> bytes) {
@@ -108,7 +175,7 @@ private:
         const Film& film = shot.camera.film;
         try {
             ProgressBar metering("metering ");
-            meter(shot, request, session, drawing_on(metering));
+            if (!shot.is_metered) meter(shot, request, session, drawing_on(metering));
             ProgressBar rendering("rendering");
             return with_memory_for(
                 "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
@@ -144,6 +211,19 @@ void add_render_command(CLI::App& app) {
     const auto words = std::make_shared<RenderWords>();
     add_render_options(*command, *words);
     command->callback([words] { Run{*words}.photograph(); });
+}
+
+void add_plan_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("plan", "Say which effects a shot calls for, and why");
+    const auto words = std::make_shared<RenderWords>();
+    const auto quality = std::make_shared<std::string>("photo");
+    const auto as_json = std::make_shared<bool>(false);
+    add_shot_options(*command, *words);
+    command->option_defaults()->group("Plan");
+    command->add_option("--quality", *quality,
+                        "What counts: draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1, 0.25) [photo]");
+    command->add_flag("--json", *as_json, "Print JSON");
+    command->callback([=] { Run{*words}.plan(*quality, *as_json); });
 }
 
 }  // namespace realcam::app

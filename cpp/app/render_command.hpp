@@ -6,6 +6,8 @@ namespace realcam::app {
 
 /// Adds `render`. It throws Interrupted where a signal stopped it.
 void add_render_command(CLI::App& app);
+/// Adds `plan`, which looks at a shot and renders nothing.
+void add_plan_command(CLI::App& app);
 
 struct Interrupted {
     int signal;

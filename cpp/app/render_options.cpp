@@ -110,7 +110,7 @@ void read_settings_words(const RenderWords& w, RenderSettings& settings) {
 
 }  // namespace
 
-void add_render_options(CLI::App& command, RenderWords& w) {
+void add_shot_options(CLI::App& command, RenderWords& w) {
     const auto option = [&](const char* name, std::string& value, const std::string& help, const char* type) {
         // An empty word would read as an option that was left out.
         const auto not_empty = CLI::Validator([](std::string& word) { return word.empty() ? "is empty" : ""; }, "", "");
@@ -121,10 +121,6 @@ void add_render_options(CLI::App& command, RenderWords& w) {
            "that are not given",
            "SCENE")
         ->required();
-    command.add_option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated")
-        ->type_name("FILE")
-        ->required()
-        ->allow_extra_args(false);
     command.option_defaults()->group("Camera");
     option("--lens", w.lens, "Bundled lens (`realcam lens list`) or .toml file [double-gauss-50mm]", "NAME");
     option("--film", w.film, "Film in mm [the lens's, in the shape of the resolution]", "WxH");
@@ -172,7 +168,16 @@ void add_render_options(CLI::App& command, RenderWords& w) {
            "SPECTRUM");
     option("--threads", w.threads, "0: all [0]", "N");
     option("--device", w.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1 [auto]", "DEVICE");
+}
+
+void add_render_options(CLI::App& command, RenderWords& w) {
+    command.add_option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated")
+        ->type_name("FILE")
+        ->required()
+        ->allow_extra_args(false);
+    add_shot_options(command, w);
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
+    command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
 }
 
 shot::ShotRequest understand(const RenderWords& w) {

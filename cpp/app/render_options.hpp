@@ -13,9 +13,12 @@ struct RenderWords {
         blade_rotation, exposure_time, shutter_opens, readout_time, iso, model, scale, environment, tone, spp, seed,
         max_bounces, transport, clamp, threads, layers, effects, illuminant, device = "auto";
     std::vector<std::string> outputs;
-    bool verbose = false;
+    bool verbose = false, explains = false;
 };
 
+/// Those that say what is photographed and how.
+void add_shot_options(CLI::App& command, RenderWords& words);
+/// The same, and what to write.
 void add_render_options(CLI::App& command, RenderWords& words);
 
 /// What they mean: those of the shot file, if `scene` is one, with typed values instead of those in the file.

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, m) {
     bind_material(m);
     bind_scene(m);
     bind_render(m);
+    bind_plan(m);
     bind_view(m);
     bind_shot(m);
     bind_live(m);

@@ -33,10 +33,14 @@ REALCAM_HD inline double apply_tone_curve(ToneCurve curve, double value) {
     return value < 1 ? value : 1;
 }
 
-/// sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1], as an 8-bit code.
+/// sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1].
+REALCAM_HD inline double srgb_encoded(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+/// The same as an 8-bit code.
 REALCAM_HD inline std::uint8_t srgb_code(double linear) {
-    const double v = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-    return static_cast<std::uint8_t>(v * 255 + 0.5);
+    return static_cast<std::uint8_t>(srgb_encoded(linear) * 255 + 0.5);
 }
 
 }  // namespace REALCAM_NAMESPACE

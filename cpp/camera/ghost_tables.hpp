@@ -89,8 +89,8 @@ public:
 
     /// Ghosts of lights.
     GhostView view() const { return view_of(to_film_, GhostLight::of_lights, 1, entry_reach_); }
-    /// Ghosts of what objects reflect. They are that share of the light, and so is their noise: twice as many samples as
-    /// that share of the pixels' are enough for the noise of the picture to be hardly more.
+    /// Ghosts of what objects reflect. They are that share of the light, and so is their noise: twice as many samples
+    /// as that share of the pixels' are enough for the noise of the picture to be hardly more.
     GhostView view_of_objects() const {
         double share = 0;
         for (const double of_pair : shares_) share += of_pair;

@@ -80,19 +80,31 @@ inline std::string shortest(double value) {
 
 }  // namespace effect_names_detail
 
+/// Of EffectChoice::named.
+inline std::uint32_t bit_of(const EffectInfo& effect) {
+    return 1u << (&effect - kEffects.data());
+}
+
+/// By the name in kEffects.
+inline const EffectInfo& effect_named(const std::string& name) {
+    return *std::find_if(kEffects.begin(), kEffects.end(),
+                         [&](const EffectInfo& effect) { return name == effect.name; });
+}
+
 inline std::string effect_names() {
-    std::string names;
+    std::string names = "auto, ";
     for (const EffectInfo& effect : kEffects)
-        names += std::string(names.empty() ? "" : ", ") + (effect.is_on() ? "-" : "") + effect.name;
+        names += std::string(&effect == kEffects.data() ? "" : ", ") + (effect.is_on() ? "-" : "") + effect.name;
     return names;
 }
 
 /// Those that are switched on or left out, as effects_named understands them.
 inline std::vector<std::string> names_of(const EffectChoice& effects) {
     std::vector<std::string> names;
+    if (effects.is_automatic) names.push_back("auto");
     for (const EffectInfo& effect : kEffects) {
         const bool on = effects.*effect.member;
-        if (on == effect.is_on()) continue;
+        if (effects.is_automatic ? (effects.named & bit_of(effect)) == 0 : on == effect.is_on()) continue;
         names.push_back((on ? "" : "-") + std::string(effect.name));
         if (effect.parameter && effects.*effect.parameter != EffectChoice().*effect.parameter)
             names.back() += "=" + effect_names_detail::shortest(effects.*effect.parameter);
@@ -104,6 +116,10 @@ inline std::vector<std::string> names_of(const EffectChoice& effects) {
 inline EffectChoice effects_named(const std::vector<std::string>& names) {
     EffectChoice effects;
     for (const std::string& name : names) {
+        if (name == "auto") {
+            effects.is_automatic = true;
+            continue;
+        }
         const bool on = !name.starts_with('-');
         const std::string plain = effect_names_detail::effect_of(name);
         const auto found = std::find_if(kEffects.begin(), kEffects.end(),
@@ -117,6 +133,7 @@ inline EffectChoice effects_named(const std::vector<std::string>& names) {
                     "the effect " + plain + " is " +
                     (on != other.starts_with('-') ? "named with two parameters" : "both named and left out"));
         effects.*found->member = on;
+        effects.named |= bit_of(*found);
         const std::size_t equals = name.find('=');
         if (equals == std::string::npos) continue;
         const std::optional<double> value = effect_names_detail::share_from(name.substr(equals + 1));
@@ -126,6 +143,7 @@ inline EffectChoice effects_named(const std::vector<std::string>& names) {
                                                : "the effect " + plain + " has no parameter"));
         effects.*found->parameter = *value;
     }
+    if (!effects.is_automatic) effects.named = 0;  // so that equal choices are equal
     return effects;
 }
 

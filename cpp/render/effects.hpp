@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "../platform.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -49,6 +51,9 @@ struct EffectChoice : Effects {
     double film_reflectance = 0.05;
     bool motion_blur = true;  ///< else each row of pixels sees the scene in the middle of its exposure
     bool rolling_shutter = true;  ///< else the shutter's readout time is 0
+
+    bool is_automatic = false;  ///< the planner decides on those that nobody has named (cpp/plan)
+    std::uint32_t named = 0;  ///< bits: those that somebody has named, in the order of kEffects
 
     constexpr bool operator==(const EffectChoice&) const = default;
     constexpr bool have_ghosts() const { return ghosts || film_reflection; }

@@ -50,12 +50,14 @@ inline void validate(const RenderSettings& settings) {
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
-    if (settings.illuminant && !settings.effects.have_wavelengths())
+    if (settings.illuminant && !settings.effects.have_wavelengths() && !settings.effects.is_automatic)
         throw InputError("illuminant belongs to the effects dispersion and diffraction, which are not switched on");
 }
 
 /// Throws InputError where the camera cannot have an effect of the settings.
 inline void validate_effects(const RenderSettings& settings, const Camera& camera) {
+    if (settings.effects.is_automatic)
+        throw InputError("effects: \"auto\" is for pictures that are planned first; names of effects are wanted");
     if (camera.model == CameraModel::full_lens) return;
     const EffectChoice& effects = settings.effects;
     if (effects.dispersion || effects.coatings || effects.have_ghosts())

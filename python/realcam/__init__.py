@@ -32,6 +32,8 @@ from ._core import (
     LiveFrame,
     LiveView,
     Material,
+    Plan,
+    PlanDecision,
     RayChunks,
     RayStatus,
     RealcamError,
@@ -53,6 +55,7 @@ from ._core import (
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
+from .planning import plan
 from .raw_image import RawImage
 from .render import render
 from .session import Session
@@ -84,6 +87,8 @@ __all__ = [
     "LiveView",
     "Material",
     "Mirror",
+    "Plan",
+    "PlanDecision",
     "RawImage",
     "RayChunks",
     "RayStatus",
@@ -104,6 +109,7 @@ __all__ = [
     "devices",
     "effects",
     "lens_names",
+    "plan",
     "read_environment",
     "render",
     "sensor_names",

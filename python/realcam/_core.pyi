@@ -1077,6 +1077,47 @@ def _render(
 def _effect_notices(lens: Lens, effects: Sequence[str]) -> list[str]: ...
 
 @final
+class PlanDecision:
+    @property
+    def effect(self) -> str: ...
+    @property
+    def size(self) -> float: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def threshold(self) -> float: ...
+    @property
+    def is_kept(self) -> bool: ...
+    @property
+    def by(self) -> str: ...
+    @property
+    def time_share(self) -> float: ...
+    @property
+    def reason(self) -> str: ...
+
+@final
+class Plan:
+    @property
+    def model(self) -> str: ...
+    @property
+    def effects(self) -> list[str]: ...
+    @property
+    def decisions(self) -> list[PlanDecision]: ...
+
+def _plan(
+    scene: Scene,
+    camera: Camera,
+    device: str,
+    seed: int,
+    max_bounces: int,
+    threads: int,
+    effects: Sequence[str],
+    quality: str,
+    threshold_px: float | None,
+    threshold_codes: float | None,
+) -> Plan: ...
+
+@final
 class LiveFrame:
     @property
     def codes(self) -> NDArray[np.uint8]: ...

@@ -9,6 +9,7 @@ from . import _core
 from ._core import Camera, Scene
 from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
+from .planning import plan
 
 ProgressCallback = Callable[[float], bool | None]
 
@@ -54,8 +55,9 @@ def render(
     too dark; 0: never. threads: 0 for all.
     layers: names of what else Image.layers is to hold, or "all" (docs/layers.md).
     effects: names of what else is simulated (rc.effects() lists them; docs/dispersion.md). Warns of what the lens
-    cannot give of them. illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "A", "FL2", a
-    wavelength in nm, or (wavelength_nm, power) pairs; None: D65.
+    cannot give of them. "auto": what the shot calls for, and the cheapest camera model that shows it (rc.plan).
+    illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "A", "FL2", a wavelength in nm, or
+    (wavelength_nm, power) pairs; None: D65.
     progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
     0 to 1, and stops the render where it returns False. Warns of a scene without light.
 
@@ -63,6 +65,11 @@ def render(
     """
     warn_of_no_light(scene)
     wanted, light = effect_list(effects), illuminant_text(illuminant)
+    if "auto" in wanted:
+        choice = plan(scene, camera, device=device, seed=seed, max_bounces=max_bounces, threads=threads, effects=wanted)
+        camera, wanted = camera.replace(model=choice.model), choice.effects
+        if not {"dispersion", "diffraction"} & set(wanted):
+            light = ""
     warn_of_effects(camera, wanted)
 
     def taken(callback: ProgressCallback | None) -> Image:

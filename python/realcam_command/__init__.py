@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 # What the C++ executable does. It comes with the Python package, which runs it, so that the two cannot differ.
-_OF_THE_EXECUTABLE = (["render"], ["devices"], ["lens", "info"], ["lens", "list"])
+_OF_THE_EXECUTABLE = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
 
 
 def main() -> None:

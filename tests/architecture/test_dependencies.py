@@ -18,6 +18,7 @@ MAY_INCLUDE = {
     "scene": {"math"},
     "camera": {"math", "optics"},
     "render": {"math", "optics", "scene", "camera"},
+    "plan": {*CORE},
     "bvh": {"math", "scene"},
     "embree": {*CORE, "bvh"},
     "cuda": {*CORE, "bvh"},
@@ -26,9 +27,9 @@ MAY_INCLUDE = {
     "image_io": {*CORE, "io"},
     "shot": {*CORE, "io"},
     # OpenImageIO is linked by the executable and by an extension of its own, which is loaded when it is needed.
-    "bindings": {*CORE, *BACKENDS, "devices", "io", "shot"},
+    "bindings": {*CORE, *BACKENDS, "plan", "devices", "io", "shot"},
     "picture_bindings": {*CORE, "io", "image_io"},
-    "app": {*CORE, *BACKENDS, "devices", "io", "shot", "image_io"},
+    "app": {*CORE, *BACKENDS, "plan", "devices", "io", "shot", "image_io"},
 }
 
 # What both extensions do when Python ends stays in one place.

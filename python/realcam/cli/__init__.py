@@ -22,6 +22,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # defaults in the help stand in [brackets]
 )
 add_command_of_the_executable(app, "render", "Photograph a scene through a lens.")
+add_command_of_the_executable(app, "plan", "Say which effects a shot calls for, and why.")
 app.add_typer(lens.app, name="lens")
 add_command_of_the_executable(app, "devices", "List what this machine can render with.")
 app.add_typer(sensor.app, name="sensor")

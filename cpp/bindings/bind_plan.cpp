@@ -1,0 +1,103 @@
+#include <pybind11/stl.h>
+
+#include <cmath>
+
+#include "../embree/fast_pupil_tracer.hpp"
+#include "../io/image_metadata.hpp"
+#include "../plan/make_plan.hpp"
+#include "../plan/plan_text.hpp"
+#include "../plan/quality.hpp"
+#include "bindings.hpp"
+#include "render_turn.hpp"
+#include "short_text.hpp"
+#include "value_methods.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+/// As Python's users see it.
+struct Decision {
+    std::string effect, unit, by, reason;
+    double size, threshold, time_share;
+    bool is_kept;
+};
+
+struct Planned {
+    std::string model;
+    std::vector<std::string> effects;
+    std::vector<Decision> decisions;
+    std::string text;
+};
+
+Planned planned_of(const Plan& plan) {
+    const std::string model = io::name_of(plan.model);
+    Planned planned{model, names_of(plan.effects), {}, text_of(plan, model)};
+    for (const PlanDecision& d : plan.decisions)
+        planned.decisions.push_back({d.name, name_of(d.unit), d.by == DecidedBy::user ? "user" : "planner", d.reason,
+                                     d.size, d.threshold, d.time, d.is_kept});
+    return planned;
+}
+
+PlanThresholds thresholds_from(const std::string& quality, std::optional<double> pixels, std::optional<double> codes) {
+    const std::optional<PlanThresholds> named = quality_named(quality);
+    if (!named) throw InputError("unknown quality \"" + quality.substr(0, 60) + "\"; " + kQualityNames + " is wanted");
+    return {pixels.value_or(named->pixels), codes.value_or(named->codes)};
+}
+
+Planned plan(const Assembly& scene, const Camera& camera, const std::string& device, std::int64_t seed, int max_bounces,
+             int threads, std::vector<std::string> effects, const std::string& quality,
+             std::optional<double> threshold_px, std::optional<double> threshold_codes) {
+    PlanRequest request;
+    effects.push_back("auto");
+    request.effects = effects_named(effects);
+    request.thresholds = thresholds_from(quality, threshold_px, threshold_codes);
+    request.may_choose_model = camera.model == CameraModel::full_lens;
+    RenderSettings settings;
+    settings.seed = seed_from(seed);
+    settings.max_bounces = max_bounces;
+    settings.threads = threads;
+    Session& session = session_for(device);
+    const Unlocked unlocked;
+    const RenderTurn turn;
+    return planned_of(make_plan(session, scene, camera, settings, request, fast_pupil_tracer(),
+                                [](double) { return heed_signals(); }));
+}
+
+}  // namespace
+
+void bind_plan(py::module_& m) {
+    py::class_<Decision> decision(m, "PlanDecision", "One thing that a picture may have or do without.");
+    def_value(decision);
+    decision.def_readonly("effect", &Decision::effect)
+        .def_readonly("size", &Decision::size, "By how much the picture changes where it is left out.")
+        .def_readonly("unit", &Decision::unit, "Of size and threshold: \"px\", or \"codes\" of 8 bits.")
+        .def_readonly("threshold", &Decision::threshold)
+        .def_readonly("is_kept", &Decision::is_kept)
+        .def_readonly("by", &Decision::by, "\"planner\", or \"user\" where the effect was named.")
+        .def_readonly("time_share", &Decision::time_share,
+                      "Expected time, as a share of that of a picture without effects.")
+        .def_readonly("reason", &Decision::reason)
+        .def("__repr__", [](const Decision& d) {
+            return "<realcam.PlanDecision " + d.effect + ' ' + (d.is_kept ? "kept" : "left out") + ": " +
+                   digits(d.size) + ' ' + d.unit + " of " + digits(d.threshold) + '>';
+        });
+    py::class_<Planned> planned(m, "Plan", "What a shot calls for. str() makes a table of it.");
+    def_value(planned);
+    planned
+        .def_readonly("model", &Planned::model, "The cheapest camera model that looks like every surface of the lens.")
+        .def_readonly("effects", &Planned::effects, "Names, as render takes them.")
+        .def_readonly("decisions", &Planned::decisions)
+        .def("__str__", [](const Planned& p) { return p.text; })
+        .def("__repr__", [](const Planned& p) {
+            std::string names;
+            for (const std::string& name : p.effects) names += (names.empty() ? "" : ", ") + name;
+            return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
+        });
+    m.def("_plan", &plan, "scene"_a, "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a, "effects"_a,
+          "quality"_a, "threshold_px"_a, "threshold_codes"_a);
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,96 @@
+#pragma once
+#include <array>
+#include <cmath>
+
+#include "../camera/generate_rays.hpp"
+#include "../optics/pupil_tracer.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The light of one film point, followed back into the scene: what one camera model makes of it.
+struct FilmBundle {
+    static constexpr int kRays = PupilTracer::kBlock;
+
+    std::array<LensFrameRay, kRays> rays;
+    std::array<bool, kRays> passes{};
+    double light = 0;  ///< irradiance for unit radiance
+};
+
+/// A bundle in a plane of the scene.
+struct BundleSpot {
+    double x, y;      ///< of its middle, as a film point that a lens without aberrations would show there, mm
+    double diameter;  ///< of an even disc with the same mean square radius, mm on the film
+};
+
+namespace film_bundles_detail {
+
+inline Vec2f pupil_number(int ray) {
+    return sample_2d(0x9e3779b9u, static_cast<std::uint32_t>(ray), dimension::pupil);
+}
+
+}  // namespace film_bundles_detail
+
+/// `ray_of(u)`: an ideal lens's.
+template <class RayOf>
+FilmBundle ideal_bundle(RayOf&& ray_of) {
+    FilmBundle bundle;
+    for (int i = 0; i < FilmBundle::kRays; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        bundle.rays[k] = ray_of(film_bundles_detail::pupil_number(i));
+        bundle.passes[k] = true;
+        bundle.light += static_cast<double>(bundle.rays[k].weight) / FilmBundle::kRays;
+    }
+    return bundle;
+}
+
+/// Through every surface. `path`: of the lens, for light of one wavelength from the film; `camera`: with its pupil.
+inline FilmBundle traced_bundle(const CameraView& camera, const LensView<float>& path, Vec2f film,
+                                const PupilTracer& tracer) {
+    PupilTracer::Rays inside;
+    float weights[FilmBundle::kRays];
+    for (int i = 0; i < FilmBundle::kRays; ++i) {
+        const Vec2f u = film_bundles_detail::pupil_number(i);
+        const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);
+        inside.origin.set(i, {film.x, film.y, camera.film_distance});
+        inside.direction.set(i, pupil.direction);
+        inside.status[i] = pupil.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        weights[i] = pupil.weight;
+    }
+    tracer.trace(path, inside);
+    FilmBundle bundle;
+    for (int i = 0; i < FilmBundle::kRays; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        bundle.passes[k] = inside.status[i] == 0;
+        if (!bundle.passes[k]) continue;
+        bundle.rays[k] = {inside.origin[i], normalized(inside.direction[i]), weights[i]};
+        bundle.light += static_cast<double>(weights[i]) / FilmBundle::kRays;
+    }
+    return bundle;
+}
+
+/// `distance_mm`: of a plane from the front vertex; infinite is allowed. No numbers where no light passes.
+inline BundleSpot spot_of(const FilmBundle& bundle, const CircleOfConfusion& circle, double distance_mm) {
+    const bool is_far = !(distance_mm < 1e30);
+    // A film height of 1 mm is so many mm there, or at infinity such a slope.
+    const double scale =
+        is_far ? static_cast<double>(circle.middle_slope)
+               : static_cast<double>(circle.middle) + distance_mm * static_cast<double>(circle.middle_slope);
+    double sum = 0, x = 0, y = 0, square = 0;
+    for (std::size_t k = 0; k < bundle.rays.size(); ++k) {
+        if (!bundle.passes[k]) continue;
+        const Vec3d o = static_cast<Vec3d>(bundle.rays[k].origin_mm), d = static_cast<Vec3d>(bundle.rays[k].direction);
+        const double slope_x = d.x / -d.z, slope_y = d.y / -d.z, way = distance_mm + o.z;
+        const double at_x = (is_far ? slope_x : o.x + way * slope_x) / scale;
+        const double at_y = (is_far ? slope_y : o.y + way * slope_y) / scale;
+        const auto weight = static_cast<double>(bundle.rays[k].weight);
+        sum += weight;
+        x += weight * at_x;
+        y += weight * at_y;
+        square += weight * (at_x * at_x + at_y * at_y);
+    }
+    x /= sum;
+    y /= sum;
+    return {x, y, 2 * std::sqrt(2 * std::fmax(square / sum - x * x - y * y, 0.0))};
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,123 @@
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "../optics/lens_path.hpp"
+#include "film_bundles.hpp"
+#include "picture_codes.hpp"
+#include "plan.hpp"
+#include "scene_facts.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Pixels.
+inline constexpr double kWideDisc = 10;
+
+/// How a picture through another camera model differs from that through every surface: the most over the film.
+struct ModelError {
+    double moved_px = 0;    ///< by which it shows things elsewhere
+    double blur_px = 0;  ///< difference of the diameters of discs of confusion; of discs wider than kWideDisc as many
+                         ///< times less as they are wider, because of those a twentieth is not seen
+    double light_codes = 0;  ///< by which it is brighter or darker
+
+    bool is_within(const PlanThresholds& thresholds) const {
+        return moved_px < thresholds.pixels && blur_px < thresholds.pixels && light_codes < thresholds.codes;
+    }
+};
+
+struct LensErrors {
+    ModelError pinhole, thin, mapped, thick;
+    double lateral_colour_px = 0;  ///< between blue and red light
+    double axial_colour_px = 0;  ///< difference of the diameters of their discs of confusion
+};
+
+namespace lens_errors_detail {
+
+/// Wavelengths beyond which lies a tenth each of what the eye sees of white light.
+inline constexpr double kBlue_nm = 500, kRed_nm = 620;
+
+/// NaN, of a model that sees nothing there, is more than any number.
+inline void raise(double& most, double value) {
+    if (!(value <= most)) most = std::isnan(value) ? kInfinity : value;
+}
+
+inline void compare(const BundleSpot& full, const BundleSpot& other, double px_per_mm, ModelError& error) {
+    raise(error.moved_px, px_per_mm * std::hypot(full.x - other.x, full.y - other.y));
+    const double smaller = px_per_mm * std::min(full.diameter, other.diameter);
+    raise(error.blur_px, px_per_mm * std::fabs(full.diameter - other.diameter) / std::max(1.0, smaller / kWideDisc));
+}
+
+/// Where the scene is, and where it would be sharp, as far as that lies between.
+inline std::vector<double> depths_of(const SceneFacts& facts, const LensSystem& lens) {
+    double nearest = kInfinity, farthest = 0;
+    for (const SeenTile& tile : facts.tiles) {
+        if (!(tile.depth_mm > 0)) continue;
+        nearest = std::min(nearest, tile.depth_mm);
+        farthest = std::max(farthest, tile.depth_mm);
+    }
+    const double focus = lens.focus_distance - lens.film_position();
+    if (farthest == 0) return {focus};
+    return {nearest, std::clamp(focus, nearest, farthest), farthest};
+}
+
+/// The brightest of the four tiles at a share of the way from the middle to the corners.
+inline double value_at(const SceneFacts& facts, double share) {
+    double most = 0;
+    for (const double x : {-share, share})
+        for (const double y : {-share, share}) most = std::max(most, facts.tile_at(0.5 + 0.5 * x, 0.5 + 0.5 * y).value);
+    return most;
+}
+
+}  // namespace lens_errors_detail
+
+/// `full`: the view of a camera with the model full; `ideal`: of the same with an ideal lens. Rays from the middle of
+/// the film to its corner are compared where the scene is.
+inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, const LensSystem& lens,
+                              const SceneFacts& facts, const PupilTracer& tracer) {
+    using namespace lens_errors_detail;
+    const double px_per_mm = 0.5 * full.width / static_cast<double>(full.film_half_width);
+    const std::vector<double> depths = depths_of(facts, lens);
+    const double sharp = depths[depths.size() / 2];
+    const LensPath<float> blue(lens, LightDirection::to_scene, kBlue_nm), red(lens, LightDirection::to_scene, kRed_nm);
+    LensErrors errors;
+    for (const double share : {0.0, 0.25, 0.5, 0.7, 0.85, 0.97}) {
+        const Vec2f film = {static_cast<float>(share) * full.film_half_width,
+                            static_cast<float>(share) * full.film_half_height};
+        const FilmBundle traced = traced_bundle(full, full.lens, film, tracer);
+        const FilmBundle pinhole = ideal_bundle([&](Vec2f u) { return thin_lens_ray(ideal, film, u, 0.0f); });
+        const FilmBundle thin =
+            ideal_bundle([&](Vec2f u) { return thin_lens_ray(ideal, film, u, ideal.thin.pupil_radius); });
+        const FilmBundle thick = ideal_bundle([&](Vec2f u) { return thick_lens_ray(ideal, film, u); });
+        const double value = value_at(facts, share), white_for_one = value / thin.light;
+        const auto codes_between = [&](double light) {
+            return std::fabs(code_of(white_for_one * traced.light) - code_of(white_for_one * light));
+        };
+        for (ModelError* error : {&errors.pinhole, &errors.thin}) raise(error->light_codes, codes_between(thin.light));
+        raise(errors.thick.light_codes, codes_between(thick.light));
+        if (!(traced.light > 0)) continue;  // outside of what the lens lights
+        // The thin lens at the place that shows in the plane in focus what this one shows here.
+        const BundleSpot there = spot_of(traced, full.circle, sharp), ideally = spot_of(thin, full.circle, sharp);
+        const auto scale =
+            static_cast<float>(share > 0 ? std::hypot(there.x, there.y) / std::hypot(ideally.x, ideally.y) : 1.0);
+        const FilmBundle mapped = ideal_bundle([&](Vec2f u) {
+            return thin_lens_ray(ideal, {scale * film.x, scale * film.y}, u, ideal.thin.pupil_radius);
+        });
+        const FilmBundle in_blue = traced_bundle(full, blue.view(), film, tracer);
+        const FilmBundle in_red = traced_bundle(full, red.view(), film, tracer);
+        for (const double depth : depths) {
+            const BundleSpot spot = spot_of(traced, full.circle, depth);
+            compare(spot, spot_of(pinhole, full.circle, depth), px_per_mm, errors.pinhole);
+            compare(spot, spot_of(thin, full.circle, depth), px_per_mm, errors.thin);
+            compare(spot, spot_of(mapped, full.circle, depth), px_per_mm, errors.mapped);
+            compare(spot, spot_of(thick, full.circle, depth), px_per_mm, errors.thick);
+            ModelError colour;
+            compare(spot_of(in_blue, full.circle, depth), spot_of(in_red, full.circle, depth), px_per_mm, colour);
+            raise(errors.lateral_colour_px, colour.moved_px);
+            raise(errors.axial_colour_px, colour.blur_px);
+        }
+    }
+    return errors;
+}
+
+}  // namespace REALCAM_NAMESPACE

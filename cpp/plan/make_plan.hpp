@@ -1,0 +1,24 @@
+#pragma once
+#include "plan_shot.hpp"
+#include "probe_scene.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Looks at the scene and at the lens, and plans. `settings`: of the picture. Throws what probe_scene throws, and
+/// InputError for a lens that passes nothing and for thresholds that are none.
+inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                      const PlanRequest& request, const PupilTracer& tracer, const Progress& progress = {}) {
+    for (const double threshold : {request.thresholds.pixels, request.thresholds.codes})
+        if (!(threshold > 0) || !std::isfinite(threshold))
+            throw InputError("thresholds of a plan must be above 0: pixels and 8-bit codes");
+    const SceneFacts facts = probe_scene(session, scene, camera, settings, progress);
+    Camera full = camera, ideal = camera;
+    full.model = CameraModel::full_lens;
+    ideal.model = CameraModel::thin_lens;
+    const CameraSetup of_surfaces(full, tracer), of_ideal(ideal, tracer);
+    const LensErrors errors =
+        lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), camera.lens, facts, tracer);
+    return plan_shot(camera, errors, facts, request);
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,44 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "../camera/camera_view.hpp"
+#include "../render/effects.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+enum class SizeUnit { pixels, codes };
+
+/// From which size on something is simulated.
+struct PlanThresholds {
+    double pixels = 0.5;  ///< by which something moves or is blurred
+    double codes = 1;     ///< by which an 8-bit code of the developed picture changes
+
+    bool operator==(const PlanThresholds&) const = default;
+};
+
+/// Who decided.
+enum class DecidedBy { planner, user };
+
+/// One thing that a picture may have or do without.
+struct PlanDecision {
+    std::string name;
+    double size;  ///< by how much the picture changes where it is left out; infinite: beyond all measure
+    SizeUnit unit;
+    double threshold;
+    bool is_kept;
+    DecidedBy by = DecidedBy::planner;
+    double time;  ///< that it adds to the picture's, as a share of that without any effect
+    std::string reason;  ///< a sentence
+
+    bool operator==(const PlanDecision&) const = default;
+};
+
+/// What a shot calls for.
+struct Plan {
+    CameraModel model = CameraModel::full_lens;  ///< the cheapest that looks like every surface of the lens
+    EffectChoice effects;
+    std::vector<PlanDecision> decisions;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,177 @@
+#pragma once
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "../render/effect_names.hpp"
+#include "../render/render_settings.hpp"
+#include "lens_errors.hpp"
+#include "light_effects.hpp"
+#include "plan.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What a user leaves to the planner.
+struct PlanRequest {
+    EffectChoice effects;  ///< those that were named stay as they are
+    PlanThresholds thresholds = {};
+    bool may_choose_model = true;  ///< else the camera's stays
+};
+
+namespace plan_shot_detail {
+
+/// What an effect adds to a picture's time, as a share of it: benchmarks/results, on one core, through spheres and
+/// through aspheres.
+struct EffectTime {
+    const char* name;
+    double spheres, aspheres;
+};
+inline constexpr EffectTime kEffectTimes[] = {
+    {"dispersion", 0.12, 0.46}, {"coatings", 0.03, 0.05},   {"ghosts", 0.5, 1.45},     {"film_reflection", 0.2, 0.5},
+    {"diffraction", 0.1, 0.15}, {"motion_blur", 0.1, 0.05}, {"rolling_shutter", 0, 0},
+};
+
+inline double time_of(const std::string& effect, const LensSystem& lens) {
+    const bool has_aspheres = std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
+                                          [](const Surface& surface) { return surface.is_asphere(); });
+    for (const EffectTime& time : kEffectTimes)
+        if (effect == time.name) return has_aspheres ? time.aspheres : time.spheres;
+    return 0;
+}
+
+/// Two or three digits.
+inline std::string short_size(double size) {
+    char text[32];
+    std::snprintf(text, sizeof text, size < 0.095 ? "%.2g" : size < 9.95 ? "%.1f" : "%.0f", size);
+    return text;
+}
+
+class Planner {
+public:
+    Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const PlanRequest& request)
+        : camera_(camera), errors_(errors), facts_(facts), request_(request) {}
+
+    Plan plan() {
+        plan_.effects = request_.effects;
+        plan_.effects.is_automatic = false;
+        plan_.effects.named = 0;
+        decide_colour();
+        decide_coatings();
+        decide_ghosts();
+        decide_diffraction();
+        decide_motion();
+        decide_model();
+        return plan_;
+    }
+
+private:
+    /// `size_text`: what is so large, for the reason.
+    void decide(const char* name, double size, SizeUnit unit, const std::string& what) {
+        const EffectInfo& effect = effect_named(name);
+        const double threshold = unit == SizeUnit::pixels ? request_.thresholds.pixels : request_.thresholds.codes;
+        const bool is_named = (request_.effects.named & bit_of(effect)) != 0;
+        const bool is_kept = is_named ? request_.effects.*effect.member : size >= threshold;
+        plan_.effects.*effect.member = is_kept;
+        plan_.decisions.push_back({name, size, unit, threshold, is_kept,
+                                   is_named ? DecidedBy::user : DecidedBy::planner, time_of(name, camera_.lens), what});
+    }
+
+    static std::string px(double size) { return short_size(size) + " px"; }
+    static std::string codes(double size) { return short_size(size) + (size == 1 ? " code" : " codes"); }
+
+    void decide_colour() {
+        const bool is_lateral = errors_.lateral_colour_px >= errors_.axial_colour_px;
+        const double size = std::max(errors_.lateral_colour_px, errors_.axial_colour_px);
+        decide("dispersion", size, SizeUnit::pixels,
+               is_lateral ? "blue and red light fall " + px(size) + " apart"
+                          : "discs of confusion of blue and red light differ by " + px(size));
+    }
+
+    void decide_coatings() {
+        const double size = coating_codes(camera_, facts_);
+        decide("coatings", size, SizeUnit::codes, "the glass takes " + codes(size) + " from what is bright");
+    }
+
+    void decide_ghosts() {
+        const BrightestGhost ghost = ghost_codes(camera_, facts_);
+        decide("ghosts", ghost.codes, SizeUnit::codes,
+               ghost.pair.first < 0
+                   ? "the lens has no two surfaces that reflect"
+                   : "ghosts and their veil bring " + codes(ghost.codes) + " to what is dark, most by surfaces " +
+                         std::to_string(ghost.pair.first + 1) + " and " + std::to_string(ghost.pair.second + 1));
+    }
+
+    void decide_diffraction() {
+        const double airy = airy_diameter_px(camera_), star = starburst_codes(camera_, facts_);
+        if (airy / request_.thresholds.pixels >= star / request_.thresholds.codes)
+            decide("diffraction", airy, SizeUnit::pixels, "Airy's disc is " + px(airy) + " wide");
+        else
+            decide("diffraction", star, SizeUnit::codes, "two pixels beside lamps stars bring " + codes(star));
+    }
+
+    void decide_motion() {
+        double most = 0;
+        for (const SeenTile& tile : facts_.tiles)
+            if (tile.motion_px > most) most = tile.motion_px;  // NaN: it leaves what the lens shows
+        if (most == 0) return;
+        const double seen = camera_.exposure_time_s, rows = camera_.shutter.readout_time_s;
+        const double skew = seen > 0 ? most * rows / seen : 0;
+        decide("motion_blur", most, SizeUnit::pixels, "while a pixel is exposed things move by " + px(most));
+        decide("rolling_shutter", skew, SizeUnit::pixels, "from the first row to the last things move by " + px(skew));
+    }
+
+    void decide_model() {
+        const PlanThresholds& thresholds = request_.thresholds;
+        const EffectChoice& effects = plan_.effects;
+        const bool needs_surfaces = effects.dispersion || effects.coatings || effects.have_ghosts();
+        CameraModel model = CameraModel::full_lens;
+        if (!request_.may_choose_model)
+            model = camera_.model;
+        else if (!needs_surfaces)
+            model = errors_.pinhole.is_within(thresholds)  ? CameraModel::pinhole
+                    : errors_.thin.is_within(thresholds)   ? CameraModel::thin_lens
+                    : errors_.mapped.is_within(thresholds) ? CameraModel::mapped_lens
+                    : errors_.thick.is_within(thresholds)  ? CameraModel::thick_lens
+                                                           : CameraModel::full_lens;
+        plan_.model = model;
+        const bool is_pinhole = model == CameraModel::pinhole, is_full = model == CameraModel::full_lens;
+        const bool has_map = is_full || model == CameraModel::mapped_lens || model == CameraModel::thick_lens;
+        const DecidedBy by = request_.may_choose_model && !needs_surfaces ? DecidedBy::planner : DecidedBy::user;
+        const auto add = [&](const char* name, double size, SizeUnit unit, bool is_kept, const std::string& reason) {
+            plan_.decisions.push_back({name, size, unit,
+                                       unit == SizeUnit::pixels ? thresholds.pixels : thresholds.codes, is_kept, by, 0,
+                                       reason});
+        };
+        add("defocus", errors_.pinhole.blur_px, SizeUnit::pixels, !is_pinhole,
+            "discs of confusion are up to " + px(errors_.pinhole.blur_px) + " wide");
+        add("aberrations", errors_.mapped.blur_px, SizeUnit::pixels, is_full,
+            "a thin lens's discs of confusion differ by " + px(errors_.mapped.blur_px));
+        add("distortion", errors_.thin.moved_px, SizeUnit::pixels, has_map,
+            "a thin lens shows things " + px(errors_.thin.moved_px) + " elsewhere");
+        add("vignetting", errors_.thin.light_codes, SizeUnit::codes, has_map,
+            "a thin lens's picture differs by " + codes(errors_.thin.light_codes) + " towards the corners");
+    }
+
+    const Camera& camera_;
+    const LensErrors& errors_;
+    const SceneFacts& facts_;
+    const PlanRequest& request_;
+    Plan plan_;
+};
+
+}  // namespace plan_shot_detail
+
+/// The camera and the settings of a picture that follows a plan.
+inline void apply(const Plan& plan, Camera& camera, RenderSettings& settings) {
+    camera.model = plan.model;
+    settings.effects = plan.effects;
+    if (!settings.effects.have_wavelengths()) settings.illuminant.reset();
+}
+
+/// What is worth simulating of a shot.
+inline Plan plan_shot(const Camera& camera, const LensErrors& errors, const SceneFacts& facts,
+                      const PlanRequest& request) {
+    return plan_shot_detail::Planner(camera, errors, facts, request).plan();
+}
+
+}  // namespace REALCAM_NAMESPACE

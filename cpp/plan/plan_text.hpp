@@ -1,0 +1,53 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "plan.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline const char* name_of(SizeUnit unit) {
+    return unit == SizeUnit::pixels ? "px" : "codes";
+}
+
+namespace plan_text_detail {
+
+inline std::string number(double value, int digits) {
+    if (!std::isfinite(value)) return "infinite";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
+}
+
+}  // namespace plan_text_detail
+
+/// A table for people. `model_name`: of the plan's camera model.
+inline std::string text_of(const Plan& plan, const std::string& model_name) {
+    using plan_text_detail::number;
+    using Row = std::array<std::string, 6>;
+    std::vector<Row> rows = {{"effect", "size", "threshold", "", "time", "because"}};
+    for (const PlanDecision& decision : plan.decisions) {
+        const std::string unit = name_of(decision.unit);
+        rows.push_back(
+            {decision.name, number(decision.size, 3) + " " + unit, number(decision.threshold, 3) + " " + unit,
+             std::string(decision.is_kept ? "kept" : "left out") + (decision.by == DecidedBy::user ? " as asked" : ""),
+             decision.time > 0 ? "+" + number(100 * decision.time, 3) + "%" : "", decision.reason});
+    }
+    std::array<std::size_t, 6> width{};
+    for (const Row& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
+    std::string text = "camera model " + model_name + "\n\n";
+    for (const Row& row : rows) {
+        std::string line;
+        for (std::size_t c = 0; c < row.size(); ++c)
+            line += row[c] + std::string(c + 1 < row.size() ? width[c] - row[c].size() + 2 : 0, ' ');
+        text += line + '\n';
+    }
+    return text;
+}
+
+}  // namespace REALCAM_NAMESPACE

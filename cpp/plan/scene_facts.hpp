@@ -1,0 +1,37 @@
+#pragma once
+#include <vector>
+
+#include "../math/vec3.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What a tile of the film sees.
+struct SeenTile {
+    double depth_mm;  ///< along the axis from the front vertex; infinite: nothing is there
+    double value;  ///< luminance of the developed picture, 1: white; more than that where it is too bright
+    double motion_px;  ///< by which it moves on the film while a pixel is exposed
+};
+
+/// A light that is small, as the camera sees it.
+struct SeenLight {
+    Vec3d from;  ///< unit, towards the light, in the axes of the lens
+    double illuminance_lux;  ///< across that direction, at the lens
+    bool is_point;           ///< without any size: no ray from the film meets it
+};
+
+/// A scene as one camera sees it: all that the planner knows of it.
+struct SceneFacts {
+    int columns = 0, rows = 0;
+    std::vector<SeenTile> tiles;  ///< row by row
+    std::vector<SeenLight> lights;
+
+    const SeenTile& tile_at(double across, double down) const {
+        const auto place = [](double share, int count) {
+            const int at = static_cast<int>(share * count);
+            return static_cast<std::size_t>(at < 0 ? 0 : at < count ? at : count - 1);
+        };
+        return tiles[place(down, rows) * static_cast<std::size_t>(columns) + place(across, columns)];
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

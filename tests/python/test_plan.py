@@ -1,0 +1,178 @@
+"""The planner: sizes against closed forms, decisions on both sides of their thresholds, and what it refuses."""
+
+from __future__ import annotations
+
+import copy
+import warnings
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from . import scenes
+
+WAVELENGTH_MM = 550e-6
+
+
+def board(distance_m: float, radiance: float = 1.0, half_width: float = 100.0) -> rc.Scene:
+    """It fills the picture."""
+    return scenes.scene_of(scenes.quad((0, 0, -distance_m), half_width, emission=radiance))
+
+
+def camera_of(name: str = "double-gauss-50mm", *, film: rc.Film | None = None, **settings: object) -> rc.Camera:
+    lens = rc.Lens.load(name)
+    f_number = settings.pop("f_number", None)
+    focus = settings.pop("focus_m", None)
+    if focus is not None:
+        lens = lens.focused(focus)  # type: ignore[arg-type]
+    if f_number is not None:
+        lens = lens.stopped_down(f_number)  # type: ignore[arg-type]
+    return rc.Camera(lens, film=film or rc.Film(36, 24, (900, 600)), exposure_time_s=0.01, **settings)  # type: ignore[arg-type]
+
+
+def decisions(scene: rc.Scene, camera: rc.Camera, **settings: object) -> dict[str, rc.PlanDecision]:
+    plan = rc.plan(scene, camera, device="cpu", **settings)  # type: ignore[arg-type]
+    return {decision.effect: decision for decision in plan.decisions}
+
+
+@pytest.mark.parametrize("f_number", [2.8, 8.0, 22.0])
+def test_airys_disc_is_1_22_wavelengths_over_the_sine(f_number: float) -> None:
+    camera = camera_of(f_number=f_number, film=rc.Film(24, 16, (6000, 4000)))
+    airy = decisions(board(1e4), camera)["diffraction"]
+    assert airy.size == pytest.approx(2.44 * WAVELENGTH_MM * f_number * 6000 / 24, rel=0.02)
+    assert airy.is_kept  # 4 um pixels: 0.94 pixels at f/2.8
+
+
+def test_a_coarse_film_sees_no_diffraction() -> None:
+    assert not decisions(board(1e4), camera_of(f_number=5.6))["diffraction"].is_kept
+
+
+@pytest.mark.parametrize("distance_m", [1.0, 3.0, 30.0])
+def test_defocus_is_the_circle_of_confusion(distance_m: float) -> None:
+    camera = camera_of(f_number=8.0, focus_m=2.0)
+    first = camera.lens.first_order()
+    size = decisions(board(distance_m), camera)["defocus"].size
+    # The ideal lens: distances from its front principal plane, which is within millimetres of the front vertex.
+    f = first.effective_focal_length_mm
+    s, s0 = (1000 * d - camera.lens.film_position_mm for d in (distance_m, 2.0))
+    circle = f / first.f_number * abs(s - s0) / s * f / (s0 - f)
+    assert size == pytest.approx(circle * 900 / 36, rel=0.1, abs=0.3)  # and what aberrations add, most in the corners
+
+
+def test_what_is_sharp_in_a_small_picture_needs_no_lens() -> None:
+    camera = camera_of(f_number=11.0, focus_m=30.0, film=rc.Film(3.6, 2.4, (90, 60)))
+    plan = rc.plan(board(30.0, radiance=200), camera, device="cpu", effects={"-coatings", "-ghosts"})
+    assert plan.model == "pinhole"
+    assert plan.effects == []
+
+
+def test_what_is_not_sharp_needs_one() -> None:
+    camera = camera_of(f_number=2.1, focus_m=1.0, film=rc.Film(3.6, 2.4, (90, 60)))
+    plan = rc.plan(board(30.0), camera, device="cpu", effects={"-coatings", "-ghosts"})
+    assert plan.model == "thin"
+    assert {d.effect for d in plan.decisions if d.is_kept} == {"defocus"}
+
+
+def test_colours_of_one_index_fall_together() -> None:
+    camera = camera_of("wide-22mm", film=rc.Film(24, 16, (6000, 4000)))
+    one = decisions(board(1e4), camera)["dispersion"]
+    assert one.size == pytest.approx(0, abs=1e-3)
+    assert not one.is_kept
+    many = decisions(board(1e4), camera_of("singlet-100mm", film=rc.Film(24, 16, (6000, 4000))))["dispersion"]
+    assert many.is_kept
+
+
+def test_glass_takes_what_its_transmittance_says() -> None:
+    camera = camera_of()
+    lens = camera.lens.with_coating("bare")
+    radiance = 150.0
+    scene = board(100.0, radiance=radiance)
+    taken = rc.render(scene, camera.replace(lens=lens), spp=16, device="cpu")
+    value = 0.018 * 100 * float(taken.pixels[300, 450].mean())
+    assert 0.1 < value < 1
+    transmittance = (lens.first_order().f_number / lens.t_stop) ** 2
+    expected = 255 * 1.055 * (value ** (1 / 2.4) - (value * transmittance) ** (1 / 2.4))
+    assert decisions(scene, camera.replace(lens=lens))["coatings"].size == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize("pixels", [0.2, 0.8, 3.0])
+def test_motion_is_measured_on_the_film(pixels: float) -> None:
+    distance, camera = 10.0, camera_of(focus_m=10.0, f_number=8.0)
+    mm_on_film = pixels * 36 / 900
+    image = camera.lens.first_order().effective_focal_length_mm * distance / (distance - 0.1)
+    speed = mm_on_film / image * distance / camera.exposure_time_s
+    there, further = np.eye(4), np.eye(4)
+    there[:3, 3] = (0, 0, -distance)
+    further[:3, 3] = (speed, 0, -distance)
+    still = scenes.scene_of(scenes.quad((0, 0, 1e4), 1.0))
+    moving = still.with_instance(scenes.scene_of(scenes.quad((0, 0, 0), 100.0, emission=1.0)), name="board")
+    moving = moving.moved("board", [there, further], times_s=[0, 1])
+    motion = decisions(moving, camera)["motion_blur"]
+    assert motion.size == pytest.approx(pixels, rel=0.05)
+    assert motion.is_kept == (pixels > 0.5)
+
+
+def test_what_is_named_stays() -> None:
+    scene, camera = board(1e4), camera_of(f_number=5.6)
+    kept = decisions(scene, camera, effects={"auto", "diffraction", "-coatings"})
+    assert kept["diffraction"].is_kept
+    assert kept["diffraction"].by == "user"
+    assert not kept["coatings"].is_kept
+    assert kept["coatings"].by == "user"
+    assert kept["ghosts"].by == "planner"
+
+
+def test_qualities_are_thresholds() -> None:
+    scene, camera = board(1e4), camera_of(f_number=5.6)
+    for quality, pixels, codes in (("draft", 2.0, 4.0), ("photo", 0.5, 1.0), ("reference", 0.1, 0.25)):
+        of = decisions(scene, camera, quality=quality)
+        assert (of["defocus"].threshold, of["coatings"].threshold) == (pixels, codes)
+    of = decisions(scene, camera, threshold_px=0.01)
+    assert of["diffraction"].is_kept
+    assert of["coatings"].threshold == 1
+
+
+def test_an_automatic_picture_is_that_of_its_plan() -> None:
+    scene, camera = board(3.0), camera_of(f_number=2.1, focus_m=1.0, film=rc.Film(3.6, 2.4, (45, 30)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        plan = rc.plan(scene, camera, device="cpu")
+        automatic = rc.render(scene, camera, spp=4, device="cpu", effects="auto")
+        named = rc.render(scene, camera.replace(model=plan.model), spp=4, device="cpu", effects=plan.effects)
+    np.testing.assert_array_equal(automatic.pixels, named.pixels)
+    assert list(automatic.effects) == plan.effects
+
+
+def test_a_plan_is_a_value() -> None:
+    plan = rc.plan(board(3.0), camera_of(), device="cpu")
+    assert copy.deepcopy(plan) == plan
+    assert str(plan).startswith(f"camera model {plan.model}\n")
+    for decision in plan.decisions:
+        assert decision.effect in str(plan)
+        assert decision.reason in str(plan)
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"threshold_px": 0.0}, "above 0"),
+        ({"threshold_codes": float("nan")}, "above 0"),
+        ({"quality": "best"}, 'unknown quality "best"; draft, photo or reference'),
+        ({"effects": {"ghosts", "-ghosts"}}, "both named and left out"),
+        ({"effects": "glare"}, 'unknown effect "glare"'),
+    ],
+)
+def test_what_cannot_be_planned_is_said(settings: dict[str, object], message: str) -> None:
+    with pytest.raises(rc.InputError, match=message):
+        rc.plan(board(3.0), camera_of(), device="cpu", **settings)  # type: ignore[arg-type]
+
+
+def test_a_camera_that_sees_nothing_has_no_plan() -> None:
+    behind = scenes.scene_of(scenes.quad((0, 0, 10), 1.0, emission=1.0))
+    with pytest.raises(rc.InputError, match="sees no object and no light"):
+        rc.plan(behind, camera_of(), device="cpu")
+
+
+def test_sessions_want_names() -> None:
+    with pytest.raises(rc.InputError, match='"auto" is for pictures that are planned first'):
+        rc.Session(board(3.0), camera_of(film=rc.Film(3.6, 2.4, (6, 4))), device="cpu", effects="auto")
