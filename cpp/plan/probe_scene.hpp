@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "../render/take_picture.hpp"
 #include "scene_facts.hpp"
@@ -12,24 +13,58 @@ namespace probe_scene_detail {
 /// Pixels of the longer side.
 inline constexpr double kLongSide = 48;
 
-/// Adds a light of the scene; `towards`: from the lens, in scene axes, metres (any length of a sun's).
+/// So many of the brightest lights are looked for behind what may hide them. The others count as seen.
+inline constexpr std::size_t kLooked = 16;
+
+/// Adds a light of the scene; `towards`: from the lens, in scene axes, metres; of a sun a direction.
 inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towards, double lux, bool is_point,
-                      SceneFacts& facts) {
+                      bool is_sun, SceneFacts& facts) {
     if (!(lux > 0)) return;
     const Vec3d from = normalized(camera_from_scene.direction(towards));
-    facts.lights.push_back({from, lux, is_point});
+    facts.lights.push_back({from, lux, is_point, is_sun ? kInfinity : length(towards)});
+}
+
+/// Whether anything is in the way to a light. `camera`: a pinhole, turned to it.
+inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
+                      const Affine<double>& scene_from_camera, const SeenLight& light) {
+    const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
+    const double pupil_m = 0.001 * (camera.lens.film_position() - data.entrance_pupil_position);
+    const Vec3d direction = scene_from_camera.direction(light.from);
+    // Its pinhole is where the lens's is.
+    camera.pose.position_m = scene_from_camera.point({0, 0, -pupil_m}) - pupil_m * direction;
+    camera.pose.look_at_m = camera.pose.position_m + direction;
+    camera.pose.up = std::fabs(direction.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+    camera.motion.clear();
+    camera.film.width = camera.film.height = 1;
+    camera.film.width_mm = camera.film.height_mm = 1e-3;
+    settings.spp = 1;
+    const Image image = take_picture(session, scene, camera, settings, {});
+    // A lamp's own surface is not in its way.
+    return static_cast<double>(image.layers[0].values[0]) < pupil_m + 0.999 * light.distance_m - 1e-3;
+}
+
+/// Leaves those that the lens sees.
+inline void drop_hidden(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
+                        const Affine<double>& scene_from_camera, std::vector<SeenLight>& lights) {
+    std::sort(lights.begin(), lights.end(),
+              [](const SeenLight& a, const SeenLight& b) { return a.illuminance_lux > b.illuminance_lux; });
+    std::vector<SeenLight> seen;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        if (i >= kLooked || !is_hidden(session, scene, camera, settings, scene_from_camera, lights[i]))
+            seen.push_back(lights[i]);
+    lights = std::move(seen);
 }
 
 inline double luminance_of(Color c) {
     return static_cast<double>(luminance(c));
 }
 
-/// Point lights and emissive triangles of one object. What stands between them and the camera is not looked at.
+/// Point lights and emissive triangles of one object.
 inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_object, Vec3d lens_m,
                           const InverseAffine<double>& camera_from_scene, SceneFacts& facts) {
     for (const ScenePointLight& point : object.points) {
         const Vec3d way = scene_from_object.point(point.position_m) - lens_m;
-        add_light(camera_from_scene, way, luminance_of(point.intensity) / dot(way, way), true, facts);
+        add_light(camera_from_scene, way, luminance_of(point.intensity) / dot(way, way), true, false, facts);
     }
     for (const Triangle& triangle : object.triangles) {
         const Material& material = object.materials[triangle.material];
@@ -39,7 +74,8 @@ inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_
         const Vec3d way = (1.0 / 3) * (a + corner(1) + corner(2)) - lens_m;
         const double distance2 = dot(way, way),
                      cosine_area = 0.5 * std::max(0.0, -dot(edges, way)) / std::sqrt(distance2);
-        add_light(camera_from_scene, way, luminance_of(material.emission) * cosine_area / distance2, false, facts);
+        add_light(camera_from_scene, way, luminance_of(material.emission) * cosine_area / distance2, false, false,
+                  facts);
     }
 }
 
@@ -90,7 +126,10 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
         add_lights_of(*instance.object, instance.transform_at(camera.exposure().begin_s), lens_m, camera_from_scene,
                       facts);
     for (const SunLight& sun : scene.static_geometry->suns)
-        add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), true, facts);
+        add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), true, true,
+                  facts);
+    settings.layers = {Layer::depth_middle};
+    drop_hidden(session, scene, camera, settings, scene_from_camera, facts.lights);
     return facts;
 }
 

@@ -17,6 +17,7 @@ struct SeenLight {
     Vec3d from;  ///< unit, towards the light, in the axes of the lens
     double illuminance_lux;  ///< across that direction, at the lens
     bool is_point;           ///< without any size: no ray from the film meets it
+    double distance_m;       ///< infinite: a sun's
 };
 
 /// A scene as one camera sees it: all that the planner knows of it.

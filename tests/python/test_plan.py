@@ -176,3 +176,12 @@ def test_a_camera_that_sees_nothing_has_no_plan() -> None:
 def test_sessions_want_names() -> None:
     with pytest.raises(rc.InputError, match='"auto" is for pictures that are planned first'):
         rc.Session(board(3.0), camera_of(film=rc.Film(3.6, 2.4, (6, 4))), device="cpu", effects="auto")
+
+
+def test_a_lamp_behind_an_object_makes_neither_ghosts_nor_stars() -> None:
+    lamp, camera = (0.05, 0.05, -4.9), camera_of(f_number=8.0, focus_m=5.0)
+    dark = board(5.0, radiance=1e-3)
+    for place, is_seen in ((lamp, True), ((lamp[0], lamp[1], -5.1), False)):
+        of = decisions(dark.with_point_light(place, (100.0, 100.0, 100.0)), camera)
+        assert of["ghosts"].is_kept == is_seen
+        assert of["diffraction"].is_kept == is_seen

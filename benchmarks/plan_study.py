@@ -1,13 +1,15 @@
-"""Is the planner right? Shots with everything, and with each effect left out: what that changes, and what was foreseen.
+"""Is the planner right? Drawn shots with and without each effect: what that changes, and what was foreseen.
 
-    python benchmarks/leave_one_out.py [--device cpu] [--shots 32] [--seed 1] [--spp 1024]
+    python benchmarks/plan_study.py [--device cpu] [--shots 32] [--seed 1] [--spp 1024]
 
 Each shot is a drawn scene (boards with a pattern, in daylight, at night with lamps, with the sun in the frame, near or
-far, some moving) before a drawn camera. A change in codes is that of the mean of some square of 8 by 8 pixels (the 99th percentile
-over them), or, of vignetting and coatings, of some twelfth of the picture. A change in pixels is what moves and blurs
-the one picture into the other: in each twelfth, B = A + shift . grad A + (s^2 / 2) laplacian A + gain A is fitted
-to each channel, and a blur of variance s^2 is that of a disc of 4 s. The noise of two pictures that differ in their random
-numbers alone is taken off in squares. Camera models are compared with the next better one.
+far, some moving) before a drawn camera. An effect is measured by itself, a camera model against the next better one.
+
+A change of light in codes is that of the mean of some square of 8 by 8 pixels (the 99th percentile over them), or, of
+vignetting and coatings, of some twelfth of the picture. A change in pixels is what moves and blurs the one picture into
+the other: in each twelfth, B = A + shift . grad A + (s^2 / 2) laplacian A + gain A + constant is fitted to each channel
+of both, smoothed alike, and a blur of variance s^2 is that of a disc of 4 s. The noise of two pictures that differ in
+their random numbers alone is taken off in squares.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import realcam as rc
 
-EFFECTS = ("dispersion", "coatings", "ghosts", "diffraction", "motion_blur")
+EFFECTS = ("dispersion", "coatings", "ghosts", "diffraction")
 MODELS = {  # without, with
     "defocus": ("pinhole", "thin"),
     "distortion": ("thin", "mapped"),
@@ -162,10 +164,6 @@ def parts_of(picture: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     return [np.ix_(r, c) for r in rows for c in columns]
 
 
-def change_in_light(a: np.ndarray, b: np.ndarray) -> float:
-    return max(float(np.abs((a - b)[part].mean(axis=(0, 1))).max()) for part in parts_of(a))
-
-
 def change_in_codes(a: np.ndarray, b: np.ndarray) -> float:
     height, width = (8 * (side // 8) for side in a.shape[:2])
     squares = (a - b)[:height, :width].reshape(height // 8, 8, width // 8, 8, 3).mean(axis=(1, 3))
@@ -177,6 +175,7 @@ class Change:
     moved_px: float = 0.0
     colours_px: float = 0.0  # between blue and red
     blur_px: float = 0.0
+    light_codes: float = 0.0
 
 
 def change_in_pixels(a: np.ndarray, b: np.ndarray) -> Change:
@@ -194,6 +193,8 @@ def change_in_pixels(a: np.ndarray, b: np.ndarray) -> Change:
             found, *_ = np.linalg.lstsq(np.stack(terms, axis=1), (b - a)[part][..., channel].ravel(), rcond=None)
             shifts.append(found[:2])
             blurs.append(4 * np.sqrt(abs(found[2])))
+            light = found[3] * a[part][..., channel].mean() + found[4]
+            most.light_codes = max(most.light_codes, abs(float(light)))
         most.moved_px = max(most.moved_px, *(float(np.hypot(*shift)) for shift in shifts))
         most.colours_px = max(most.colours_px, float(np.hypot(*(shifts[2] - shifts[0]))))
         most.blur_px = max(most.blur_px, *(float(blur) for blur in blurs))
@@ -202,7 +203,7 @@ def change_in_pixels(a: np.ndarray, b: np.ndarray) -> Change:
 
 def measured(effect: str, unit: str, a: np.ndarray, b: np.ndarray) -> float:
     if effect in ("vignetting", "coatings"):
-        return change_in_light(a, b)
+        return change_in_pixels(a, b).light_codes
     if unit == "codes":
         return change_in_codes(a, b)
     change = change_in_pixels(a, b)
@@ -231,25 +232,25 @@ def main() -> None:
             camera = shot.camera.replace(model=model)
             return codes(rc.render(shot.scene, camera, spp=words.spp, device=words.device, seed=seed, effects=effects))
 
-        everything = {"dispersion", "coatings", "ghosts", "diffraction"}
-        pictures = {"all": taken(everything), "noise": taken(everything, seed=2)}
+        pictures = {"full noise": taken(set(), seed=2)}
         for effect in EFFECTS:
-            if effect in foreseen:
-                left_out = {"-motion_blur"} if effect == "motion_blur" else set()
-                pictures[effect] = taken(everything - {effect} | left_out)
+            pictures[effect], pictures[effect + " noise"] = (taken({effect}, seed=seed) for seed in (1, 2))
+        if "motion_blur" in foreseen:
+            pictures["still"] = taken({"-motion_blur"})
         for model in ("full", "pinhole", "thin", "mapped"):
             try:
                 pictures[model] = taken(set(), model)
             except rc.InputError:  # the lens sees more than that model can
-                pictures[model] = np.zeros_like(pictures["all"])
-        pictures["full noise"] = taken(set(), seed=2)
+                pictures[model] = np.zeros_like(pictures["full noise"])
         for effect, decision in foreseen.items():
-            if effect not in pictures and effect not in MODELS:
-                continue
             if effect in MODELS:
                 pairs = (MODELS[effect], ("full", "full noise"))
+            elif effect == "motion_blur":
+                pairs = (("still", "full"), ("full", "full noise"))
+            elif effect in EFFECTS:
+                pairs = (("full", effect), (effect, effect + " noise"))
             else:
-                pairs = ((effect, "all"), ("all", "noise"))
+                continue
             change, least = (measured(effect, decision.unit, pictures[a], pictures[b]) for a, b in pairs)
             size = float(np.sqrt(max(change**2 - least**2, 0)))
             needed = size >= decision.threshold
