@@ -71,9 +71,11 @@ public:
         check_memory(camera.film, request.settings.layers);
         const auto session = make_session(words_.device);  // first, because reading a scene may take long
         shot::Shot shot = set_up_shot(request, std::move(camera));
+        std::string decisions;
         if (request.settings.effects.is_automatic) {
             const Plan plan = planned(*session, shot, request, {});
             apply(plan, shot.camera, request.settings);
+            decisions = summary_of(plan);
             if (words_.explains) std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
         }
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens))
@@ -81,7 +83,7 @@ public:
         // Until here nothing is on disk, and a signal may simply end the program.
         const Interrupt interrupt;
         const Image image = expose(*session, shot, request);
-        write(image, shot, request);
+        write(image, shot, request, decisions);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         std::fputs(summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
     }
@@ -187,8 +189,10 @@ private:
         }
     }
 
-    void write(const Image& image, const shot::Shot& shot, const shot::ShotRequest& request) const {
-        const auto metadata = io::metadata_of(shot.camera, request.settings);
+    void write(const Image& image, const shot::Shot& shot, const shot::ShotRequest& request,
+               const std::string& decisions) const {
+        io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
+        metadata.plan = decisions;
         std::string written;
         for (const std::string& path : words_.outputs) {
             try {

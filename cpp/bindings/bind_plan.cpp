@@ -29,12 +29,12 @@ struct Planned {
     std::string model;
     std::vector<std::string> effects;
     std::vector<Decision> decisions;
-    std::string text;
+    std::string text, summary;
 };
 
 Planned planned_of(const Plan& plan) {
     const std::string model = io::name_of(plan.model);
-    Planned planned{model, names_of(plan.effects), {}, text_of(plan, model)};
+    Planned planned{model, names_of(plan.effects), {}, text_of(plan, model), summary_of(plan)};
     for (const PlanDecision& d : plan.decisions)
         planned.decisions.push_back({d.name, name_of(d.unit), d.by == DecidedBy::user ? "user" : "planner", d.reason,
                                      d.size, d.threshold, d.time, d.is_kept});
@@ -90,6 +90,7 @@ void bind_plan(py::module_& m) {
         .def_readonly("model", &Planned::model, "The cheapest camera model that looks like every surface of the lens.")
         .def_readonly("effects", &Planned::effects, "Names, as render takes them.")
         .def_readonly("decisions", &Planned::decisions)
+        .def_readonly("summary", &Planned::summary, "What was decided, in a line, as it is in a picture's metadata.")
         .def("__str__", [](const Planned& p) { return p.text; })
         .def("__repr__", [](const Planned& p) {
             std::string names;

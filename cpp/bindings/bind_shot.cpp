@@ -34,10 +34,12 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
 }
 
 py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::string& transport, float clamp_cd_m2,
-                  const std::vector<std::string>& effects, const std::string& illuminant, const std::string& denoiser) {
+                  const std::vector<std::string>& effects, const std::string& illuminant, const std::string& plan,
+                  const std::string& denoiser) {
     py::dict entries;
     io::ImageMetadata metadata =
         io::metadata_of(camera, settings_from(spp, seed, 0, transport, clamp_cd_m2, 0, {}, effects, illuminant));
+    metadata.plan = plan;
     metadata.denoiser = denoiser;
     for (const auto& [name, value] : metadata.entries()) entries[py::str(name)] = value;
     return entries;
@@ -48,7 +50,7 @@ py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::
 void bind_shot(py::module_& m) {
     m.def("_read_shot", &read_shot, "path"_a, "device"_a, "progress"_a);
     m.def("_metadata", &metadata, "camera"_a, "spp"_a, "seed"_a, "transport"_a, "clamp_cd_m2"_a, "effects"_a,
-          "illuminant"_a, "denoiser"_a);
+          "illuminant"_a, "plan"_a, "denoiser"_a);
 }
 
 }  // namespace realcam::bindings

@@ -368,6 +368,9 @@ public:
         if (effects.diffraction) set_diffraction(tracer, last);
         if (!pupil_) {
             camera_detail::validate_ideal(camera.lens, camera.model);
+            axis_irradiance_ = last && !last->pupil_ && last->camera_.lens == camera.lens
+                                   ? last->axis_irradiance_
+                                   : static_cast<float>(axis_irradiance(camera.lens));
             if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
             return;
         }
@@ -404,7 +407,7 @@ public:
         view.thick = thick_lens_of(lens, data);
         if (map_) view.map = map_->view();
         view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
-        if (!pupil_) view.axis_irradiance = static_cast<float>(axis_irradiance(lens));
+        view.axis_irradiance = axis_irradiance_;
         if (pupil_) view.pupil = pupil_->view();
         view.lens = path_.view();
         const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
@@ -535,6 +538,7 @@ private:
     std::vector<CoatingPolynomials<kSpectrumTerms>> coatings_to_scene_, coatings_to_film_;
     std::vector<double> pupil_wavelengths_;
     std::shared_ptr<const Pupil> pupil_;
+    float axis_irradiance_ = 0;  ///< of an ideal lens
     std::shared_ptr<const LensMap> map_;  ///< of the model mapped_lens
     std::shared_ptr<const GhostTables> ghosts_;  ///< of a picture with ghosts
     std::shared_ptr<const DiffractionTables> diffraction_;  ///< of a picture with diffraction, as the next

@@ -84,6 +84,7 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
     if (!effects.empty()) entries.emplace_back("realcam:effects", effects);
     if (!illuminant.empty()) entries.emplace_back("realcam:illuminant", illuminant);
     if (!coatings.empty()) entries.emplace_back("realcam:coatings", coatings);
+    if (!plan.empty()) entries.emplace_back("realcam:plan", plan);
     if (!denoiser.empty()) entries.emplace_back("realcam:denoiser", denoiser);
     return entries;
 }

@@ -27,6 +27,7 @@ struct ImageMetadata {
     double clamp_cd_m2 = 0;
     std::string effects, illuminant;  ///< names with commas, and as it was written; empty: none
     std::string coatings;  ///< of the effects coatings and ghosts: coating_summary; empty: without
+    std::string plan;  ///< what a planner has decided, and by which sizes; empty: there was none
     std::string denoiser;  ///< what has changed the exposure since it was taken; empty: nothing
 
     /// Names "realcam:..." and values, as they go into every format.

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "../optics/lens_path.hpp"
@@ -30,6 +31,7 @@ struct LensErrors {
     ModelError pinhole, thin, mapped, thick;
     double lateral_colour_px = 0;  ///< between blue and red light
     double axial_colour_px = 0;  ///< difference of the diameters of their discs of confusion
+    double film_sine = 0;  ///< of half the angle at which the film's middle sees the aperture
 };
 
 namespace lens_errors_detail {
@@ -81,6 +83,7 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
     const double sharp = depths[depths.size() / 2];
     const LensPath<float> blue(lens, LightDirection::to_scene, kBlue_nm), red(lens, LightDirection::to_scene, kRed_nm);
     LensErrors errors;
+    errors.film_sine = std::sqrt(static_cast<double>(ideal.axis_irradiance) / std::numbers::pi);
     for (const double share : {0.0, 0.25, 0.5, 0.7, 0.85, 0.97}) {
         const Vec2f film = {static_cast<float>(share) * full.film_half_width,
                             static_cast<float>(share) * full.film_half_height};

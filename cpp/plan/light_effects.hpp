@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "../camera/camera.hpp"
 #include "../optics/axial_share.hpp"
@@ -16,6 +17,8 @@ namespace REALCAM_NAMESPACE {
 // By how much ghosts, coatings and the edges of the aperture change codes of the developed picture, from closed forms.
 
 namespace light_effects_detail {
+
+inline constexpr double kGreen_mm = 550e-6;
 
 inline double brightest(const SceneFacts& facts) {
     double most = 0;
@@ -64,16 +67,16 @@ struct BrightestGhost {
 };
 
 /// Of the lights, by first order: light of a pencil of height h fills a disc of |film distance - back focal distance| /
-/// |focal length| times h. And the veil that all ghosts make of what the film sees. Over the darkest part of the
-/// picture.
+/// |focal length| times h, about the ghost's image of the lamp. And the veil that all ghosts make of what the film
+/// sees. Over the darkest part of the picture.
 inline BrightestGhost ghost_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const LensSystem& lens = camera.lens;
     const double radius = 0.5 * first_order(lens, lens.wavelength_nm).entrance_pupil_diameter;
     const double pixel = camera.film.width_mm / camera.film.width;
-    double lux = 0;  // on the lens, of lights that ghosts may come from
+    std::vector<SeenLight> lights;  // that ghosts may come from
     for (const SeenLight& light : facts.lights)
-        if (is_near_frame(camera, light, 3)) lux += light.illuminance_lux * -light.from.z;
+        if (is_near_frame(camera, light, 3)) lights.push_back(light);
     BrightestGhost brightest_ghost;
     double brightest_value = 0, veil = 0;
     for (const GhostPair pair : ghost_pairs(lens)) {
@@ -82,7 +85,13 @@ inline BrightestGhost ghost_codes(const Camera& camera, const SceneFacts& facts)
         const double growth = std::fabs((lens.film_distance - path.back_focal_distance) / path.effective_focal_length);
         // A disc that is larger than the film lights it with what falls in.
         const double disc = std::max(growth * radius, pixel / 2);
-        const double value = value_of(camera, lux * share * radius * radius / (disc * disc));
+        double lux = 0;
+        for (const SeenLight& light : lights) {
+            const double image = light.solid_angle_sr * path.effective_focal_length * path.effective_focal_length;
+            const double pencil = std::numbers::pi * radius * radius, area = std::numbers::pi * disc * disc + image;
+            lux += light.illuminance_lux * -light.from.z * share * pencil / area;
+        }
+        const double value = value_of(camera, lux);
         veil += share * std::min(1.0, 1 / (growth * growth)) * mean_value(facts);
         if (value > brightest_value) {
             brightest_value = value;
@@ -100,13 +109,12 @@ inline double starburst_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const LensSystem& lens = camera.lens;
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    constexpr double kGreen_mm = 550e-6;
     const double spread = kGreen_mm * data.f_number / std::pow(std::numbers::pi, 3);
     const double away = 2 * camera.film.width_mm / camera.film.width;
     const double radius = 0.5 * data.entrance_pupil_diameter;
     double value = 2 * spread / away * std::max(brightest(facts) - 1, 0.0);
     for (const SeenLight& light : facts.lights) {
-        if (!light.is_point || !is_near_frame(camera, light, 1)) continue;
+        if (!light.is_point() || !is_near_frame(camera, light, 1)) continue;
         const double flux = light.illuminance_lux * std::numbers::pi * radius * radius;  // lux mm^2
         value = std::max(value, value_of(camera, flux * spread / (away * away * away)));
     }
@@ -114,12 +122,9 @@ inline double starburst_codes(const Camera& camera, const SceneFacts& facts) {
     return code_of(dark + value) - code_of(dark);
 }
 
-/// Diameter of the disc within Airy's first dark ring, as the film point in the middle sees it.
-inline double airy_diameter_px(const Camera& camera) {
-    const LensSystem& lens = camera.lens;
-    // Half the aperture's angle at the film as the exposure on the axis has it: pi sine^2.
-    const double sine = std::sqrt(axis_irradiance(lens) / std::numbers::pi);
-    return 1.22 * 550e-6 / sine * camera.film.width / camera.film.width_mm;
+/// Diameter of the disc within Airy's first dark ring, in the middle of the film. `film_sine`: see LensErrors.
+inline double airy_diameter_px(const Camera& camera, double film_sine) {
+    return 1.22 * light_effects_detail::kGreen_mm / film_sine * camera.film.width / camera.film.width_mm;
 }
 
 }  // namespace REALCAM_NAMESPACE

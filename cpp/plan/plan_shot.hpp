@@ -102,7 +102,7 @@ private:
     }
 
     void decide_diffraction() {
-        const double airy = airy_diameter_px(camera_), star = starburst_codes(camera_, facts_);
+        const double airy = airy_diameter_px(camera_, errors_.film_sine), star = starburst_codes(camera_, facts_);
         if (airy / request_.thresholds.pixels >= star / request_.thresholds.codes)
             decide("diffraction", airy, SizeUnit::pixels, "Airy's disc is " + px(airy) + " wide");
         else

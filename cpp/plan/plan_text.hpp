@@ -25,6 +25,16 @@ inline std::string number(double value, int digits) {
 
 }  // namespace plan_text_detail
 
+/// In a line, for a picture's metadata: "ghosts 0.3 codes left out, defocus 31 px kept".
+inline std::string summary_of(const Plan& plan) {
+    std::string text;
+    for (const PlanDecision& decision : plan.decisions)
+        text += (text.empty() ? "" : ", ") + decision.name + ' ' + plan_text_detail::number(decision.size, 3) + ' ' +
+                name_of(decision.unit) + (decision.is_kept ? " kept" : " left out") +
+                (decision.by == DecidedBy::user ? " as asked" : "");
+    return text;
+}
+
 /// A table for people. `model_name`: of the plan's camera model.
 inline std::string text_of(const Plan& plan, const std::string& model_name) {
     using plan_text_detail::number;

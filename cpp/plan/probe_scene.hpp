@@ -17,11 +17,11 @@ inline constexpr double kLongSide = 48;
 inline constexpr std::size_t kLooked = 16;
 
 /// Adds a light of the scene; `towards`: from the lens, in scene axes, metres; of a sun a direction.
-inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towards, double lux, bool is_point,
+inline void add_light(const InverseAffine<double>& camera_from_scene, Vec3d towards, double lux, double solid_angle_sr,
                       bool is_sun, SceneFacts& facts) {
     if (!(lux > 0)) return;
     const Vec3d from = normalized(camera_from_scene.direction(towards));
-    facts.lights.push_back({from, lux, is_point, is_sun ? kInfinity : length(towards)});
+    facts.lights.push_back({from, lux, is_sun ? kInfinity : length(towards), solid_angle_sr});
 }
 
 /// Whether anything is in the way to a light. `camera`: a pinhole, turned to it.
@@ -39,8 +39,9 @@ inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, Re
     camera.film.width_mm = camera.film.height_mm = 1e-3;
     settings.spp = 1;
     const Image image = take_picture(session, scene, camera, settings, {});
-    // A lamp's own surface is not in its way.
-    return static_cast<double>(image.layers[0].values[0]) < pupil_m + 0.999 * light.distance_m - 1e-3;
+    // A lamp's own surface is not in its way, which bulges towards the lens by its radius at most.
+    const double nearest = light.distance_m * (0.999 - 2 * std::sqrt(light.solid_angle_sr)) - 1e-3;
+    return static_cast<double>(image.layers[0].values[0]) < pupil_m + nearest;
 }
 
 /// Leaves those that the lens sees.
@@ -59,23 +60,33 @@ inline double luminance_of(Color c) {
     return static_cast<double>(luminance(c));
 }
 
-/// Point lights and emissive triangles of one object.
+/// Point lights of one object, and for each of its materials that emit the triangles together.
 inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_object, Vec3d lens_m,
                           const InverseAffine<double>& camera_from_scene, SceneFacts& facts) {
     for (const ScenePointLight& point : object.points) {
         const Vec3d way = scene_from_object.point(point.position_m) - lens_m;
-        add_light(camera_from_scene, way, luminance_of(point.intensity) / dot(way, way), true, false, facts);
+        add_light(camera_from_scene, way, luminance_of(point.intensity) / dot(way, way), 0, false, facts);
     }
+    struct Lamp {
+        double solid_angle = 0;
+        Vec3d way = {0, 0, 0};  ///< mean over it, times it
+    };
+    std::vector<Lamp> lamps(object.materials.size());
     for (const Triangle& triangle : object.triangles) {
-        const Material& material = object.materials[triangle.material];
-        if (!material.emits()) continue;
+        if (!object.materials[triangle.material].emits()) continue;
         const auto corner = [&](int k) { return scene_from_object.point(object.positions_m[triangle.vertices[k]]); };
         const Vec3d a = corner(0), edges = cross(corner(1) - a, corner(2) - a);
         const Vec3d way = (1.0 / 3) * (a + corner(1) + corner(2)) - lens_m;
-        const double distance2 = dot(way, way),
-                     cosine_area = 0.5 * std::max(0.0, -dot(edges, way)) / std::sqrt(distance2);
-        add_light(camera_from_scene, way, luminance_of(material.emission) * cosine_area / distance2, false, false,
-                  facts);
+        const double distance = length(way), cosine_area = 0.5 * std::max(0.0, -dot(edges, way)) / distance;
+        const double solid_angle = cosine_area / (distance * distance);
+        lamps[triangle.material].solid_angle += solid_angle;
+        lamps[triangle.material].way = lamps[triangle.material].way + solid_angle * way;
+    }
+    for (std::size_t m = 0; m < lamps.size(); ++m) {
+        const double solid_angle = lamps[m].solid_angle;
+        if (solid_angle > 0)
+            add_light(camera_from_scene, (1 / solid_angle) * lamps[m].way,
+                      luminance_of(object.materials[m].emission) * solid_angle, solid_angle, false, facts);
     }
 }
 
@@ -126,8 +137,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
         add_lights_of(*instance.object, instance.transform_at(camera.exposure().begin_s), lens_m, camera_from_scene,
                       facts);
     for (const SunLight& sun : scene.static_geometry->suns)
-        add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), true, true,
-                  facts);
+        add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), 0, true, facts);
     settings.layers = {Layer::depth_middle};
     drop_hidden(session, scene, camera, settings, scene_from_camera, facts.lights);
     return facts;

@@ -16,8 +16,10 @@ struct SeenTile {
 struct SeenLight {
     Vec3d from;  ///< unit, towards the light, in the axes of the lens
     double illuminance_lux;  ///< across that direction, at the lens
-    bool is_point;           ///< without any size: no ray from the film meets it
     double distance_m;       ///< infinite: a sun's
+    double solid_angle_sr;   ///< 0: without any size, so that no ray from the film meets it
+
+    bool is_point() const { return solid_angle_sr == 0; }
 };
 
 /// A scene as one camera sees it: all that the planner knows of it.

@@ -1036,6 +1036,7 @@ def _metadata(
     clamp_cd_m2: float,
     effects: Sequence[str],
     illuminant: str,
+    plan: str,
     denoiser: str,
 ) -> dict[str, str]: ...
 def _expose(
@@ -1103,6 +1104,8 @@ class Plan:
     def effects(self) -> list[str]: ...
     @property
     def decisions(self) -> list[PlanDecision]: ...
+    @property
+    def summary(self) -> str: ...
 
 def _plan(
     scene: Scene,

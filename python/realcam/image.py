@@ -23,7 +23,7 @@ class Image:
     layers: what was asked for by name (docs/layers.md), arrays of (H, W), (H, W, 2) or (H, W, 3), float32, and uint32
     for ids and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked
     for. transport, clamp_cd_m2, effects, illuminant: as render had them. denoiser: what has changed the pixels since
-    they were taken; empty: nothing.
+    they were taken; empty: nothing. plan: what the effect "auto" has decided (Plan.summary); empty: it was not asked.
     """
 
     pixels: np.ndarray
@@ -40,6 +40,7 @@ class Image:
     effects: tuple[str, ...] = ()
     illuminant: str = ""
     denoiser: str = ""
+    plan: str = ""
 
     def __eq__(self, other: object) -> bool:
         """Whether pictures, cameras and settings are the same; what it cost to take them does not count."""
@@ -104,6 +105,7 @@ class Image:
             self.clamp_cd_m2,
             list(self.effects),
             self.illuminant,
+            self.plan,
             self.denoiser,
         )
         return entries
@@ -123,6 +125,7 @@ def image_of(
     clamp_cd_m2: float,
     effects: Iterable[str] = (),
     illuminant: str = "",
+    plan: str = "",
 ) -> Image:
     """What the core gives as a picture."""
     pixels, depth, stats, layers, object_names, material_names = picture
@@ -140,4 +143,5 @@ def image_of(
         clamp_cd_m2=clamp_cd_m2,
         effects=tuple(effects),
         illuminant=illuminant,
+        plan=plan,
     )

@@ -48,6 +48,8 @@ def write_image(image: Image, path: str | os.PathLike[str], tone: str) -> None:
             image.denoiser,
             entries.get("realcam:effects", ""),
             entries.get("realcam:illuminant", ""),
+            entries.get("realcam:coatings", ""),
+            entries.get("realcam:plan", ""),
         )
     except TypeError:
         raise InputError(

@@ -65,9 +65,10 @@ def render(
     """
     warn_of_no_light(scene)
     wanted, light = effect_list(effects), illuminant_text(illuminant)
+    decisions = ""
     if "auto" in wanted:
         choice = plan(scene, camera, device=device, seed=seed, max_bounces=max_bounces, threads=threads, effects=wanted)
-        camera, wanted = camera.replace(model=choice.model), choice.effects
+        camera, wanted, decisions = camera.replace(model=choice.model), choice.effects, choice.summary
         if not {"dispersion", "diffraction"} & set(wanted):
             light = ""
     warn_of_effects(camera, wanted)
@@ -89,7 +90,7 @@ def render(
             light,
             callback,
         )
-        return image_of(picture, camera, spp, seed, transport, clamp_cd_m2, wanted, light)
+        return image_of(picture, camera, spp, seed, transport, clamp_cd_m2, wanted, light, decisions)
 
     if progress is not True:
         return taken(progress or None)

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import copy
+import json
+import os
+import subprocess
+import sys
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
 import realcam as rc
+from realcam import _pictures
 
 from . import scenes
 
@@ -143,6 +149,20 @@ def test_an_automatic_picture_is_that_of_its_plan() -> None:
     assert list(automatic.effects) == plan.effects
 
 
+def test_a_picture_says_what_was_decided(tmp_path: Path) -> None:
+    scene, camera = board(3.0), camera_of(f_number=2.1, focus_m=1.0, film=rc.Film(3.6, 2.4, (45, 30)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        plan = rc.plan(scene, camera, device="cpu")
+        picture = rc.render(scene, camera, spp=1, device="cpu", effects="auto")
+    assert picture.metadata()["realcam:plan"] == picture.plan == plan.summary
+    picture.save(tmp_path / "picture.exr")
+    written = dict(_pictures.read_film(os.fsencode(tmp_path / "picture.exr"))[1])
+    # All that the file says, but for the version of the library that wrote it.
+    assert {name: written[name] for name in picture.metadata()} == picture.metadata()
+    assert "realcam:plan" not in rc.render(scene, camera, spp=1, device="cpu").metadata()
+
+
 def test_a_plan_is_a_value() -> None:
     plan = rc.plan(board(3.0), camera_of(), device="cpu")
     assert copy.deepcopy(plan) == plan
@@ -185,3 +205,47 @@ def test_a_lamp_behind_an_object_makes_neither_ghosts_nor_stars() -> None:
         of = decisions(dark.with_point_light(place, (100.0, 100.0, 100.0)), camera)
         assert of["ghosts"].is_kept == is_seen
         assert of["diffraction"].is_kept == is_seen
+
+
+def command(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, "-m", "realcam", *words], capture_output=True, text=True, check=False)
+
+
+@pytest.fixture
+def shot_file(tmp_path: Path) -> Path:
+    """A quad in an .obj, and a shot of it."""
+    corners = scenes.quad((0, 0, -3), 100.0)[0]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners] + ["f 1 2 3", "f 1 3 4"]
+    (tmp_path / "board.obj").write_text("\n".join(lines) + "\n")
+    text = 'format = 1\nscene = "board.obj"\nenvironment_cd_m2 = 100\nfocus_m = 1\nresolution = [45, 30]\n'
+    (tmp_path / "shot.toml").write_text(text + "film_mm = [3.6, 2.4]\nposition_m = [0, 0, 0]\nlook_at_m = [0, 0, -1]\n")
+    return tmp_path / "shot.toml"
+
+
+def test_both_programs_plan_alike(shot_file: Path) -> None:
+    printed = command("plan", str(shot_file), "--device", "cpu", "--json")
+    assert printed.returncode == 0, printed.stderr
+    told = json.loads(printed.stdout)
+    shot = rc.Shot.load(shot_file, device="cpu")
+    plan = rc.plan(shot.scene, shot.camera, device="cpu")
+    assert (told["model"], told["effects"]) == (plan.model, plan.effects)
+    assert [d["effect"] for d in told["decisions"]] == [d.effect for d in plan.decisions]
+    np.testing.assert_allclose([d["size"] for d in told["decisions"]], [d.size for d in plan.decisions], rtol=1e-5)
+    assert command("plan", str(shot_file), "--device", "cpu").stdout == str(plan)
+
+
+def test_explanations_are_printed_and_kept(shot_file: Path, tmp_path: Path) -> None:
+    out = tmp_path / "picture.exr"
+    words = ["--device", "cpu", "--effects", "auto", "--explain", "--spp", "1", "-o", str(out)]
+    printed = command("render", str(shot_file), *words)
+    assert printed.returncode == 0, printed.stderr
+    shot = rc.Shot.load(shot_file, device="cpu")
+    plan = rc.plan(shot.scene, shot.camera, device="cpu")
+    assert printed.stdout.startswith(str(plan))
+    assert dict(_pictures.read_film(os.fsencode(out))[1])["realcam:plan"] == plan.summary
+
+
+def test_an_unknown_quality_is_said(shot_file: Path) -> None:
+    printed = command("plan", str(shot_file), "--quality", "best")
+    assert printed.returncode == 2
+    assert printed.stderr == 'realcam: error: --quality: "best": draft, photo or reference is wanted\n'
