@@ -185,7 +185,9 @@ def change_in_pixels(a: np.ndarray, b: np.ndarray) -> Change:
     laplacian = np.gradient(down, axis=0) + np.gradient(across, axis=1)
     most = Change()
     for part in parts_of(a):
-        if (np.hypot(down, across)[part] > 4).sum() < 150:
+        # Enough edges in both directions, or a shift along the edges could be any.
+        slopes = np.stack([t[part].ravel() for t in (across, down)])
+        if np.linalg.eigvalsh(slopes @ slopes.T / slopes.shape[1])[0] < 1:
             continue
         shifts, blurs = [], []
         for channel in range(3):
