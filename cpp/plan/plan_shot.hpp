@@ -65,15 +65,27 @@ public:
     }
 
 private:
-    /// `size_text`: what is so large, for the reason.
-    void decide(const char* name, double size, SizeUnit unit, const std::string& what) {
+    /// Whether the effect is one of surfaces, which an ideal lens has not.
+    bool is_impossible(const EffectInfo& effect) const {
+        EffectChoice alone;
+        alone.*effect.member = true;
+        return needs_surfaces(alone) && !request_.may_choose_model && camera_.model != CameraModel::full_lens;
+    }
+    static bool needs_surfaces(const EffectChoice& effects) {
+        return effects.dispersion || effects.coatings || effects.have_ghosts();
+    }
+
+    /// `reason`: what is so large.
+    void decide(const char* name, double size, SizeUnit unit, std::string reason) {
         const EffectInfo& effect = effect_named(name);
         const double threshold = unit == SizeUnit::pixels ? request_.thresholds.pixels : request_.thresholds.codes;
         const bool is_named = (request_.effects.named & bit_of(effect)) != 0;
-        const bool is_kept = is_named ? request_.effects.*effect.member : size >= threshold;
+        const bool is_kept = is_named ? request_.effects.*effect.member : size >= threshold && !is_impossible(effect);
+        if (!is_named && size >= threshold && !is_kept) reason += "; an ideal lens cannot show it";
         plan_.effects.*effect.member = is_kept;
         plan_.decisions.push_back({name, size, unit, threshold, is_kept,
-                                   is_named ? DecidedBy::user : DecidedBy::planner, time_of(name, camera_.lens), what});
+                                   is_named ? DecidedBy::user : DecidedBy::planner, time_of(name, camera_.lens),
+                                   reason});
     }
 
     static std::string px(double size) { return short_size(size) + " px"; }
@@ -94,11 +106,12 @@ private:
 
     void decide_ghosts() {
         const BrightestGhost ghost = ghost_codes(camera_, facts_);
+        const auto surface = [](int number) { return std::to_string(number + 1); };
         decide("ghosts", ghost.codes, SizeUnit::codes,
                ghost.pair.first < 0
-                   ? "the lens has no two surfaces that reflect"
+                   ? "the veil of all ghosts brings " + codes(ghost.codes) + " to what is dark"
                    : "ghosts and their veil bring " + codes(ghost.codes) + " to what is dark, most by surfaces " +
-                         std::to_string(ghost.pair.first + 1) + " and " + std::to_string(ghost.pair.second + 1));
+                         surface(ghost.pair.first) + " and " + surface(ghost.pair.second));
     }
 
     void decide_diffraction() {
@@ -122,12 +135,10 @@ private:
 
     void decide_model() {
         const PlanThresholds& thresholds = request_.thresholds;
-        const EffectChoice& effects = plan_.effects;
-        const bool needs_surfaces = effects.dispersion || effects.coatings || effects.have_ghosts();
         CameraModel model = CameraModel::full_lens;
         if (!request_.may_choose_model)
             model = camera_.model;
-        else if (!needs_surfaces)
+        else if (!needs_surfaces(plan_.effects))
             model = errors_.pinhole.is_within(thresholds)  ? CameraModel::pinhole
                     : errors_.thin.is_within(thresholds)   ? CameraModel::thin_lens
                     : errors_.mapped.is_within(thresholds) ? CameraModel::mapped_lens
@@ -136,11 +147,12 @@ private:
         plan_.model = model;
         const bool is_pinhole = model == CameraModel::pinhole, is_full = model == CameraModel::full_lens;
         const bool has_map = is_full || model == CameraModel::mapped_lens || model == CameraModel::thick_lens;
-        const DecidedBy by = request_.may_choose_model && !needs_surfaces ? DecidedBy::planner : DecidedBy::user;
+        const DecidedBy by = request_.may_choose_model ? DecidedBy::planner : DecidedBy::user;
         const auto add = [&](const char* name, double size, SizeUnit unit, bool is_kept, const std::string& reason) {
-            plan_.decisions.push_back({name, size, unit,
-                                       unit == SizeUnit::pixels ? thresholds.pixels : thresholds.codes, is_kept, by, 0,
-                                       reason});
+            const double threshold = unit == SizeUnit::pixels ? thresholds.pixels : thresholds.codes;
+            const bool comes_along = is_kept && size < threshold && by == DecidedBy::planner;
+            plan_.decisions.push_back({name, size, unit, threshold, is_kept, by, 0,
+                                       reason + (comes_along ? "; it comes along with the camera model" : "")});
         };
         add("defocus", errors_.pinhole.blur_px, SizeUnit::pixels, !is_pinhole,
             "discs of confusion are up to " + px(errors_.pinhole.blur_px) + " wide");

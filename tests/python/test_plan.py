@@ -128,6 +128,17 @@ def test_what_is_named_stays() -> None:
     assert kept["ghosts"].by == "planner"
 
 
+def test_a_chosen_model_stays_and_takes_what_it_can() -> None:
+    camera = camera_of(f_number=5.6, model="thin", film=rc.Film(3.6, 2.4, (45, 30)))
+    plan = rc.plan(board(10.0, radiance=150), camera, device="cpu")
+    assert plan.model == "thin"
+    coatings = next(d for d in plan.decisions if d.effect == "coatings")
+    assert coatings.size > 1
+    assert not coatings.is_kept
+    assert "an ideal lens cannot show it" in coatings.reason
+    rc.render(board(10.0, radiance=150), camera, spp=1, device="cpu", effects="auto")
+
+
 def test_qualities_are_thresholds() -> None:
     scene, camera = board(1e4), camera_of(f_number=5.6)
     for quality, pixels, codes in (("draft", 2.0, 4.0), ("photo", 0.5, 1.0), ("reference", 0.1, 0.25)):
