@@ -171,13 +171,15 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
 }
 
 void add_render_options(CLI::App& command, RenderWords& w) {
+    const std::string group = command.option_defaults()->get_group();
+    add_shot_options(command, w);
+    command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
+    command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
+    command.option_defaults()->group(group);
     command.add_option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated")
         ->type_name("FILE")
         ->required()
         ->allow_extra_args(false);
-    add_shot_options(command, w);
-    command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
-    command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
 }
 
 shot::ShotRequest understand(const RenderWords& w) {
