@@ -112,13 +112,9 @@ private:
     /// Meters first, because sizes in codes depend on the exposure.
     static Plan planned(Session& session, shot::Shot& shot, const shot::ShotRequest& request,
                         const PlanThresholds& thresholds) {
-        shot::ShotRequest without_effects = request;
-        without_effects.settings.effects = {};
-        without_effects.settings.illuminant.reset();
-        const bool was_metered = shot.is_metered;
-        if (!was_metered) meter(shot, without_effects, session, {});
+        meter(shot, request, session, {});
         const PlanRequest wanted{request.settings.effects, thresholds, shot.camera.model == CameraModel::full_lens};
-        return make_plan(session, shot.scene, shot.camera, without_effects.settings, wanted, fast_pupil_tracer());
+        return make_plan(session, shot.scene, shot.camera, request.settings, wanted, fast_pupil_tracer());
     }
 
     static std::string json_of(const Plan& plan) {

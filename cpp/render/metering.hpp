@@ -40,6 +40,10 @@ inline double metered_exposure_time(Session& session, const Assembly& scene, Cam
     camera.exposure_time_s = 1;
     settings.spp = 16;
     settings.layers = {};
+    if (settings.effects.is_automatic) {  // which they are depends on the exposure
+        settings.effects = {};
+        settings.illuminant.reset();
+    }
     const double per_second = metered_exposure(take_picture(session, scene, camera, settings, progress));
     if (!(per_second > 0) || !std::isfinite(per_second))
         throw InputError("no light reaches the film, so that no exposure can be metered; an exposure time is wanted");

@@ -1078,7 +1078,7 @@ def _render(
 def _effect_notices(lens: Lens, effects: Sequence[str]) -> list[str]: ...
 
 @final
-class PlanDecision:
+class PlanDecision(_Value):
     @property
     def effect(self) -> str: ...
     @property
@@ -1097,7 +1097,7 @@ class PlanDecision:
     def reason(self) -> str: ...
 
 @final
-class Plan:
+class Plan(_Value):
     @property
     def model(self) -> str: ...
     @property

@@ -245,6 +245,16 @@ def test_both_programs_plan_alike(shot_file: Path) -> None:
     assert command("plan", str(shot_file), "--device", "cpu").stdout == str(plan)
 
 
+def test_shot_files_may_ask_for_a_plan(shot_file: Path) -> None:
+    shot_file.write_text(shot_file.read_text() + 'effects = ["auto", "-coatings"]\n')
+    shot = rc.Shot.load(shot_file, device="cpu")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        picture = shot.render(device="cpu")
+    assert "coatings" not in picture.effects
+    assert "coatings" in picture.plan
+
+
 def test_explanations_are_printed_and_kept(shot_file: Path, tmp_path: Path) -> None:
     out = tmp_path / "picture.exr"
     words = ["--device", "cpu", "--effects", "auto", "--explain", "--spp", "1", "-o", str(out)]
