@@ -17,14 +17,9 @@ import warnings
 import numpy as np
 import realcam as rc
 from realcam.bench import machine
+from srgb import srgb_codes
 
 SIDE = 640
-
-
-def codes(irradiance: np.ndarray, white: float) -> np.ndarray:
-    """sRGB's, without rounding."""
-    linear = np.clip(irradiance / white, 0, 1)
-    return 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
 
 def main() -> None:
@@ -41,7 +36,7 @@ def main() -> None:
     taking = {"device": words.device, "threads": threads}
     reference = rc.render(scene, camera, spp=8192 if words.device != "cpu" else 2048, effects="ghosts=0", **taking)
     white = 4 * float(np.quantile(reference.pixels.max(axis=2), 0.999))
-    expected = codes(reference.pixels.astype(np.float64), white)
+    expected = srgb_codes(reference.pixels.astype(np.float64) / white)
     where = machine()
     print(f"{where['processor']}, {words.device}; realcam {where['commit']}; {where['date']}.", end=" ")
     print("Made by benchmarks/ghosts.py.\n")
@@ -60,7 +55,7 @@ def main() -> None:
                 times.append(time.perf_counter() - start)
             least.append(min(times))
         picture = rc.render(scene, camera, spp=spp, effects="ghosts=0", seed=1, **taking)
-        noise = float(np.sqrt(np.mean((codes(picture.pixels.astype(np.float64), white) - expected) ** 2)))
+        noise = float(np.sqrt(np.mean((srgb_codes(picture.pixels.astype(np.float64) / white) - expected) ** 2)))
         print(f"| {spp} | {1e3 * (least[0] - least[1]):.2f} | {noise:.2f} |", flush=True)
         if noise < 1:
             break

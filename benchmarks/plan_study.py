@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import realcam as rc
+from srgb import srgb_codes
 
 EFFECTS = ("dispersion", "coatings", "ghosts", "diffraction")
 MODELS = {  # without, with
@@ -128,9 +129,8 @@ def drawn_shot(number: int, seed: int) -> Shot:
     camera = rc.Camera(lens, film=film, exposure_time_s=exposure)
     if kind == "moving":
         pixels = float(random.choice([0.1, 0.3, 0.8, 3.0]))
-        way = pixels * width / 240 / 1000 * distance / (abs(first.effective_focal_length_mm) / 1000) * 1.0
+        way = pixels * width / 240 / 1000 * distance / (abs(first.effective_focal_length_mm) / 1000)
         there, further = np.eye(4), np.eye(4)
-        there[:3, 3] = (0, 0, 0)
         further[:3, 3] = (way / exposure, 0, 0)
         object_ = scene_of([board((0, 0, -0.9 * distance), 0.3 * field * distance)], random)
         scene = scene.with_instance(object_, name="moving").moved("moving", [there, further], times_s=[0, 1])
@@ -141,8 +141,7 @@ def drawn_shot(number: int, seed: int) -> Shot:
 
 
 def codes(image: rc.Image) -> np.ndarray:
-    linear = np.clip(0.018 * image.camera.iso * image.pixels.astype(np.float64), 0, 1)
-    return 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return srgb_codes(0.018 * image.camera.iso * image.pixels.astype(np.float64))
 
 
 def smooth(picture: np.ndarray) -> np.ndarray:

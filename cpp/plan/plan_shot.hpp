@@ -27,8 +27,8 @@ struct EffectTime {
     double spheres, aspheres;
 };
 inline constexpr EffectTime kEffectTimes[] = {
-    {"dispersion", 0.12, 0.46}, {"coatings", 0.03, 0.05},   {"ghosts", 0.5, 1.45},     {"film_reflection", 0.2, 0.5},
-    {"diffraction", 0.1, 0.15}, {"motion_blur", 0.1, 0.05}, {"rolling_shutter", 0, 0},
+    {"dispersion", 0.12, 0.46}, {"coatings", 0.03, 0.05},   {"ghosts", 0.5, 1.45},
+    {"diffraction", 0.1, 0.15}, {"motion_blur", 0.1, 0.05},
 };
 
 inline double time_of(const std::string& effect, const LensSystem& lens) {

@@ -32,5 +32,6 @@ def plan(
     Raises InputError, also where the camera sees neither an object nor light; SceneFileError, DeviceError;
     KeyboardInterrupt on Ctrl-C.
     """
-    named = [name for name in effect_list(effects) if name != "auto"]
-    return _core._plan(scene, camera, device, seed, max_bounces, threads, named, quality, threshold_px, threshold_codes)
+    return _core._plan(
+        scene, camera, device, seed, max_bounces, threads, effect_list(effects), quality, threshold_px, threshold_codes
+    )
