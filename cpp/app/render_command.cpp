@@ -83,6 +83,7 @@ public:
         // Until here nothing is on disk, and a signal may simply end the program.
         const Interrupt interrupt;
         const Image image = expose(*session, shot, request);
+        if (!image.shortfall.empty()) say("warning: " + image.shortfall);
         write(image, shot, request, decisions);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         std::fputs(summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
@@ -189,6 +190,7 @@ private:
                const std::string& decisions) const {
         io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
         metadata.plan = decisions;
+        metadata.spp = static_cast<int>(image.spp);
         std::string written;
         for (const std::string& path : words_.outputs) {
             try {

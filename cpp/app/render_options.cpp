@@ -84,12 +84,31 @@ void read_layer_words(const RenderWords& w, RenderSettings& settings) {
     if (!has_place) settings.layers = {};
 }
 
+void read_sample_words(const RenderWords& w, shot::ShotRequest& request) {
+    if (w.spp == "auto") {
+        request.has_noise_goal = true;
+    } else if (!w.spp.empty()) {  // in place of what a shot file says of noise
+        request.has_noise_goal = false;
+        request.noise = {};
+        request.settings.spp = static_cast<int>(parse_whole("--spp", w.spp, std::numeric_limits<int>::max()));
+    }
+    const auto read = [](const char* option, const std::string& word, std::optional<double>& value) {
+        if (!word.empty()) value = parse_number(option, word);
+    };
+    if (!w.noise.empty() || !w.noise_codes.empty()) request.noise.noise = request.noise.noise_codes = std::nullopt;
+    read("--noise", w.noise, request.noise.noise);
+    read("--noise-codes", w.noise_codes, request.noise.noise_codes);
+    read("--seconds", w.seconds, request.noise.seconds);
+    if (!w.max_spp.empty())
+        request.noise.max_spp = static_cast<std::int64_t>(parse_whole("--max-spp", w.max_spp, 1u << 31));
+    settle_noise_goal(request);
+}
+
 void read_settings_words(const RenderWords& w, RenderSettings& settings) {
     const auto read = [](const char* option, const std::string& word, auto& value) {
         using Value = std::remove_reference_t<decltype(value)>;
         if (!word.empty()) value = static_cast<Value>(parse_whole(option, word, std::numeric_limits<Value>::max()));
     };
-    read("--spp", w.spp, settings.spp);
     read("--seed", w.seed, settings.seed);
     read("--max-bounces", w.max_bounces, settings.max_bounces);
     read("--threads", w.threads, settings.threads);
@@ -149,7 +168,11 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
         "Light from all around: cd/m^2, or a latitude-longitude picture [the scene's light; daylight if it has none]",
         "CD_M2|FILE");
     command.option_defaults()->group("Picture");
-    option("--spp", w.spp, "Samples per pixel [64]", "N");
+    option("--spp", w.spp, "Samples per pixel, or auto: as many as the noise needs, by tile of the film [64]", "N");
+    option("--noise", w.noise, "Of --spp auto: noise as a share of a tile's light, such as 0.01", "SHARE");
+    option("--noise-codes", w.noise_codes, "The same in 8-bit codes of the developed picture [1]", "CODES");
+    option("--seconds", w.seconds, "After which --spp auto takes no more samples [any time]", "SECONDS");
+    option("--max-spp", w.max_spp, "Samples of a pixel that --spp auto takes at most [4096]", "N");
     option("--seed", w.seed, "Of the random numbers [0]", "N");
     option("--max-bounces", w.max_bounces, "Light that bounces this often is seen; 0: direct light only [1]", "N");
     option("--transport", w.transport,
@@ -193,6 +216,7 @@ shot::ShotRequest understand(const RenderWords& w) {
     if (!w.environment.empty()) read_environment_word(w.environment, request);
     read_camera_words(w, request);
     if (!w.tone.empty()) request.tone = parse_tone(w.tone);
+    read_sample_words(w, request);
     read_settings_words(w, request.settings);
     read_layer_words(w, request.settings);
     return request;

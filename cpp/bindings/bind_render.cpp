@@ -97,12 +97,13 @@ Progress progress_of(const py::object& callback) {
 
 namespace {
 
-py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::string& device, std::int64_t seed,
-                 int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
-                 const std::vector<std::string>& layers, const std::vector<std::string>& effects,
-                 const std::string& illuminant, const py::object& progress) {
-    const RenderSettings settings =
+py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::optional<NoiseRequest>& noise,
+                 const std::string& device, std::int64_t seed, int max_bounces, const std::string& transport,
+                 float clamp_cd_m2, int threads, const std::vector<std::string>& layers,
+                 const std::vector<std::string>& effects, const std::string& illuminant, const py::object& progress) {
+    RenderSettings settings =
         settings_from(spp, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, illuminant);
+    if (noise) settings.noise = goal_of(*noise);
     Session& session = session_for(device);
     const Progress report = progress_of(progress);
     Image image;
@@ -147,8 +148,12 @@ void bind_render(py::module_& m) {
         .def("__repr__", [](const RenderStats& s) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
-    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "device"_a, "seed"_a, "max_bounces"_a, "transport"_a,
-          "clamp_cd_m2"_a, "threads"_a, "layers"_a, "effects"_a, "illuminant"_a, "progress"_a);
+    py::class_<NoiseRequest>(m, "_NoiseRequest")
+        .def(py::init<std::optional<double>, std::optional<double>, std::optional<double>,
+                      std::optional<std::int64_t>>(),
+             "noise"_a, "noise_codes"_a, "seconds"_a, "max_spp"_a);
+    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "noise"_a, "device"_a, "seed"_a, "max_bounces"_a,
+          "transport"_a, "clamp_cd_m2"_a, "threads"_a, "layers"_a, "effects"_a, "illuminant"_a, "progress"_a);
     m.def(
         "_effect_notices",
         [](const LensSystem& lens, const std::vector<std::string>& effects) {

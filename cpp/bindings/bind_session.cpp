@@ -52,6 +52,18 @@ public:
         session_->add(spp, [](double) { return heed_signals(); });
     }
 
+    py::tuple add_until(const NoiseRequest& noise) {
+        const NoiseGoal goal = goal_of(noise);
+        const Assembly scene = scene_;
+        const Camera camera = camera_;
+        const ReachedNoise reached = [&] {
+            const Unlocked unlocked;
+            session_->set(scene, camera, settings_, heed_signals);  // anew, after what failed
+            return session_->add_until(goal, [](double) { return heed_signals(); });
+        }();
+        return py::make_tuple(reached.noise, reached.is_reached, reached.samples_wanted);
+    }
+
     py::tuple picture() {
         const Image image = [&] {
             const Unlocked unlocked;
@@ -90,6 +102,7 @@ void bind_session(py::module_& m) {
              "layers"_a, "effects"_a, "illuminant"_a)
         .def("set", &PythonSession::set, "scene"_a, "camera"_a)
         .def("add", &PythonSession::add, "spp"_a)
+        .def("add_until", &PythonSession::add_until, "noise"_a)
         .def("picture", &PythonSession::picture)
         .def("cancel", &PythonSession::cancel, py::call_guard<Unlocked>())
         .def_property_readonly("samples", &PythonSession::samples)

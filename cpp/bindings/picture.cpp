@@ -30,7 +30,7 @@ py::tuple picture_from(const Image& image, LayerSet layers) {
     for (const LayerImage& layer : image.layers)
         arrays[info_of(layer.layer).name] = array_of_layer(layer, image.height, image.width);
     return py::make_tuple(pixels, depth, image.stats, arrays, texts_from(image.object_names),
-                          texts_from(image.material_names));
+                          texts_from(image.material_names), image.spp, image.shortfall);
 }
 
 }  // namespace realcam::bindings

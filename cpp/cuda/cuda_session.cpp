@@ -39,6 +39,7 @@ public:
     }
 
     std::string name() const override { return "GPU (" + name_ + ")"; }
+    bool is_on_gpu() const override { return true; }
 
     DevicePicture device_picture(const KeepGoing& keep_going) override {
         return of_all_collected(keep_going, [&] { return develop_here(); });
@@ -87,7 +88,8 @@ private:
         front().clear_splats(width(), height());
     }
 
-    void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop& stop) override {
+    void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done,
+              OwnStop& stop) override {
         if (rows_ == 0) lay_out_film();
         const auto exposing = std::chrono::steady_clock::now();
         const std::int64_t columns = width();
@@ -95,7 +97,8 @@ private:
             const int rows = std::min(rows_, height() - row);
             PixelSum* const kept = fits() ? nullptr : film_.data() + row * columns;
             if (kept) front().upload_film(kept, rows * columns);
-            expose_band(row, rows, range, stop, done);
+            const PixelCounts in_band{counts.counts ? counts.counts + row * columns : nullptr, counts.taken};
+            expose_band(row, rows, range, in_band, stop, done);
             if (kept) front().download_film(kept);
         }
         front().splat(range, settings().path());
@@ -241,7 +244,7 @@ private:
 
     /// Samples of some rows, whose film the first GPU has: each GPU takes a range of them. One that fails stops the
     /// others.
-    void expose_band(int first_row, int rows, const SampleRange& range, OwnStop& stop,
+    void expose_band(int first_row, int rows, const SampleRange& range, const PixelCounts& counts, OwnStop& stop,
                      std::atomic<std::int64_t>& done) {
         const auto share = [&](std::size_t i) {
             return static_cast<std::uint32_t>(static_cast<std::uint64_t>(range.count) * i / renderers_.size());
@@ -252,7 +255,7 @@ private:
                 DeviceRenderer& renderer = *renderers_[i];
                 if (i > 0) renderer.clear_film(static_cast<std::int64_t>(rows) * width());
                 renderer.expose({first_row, rows, range.first + share(i), share(i + 1) - share(i)}, settings_of(range),
-                                done);
+                                {counts.counts, counts.taken + share(i)}, done);
             } catch (...) {
                 stop = true;
                 throw;

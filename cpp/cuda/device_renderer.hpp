@@ -3,6 +3,7 @@
 #include <string>
 
 #include "../render/render_settings.hpp"
+#include "../render/sample_range.hpp"
 #include "device_ghosts.hpp"
 #include "device_scene.hpp"
 #include "layer_kernels.hpp"
@@ -57,8 +58,9 @@ public:
     void clear_film(std::int64_t pixels);
 
     /// Adds samples to the film, which holds the part's rows. Returns when they are done or it was stopped. `done`
-    /// counts samples.
-    void expose(const FilmPart& part, const RenderSettings& settings, std::atomic<std::int64_t>& done);
+    /// counts samples. `counts`: of the part's pixels; those of `counts.taken` were taken before its samples.
+    void expose(const FilmPart& part, const RenderSettings& settings, const PixelCounts& counts,
+                std::atomic<std::int64_t>& done);
 
     /// Starts to add samples, and returns at once.
     void add(const FilmPart& part, const RenderSettings& settings);
@@ -100,8 +102,9 @@ public:
 private:
     /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
     void rehearse();
-    /// Starts to add samples to `sums`, those of the part's first row.
-    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, bool timed);
+    /// Starts to add samples to `sums`, those of the part's first row. `counts`: in this GPU's memory.
+    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
+                bool timed);
 
     SplattedLight splatted() const { return {ghosts_.seen(), ghosts_of_objects_.seen(), starbursts_.seen()}; }
 
@@ -115,6 +118,7 @@ private:
     CameraView camera_{};
     DeviceGhosts ghosts_, ghosts_of_objects_, starbursts_;
     DeviceArray<PixelSum> sums_, others_;
+    DeviceArray<std::uint32_t> sample_counts_;
     DeviceArray<LayerSum> layer_sums_;
     DeviceArray<MiddleSurface> middle_surfaces_;
     DeviceArray<float> exposure_, depth_;

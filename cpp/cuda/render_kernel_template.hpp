@@ -45,6 +45,13 @@ struct StageClock {
     }
 };
 
+/// How many samples a pixel of the job's band takes.
+__device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pixel) {
+    if (!job.counts) return job.sample_count;
+    const std::uint32_t wanted = job.counts[pixel];
+    return wanted > job.counts_taken ? min(wanted - job.counts_taken, job.sample_count) : 0;
+}
+
 template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced, class Clock>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
@@ -68,8 +75,9 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         block.row[0] = job.first_row + row;
         block.used[0] = 1;
         block.stream[0] = pixel_stream(block.row[0] * job.camera.width + column, job.seed);
+        const std::uint32_t count = samples_of(job, static_cast<std::int64_t>(row) * job.camera.width + column);
         std::uint32_t s = static_cast<std::uint32_t>(lane % tiles.lanes);
-        for (; s < job.sample_count; s += static_cast<std::uint32_t>(tiles.lanes)) {
+        for (; s < count; s += static_cast<std::uint32_t>(tiles.lanes)) {
             if (*job.stop) break;
             block.sample[0] = job.first_sample + s;
             render_samples<lens_kind, scene_kind, effects>(job.scene, job.camera, job.path, block, scene, clock,

@@ -85,8 +85,8 @@ private:
         stats_ = {};
     }
 
-    void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop&) override {
-        expose(range, settings(), done);
+    void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done, OwnStop&) override {
+        expose(range, counts, settings(), done);
         splat(range, settings());
     }
 
@@ -122,7 +122,7 @@ private:
             const std::shared_ptr<void> until_the_end = std::move(token);
             std::atomic<std::int64_t> done{0};
             for (const SampleRange& range : ranges) {
-                expose(range, settings, done);
+                expose(range, {}, settings, done);
                 splat(range, settings);
             }
             if (is_stopped()) throw Cancelled();
@@ -177,10 +177,14 @@ private:
         }
     }
 
-    void expose(const SampleRange& range, const RenderSettings& settings, std::atomic<std::int64_t>& done) {
+    void expose(const SampleRange& range, const PixelCounts& counts, const RenderSettings& settings,
+                std::atomic<std::int64_t>& done) {
         const PathSettings path = settings.path();
         for_tiles(range, settings, [&](int x, int y, const SampleRange& visit) {
             realcam_tile tile = tile_at(x, y, visit);
+            const std::vector<std::uint32_t> wanted = counts_of(tile, counts, visit, range);
+            if (!wanted.empty() && *std::max_element(wanted.begin(), wanted.end()) == 0) return;
+            tile.counts = wanted.empty() ? nullptr : wanted.data();
             tile.path_settings = &path;
             tile.adds_squares = settings.layers.has(Layer::variance);
             FilmSums sums(pixels_of(tile));
@@ -190,6 +194,16 @@ private:
             done += samples_of_tile(tile);
             count(tile);
         });
+    }
+
+    /// Of a tile's pixels, for a part of a range; nothing where all take all samples.
+    std::vector<std::uint32_t> counts_of(const realcam_tile& tile, const PixelCounts& counts, const SampleRange& visit,
+                                         const SampleRange& range) const {
+        if (!counts.counts) return {};
+        const PixelCounts here{counts.counts, counts.taken + (visit.first - range.first)};
+        std::vector<std::uint32_t> wanted(pixels_of(tile));
+        for_pixels(tile, [&](std::size_t at, std::size_t pixel) { wanted[at] = here.of(pixel, visit); });
+        return wanted;
     }
 
     /// Adds what belongs to these samples of each pixel.

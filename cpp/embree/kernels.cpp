@@ -71,7 +71,10 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
             int x, y;
             order.at(pixel, x, y);
             const bool inside = x < tile.width && y < tile.height;
-            const std::uint32_t left = inside ? tile.sample_count - sample : 0;
+            const std::uint32_t wanted = !inside       ? 0
+                                         : tile.counts ? tile.counts[y * tile.width + x]
+                                                       : tile.sample_count;
+            const std::uint32_t left = wanted - sample;
             const int take = static_cast<int>(left) < kLanes - lanes ? static_cast<int>(left) : kLanes - lanes;
             if (take > 0) {
                 const std::uint32_t stream = pixel_stream((tile.y + y) * film_width + tile.x + x, tile.seed);
@@ -86,7 +89,7 @@ void for_blocks_of(const realcam_tile& tile, int film_width, F&& f) {
                 lanes += take;
                 sample += static_cast<std::uint32_t>(take);
             }
-            if (!inside || sample == tile.sample_count) {
+            if (sample == wanted) {
                 ++pixel;
                 sample = 0;
             }

@@ -13,6 +13,7 @@ struct realcam_tile {
     void* embree_scene;       // RTCScene
     int x, y, width, height;  // pixels
     std::uint32_t first_sample, sample_count, seed;
+    const std::uint32_t* counts;  // of the first of these samples, as many for each pixel, row by row; none: all
     const void* path_settings;  // PathSettings
     int (*stopped)(const void* stop);  // asked before each block of samples; what is left then is left out
     const void* stop;

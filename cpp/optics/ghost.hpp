@@ -11,6 +11,7 @@ namespace REALCAM_NAMESPACE {
 struct GhostPath {
     double effective_focal_length;  ///< mm
     double back_focal_distance;     ///< last vertex to where light from infinity is focused, mm; negative: before it
+    ParaxialRay of_height, of_slope;  ///< at the last vertex, what has height or slope 1 alone at the first one
 };
 
 /// The ghost of a pair of surfaces.
@@ -32,20 +33,22 @@ inline GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostP
     const LensSystem with_film = with_film_mirror(lens, 1, kLongest);
     const auto surface = [&](int i) -> const Surface& { return with_film.surfaces[static_cast<std::size_t>(i)]; };
     const std::vector<double> n = with_film.indices(wavelength_nm), z = with_film.vertices();
-    ParaxialRay ray{1, 0};
+    ParaxialRay rays[] = {{1, 0}, {0, 1}};
     double direction_sign = 1;  // of the light along z
     double at = 0;              // z of the vertex that it met last
     for (const Crossing& crossing : crossings_of(lens, pair)) {
         const double here = z[static_cast<std::size_t>(crossing.surface)];
-        ray.height += (here - at) * ray.slope;
         const double before = direction_sign * crossing.index_before(n);
         if (crossing.is_reflected || surface(crossing.surface).type == SurfaceType::mirror)
             direction_sign = -direction_sign;
         const double behind = direction_sign * crossing.index_behind(n);
-        ray = refract_paraxial(ray, surface(crossing.surface).curvature, before, behind);
+        for (ParaxialRay& ray : rays) {
+            ray.height += (here - at) * ray.slope;
+            ray = refract_paraxial(ray, surface(crossing.surface).curvature, before, behind);
+        }
         at = here;
     }
-    return {-1 / ray.slope, -ray.height / ray.slope};
+    return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1]};
 }
 
 }  // namespace REALCAM_NAMESPACE

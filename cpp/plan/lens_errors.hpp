@@ -4,9 +4,9 @@
 #include <numbers>
 #include <vector>
 
+#include "../camera/picture_codes.hpp"
 #include "../optics/lens_path.hpp"
 #include "film_bundles.hpp"
-#include "picture_codes.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"
 

@@ -18,7 +18,7 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
     const CameraSetup of_surfaces(full, tracer), of_ideal(ideal, tracer);
     const LensErrors errors =
         lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), camera.lens, facts, tracer);
-    return plan_shot(camera, errors, facts, request);
+    return plan_shot(camera, errors, facts, request, session.is_on_gpu());
 }
 
 }  // namespace REALCAM_NAMESPACE

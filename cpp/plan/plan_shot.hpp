@@ -20,22 +20,27 @@ struct PlanRequest {
 
 namespace plan_shot_detail {
 
-/// What an effect adds to a picture's time, as a share of it: benchmarks/results, on one core, through spheres and
-/// through aspheres.
+/// What an effect adds to a picture's time, as a share of it: benchmarks/results, on one core and on a GPU.
 struct EffectTime {
     const char* name;
-    double spheres, aspheres;
+    struct {
+        double spheres, aspheres;
+    } cpu, gpu;
 };
 inline constexpr EffectTime kEffectTimes[] = {
-    {"dispersion", 0.12, 0.46}, {"coatings", 0.03, 0.05},   {"ghosts", 0.5, 1.45},
-    {"diffraction", 0.1, 0.15}, {"motion_blur", 0.1, 0.05},
+    {"dispersion", {0.12, 0.46}, {0.15, 0.74}},  {"coatings", {0.03, 0.05}, {0.07, 0.07}},
+    {"ghosts", {0.5, 1.45}, {0.21, 0.61}},       {"diffraction", {0.1, 0.15}, {0.13, 0.15}},
+    {"motion_blur", {0.1, 0.05}, {0.1, 0.05}},
 };
 
-inline double time_of(const std::string& effect, const LensSystem& lens) {
+inline double time_of(const std::string& effect, const LensSystem& lens, bool on_gpu) {
     const bool has_aspheres = std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
                                           [](const Surface& surface) { return surface.is_asphere(); });
-    for (const EffectTime& time : kEffectTimes)
-        if (effect == time.name) return has_aspheres ? time.aspheres : time.spheres;
+    for (const EffectTime& time : kEffectTimes) {
+        if (effect != time.name) continue;
+        const auto& device = on_gpu ? time.gpu : time.cpu;
+        return has_aspheres ? device.aspheres : device.spheres;
+    }
     return 0;
 }
 
@@ -48,8 +53,9 @@ inline std::string short_size(double size) {
 
 class Planner {
 public:
-    Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const PlanRequest& request)
-        : camera_(camera), errors_(errors), facts_(facts), request_(request) {}
+    Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const PlanRequest& request,
+            bool on_gpu)
+        : camera_(camera), errors_(errors), facts_(facts), request_(request), on_gpu_(on_gpu) {}
 
     Plan plan() {
         plan_.effects = request_.effects;
@@ -84,7 +90,7 @@ private:
         if (!is_named && size >= threshold && !is_kept) reason += "; an ideal lens cannot show it";
         plan_.effects.*effect.member = is_kept;
         plan_.decisions.push_back({name, size, unit, threshold, is_kept,
-                                   is_named ? DecidedBy::user : DecidedBy::planner, time_of(name, camera_.lens),
+                                   is_named ? DecidedBy::user : DecidedBy::planner, time_of(name, camera_.lens, on_gpu_),
                                    reason});
     }
 
@@ -168,6 +174,7 @@ private:
     const LensErrors& errors_;
     const SceneFacts& facts_;
     const PlanRequest& request_;
+    bool on_gpu_;
     Plan plan_;
 };
 
@@ -180,10 +187,10 @@ inline void apply(const Plan& plan, Camera& camera, RenderSettings& settings) {
     if (!settings.effects.have_wavelengths()) settings.illuminant.reset();
 }
 
-/// What is worth simulating of a shot.
+/// What is worth simulating of a shot. `on_gpu`: it is rendered, which the expected times depend on.
 inline Plan plan_shot(const Camera& camera, const LensErrors& errors, const SceneFacts& facts,
-                      const PlanRequest& request) {
-    return plan_shot_detail::Planner(camera, errors, facts, request).plan();
+                      const PlanRequest& request, bool on_gpu) {
+    return plan_shot_detail::Planner(camera, errors, facts, request, on_gpu).plan();
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -60,6 +60,22 @@ inline double luminance_of(Color c) {
     return static_cast<double>(luminance(c));
 }
 
+/// `camera`, `settings`: of the small picture.
+inline WideView wide_view(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
+                          const Progress& progress) {
+    WideView view{16, 2, {}};
+    const double f = std::fabs(first_order(camera.lens, camera.lens.wavelength_nm).effective_focal_length);
+    camera.film.width = camera.film.height = view.side;
+    camera.film.width_mm = camera.film.height_mm = 2 * view.half_slope * f;
+    settings.layers = {};
+    const Image image = take_picture(session, scene, camera, settings, progress);
+    for (std::size_t i = 0; i < image.depth.size(); ++i) {
+        const float* rgb = &image.exposure[3 * i];
+        view.values.push_back(sensor_value(luminance_of({rgb[0], rgb[1], rgb[2]}), camera.iso));
+    }
+    return view;
+}
+
 /// Point lights of one object, and for each of its materials that emit the triangles together.
 inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_object, Vec3d lens_m,
                           const InverseAffine<double>& camera_from_scene, SceneFacts& facts) {
@@ -104,6 +120,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
     film.height = std::max(1, static_cast<int>(film.height * scale));
     camera.model = CameraModel::pinhole;
     settings.spp = 8;
+    settings.noise.reset();
     settings.effects = {};
     settings.illuminant.reset();
     settings.layers = {Layer::depth_middle};
@@ -138,6 +155,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
                       facts);
     for (const SunLight& sun : scene.static_geometry->suns)
         add_light(camera_from_scene, -static_cast<Vec3d>(sun.direction), luminance_of(sun.illuminance), 0, true, facts);
+    facts.surroundings = wide_view(session, scene, camera, settings, progress);
     settings.layers = {Layer::depth_middle};
     drop_hidden(session, scene, camera, settings, scene_from_camera, facts.lights);
     return facts;

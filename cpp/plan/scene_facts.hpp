@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <vector>
 
 #include "../math/vec3.hpp"
@@ -10,6 +11,27 @@ struct SeenTile {
     double depth_mm;  ///< along the axis from the front vertex; infinite: nothing is there
     double value;  ///< luminance of the developed picture, 1: white; more than that where it is too bright
     double motion_px;  ///< by which it moves on the film while a pixel is exposed
+};
+
+/// What the camera would see far beyond its frame, in squares about the axis of the lens.
+struct WideView {
+    int side = 0;  ///< squares of a row
+    double half_slope = 0;  ///< of the direction of its edges
+    std::vector<double> values;  ///< as those of tiles
+
+    /// Over the directions about the axis up to a slope.
+    double mean_within(double slope) const {
+        double sum = 0, count = 0;
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x) {
+                const double scale = 2 * half_slope / side, away = 0.5 * (side - 1);
+                // Those that it just touches count, so that there is always one.
+                if (std::hypot(x - away, y - away) * scale > slope + scale) continue;
+                sum += values[static_cast<std::size_t>(y * side + x)];
+                ++count;
+            }
+        return count > 0 ? sum / count : 0;
+    }
 };
 
 /// A light that is small, as the camera sees it.
@@ -26,7 +48,8 @@ struct SeenLight {
 struct SceneFacts {
     int columns = 0, rows = 0;
     std::vector<SeenTile> tiles;  ///< row by row
-    std::vector<SeenLight> lights;
+    std::vector<SeenLight> lights;  ///< the brightest first
+    WideView surroundings;
 
     const SeenTile& tile_at(double across, double down) const {
         const auto place = [](double share, int count) {

@@ -27,7 +27,8 @@ struct Image {
                                ///< fisheye may see; infinite: nothing there
     std::vector<LayerImage> layers;  ///< those that were asked for, but for depth
     IdNames object_names, material_names;  ///< of the ids in layers; empty where there are none
-    std::int64_t spp = 0;  ///< samples that were asked for, per pixel
+    std::int64_t spp = 0;  ///< samples that were asked for, per pixel; where noise was, their mean
+    std::string shortfall;  ///< of the noise from its goal, a sentence; empty: there is none
     RenderStats stats;
 };
 

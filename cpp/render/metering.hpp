@@ -39,6 +39,7 @@ inline double metered_exposure_time(Session& session, const Assembly& scene, Cam
     film.height = std::max(1, static_cast<int>(film.height * scale));
     camera.exposure_time_s = 1;
     settings.spp = 16;
+    settings.noise.reset();
     settings.layers = {};
     if (settings.effects.is_automatic) {  // which they are depends on the exposure
         settings.effects = {};

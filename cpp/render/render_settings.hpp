@@ -6,6 +6,7 @@
 #include "../camera/camera.hpp"
 #include "effects.hpp"
 #include "layers.hpp"
+#include "noise_goal.hpp"
 #include "path_settings.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -22,6 +23,7 @@ struct RenderSettings {
     LayerSet layers = {};
     EffectChoice effects = {};
     std::optional<Illuminant> illuminant = {};  ///< of dispersion and diffraction; none: D65, the white of RGB
+    std::optional<NoiseGoal> noise = {};  ///< instead of spp
 
     /// The light of a picture whose samples have wavelengths; nothing of others.
     std::optional<Illuminant> spectral_light() const {
@@ -45,6 +47,7 @@ inline void validate_spp(int spp) {
 /// Throws InputError where the settings make no sense.
 inline void validate(const RenderSettings& settings) {
     validate_spp(settings.spp);
+    if (settings.noise) validate(*settings.noise);
     if (settings.max_bounces < 0 || settings.max_bounces > 64)
         throw InputError("max_bounces must lie between 0 and 64");
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 
 #include "../platform.hpp"
@@ -9,6 +10,17 @@ namespace REALCAM_NAMESPACE {
 /// Samples of every pixel, as the random numbers know them.
 struct SampleRange {
     std::uint32_t seed, first, count;
+};
+
+/// How many samples of a range single pixels take: the first ones, up to their number.
+struct PixelCounts {
+    const std::uint32_t* counts = nullptr;  ///< of the film's pixels, row by row; none: all samples
+    std::uint32_t taken = 0;                ///< of them, before the range
+
+    std::uint32_t of(std::size_t pixel, const SampleRange& range) const {
+        if (!counts) return range.count;
+        return std::min(counts[pixel] > taken ? counts[pixel] - taken : 0, range.count);
+    }
 };
 
 /// The next samples from `taken` to `wanted`, or those up to where a random sequence ends: it has 2^32 of them, and a

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
 #include "../scene/scene_checks.hpp"
+#include "adaptive_sampling.hpp"
 #include "image.hpp"
 #include "layer_film.hpp"
 #include "left_out_motion.hpp"
@@ -50,6 +52,7 @@ public:
 
     /// The device, for people.
     virtual std::string name() const = 0;
+    virtual bool is_on_gpu() const { return false; }
 
     /// Throws InputError and SceneFileError for a scene that makes no picture, and Cancelled.
     void check(const Assembly& scene, const KeepGoing& keep_going = {}) {
@@ -89,7 +92,8 @@ public:
         const double total = static_cast<double>(spp) * camera_.film.width * camera_.film.height *
                              (settings_.layers.has_any(kSampledLayers) ? 2 : 1);
         const auto work = [&] {
-            expose(spp, [&](const SampleRange& range) { take(range, done, stop); });
+            expose(spp, [&](const SampleRange& range) { take(range, {}, done, stop); });
+            mean_samples_ += spp;
             see_what_is_missing(done, stop);
         };
         const auto begin = std::chrono::steady_clock::now();
@@ -97,6 +101,29 @@ public:
         run_with_progress(work, [&] { return std::min(1.0, static_cast<double>(done) / total); }, progress, stop);
         exposing_seconds_ += seconds_since(begin);
         if (stop) throw Cancelled();
+    }
+
+    /// Takes samples of the pixels that are noisier than wanted, until none is (see AdaptiveSampling). Throws
+    /// InputError where nothing is set, and Cancelled: what was taken until then stays.
+    ReachedNoise add_until(const NoiseGoal& goal, const Progress& progress = {}) {
+        validate(goal);
+        const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
+        const Turn turn(mutex_, keep_going);
+        if (!ready_) throw InputError("nothing is set that could be photographed; set() prepares it");
+        settle(keep_going);
+        OwnStop stop(*this);
+        std::atomic<double> share{0};
+        ReachedNoise reached;
+        const auto work = [&] {
+            reached = take_until(goal, share, stop);
+            std::atomic<std::int64_t> done{0};
+            see_what_is_missing(done, stop);
+        };
+        const auto begin = std::chrono::steady_clock::now();
+        run_with_progress(work, [&] { return share.load(); }, progress, stop);
+        exposing_seconds_ += seconds_since(begin);
+        if (stop) throw Cancelled();
+        return reached;
     }
 
     /// `set`, and starts to take settings.spp samples more of each pixel and to develop them; returns while that goes
@@ -111,6 +138,7 @@ public:
         make_ready(scene, camera, settings, keep_going);
         std::vector<SampleRange> ranges;
         expose(settings.spp, [&](const SampleRange& range) { ranges.push_back(range); });
+        mean_samples_ += settings.spp;
         try {
             frames_.push_back(start(ranges, curve, std::move(under_way)));
         } catch (...) {
@@ -133,7 +161,7 @@ public:
             }
             Image image = develop();
             add_layers(image);
-            image.spp = samples_;
+            image.spp = mean_samples_ == samples_ ? samples_ : mean_of(count_samples());
             image.stats.setup_seconds = setup_seconds_;
             image.stats.seconds = setup_seconds_ + exposing_seconds_;
             return image;
@@ -189,8 +217,9 @@ protected:
                          const KeepGoing& keep_going, OwnStop& stop) = 0;
     /// An empty film, and nothing counted.
     virtual void clear() = 0;
-    /// Takes samples of all pixels, or fewer of some where it is stopped. `done` counts them.
-    virtual void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop& stop) = 0;
+    /// Takes samples of the pixels, or fewer of some where it is stopped. `done` counts them, at least about.
+    virtual void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done,
+                      OwnStop& stop) = 0;
     /// Starts to take samples, and to develop what is there then.
     virtual std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                              std::shared_ptr<void> under_way) = 0;
@@ -228,7 +257,7 @@ protected:
 
     const Camera& camera() const { return camera_; }
     const RenderSettings& settings() const { return settings_; }
-    std::int64_t samples() const { return samples_; }  ///< per pixel, begun since the film was empty
+    std::int64_t samples() const { return samples_; }  ///< of the pixel that has most, since the film was empty
 
 private:
     /// Held by one thread at a time.
@@ -304,10 +333,16 @@ private:
     }
 
     void give_up_samples() {
-        samples_ = 0;
+        samples_ = mean_samples_ = 0;
         exposing_seconds_ = 0;
         is_blank_ = true;
         forget_layers();
+    }
+
+    static std::int64_t mean_of(const std::vector<std::int64_t>& counts) {
+        double sum = 0;
+        for (const std::int64_t count : counts) sum += static_cast<double>(count);
+        return std::llround(sum / static_cast<double>(counts.size()));
     }
 
     std::size_t pixel_count() const {
@@ -320,7 +355,7 @@ private:
     }
 
     bool lacks_layers() const {
-        return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < samples_) ||
+        return (settings_.layers.has_any(kSampledLayers) && layer_samples_ < mean_samples_) ||
                (settings_.layers.has_any(kMiddleLayers) && layer_film_.middle.empty());
     }
 
@@ -334,8 +369,8 @@ private:
             }
             if (settings_.layers.has_any(kSampledLayers)) {
                 layer_film_.sums.resize(pixel_count());
-                while (layer_samples_ < samples_ && !stop) {
-                    const SampleRange range = next_samples(settings_.seed, layer_samples_, samples_);
+                while (layer_samples_ < mean_samples_ && !stop) {
+                    const SampleRange range = next_samples(settings_.seed, layer_samples_, mean_samples_);
                     layer_samples_ += range.count;
                     see_layers(range, layer_film_.sums, done, stop);
                 }
@@ -373,9 +408,50 @@ private:
                   [](const LayerImage& a, const LayerImage& b) { return a.layer < b.layer; });
     }
 
+    ReachedNoise take_until(const NoiseGoal& goal, std::atomic<double>& share, OwnStop& stop) {
+        // Fewer would tell nothing of how noisy they are; more would be too many where all is even.
+        constexpr std::int64_t kFirst = 8;
+        const auto begin = std::chrono::steady_clock::now();
+        std::atomic<std::int64_t> done{0};
+        const auto take_round = [&](std::int64_t count, const std::uint32_t* counts) {
+            std::uint32_t before = 0;
+            expose(count, [&](const SampleRange& range) {
+                take(range, {counts, before}, done, stop);
+                before += range.count;
+            });
+        };
+        const bool is_new = is_blank_;
+        if (is_new) {
+            mean_samples_ = std::min(kFirst, goal.most_samples / 2);
+            take_round(mean_samples_, nullptr);
+        }
+        AdaptiveSampling tiles(camera_.film.width, camera_.film.height, goal, camera_.iso, develop().exposure,
+                               count_samples());
+        const auto pixels = static_cast<double>(pixel_count());
+        double taken = is_new ? static_cast<double>(mean_samples_) * pixels : 0;
+        while (!stop) {
+            double affordable = kInfinity;
+            if (std::isfinite(goal.seconds)) {
+                const double spent = seconds_since(begin);
+                affordable = taken > 0 ? taken / spent * (goal.seconds - spent) : kFirst * pixels;
+            }
+            const std::vector<std::uint32_t> counts = tiles.next(affordable);
+            const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
+            if (most == 0) break;
+            take_round(most, counts.data());
+            double round = 0;
+            for (const std::uint32_t count : counts) round += count;
+            mean_samples_ += static_cast<std::int64_t>(std::ceil(round / pixels));
+            taken += round;
+            tiles.add(develop().exposure, counts);
+            share = std::max(share.load(), std::min(1.0, taken / (taken + tiles.left())));
+        }
+        return tiles.reached();
+    }
+
     /// f(range) for the ranges of so many samples more.
     template <class F>
-    void expose(int spp, F&& f) {
+    void expose(std::int64_t spp, F&& f) {
         try {
             if (is_blank_) clear();
             is_blank_ = false;
@@ -396,10 +472,11 @@ private:
     Assembly scene_;
     Camera camera_;
     RenderSettings settings_;
-    std::int64_t samples_ = 0;
+    std::int64_t samples_ = 0;  ///< of the pixel that has most: the place in the random sequence
+    std::int64_t mean_samples_ = 0;  ///< of all pixels, rounded up
     bool is_blank_ = true;  ///< no sample was begun
     LayerFilm layer_film_;
-    std::int64_t layer_samples_ = 0;  ///< of samples_, those that layer_film_.sums holds
+    std::int64_t layer_samples_ = 0;  ///< of mean_samples_, those that layer_film_.sums holds
     double setup_seconds_ = 0, exposing_seconds_ = 0;  ///< of the picture
     std::deque<std::shared_ptr<const LiveFrame>> frames_;  ///< under way
 };

@@ -1,5 +1,7 @@
 #pragma once
 #include <chrono>
+#include <string>
+#include <utility>
 
 #include "seconds_since.hpp"
 #include "session.hpp"
@@ -15,8 +17,13 @@ inline Image take_picture(Session& session, const Assembly& scene, const Camera&
     session.set(scene, camera, settings, keep_going);
     session.restart(keep_going);
     const double setup_seconds = seconds_since(start);
-    session.add(settings.spp, progress);
+    std::string shortfall;
+    if (settings.noise)
+        shortfall = shortfall_of(session.add_until(*settings.noise, progress), *settings.noise);
+    else
+        session.add(settings.spp, progress);
     Image image = session.picture();
+    image.shortfall = std::move(shortfall);
     image.stats.setup_seconds = setup_seconds;
     image.stats.seconds = seconds_since(start);
     return image;

@@ -43,6 +43,15 @@ void check_blades(const ShotRequest& request) {
     }
 }
 
+void settle_noise_goal(ShotRequest& request) {
+    if (request.has_noise_goal)
+        request.settings.noise = goal_of(request.noise);
+    else if (!request.noise.says_nothing())
+        throw InputError("noise, noise_codes, seconds and max_spp belong to spp \"auto\"");
+    else
+        request.settings.noise.reset();
+}
+
 Camera camera_of(const ShotRequest& request) {
     Camera camera;
     camera.lens = io::read_lens(request.lens);

@@ -49,6 +49,10 @@ public:
                       "exposure_time_s",
                       "iso",
                       "spp",
+                      "noise",
+                      "noise_codes",
+                      "seconds",
+                      "max_spp",
                       "seed",
                       "max_bounces",
                       "tone",
@@ -72,6 +76,7 @@ public:
         read_light(shot);
         shot.additions = read_scene_request(table_);
         read_camera(shot);
+        read_samples(shot);
         read_settings(shot.settings);
         return shot;
     }
@@ -126,12 +131,20 @@ private:
         table_.checked("pose", [&] { validate(shot.motion); });
     }
 
+    void read_samples(ShotRequest& shot) const {
+        shot.has_noise_goal = table_.find("spp") && !table_.number_or_auto("spp", "a whole number or \"auto\"");
+        if (!shot.has_noise_goal)
+            if (const auto spp = table_.number("spp")) shot.settings.spp = table_.whole("spp", *spp);
+        shot.noise = {table_.number("noise"), table_.number("noise_codes"), table_.number("seconds"), {}};
+        if (const auto most = table_.number("max_spp")) shot.noise.max_spp = table_.whole("max_spp", *most);
+        table_.checked(nullptr, [&] { settle_noise_goal(shot); });
+    }
+
     void read_settings(RenderSettings& settings) const {
         const auto read = [&](const char* key, auto& value) {
             using Value = std::remove_reference_t<decltype(value)>;
             if (const auto number = table_.number(key)) value = table_.whole<Value>(key, *number);
         };
-        read("spp", settings.spp);
         read("seed", settings.seed);
         read("max_bounces", settings.max_bounces);
         settings.transport = table_.named("transport", transport_named, kTransportNames).value_or(settings.transport);

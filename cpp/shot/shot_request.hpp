@@ -35,10 +35,15 @@ struct ShotRequest {
     double iso = 100;
 
     RenderSettings settings = {64, 0, 1, 0};
+    bool has_noise_goal = false;  ///< spp is "auto", and as many samples are taken as the noise needs
+    NoiseRequest noise;
     ToneCurve tone = ToneCurve::film;
 
     bool chooses_environment() const { return environment_cd_m2 || !environment_file.empty(); }
 };
+
+/// Brings the goal of the noise into the settings. Throws InputError where there is none, but something is said of it.
+void settle_noise_goal(ShotRequest& request);
 
 /// Throws InputError where the blades of a request are no diaphragm's.
 void check_blades(const ShotRequest& request);

@@ -58,7 +58,7 @@ from .lens import Mirror, Stop
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
-from .session import Session
+from .session import ReachedNoise, Session
 from .shot import Shot
 
 __all__ = [
@@ -92,6 +92,7 @@ __all__ = [
     "RawImage",
     "RayChunks",
     "RayStatus",
+    "ReachedNoise",
     "RealcamError",
     "RenderStats",
     "Scene",

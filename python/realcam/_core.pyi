@@ -25,7 +25,7 @@ _Coating: TypeAlias = str | Coating
 _Progress: TypeAlias = Callable[[float], bool | None]
 _Layers: TypeAlias = dict[str, NDArray[np.float32] | NDArray[np.uint32]]
 _Picture: TypeAlias = tuple[
-    NDArray[np.float32], NDArray[np.float32], RenderStats, _Layers, tuple[str, ...], tuple[str, ...]
+    NDArray[np.float32], NDArray[np.float32], RenderStats, _Layers, tuple[str, ...], tuple[str, ...], int, str
 ]
 
 # Arrays of numpy, but for rays in a GPU's memory.
@@ -1060,10 +1060,16 @@ def _sensor_color(
 def _read_shot(
     path: str | os.PathLike[str], device: str, progress: _Progress | None
 ) -> tuple[Scene, Camera, int, int, int, str, tuple[str, ...], str, float, tuple[str, ...], str]: ...
+class _NoiseRequest:
+    def __init__(
+        self, noise: float | None, noise_codes: float | None, seconds: float | None, max_spp: int | None
+    ) -> None: ...
+
 def _render(
     scene: Scene,
     camera: Camera,
     spp: int,
+    noise: _NoiseRequest | None,
     device: str,
     seed: int,
     max_bounces: int,
@@ -1155,6 +1161,7 @@ class _Session:
     ) -> None: ...
     def set(self, scene: Scene, camera: Camera) -> None: ...
     def add(self, spp: int) -> None: ...
+    def add_until(self, noise: _NoiseRequest | None) -> tuple[float, bool, float]: ...
     def picture(self) -> _Picture: ...
     def cancel(self) -> None: ...
     @property

@@ -24,6 +24,7 @@ class Image:
     for ids and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked
     for. transport, clamp_cd_m2, effects, illuminant: as render had them. denoiser: what has changed the pixels since
     they were taken; empty: nothing. plan: what the effect "auto" has decided (Plan.summary); empty: it was not asked.
+    spp: where render had "auto", the mean over the pixels. shortfall: a sentence where the noise is larger than wanted.
     """
 
     pixels: np.ndarray
@@ -41,6 +42,7 @@ class Image:
     illuminant: str = ""
     denoiser: str = ""
     plan: str = ""
+    shortfall: str = ""
 
     def __eq__(self, other: object) -> bool:
         """Whether pictures, cameras and settings are the same; what it cost to take them does not count."""
@@ -119,7 +121,6 @@ def layer_names(layers: str | Iterable[str]) -> list[str]:
 def image_of(
     picture: tuple[Any, ...],
     camera: Camera,
-    spp: int,
     seed: int,
     transport: str,
     clamp_cd_m2: float,
@@ -128,7 +129,7 @@ def image_of(
     plan: str = "",
 ) -> Image:
     """What the core gives as a picture."""
-    pixels, depth, stats, layers, object_names, material_names = picture
+    pixels, depth, stats, layers, object_names, material_names, spp, shortfall = picture
     return Image(
         pixels=pixels,
         depth=depth,
@@ -144,4 +145,5 @@ def image_of(
         effects=tuple(effects),
         illuminant=illuminant,
         plan=plan,
+        shortfall=shortfall,
     )

@@ -9,6 +9,7 @@ from . import _core
 from ._core import Camera, Scene
 from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
+from .noise import Samples, noise_request
 from .planning import plan
 
 ProgressCallback = Callable[[float], bool | None]
@@ -35,7 +36,11 @@ def render(
     scene: Scene,
     camera: Camera,
     *,
-    spp: int = 64,
+    spp: Samples = 64,
+    noise: float | None = None,
+    noise_codes: float | None = None,
+    seconds: float | None = None,
+    max_spp: int | None = None,
     device: str = "auto",
     seed: int = 0,
     max_bounces: int = 1,
@@ -49,7 +54,11 @@ def render(
 ) -> Image:
     """Photographs a scene: every sample is a ray from the film, through the lens, to the scene and its lights.
 
-    spp: samples per pixel. max_bounces: 0 for direct light only, 1 for one reflection more, ...
+    spp: samples per pixel, or "auto": as many as the noise needs, more where it is noisier, by tiles of 16 pixels
+    (docs/sampling.md). noise: what is wanted then, as a share of a tile's light (of a hundredth of white where that is
+    more), or noise_codes: in 8-bit codes of the developed picture; 1 code unless said. seconds, max_spp (4096): no more
+    samples are taken after so long, and of a pixel no more than so many; warns where the noise is still larger then.
+    max_bounces: 0 for direct light only, 1 for one reflection more, ...
     transport: "paths" for all ways of light, "whitted" for direct light and what mirrors and smooth glass show.
     clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
     too dark; 0: never. threads: 0 for all.
@@ -64,6 +73,7 @@ def render(
     Raises InputError, SceneFileError, DeviceError; Cancelled where progress stopped it; KeyboardInterrupt on Ctrl-C.
     """
     warn_of_no_light(scene)
+    request = noise_request(spp, noise, noise_codes, seconds, max_spp)
     wanted, light = effect_list(effects), illuminant_text(illuminant)
     decisions = ""
     if "auto" in wanted:
@@ -78,7 +88,8 @@ def render(
         picture = _core._render(
             scene,
             camera,
-            spp,
+            1 if spp == "auto" else spp,
+            request,
             device,
             seed,
             max_bounces,
@@ -90,11 +101,15 @@ def render(
             light,
             callback,
         )
-        return image_of(picture, camera, spp, seed, transport, clamp_cd_m2, wanted, light, decisions)
+        return image_of(picture, camera, seed, transport, clamp_cd_m2, wanted, light, decisions)
 
-    if progress is not True:
-        return taken(progress or None)
-    from .progress import progress_bar
+    if progress is True:
+        from .progress import progress_bar
 
-    with progress_bar("photographing") as bar:
-        return taken(bar)
+        with progress_bar("photographing") as bar:
+            image = taken(bar)
+    else:
+        image = taken(progress or None)
+    if image.shortfall:
+        warnings.warn(image.shortfall, stacklevel=2)
+    return image

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,20 @@ from . import _core
 from ._core import Camera, Scene
 from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
+from .noise import noise_request
 from .render import warn_of_effects, warn_of_no_light
+
+
+@dataclass(frozen=True)
+class ReachedNoise:
+    """What has become of a picture that was to have little noise.
+
+    noise: of the noisiest tile, in the measure that was asked for. spp_wanted: of its pixels, for what was wanted.
+    """
+
+    noise: float
+    is_reached: bool
+    spp_wanted: float
 
 
 class Session:
@@ -89,6 +103,21 @@ class Session:
         """
         self._core.add(spp)
 
+    def add_until(
+        self,
+        noise: float | None = None,
+        *,
+        noise_codes: float | None = None,
+        seconds: float | None = None,
+        max_spp: int | None = None,
+    ) -> ReachedNoise:
+        """Takes samples of the pixels that are noisier than wanted, until none is; the arguments are those of render.
+
+        Raises what add raises.
+        """
+        request = noise_request("auto", noise, noise_codes, seconds, max_spp)
+        return ReachedNoise(*self._core.add_until(request))
+
     def image(self) -> Image:
         """What was collected, as render returns it; spp is the mean over the pixels, rounded.
 
@@ -96,17 +125,16 @@ class Session:
         depth inf. Raises InputError where there is no sample yet.
         """
         picture = self._core.picture()
-        spp = round(float(self.samples.mean()))
-        return image_of(
+        image = image_of(
             picture,
             self.camera,
-            spp,
             self._seed,
             self._transport,
             self._clamp_cd_m2,
             self._effects,
             self._illuminant,
         )
+        return replace(image, spp=round(float(self.samples.mean())))
 
     @property
     def samples(self) -> NDArray[np.int64]:

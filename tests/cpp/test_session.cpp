@@ -58,7 +58,7 @@ private:
         if (fails) throw DeviceError("lost");
     }
     void clear() override { notes.push_back("clear"); }
-    void take(const SampleRange& range, std::atomic<std::int64_t>& done, OwnStop&) override {
+    void take(const SampleRange& range, const PixelCounts&, std::atomic<std::int64_t>& done, OwnStop&) override {
         notes.push_back("take");
         taken.push_back(range);
         if (while_taking) while_taking();

@@ -1,7 +1,7 @@
 #pragma once
 #include <algorithm>
 
-#include "../camera/develop.hpp"
+#include "develop.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,0 +1,159 @@
+// Where samples go, on pictures whose noise is known.
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "../../cpp/render/adaptive_sampling.hpp"
+#include "doctest/doctest.h"
+
+using namespace realcam;
+
+namespace {
+
+/// Grey pixels whose means of n samples err by sigma n^(-decay / 2), like those of stratified samples: the error of n
+/// samples is the mean of those of both halves.
+class NoisyFilm {
+public:
+    NoisyFilm(int width, int height, double decay) : width_(width), height_(height), decay_(decay), random_(7) {
+        errors_.resize(3 * pixels());
+        samples.resize(pixels());
+    }
+
+    std::size_t pixels() const { return static_cast<std::size_t>(width_ * height_); }
+
+    template <class Sigma>
+    void take(const std::vector<std::uint32_t>& counts, Sigma&& sigma) {
+        std::normal_distribution<double> normal;
+        for (std::size_t i = 0; i < pixels(); ++i) {
+            if (counts[i] == 0) continue;
+            const double before = static_cast<double>(samples[i]), after = before + counts[i];
+            for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
+                // What brings the variance of the mean from that of `before` to that of `after` samples.
+                const double was = variance(sigma(i), before), is = variance(sigma(i), after);
+                const double keep = before > 0 ? is / was : 0;
+                errors_[c] = keep * errors_[c] + std::sqrt(std::max(0.0, is - keep * keep * was)) * normal(random_);
+            }
+            samples[i] = static_cast<std::int64_t>(after);
+        }
+    }
+
+    std::vector<float> exposure() const {
+        std::vector<float> values(errors_.size());
+        for (std::size_t c = 0; c < values.size(); ++c) values[c] = static_cast<float>(kGrey + errors_[c]);
+        return values;
+    }
+
+    double error(std::size_t pixel) const { return errors_[3 * pixel]; }
+
+    static constexpr double kGrey = 10;
+    std::vector<std::int64_t> samples;
+
+private:
+    double variance(double sigma, double n) const { return n > 0 ? sigma * sigma * std::pow(n, -decay_) : 0; }
+
+    int width_, height_;
+    double decay_;
+    std::mt19937_64 random_;
+    std::vector<double> errors_;
+};
+
+}  // namespace
+
+TEST_CASE("each tile gets the samples that its noise needs") {
+    constexpr int kSide = 128;
+    const double relative = 0.01;
+    for (const double decay : {1.0, 1.5}) {
+        CAPTURE(decay);
+        NoisyFilm film(kSide, kSide, decay);
+        // From left to right 1 to 16 times as noisy.
+        const auto sigma = [&](std::size_t i) {
+            const double x = static_cast<double>(i % kSide / 16) / 7;
+            return NoisyFilm::kGrey * relative * 4 * std::pow(16, x);
+        };
+        film.take(std::vector<std::uint32_t>(film.pixels(), 8), sigma);
+        NoiseGoal goal{relative, NoiseUnit::relative, 1 << 20};
+        // Grey is brighter than a hundredth of white.
+        AdaptiveSampling tiles(kSide, kSide, goal, 100, film.exposure(), film.samples);
+        int rounds = 0;
+        for (;; ++rounds) {
+            REQUIRE(rounds < 40);
+            const std::vector<std::uint32_t> counts = tiles.next(1e18);
+            if (*std::max_element(counts.begin(), counts.end()) == 0) break;
+            film.take(counts, sigma);
+            tiles.add(film.exposure(), counts);
+        }
+        CHECK(tiles.reached().is_reached);
+        CHECK(tiles.left() == 0);
+        for (int column = 0; column < 8; ++column) {
+            CAPTURE(column);
+            double square = 0, count = 0, samples = 0;
+            for (int y = 0; y < kSide; ++y)
+                for (int x = 16 * column; x < 16 * (column + 1); ++x) {
+                    const auto i = static_cast<std::size_t>(y * kSide + x);
+                    square += film.error(i) * film.error(i);
+                    samples += static_cast<double>(film.samples[i]);
+                    ++count;
+                }
+            // 2048 errors: their root mean square is known within 1.6%. What a half tile of 128 pixels shows in three
+            // channels is uncertain by 4%; who stops where it is low stops early, though not by the tile's own error.
+            CHECK(std::sqrt(square / count) < 1.1 * relative * NoisyFilm::kGrey);
+            const double s = sigma(static_cast<std::size_t>(16 * column)) / (relative * NoisyFilm::kGrey);
+            const double needed = std::max(16.0, std::pow(s, 2 / decay));
+            // A quarter of what is there is the smallest step; p is known within a quarter, or not before the second
+            // doubling.
+            CHECK(samples / count < 2 * needed);
+        }
+    }
+}
+
+TEST_CASE("of noise that is not there no samples are taken, and what is clipped has none in codes") {
+    constexpr int kSide = 32;
+    const std::vector<std::int64_t> samples(kSide * kSide, 8);
+    std::vector<float> exposure(3 * kSide * kSide, 1.0f);
+    const std::vector<std::uint32_t> eight(kSide * kSide, 8);
+    AdaptiveSampling even(kSide, kSide, {}, 100, exposure, samples);
+    CHECK(even.next(1e18) == eight);  // nothing is known yet
+    even.add(exposure, eight);
+    CHECK(even.next(1e18) == std::vector<std::uint32_t>(kSide * kSide, 0));
+    CHECK(even.reached().is_reached);
+
+    AdaptiveSampling bright(kSide, kSide, {}, 1e6, exposure, samples);
+    for (std::size_t i = 0; i < exposure.size(); ++i) exposure[i] += 0.5f * static_cast<float>(i % 2);
+    bright.add(exposure, eight);
+    CHECK(bright.reached().is_reached);
+}
+
+TEST_CASE("one half of a tile decides upon the other, within all caps") {
+    constexpr int kSide = 16;
+    std::vector<float> exposure(3 * kSide * kSide, 1.0f);
+    const std::vector<std::uint32_t> eight(kSide * kSide, 8);
+    NoiseGoal goal{0.01, NoiseUnit::relative, 20};
+    AdaptiveSampling tiles(kSide, kSide, goal, 100, exposure, std::vector<std::int64_t>(kSide * kSide, 8));
+    // The black squares of the chessboard change by a half, the white ones not at all.
+    for (std::size_t i = 0; i < kSide * kSide; ++i)
+        if ((i % kSide + i / kSide) % 2 == 0)
+            for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) exposure[c] = 1.5f;
+    tiles.add(exposure, eight);
+    const std::vector<std::uint32_t> counts = tiles.next(1e18);
+    CHECK(counts[0] == 0);  // white ones are quiet
+    CHECK(counts[1] == 4);  // black ones are not; 16 are there, and 20 allowed
+    const ReachedNoise reached = tiles.reached();
+    CHECK_FALSE(reached.is_reached);
+    CHECK(reached.noise == doctest::Approx(0.5 / 1.5));
+    CHECK(reached.samples_wanted == doctest::Approx(16 * std::pow(0.5 / 1.5 / 0.01, 2)));
+    // Half of what all pixels together want.
+    CHECK(tiles.next(128 * 4 / 2)[1] == 2);
+    CHECK(tiles.left() == 128 * 4);
+}
+
+TEST_CASE("goals that are none are refused") {
+    CHECK_THROWS_AS(validate(NoiseGoal{.noise = 0}), InputError);
+    CHECK_THROWS_AS(validate(NoiseGoal{.noise = std::nan("")}), InputError);
+    CHECK_THROWS_AS(validate(NoiseGoal{.most_samples = 0}), InputError);
+    CHECK_THROWS_AS(validate(NoiseGoal{.seconds = -1}), InputError);
+    CHECK_THROWS_AS(goal_of({0.01, 1, {}, {}}), InputError);
+    CHECK(goal_of({0.01, {}, {}, {}}).unit == NoiseUnit::relative);
+    CHECK(goal_of({}) == NoiseGoal{});
+}
