@@ -64,7 +64,7 @@ class Program:
 
 def realcam_program(scene: rc.Scene, camera: rc.Camera, threads: int) -> Program:
     def take(spp: int, seed: int) -> np.ndarray:
-        image = rc.render(scene, camera, spp=spp, seed=seed, max_bounces=0, device="cpu", threads=threads)
+        image = rc.render(scene, camera, effects=(), spp=spp, seed=seed, max_bounces=0, device="cpu", threads=threads)
         return image.pixels.mean(axis=2) / camera.exposure_time_s
 
     return Program(take)

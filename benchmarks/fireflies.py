@@ -57,7 +57,9 @@ def programs(shot: shots.Shot, threads: int) -> dict[str, Take]:
     integrator = mi.load_dict({"type": "path", "max_depth": BOUNCES + 2, "rr_depth": 4})
 
     def ours(spp: int, seed: int) -> np.ndarray:
-        image = rc.render(scene, camera, spp=spp, seed=seed, max_bounces=BOUNCES, device="cpu", threads=threads)
+        image = rc.render(
+            scene, camera, effects=(), spp=spp, seed=seed, max_bounces=BOUNCES, device="cpu", threads=threads
+        )
         return np.asarray(image.pixels.mean(axis=2), float)
 
     def theirs(spp: int, seed: int) -> np.ndarray:

@@ -33,7 +33,7 @@ def take_picture(program: str, device: str, spheres: int) -> None:
     camera = frame_camera("pinhole", rc.Film(24, 24, (64, 64)))
     if program == "realcam":
         scene = frame_scene(spheres, boxes=0, sky=0.0)
-        rc.render(scene, camera, spp=1, max_bounces=0, device=device)
+        rc.render(scene, camera, effects=(), spp=1, max_bounces=0, device=device)
     else:
         import mitsuba as mi
         import numpy as np

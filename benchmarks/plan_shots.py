@@ -112,7 +112,7 @@ def drawn_shot(number: int, seed: int) -> Shot:
         further[:3, 3] = (way / exposure, 0, 0)
         object_ = scene_of([board((0, 0, -0.9 * distance), 0.3 * field * distance)], random)
         scene = scene.with_instance(object_, name="moving").moved("moving", [there, further], times_s=[0, 1])
-    dim = rc.render(scene, camera.replace(model="pinhole"), spp=32, device="cpu", max_bounces=0)
+    dim = rc.render(scene, camera.replace(model="pinhole"), effects=(), spp=32, device="cpu", max_bounces=0)
     bright = float(np.quantile(dim.pixels.mean(axis=2), 0.9))
     camera = camera.replace(iso=float(np.clip(0.5 / (0.018 * max(bright, 1e-12)), 1e-6, 1e9)))
     return Shot(f"{number} {kind} {name} f/{f_number:.1f} {1000 * width / 240:.1f} um", scene, camera)

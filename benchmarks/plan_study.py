@@ -55,6 +55,8 @@ class Decision:
 
     @property
     def verdict(self) -> str:
+        if self.noise > self.threshold and self.measured < 3 * self.noise:
+            return "too noisy to tell"
         said = self.foreseen >= self.threshold
         if said == self.is_needed:
             return "right"
@@ -188,7 +190,8 @@ def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
 
 
 def summary(outcomes: list[Outcome]) -> list[str]:
-    decisions = [d for outcome in outcomes for d in outcome.decisions]
+    every = [d for outcome in outcomes for d in outcome.decisions]
+    decisions = [d for d in every if d.verdict != "too noisy to tell"]
     wrong = [d for d in decisions if d.verdict != "right"]
     large_drops = [d for d in wrong if d.verdict == "false drop" and d.measured > 2 * d.threshold]
     times = [outcome.planned_s / outcome.everything_s for outcome in outcomes]
@@ -197,7 +200,8 @@ def summary(outcomes: list[Outcome]) -> list[str]:
     return [
         f"- {len(decisions) - len(wrong)} of {len(decisions)} decisions are right "
         f"({100 - 100 * len(wrong) / len(decisions):.0f}%); {sum(d.verdict == 'false drop' for d in wrong)} false "
-        f"drops, {sum(d.verdict == 'false keep' for d in wrong)} false keeps. "
+        f"drops, {sum(d.verdict == 'false keep' for d in wrong)} false keeps; "
+        f"{len(every) - len(decisions)} more are too noisy to tell. "
         f"Dropped with more than twice the threshold: {len(large_drops)}.",
         f"- Time as planned over time with everything: median {median(times):.2f}, worst {max(times):.2f}; "
         f"{100 * saved / savable:.0f}% of what the oracle saves.",
@@ -229,7 +233,7 @@ def write_page() -> None:
             wrong = "; ".join(
                 f"{d.effect} {d.foreseen:.2g} / {d.measured:.2g} {d.unit} ({d.verdict})"
                 for d in o.decisions
-                if d.verdict != "right"
+                if d.verdict.startswith("false")
             )
             lines += [f"| {o.shot} | {o.planned} | {o.planned_s / o.everything_s:.2f} | {o.flip:.4f} | {wrong} |"]
         lines += ["", "Sizes foreseen / measured:", ""]

@@ -12,7 +12,6 @@
 #include "../io/json_writer.hpp"
 #include "../plan/make_plan.hpp"
 #include "../plan/plan_text.hpp"
-#include "../plan/quality.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
@@ -72,12 +71,7 @@ public:
         const auto session = make_session(words_.device);  // first, because reading a scene may take long
         shot::Shot shot = set_up_shot(request, std::move(camera));
         std::string decisions;
-        if (request.settings.effects.is_automatic) {
-            const Plan plan = planned(*session, shot, request, {});
-            apply(plan, shot.camera, request.settings);
-            decisions = summary_of(plan);
-            if (words_.explains) std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
-        }
+        if (request.settings.effects.is_automatic) decisions = follow_plan(*session, shot, request);
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens))
             say("warning: " + notice);
         // Until here nothing is on disk, and a signal may simply end the program.
@@ -89,15 +83,13 @@ public:
         std::fputs(summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
     }
 
-    void plan(const std::string& quality, bool as_json) {
+    void plan(bool as_json) {
         shot::ShotRequest request = understand(words_);
         request.settings.effects.is_automatic = true;
-        const auto thresholds = quality_named(quality);
-        if (!thresholds) throw InputError("--quality: \"" + quality + "\": " + kQualityNames + " is wanted");
         Camera camera = camera_of(request);
         const auto session = make_session(words_.device);
         shot::Shot shot = set_up_shot(request, std::move(camera));
-        const Plan plan = planned(*session, shot, request, *thresholds);
+        const Plan plan = planned(*session, shot, request, thresholds_of(words_));
         std::fputs((as_json ? json_of(plan) : text_of(plan, io::name_of(plan.model))).c_str(), stdout);
     }
 
@@ -108,6 +100,20 @@ private:
             say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
                 "cd/m^2");
         return shot;
+    }
+
+    /// Returns what was decided. What cannot be planned is taken as it stands.
+    std::string follow_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request) const {
+        try {
+            const Plan plan = planned(session, shot, request, thresholds_of(words_));
+            apply(plan, shot.camera, request.settings);
+            if (words_.explains) std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
+            return summary_of(plan);
+        } catch (const NothingToPlan& nothing) {
+            say("warning: " + std::string(nothing.what()) + "; the picture has the effects that are named");
+            request.settings.effects = without_plan(request.settings.effects);
+            return "";
+        }
     }
 
     /// Meters first, because sizes in codes depend on the exposure.
@@ -218,14 +224,10 @@ void add_render_command(CLI::App& app) {
 void add_plan_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("plan", "Say which effects a shot calls for, and why");
     const auto words = std::make_shared<RenderWords>();
-    const auto quality = std::make_shared<std::string>("photo");
     const auto as_json = std::make_shared<bool>(false);
     add_shot_options(*command, *words);
-    command->option_defaults()->group("Plan");
-    command->add_option("--quality", *quality,
-                        "What counts: draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1, 0.25) [photo]");
     command->add_flag("--json", *as_json, "Print JSON");
-    command->callback([=] { Run{*words}.plan(*quality, *as_json); });
+    command->callback([=] { Run{*words}.plan(*as_json); });
 }
 
 }  // namespace realcam::app

@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "../plan/quality.hpp"
 #include "../render/effect_names.hpp"
 #include "../shot/names.hpp"
 #include "../shot/shot_file.hpp"
@@ -184,8 +185,15 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
     option("--layers", w.layers,
            "Also write to .exr, separated by commas: all, or some of " + layer_names() + " [none]", "NAMES");
     option("--effects", w.effects,
-           "What else is simulated or, with a minus, left out, separated by commas after a \"=\": " + effect_names(),
+           "What else is simulated or, with a minus, left out, separated by commas after a \"=\": " + effect_names() +
+               " [auto: what the shot calls for]",
            "NAMES");
+    option("--quality", w.quality,
+           "What auto leaves out is smaller than that of draft (2 pixels, 4 codes), photo (0.5, 1) or reference (0.1, "
+           "0.25) [photo]",
+           "NAME");
+    option("--threshold-px", w.threshold_px, "In pixels, in place of that of the quality", "PIXELS");
+    option("--threshold-codes", w.threshold_codes, "In 8-bit codes, in place of that of the quality", "CODES");
     option("--illuminant", w.illuminant,
            "Of dispersion and diffraction, the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]",
            "SPECTRUM");
@@ -203,6 +211,15 @@ void add_render_options(CLI::App& command, RenderWords& w) {
         ->type_name("FILE")
         ->required()
         ->allow_extra_args(false);
+}
+
+PlanThresholds thresholds_of(const RenderWords& w) {
+    const auto thresholds = quality_named(w.quality.empty() ? "photo" : w.quality);
+    if (!thresholds) throw InputError("--quality: \"" + w.quality + "\": " + kQualityNames + " is wanted");
+    PlanThresholds result = *thresholds;
+    if (!w.threshold_px.empty()) result.pixels = parse_number("--threshold-px", w.threshold_px);
+    if (!w.threshold_codes.empty()) result.codes = parse_number("--threshold-codes", w.threshold_codes);
+    return result;
 }
 
 shot::ShotRequest understand(const RenderWords& w) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "../plan/plan.hpp"
 #include "../shot/shot_request.hpp"
 
 namespace realcam::app {
@@ -11,8 +12,8 @@ namespace realcam::app {
 struct RenderWords {
     std::string scene, lens, film, resolution, position, look_at, up, focus, f_number, blades, blade_rounding,
         blade_rotation, exposure_time, shutter_opens, readout_time, iso, model, scale, environment, tone, spp, noise,
-        noise_codes, seconds, max_spp, seed, max_bounces, transport, clamp, threads, layers, effects, illuminant,
-        device = "auto";
+        noise_codes, seconds, max_spp, seed, max_bounces, transport, clamp, threads, layers, effects, quality,
+        threshold_px, threshold_codes, illuminant, device = "auto";
     std::vector<std::string> outputs;
     bool verbose = false, explains = false;
 };
@@ -21,6 +22,9 @@ struct RenderWords {
 void add_shot_options(CLI::App& command, RenderWords& words);
 /// The same, and what to write.
 void add_render_options(CLI::App& command, RenderWords& words);
+
+/// Of what a plan leaves out. Throws InputError.
+PlanThresholds thresholds_of(const RenderWords& words);
 
 /// What they mean: those of the shot file, if `scene` is one, with typed values instead of those in the file.
 /// Throws InputError that names option or file.

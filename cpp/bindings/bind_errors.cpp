@@ -1,5 +1,6 @@
 #include "../error.hpp"
 #include "../io/one_line.hpp"
+#include "../plan/plan.hpp"
 
 #include <new>
 #include <stdexcept>
@@ -58,6 +59,9 @@ void bind_errors(py::module_& m) {
         py::make_tuple(type_of<InputError>(), py::reinterpret_borrow<py::object>(PyExc_TypeError));
     define<ArgumentError>(m, "ArgumentError", type_error,
                           "An argument of the wrong type, missing, or not known. Also a TypeError.");
+    define<NothingToPlan>(
+        m, "NothingToPlan", type_of<InputError>(),
+        "A shot in which there is nothing to decide upon: the camera sees neither an object nor light.");
     define<LensFileError>(
         m, "LensFileError", base,
         "A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and "
@@ -71,6 +75,8 @@ void bind_errors(py::module_& m) {
             if (pointer) std::rethrow_exception(pointer);
         } catch (const LensFileError& e) {
             raise(e);
+        } catch (const NothingToPlan& e) {
+            raise<NothingToPlan>(e);
         } catch (const InputError& e) {
             raise<InputError>(e);
         } catch (const SceneFileError& e) {

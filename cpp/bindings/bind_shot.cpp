@@ -26,11 +26,14 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
         meter(shot, request, session, report);
     }
     const RenderSettings& settings = request.settings;
-    return py::make_tuple(shot.scene, shot.camera, settings.spp, settings.seed, settings.max_bounces,
+    const py::object spp = request.has_noise_goal ? py::object(py::str("auto")) : py::int_(settings.spp);
+    const NoiseRequest& noise = request.noise;
+    return py::make_tuple(shot.scene, shot.camera, spp, settings.seed, settings.max_bounces,
                           request.tone == ToneCurve::film ? "film" : "linear",
                           py::tuple(py::cast(names_of(settings.layers))), io::name_of(settings.transport),
                           settings.clamp, py::tuple(py::cast(names_of(settings.effects))),
-                          settings.illuminant ? settings.illuminant->text() : std::string());
+                          settings.illuminant ? settings.illuminant->text() : std::string(), noise.noise,
+                          noise.noise_codes, noise.seconds, noise.max_spp);
 }
 
 py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::string& transport, float clamp_cd_m2,

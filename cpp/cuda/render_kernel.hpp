@@ -28,8 +28,8 @@ struct RenderJob {
     const volatile int* stop;  ///< not 0: no thread begins another sample
     PathSettings path;
     std::uint32_t seed, first_sample, sample_count;
-    const std::uint32_t* counts;  ///< of the band's pixels, those of them that each takes after counts_taken; none: all
-    std::uint32_t counts_taken;
+    const std::uint32_t* of_pixels;  ///< how many of them single pixels of the band take, after pixels_taken; none: all
+    std::uint32_t pixels_taken;
     int first_row, row_count;  ///< of the picture
     bool adds_squares;  ///< PixelSum::squares, too
 };

@@ -47,9 +47,9 @@ struct StageClock {
 
 /// How many samples a pixel of the job's band takes.
 __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pixel) {
-    if (!job.counts) return job.sample_count;
-    const std::uint32_t wanted = job.counts[pixel];
-    return wanted > job.counts_taken ? min(wanted - job.counts_taken, job.sample_count) : 0;
+    if (!job.of_pixels) return job.sample_count;
+    const std::uint32_t wanted = job.of_pixels[pixel];
+    return wanted > job.pixels_taken ? min(wanted - job.pixels_taken, job.sample_count) : 0;
 }
 
 template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced, class Clock>

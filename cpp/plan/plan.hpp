@@ -3,11 +3,17 @@
 #include <vector>
 
 #include "../camera/camera_view.hpp"
+#include "../error.hpp"
 #include "../render/effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 enum class SizeUnit { pixels, codes };
+
+/// A shot in which there is nothing to decide upon.
+struct NothingToPlan : InputError {
+    using InputError::InputError;
+};
 
 /// From which size on something is simulated.
 struct PlanThresholds {

@@ -18,6 +18,13 @@ struct PlanRequest {
     bool may_choose_model = true;  ///< else the camera's stays
 };
 
+/// The effects of a picture for which there is no plan: those that somebody has named.
+inline EffectChoice without_plan(EffectChoice effects) {
+    effects.is_automatic = false;
+    effects.named = 0;
+    return effects;
+}
+
 namespace plan_shot_detail {
 
 /// What an effect adds to a picture's time, as a share of it: benchmarks/results, on one core and on a GPU.
@@ -28,8 +35,8 @@ struct EffectTime {
     } cpu, gpu;
 };
 inline constexpr EffectTime kEffectTimes[] = {
-    {"dispersion", {0.12, 0.46}, {0.15, 0.74}},  {"coatings", {0.03, 0.05}, {0.07, 0.07}},
-    {"ghosts", {0.5, 1.45}, {0.21, 0.61}},       {"diffraction", {0.1, 0.15}, {0.13, 0.15}},
+    {"dispersion", {0.12, 0.46}, {0.15, 0.74}}, {"coatings", {0.03, 0.05}, {0.07, 0.07}},
+    {"ghosts", {0.5, 1.45}, {0.21, 0.61}},      {"diffraction", {0.1, 0.15}, {0.13, 0.15}},
     {"motion_blur", {0.1, 0.05}, {0.1, 0.05}},
 };
 
@@ -58,9 +65,7 @@ public:
         : camera_(camera), errors_(errors), facts_(facts), request_(request), on_gpu_(on_gpu) {}
 
     Plan plan() {
-        plan_.effects = request_.effects;
-        plan_.effects.is_automatic = false;
-        plan_.effects.named = 0;
+        plan_.effects = without_plan(request_.effects);
         decide_colour();
         decide_coatings();
         decide_ghosts();
@@ -81,17 +86,26 @@ private:
         return effects.dispersion || effects.coatings || effects.have_ghosts();
     }
 
-    /// `reason`: what is so large.
-    void decide(const char* name, double size, SizeUnit unit, std::string reason) {
+    /// `reason`: what is so large. `doubt`: why it is left to the user; empty: it is not.
+    void decide(const char* name, double size, SizeUnit unit, std::string reason, const std::string& doubt = "") {
         const EffectInfo& effect = effect_named(name);
         const double threshold = unit == SizeUnit::pixels ? request_.thresholds.pixels : request_.thresholds.codes;
         const bool is_named = (request_.effects.named & bit_of(effect)) != 0;
-        const bool is_kept = is_named ? request_.effects.*effect.member : size >= threshold && !is_impossible(effect);
-        if (!is_named && size >= threshold && !is_kept) reason += "; an ideal lens cannot show it";
+        const bool is_kept =
+            is_named ? request_.effects.*effect.member : size >= threshold && doubt.empty() && !is_impossible(effect);
+        if (!is_named && size >= threshold && !is_kept)
+            reason += "; " + (doubt.empty() ? "an ideal lens cannot show it" : doubt);
         plan_.effects.*effect.member = is_kept;
         plan_.decisions.push_back({name, size, unit, threshold, is_kept,
-                                   is_named ? DecidedBy::user : DecidedBy::planner, time_of(name, camera_.lens, on_gpu_),
-                                   reason});
+                                   is_named ? DecidedBy::user : DecidedBy::planner,
+                                   time_of(name, camera_.lens, on_gpu_), reason});
+    }
+
+    /// Glass without a word on its coating is taken as bare, which few lenses are.
+    std::string doubt_of_coatings() const {
+        return surfaces_with_unknown_coating(camera_.lens).empty()
+                   ? ""
+                   : "but nobody knows what covers the glass, and bare it is only where the effect is named";
     }
 
     static std::string px(double size) { return short_size(size) + " px"; }
@@ -107,7 +121,8 @@ private:
 
     void decide_coatings() {
         const double size = coating_codes(camera_, facts_);
-        decide("coatings", size, SizeUnit::codes, "the glass takes " + codes(size) + " from what is bright");
+        decide("coatings", size, SizeUnit::codes, "the glass takes " + codes(size) + " from what is bright",
+               doubt_of_coatings());
     }
 
     void decide_ghosts() {
@@ -117,7 +132,8 @@ private:
                ghost.pair.first < 0
                    ? "the veil of all ghosts brings " + codes(ghost.codes) + " to what is dark"
                    : "ghosts and their veil bring " + codes(ghost.codes) + " to what is dark, most by surfaces " +
-                         surface(ghost.pair.first) + " and " + surface(ghost.pair.second));
+                         surface(ghost.pair.first) + " and " + surface(ghost.pair.second),
+               doubt_of_coatings());
     }
 
     void decide_diffraction() {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "../render/take_picture.hpp"
+#include "plan.hpp"
 #include "scene_facts.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -144,7 +145,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
         facts.tiles.push_back({1000 * depth - vertex_mm, value, motion});
         sees_anything |= std::isfinite(depth) || value > 0;
     }
-    if (!sees_anything) throw InputError("there is nothing to plan: the camera sees no object and no light");
+    if (!sees_anything) throw NothingToPlan("there is nothing to plan: the camera sees no object and no light");
     const Affine<double> scene_from_camera =
         camera_detail::scene_from_camera(pose_at(camera, camera.exposure().begin_s));
     const InverseAffine<double> camera_from_scene = scene_from_camera.inverse();

@@ -18,8 +18,9 @@ namespace REALCAM_NAMESPACE {
 /// on the samples themselves would bias their mean, because pixels that happen to miss bright things look finished.
 ///
 /// Noise is measured by doubling: a picture of n samples and the same with n more differ by as much as n samples err.
-/// The samples of a pixel are stratified, so that its variance falls faster than with 1 / n, like n^-p: with p from the
-/// differences of two doublings, the variance of the mean of all samples is that of the difference over 2^p - 1.
+/// The samples of a pixel are stratified, so that where it is smooth its variance falls faster than with 1 / n, like
+/// n^-p; the variance of the mean of all samples is then that of the last difference over 2^p - 1. p is what the
+/// differences of all doublings show with some certainty, and else 1.
 class AdaptiveSampling {
 public:
     static constexpr int kTileSide = 16;
@@ -50,7 +51,7 @@ public:
             wanted[h] = next_of(halves_[h], other(h));
             sum += wanted[h] * halves_[h].pixels;
         }
-        const double scale = std::min(1.0, most / std::max(sum, 1.0));
+        const double scale = std::clamp(most / std::max(sum, 1.0), 0.0, 1.0);
         std::vector<std::uint32_t> counts(values_.size() / 3);
         for_pixels([&](std::size_t pixel, std::size_t half) {
             counts[pixel] = static_cast<std::uint32_t>(scale * wanted[half]);
@@ -106,17 +107,21 @@ private:
     struct Half {
         double pixels = 0, samples = 0;
         double mean = 0;
-        double difference = -1;  ///< mean square, of the last doubling; below 0: there was none
+        double first_difference = 0, doublings = 0;  ///< mean square of the first doubling; how many there were
         double variance = -1;  ///< of a pixel's mean; below 0: not known yet
-        double decay = 1;  ///< p: variance falls with samples^-p
+        double decay = 1;      ///< p: variance falls with samples^-p
 
         void add(double square, double taken) {
             if (taken < samples) {
                 variance *= std::pow(samples / (samples + taken), decay);
             } else {
-                // Below 1, where rare bright samples are not met at first, p would promise nothing.
-                if (difference > 0 && square > 0) decay = std::clamp(std::log2(difference / square), 1.0, 1.75);
-                difference = square;
+                // A mean square over 128 pixels is uncertain by a fifth and more, the logarithm of a quotient by a
+                // half.
+                if (doublings == 0)
+                    first_difference = square;
+                else if (square > 0)
+                    decay = std::clamp((std::log2(first_difference / square) - 0.5) / doublings, 1.0, 1.75);
+                ++doublings;
                 variance = square / (std::exp2(decay) - 1);
             }
             samples += taken;
@@ -157,10 +162,13 @@ private:
         return half.variance / (goal * goal);
     }
 
+    /// What is measured is uncertain, and who stops where it is small stops too early.
+    static constexpr double kMargin = 0.8;
+
     /// Samples of a pixel with which the goal is reached, by what these have shown.
     double end_of(const Half& shown) const {
         return shown.variance < 0 ? std::numeric_limits<double>::infinity()
-                                  : shown.samples * std::pow(excess_of(shown), 1 / shown.decay);
+                                  : shown.samples * std::pow(excess_of(shown) / kMargin, 1 / shown.decay);
     }
 
     /// Of a half, by what the other has shown: as many as it has, or fewer where that is expected to be enough.

@@ -92,7 +92,7 @@ inline const EffectInfo& effect_named(const std::string& name) {
 }
 
 inline std::string effect_names() {
-    std::string names = "auto, ";
+    std::string names = "auto, none, ";
     for (const EffectInfo& effect : kEffects)
         names += std::string(&effect == kEffects.data() ? "" : ", ") + (effect.is_on() ? "-" : "") + effect.name;
     return names;
@@ -112,10 +112,13 @@ inline std::vector<std::string> names_of(const EffectChoice& effects) {
     return names;
 }
 
-/// Throws InputError for a name that is none, and where one is both named and left out.
+/// "none" stands alone. Throws InputError for a name that is none, and where one is both named and left out.
 inline EffectChoice effects_named(const std::vector<std::string>& names) {
     EffectChoice effects;
     for (const std::string& name : names) {
+        if (name == "none" && names.size() > 1)
+            throw InputError("\"none\" stands alone; other effects are named beside it");
+        if (name == "none") break;
         if (name == "auto") {
             effects.is_automatic = true;
             continue;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <memory>
 
+#include "../optics/coated_faces.hpp"
+#include "effect_names.hpp"
 #include "take_picture.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -42,7 +44,13 @@ inline double metered_exposure_time(Session& session, const Assembly& scene, Cam
     settings.noise.reset();
     settings.layers = {};
     if (settings.effects.is_automatic) {  // which they are depends on the exposure
-        settings.effects = {};
+        EffectChoice effects;
+        // A real camera measures the light that its lens lets through.
+        const bool is_named = (settings.effects.named & bit_of(effect_named("coatings"))) != 0;
+        effects.coatings =
+            is_named ? settings.effects.coatings
+                     : camera.model == CameraModel::full_lens && surfaces_with_unknown_coating(camera.lens).empty();
+        settings.effects = effects;
         settings.illuminant.reset();
     }
     const double per_second = metered_exposure(take_picture(session, scene, camera, settings, progress));

@@ -149,10 +149,12 @@ private:
         read("max_bounces", settings.max_bounces);
         settings.transport = table_.named("transport", transport_named, kTransportNames).value_or(settings.transport);
         settings.clamp = static_cast<float>(table_.number("clamp_cd_m2").value_or(0));
-        const std::vector<std::string> effects = table_.texts("effects");
-        table_.checked("effects", [&] { settings.effects = effects_named(effects); });
+        if (table_.find("effects")) {
+            const std::vector<std::string> effects = table_.texts("effects");
+            table_.checked("effects", [&] { settings.effects = effects_named(effects); });
+        }
         table_.checked("illuminant", [&] { settings.illuminant = read_illuminant(); });
-        if (settings.illuminant && !settings.effects.have_wavelengths())
+        if (settings.illuminant && !settings.effects.have_wavelengths() && !settings.effects.is_automatic)
             table_.fail("illuminant belongs to the effects dispersion and diffraction, which are not switched on",
                         table_.find("illuminant"));
         table_.checked(settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(settings); });

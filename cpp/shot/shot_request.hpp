@@ -7,6 +7,7 @@
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
 #include "../render/default_view.hpp"
+#include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "scene_request.hpp"
 
@@ -34,7 +35,7 @@ struct ShotRequest {
     std::optional<double> exposure_time_s;
     double iso = 100;
 
-    RenderSettings settings = {64, 0, 1, 0};
+    RenderSettings settings = {.max_bounces = 1, .effects = effects_named({"auto"})};
     bool has_noise_goal = false;  ///< spp is "auto", and as many samples are taken as the noise needs
     NoiseRequest noise;
     ToneCurve tone = ToneCurve::film;

@@ -32,6 +32,7 @@ from ._core import (
     LiveFrame,
     LiveView,
     Material,
+    NothingToPlan,
     Plan,
     PlanDecision,
     RayChunks,
@@ -52,6 +53,7 @@ from ._core import (
     lens_names,
     sensor_names,
 )
+from .accuracy import AccuracyCost, accuracy_cost
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
@@ -63,6 +65,7 @@ from .shot import Shot
 
 __all__ = [
     "PSF",
+    "AccuracyCost",
     "AimedRays",
     "ArgumentError",
     "Camera",
@@ -87,6 +90,7 @@ __all__ = [
     "LiveView",
     "Material",
     "Mirror",
+    "NothingToPlan",
     "Plan",
     "PlanDecision",
     "RawImage",
@@ -107,6 +111,7 @@ __all__ = [
     "TraceResult",
     "Wavefront",
     "__version__",
+    "accuracy_cost",
     "devices",
     "effects",
     "lens_names",

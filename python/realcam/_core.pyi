@@ -50,6 +50,7 @@ def one_line(message: str) -> str: ...
 class RealcamError(Exception): ...
 class InputError(RealcamError, ValueError): ...
 class ArgumentError(InputError, TypeError): ...
+class NothingToPlan(InputError): ...  # noqa: N818
 
 class LensFileError(RealcamError):
     file: str
@@ -1059,7 +1060,24 @@ def _sensor_color(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 def _read_shot(
     path: str | os.PathLike[str], device: str, progress: _Progress | None
-) -> tuple[Scene, Camera, int, int, int, str, tuple[str, ...], str, float, tuple[str, ...], str]: ...
+) -> tuple[
+    Scene,
+    Camera,
+    int | Literal["auto"],
+    int,
+    int,
+    str,
+    tuple[str, ...],
+    str,
+    float,
+    tuple[str, ...],
+    str,
+    float | None,
+    float | None,
+    float | None,
+    int | None,
+]: ...
+
 class _NoiseRequest:
     def __init__(
         self, noise: float | None, noise_codes: float | None, seconds: float | None, max_spp: int | None

@@ -29,8 +29,8 @@ def plan(
     4 codes), "photo" (0.5, 1) or "reference" (0.1, 0.25); threshold_px and threshold_codes go before it.
     effects: what is named is kept, with a "-" before it left out. A camera whose model is not "full" keeps it.
 
-    Raises InputError, also where the camera sees neither an object nor light; SceneFileError, DeviceError;
-    KeyboardInterrupt on Ctrl-C.
+    Raises InputError; NothingToPlan, one of these, where the camera sees neither an object nor light;
+    SceneFileError, DeviceError; KeyboardInterrupt on Ctrl-C.
     """
     return _core._plan(
         scene, camera, device, seed, max_bounces, threads, effect_list(effects), quality, threshold_px, threshold_codes

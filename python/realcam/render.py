@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Iterable
 
 from . import _core
-from ._core import Camera, Scene
+from ._core import Camera, NothingToPlan, Scene
 from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
 from .noise import Samples, noise_request
@@ -48,7 +48,10 @@ def render(
     clamp_cd_m2: float = 0.0,
     threads: int = 0,
     layers: str | Iterable[str] = (),
-    effects: str | Iterable[str] = (),
+    effects: str | Iterable[str] = "auto",
+    quality: str = "photo",
+    threshold_px: float | None = None,
+    threshold_codes: float | None = None,
     illuminant: Illuminant | None = None,
     progress: bool | ProgressCallback = False,
 ) -> Image:
@@ -63,8 +66,9 @@ def render(
     clamp_cd_m2: radiance above which what comes by a bounce is cut off, for fewer bright dots and a picture that is
     too dark; 0: never. threads: 0 for all.
     layers: names of what else Image.layers is to hold, or "all" (docs/layers.md).
-    effects: names of what else is simulated (rc.effects() lists them; docs/dispersion.md). Warns of what the lens
-    cannot give of them. "auto": what the shot calls for, and the cheapest camera model that shows it (rc.plan).
+    effects: "auto": what the shot calls for, and the cheapest camera model that shows it, by the thresholds of rc.plan,
+    whose quality, threshold_px and threshold_codes these are; or names of what is simulated besides (rc.effects() lists
+    them; docs/dispersion.md), () for none. Warns of what the lens cannot give of them.
     illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "A", "FL2", a wavelength in nm, or
     (wavelength_nm, power) pairs; None: D65.
     progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
@@ -77,8 +81,23 @@ def render(
     wanted, light = effect_list(effects), illuminant_text(illuminant)
     decisions = ""
     if "auto" in wanted:
-        choice = plan(scene, camera, device=device, seed=seed, max_bounces=max_bounces, threads=threads, effects=wanted)
-        camera, wanted, decisions = camera.replace(model=choice.model), choice.effects, choice.summary
+        try:
+            choice = plan(
+                scene,
+                camera,
+                device=device,
+                seed=seed,
+                max_bounces=max_bounces,
+                threads=threads,
+                effects=wanted,
+                quality=quality,
+                threshold_px=threshold_px,
+                threshold_codes=threshold_codes,
+            )
+            camera, wanted, decisions = camera.replace(model=choice.model), choice.effects, choice.summary
+        except NothingToPlan as nothing:
+            warnings.warn(f"{nothing}; the picture has the effects that are named", stacklevel=2)
+            wanted = [name for name in wanted if name != "auto"]
         if not {"dispersion", "diffraction"} & set(wanted):
             light = ""
     warn_of_effects(camera, wanted)

@@ -9,6 +9,7 @@ from typing import Any
 from . import _core
 from ._core import Camera, Scene
 from .image import Image
+from .noise import Samples
 from .render import ProgressCallback, render
 
 
@@ -21,15 +22,19 @@ class Shot:
 
     scene: Scene
     camera: Camera
-    spp: int = 64
+    spp: Samples = 64
     seed: int = 0
     max_bounces: int = 1
     tone: str = "film"
     layers: tuple[str, ...] = ()
     transport: str = "paths"
     clamp_cd_m2: float = 0.0
-    effects: tuple[str, ...] = ()
+    effects: tuple[str, ...] = ("auto",)
     illuminant: str = ""
+    noise: float | None = None
+    noise_codes: float | None = None
+    seconds: float | None = None
+    max_spp: int | None = None
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, device: str = "auto") -> Shot:
@@ -45,4 +50,6 @@ class Shot:
         settings: dict[str, Any] = {"spp": self.spp, "seed": self.seed, "max_bounces": self.max_bounces}
         settings |= {"layers": self.layers, "transport": self.transport, "clamp_cd_m2": self.clamp_cd_m2}
         settings |= {"effects": self.effects, "illuminant": self.illuminant or None}
+        settings |= {"noise": self.noise, "noise_codes": self.noise_codes}
+        settings |= {"seconds": self.seconds, "max_spp": self.max_spp}
         return render(self.scene, self.camera, **settings, device=device, threads=threads, progress=progress)

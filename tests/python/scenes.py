@@ -86,8 +86,10 @@ def radiance(
     scene: rc.Scene, camera: rc.Camera, spp: int = 16, max_bounces: int = 0, device: str = "auto"
 ) -> np.ndarray:
     """(H, W, 3): the picture in units of one of radiance 1 everywhere, taken with the same samples."""
-    picture = rc.render(scene, camera, spp=spp, max_bounces=max_bounces, device=device).pixels.astype(np.float64)
-    return picture / rc.render(sky(), camera, spp=spp, device=device).pixels
+    picture = rc.render(scene, camera, effects=(), spp=spp, max_bounces=max_bounces, device=device).pixels.astype(
+        np.float64
+    )
+    return picture / rc.render(sky(), camera, effects=(), spp=spp, device=device).pixels
 
 
 def points_on_plane(

@@ -20,7 +20,7 @@ def _taken(iso: float, exposure_time_s: float) -> rc.Image:
     lens = rc.Lens.load("double-gauss-50mm")
     camera = rc.Camera(lens, film=rc.Film(36, 24, (6, 4)), exposure_time_s=exposure_time_s, iso=iso)
     speck = rc.Scene.from_arrays([(0, 0, 1e3), (1, 0, 1e3), (0, 1, 1e3)], [(0, 1, 2)]).with_environment(1)
-    return rc.render(speck, camera, spp=1, device="cpu")
+    return rc.render(speck, camera, effects=(), spp=1, device="cpu")
 
 
 def film_of(

@@ -69,9 +69,9 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: SCENE.with_instance("chair"), "object must be a Scene; it is 'chair'"),
     (lambda: rc.Scene.from_arrays("abc", [(0, 1, 2)]), "vertices_m must be an array of numbers; it is 'abc'"),
     (lambda: rc.Scene.load("a.obj", scale="big"), "scale must be a number; it is 'big'"),
-    (lambda: rc.render(3, CAMERA), "scene must be a Scene; it is 3"),
-    (lambda: rc.render(SCENE, SCENE), "camera must be a Camera; it is <realcam.Scene"),
-    (lambda: rc.render(SCENE, CAMERA, spp="many"), "spp must be a whole number; it is 'many'"),
+    (lambda: rc.render(3, CAMERA, effects=()), "scene must be a Scene; it is 3"),
+    (lambda: rc.render(SCENE, SCENE, effects=()), "camera must be a Camera; it is <realcam.Scene"),
+    (lambda: rc.render(SCENE, CAMERA, effects=(), spp="many"), "spp must be a whole number; it is 'many'"),
     (lambda: rc.LiveView(3), "scene must be a Scene; it is 3"),
 ]
 
@@ -100,19 +100,19 @@ def test_an_error_in_a_users_function_stays_as_it_is() -> None:
         raise TypeError("this(): incompatible with my taste")
 
     with pytest.raises(TypeError, match="my taste") as caught:
-        rc.render(SCENE, CAMERA, spp=1, device="cpu", progress=broken)
+        rc.render(SCENE, CAMERA, effects=(), spp=1, device="cpu", progress=broken)
     assert not isinstance(caught.value, rc.ArgumentError)
 
 
 @pytest.mark.parametrize("answer", ["no", "", np.zeros(3)])
 def test_a_progress_function_that_returns_something_else_is_told(answer: object) -> None:
     with pytest.raises(rc.InputError, match=r"progress must return False to stop, .* it returned"):
-        rc.render(SCENE, CAMERA, spp=1, device="cpu", progress=lambda done: answer)  # type: ignore[arg-type,return-value]
+        rc.render(SCENE, CAMERA, effects=(), spp=1, device="cpu", progress=lambda done: answer)  # type: ignore[arg-type,return-value]
 
 
 def test_progress_that_is_no_function_is_told_before_the_work() -> None:
     with pytest.raises(rc.InputError, match="progress must be a function"):
-        rc.render(SCENE, CAMERA, spp=2**24, device="cpu", progress=3)  # type: ignore[arg-type]
+        rc.render(SCENE, CAMERA, effects=(), spp=2**24, device="cpu", progress=3)  # type: ignore[arg-type]
     with pytest.raises(rc.InputError, match="progress must be a function"):
         CAMERA.metered(SCENE, device="cpu", progress="bar")  # type: ignore[arg-type]
 
@@ -176,7 +176,7 @@ def test_messages_repeat_no_page_of_what_was_given() -> None:
     for call in (
         lambda: rc.Lens.load("x" * 100_000),
         lambda: rc.Scene.load("x" * 100_000 + ".obj"),
-        lambda: rc.render(SCENE, CAMERA, device="x" * 100_000),
+        lambda: rc.render(SCENE, CAMERA, effects=(), device="x" * 100_000),
         lambda: rc.Lens.load("a/" + "b\n" * 100_000),
     ):
         with pytest.raises(rc.RealcamError) as caught:

@@ -32,7 +32,7 @@ def picture(lens: rc.Lens, *marks: scenes.Quad, model: str, size_mm: float = PIC
     count = round(size_mm / PITCH_MM)
     film = rc.Film(size_mm, size_mm, (count, count))
     camera = rc.Camera(lens, film=film, exposure_time_s=1, model=model)
-    return rc.render(scenes.scene_of(*marks), camera, spp=spp).pixels[..., 0].astype(np.float64)
+    return rc.render(scenes.scene_of(*marks), camera, effects=(), spp=spp).pixels[..., 0].astype(np.float64)
 
 
 def moments(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,9 @@ def picture(spp: int, layers: tuple[str, ...] = (), seed: int = 0) -> rc.Image:
         look_at=(0, 0.8, 0),
         exposure_time_s=1,
     )
-    return rc.render(frame_scene(spheres=10, boxes=10), camera, spp=spp, seed=seed, layers=layers, max_bounces=1)
+    return rc.render(
+        frame_scene(spheres=10, boxes=10), camera, effects=(), spp=spp, seed=seed, layers=layers, max_bounces=1
+    )
 
 
 def test_noise_falls() -> None:

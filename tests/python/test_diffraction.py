@@ -147,7 +147,7 @@ def test_nothing_is_lost_of_a_lamp_that_rays_meet() -> None:
     seen, star = (picture(scene, lens, film, spp=4096) for scene in (lamp, point))
     # 26000 samples meet the lamp.
     camera = rc.Camera(lens, film=film, exposure_time_s=1)
-    without = rc.render(lamp, camera, spp=4096, device="cpu").pixels[:, :, 1].astype(float)
+    without = rc.render(lamp, camera, effects=(), spp=4096, device="cpu").pixels[:, :, 1].astype(float)
     hold(Measurement("Effects", "light of a small lamp with diffraction over that without", "f/16", "cpu", "float32",
                      abs(seen.sum() / without.sum() - 1), 0.02, ""))  # fmt: skip
     r = radii(96, 20.0)

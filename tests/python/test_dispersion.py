@@ -88,7 +88,7 @@ class Edge:
 
     def whole(self) -> np.ndarray:
         """(800, 1): what the film has of a field that is bright everywhere: a parabola, without its noise."""
-        sky = rc.render(scenes.sky(), self.camera, spp=64).pixels[..., 1].astype(np.float64).mean(axis=0)
+        sky = rc.render(scenes.sky(), self.camera, effects=(), spp=64).pixels[..., 1].astype(np.float64).mean(axis=0)
         columns = np.arange(len(sky)) - self.MIDDLE
         return np.asarray(np.polyval(np.polyfit(columns, sky, 4), columns))[:, None]
 
@@ -159,7 +159,7 @@ def test_a_grey_card_stays_grey(illuminant: object) -> None:
     samples, whose channels vary by as much as white itself, mean to 0.04%."""
     lens = rc.Lens.load("singlet-100mm").stopped_down(32)
     camera = rc.Camera(lens, film=rc.Film(3.6, 2.4, (36, 24)), exposure_time_s=1)
-    plain = rc.render(scenes.sky(), camera, spp=8192).pixels.astype(np.float64).mean(axis=(0, 1))
+    plain = rc.render(scenes.sky(), camera, effects=(), spp=8192).pixels.astype(np.float64).mean(axis=(0, 1))
     seen = quiet(scenes.sky(), camera, spp=8192, illuminant=illuminant).pixels.astype(np.float64).mean(axis=(0, 1))
     assert seen / plain == pytest.approx(1.0, abs=1e-3)
 
@@ -169,7 +169,7 @@ def test_colours_of_the_scene_stay_under_d65() -> None:
     camera = rc.Camera(lens, film=rc.Film(3.6, 2.4, (36, 24)), exposure_time_s=1)
     for color in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (0.7, 0.2, 0.05)):
         scene = scenes.sky().with_environment(color)
-        plain = rc.render(scene, camera, spp=1024).pixels.astype(np.float64).mean(axis=(0, 1))
+        plain = rc.render(scene, camera, effects=(), spp=1024).pixels.astype(np.float64).mean(axis=(0, 1))
         seen = quiet(scene, camera, spp=1024).pixels.astype(np.float64).mean(axis=(0, 1))
         assert seen == pytest.approx(plain, abs=2e-3 * plain.max())
 
@@ -204,7 +204,7 @@ def busy_scene() -> rc.Scene:
 def test_without_data_it_changes_nothing(name: str) -> None:
     lens = one_index(rc.Lens.load(name)).focused(2.0)
     camera = rc.Camera(lens, film=rc.Film(lens.film_mm[0], lens.film_mm[1], (48, 32)), exposure_time_s=1)
-    plain = rc.render(busy_scene(), camera, spp=256).pixels.astype(np.float64)
+    plain = rc.render(busy_scene(), camera, effects=(), spp=256).pixels.astype(np.float64)
     seen = quiet(busy_scene(), camera, spp=256).pixels.astype(np.float64)
     # The same paths, each by a third of the wavelengths that it could have: what differs is noise, and its mean zero.
     assert seen.mean(axis=(0, 1)) == pytest.approx(plain.mean(axis=(0, 1)), rel=5e-3)
@@ -220,7 +220,7 @@ def test_noise_where_colours_stay_in_a_pixel() -> None:
 
     def noise(**settings: object) -> np.ndarray:
         pictures = [
-            rc.render(busy_scene(), camera, spp=64, seed=seed, **settings).pixels.astype(np.float64)  # type: ignore[arg-type]
+            rc.render(busy_scene(), camera, effects=(), spp=64, seed=seed, **settings).pixels.astype(np.float64)  # type: ignore[arg-type]
             for seed in range(12)
         ]
         return np.asarray(np.sqrt(np.var(pictures, axis=0, ddof=1).mean(axis=(0, 1))))
@@ -257,7 +257,7 @@ def test_what_makes_no_picture_is_an_error() -> None:
     camera = rc.Camera(lens, film=rc.Film(3.6, 2.4, (6, 4)))
 
     def taken(camera: rc.Camera = camera, **settings: object) -> None:
-        rc.render(scenes.sky(), camera, spp=1, **settings)  # type: ignore[arg-type]
+        rc.render(scenes.sky(), camera, effects=(), spp=1, **settings)  # type: ignore[arg-type]
 
     with pytest.raises(
         rc.InputError,
@@ -294,7 +294,7 @@ def test_metadata_session_and_shot_file(tmp_path: Path) -> None:
     image = quiet(scene, camera, spp=8, illuminant="FL2")
     assert image.metadata()["realcam:effects"] == "dispersion"
     assert image.metadata()["realcam:illuminant"] == "FL2"
-    assert "realcam:effects" not in rc.render(scene, camera, spp=1).metadata()
+    assert "realcam:effects" not in rc.render(scene, camera, effects=(), spp=1).metadata()
     session = rc.Session(scene, camera, effects=["dispersion"], illuminant="FL2")
     session.add(8)
     assert np.array_equal(session.image().pixels, image.pixels)

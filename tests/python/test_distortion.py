@@ -63,7 +63,7 @@ def marks_at_both_angles() -> np.ndarray:
             height = sign * far_m * math.tan(math.radians(angle))
             marks.append(scenes.quad((0, height, -far_m - pupil_m), 0.2e-3 / EFL * 1e3 * far_m, emission=1e4))
     camera = rc.Camera(lens, film=rc.Film(2, 52, (100, 2600)), exposure_time_s=1)
-    return rc.render(scenes.scene_of(*marks), camera, spp=64).pixels[..., 0].astype(np.float64)
+    return rc.render(scenes.scene_of(*marks), camera, effects=(), spp=64).pixels[..., 0].astype(np.float64)
 
 
 @pytest.mark.parametrize("angle", CHIEF_RAYS)
@@ -96,7 +96,7 @@ def test_ideal_models_do_not_distort(model: str) -> None:
     camera = rc.Camera(lens, film=rc.Film(2, 52, (100, 2600)), exposure_time_s=1, model=model)
     far_m, angle = 1e4, 14.0
     mark = scenes.quad((0, far_m * math.tan(math.radians(angle)), -far_m), 0.2e-3 / EFL * 1e3 * far_m, emission=1e4)
-    strip = rc.render(scenes.scene_of(mark), camera, spp=16).pixels[..., 0].astype(np.float64)
+    strip = rc.render(scenes.scene_of(mark), camera, effects=(), spp=16).pixels[..., 0].astype(np.float64)
     # f tan(angle) on the film of infinity; the thick lens's film is 0.4 mm in front of the paraxial focus,
     # and its chief ray arrives at a slope of 0.2175 (listed).
     expected = EFL * math.tan(math.radians(angle)) - (FOCUS * 0.217488 if model == "thick" else 0.0)
@@ -113,7 +113,9 @@ def test_picture_is_neither_mirrored_nor_upside_down(model: str) -> None:
         scenes.quad((1, -0.7, -6), 0.2, emission=(0, 0, 1e3)),
     ]
     lens = rc.Lens.load("double-gauss-50mm").focused(6)
-    image = rc.render(scenes.scene_of(*marks), rc.Camera(lens, film=rc.Film(36, 24, (36, 24)), model=model), spp=4)
+    image = rc.render(
+        scenes.scene_of(*marks), rc.Camera(lens, film=rc.Film(36, 24, (36, 24)), model=model), effects=(), spp=4
+    )
     rows, columns = np.indices((24, 36))
     for channel, (right, down) in enumerate([(False, False), (True, False), (True, True)]):
         light = image.pixels[..., channel].astype(np.float64)
@@ -129,7 +131,7 @@ def test_camera_that_looks_elsewhere() -> None:
     mark = scenes.quad((6, -1, 0.7), 0.2, right=(0, -1, 0), up=(0, 0, 1), emission=1e3)
     lens = rc.Lens.load("double-gauss-50mm").focused(6)
     camera = rc.Camera(lens, film=rc.Film(36, 24, (36, 24)), look_at=(1, 0, 0), up=(0, 0, 1))
-    light = rc.render(scenes.scene_of(mark), camera, spp=4).pixels[..., 0]
+    light = rc.render(scenes.scene_of(mark), camera, effects=(), spp=4).pixels[..., 0]
     row, column = np.unravel_index(light.argmax(), light.shape)
     assert abs(column - 17.5 - 8.5) <= 2
     assert abs(row - 11.5 + 6.0) <= 2

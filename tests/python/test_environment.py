@@ -141,4 +141,4 @@ def test_uneven_image_is_sampled_without_bias(normal: tuple[float, float, float]
 def test_a_black_image_gives_no_light() -> None:
     plane, camera = facing((0, 1, 0), 0.5)
     dark = plane.with_environment(np.zeros((4, 8, 3)))
-    np.testing.assert_array_equal(rc.render(dark, camera, spp=4).pixels, 0)
+    np.testing.assert_array_equal(rc.render(dark, camera, effects=(), spp=4).pixels, 0)

@@ -55,6 +55,8 @@ def test_mitsuba_rays_exposes_the_film_as_render_does(mitsuba_rays: ModuleType) 
     scene = mi.load_dict({"type": "scene", "sky": sky})
     seen = mitsuba_rays.photograph(scene, mi.load_dict({"type": "path"}), camera, spp=4)
     speck = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]])
-    ours = rc.render(speck.with_environment((100, 200, 300)), camera, spp=4, max_bounces=0, device="cpu").pixels
+    ours = rc.render(
+        speck.with_environment((100, 200, 300)), camera, effects=(), spp=4, max_bounces=0, device="cpu"
+    ).pixels
     # Four products and sums of float32 a pixel.
     np.testing.assert_allclose(seen, ours, rtol=1e-5)

@@ -18,7 +18,7 @@ def axial_exposure(lens: rc.Lens, *, model: str = "full", time_s: float = 1.0, s
     """Mean exposure of 4 x 4 pixels of 5 um in the middle of the film, in a field of radiance 1."""
     film = rc.Film(0.02, 0.02, (4, 4))
     camera = rc.Camera(lens, film=film, exposure_time_s=time_s, model=model)
-    return float(rc.render(scenes.sky(), camera, spp=spp).pixels.mean(dtype=np.float64))
+    return float(rc.render(scenes.sky(), camera, effects=(), spp=spp).pixels.mean(dtype=np.float64))
 
 
 def test_every_lens_is_tested() -> None:
@@ -60,7 +60,7 @@ def test_relative_illumination_equals_the_integral_summed_by_force(name: str) ->
     rows = round(columns * height / width)
     pitch = width / columns
     camera = rc.Camera(lens, film=rc.Film(width, height, (columns, rows)), exposure_time_s=1)
-    picture = rc.render(scenes.sky(), camera, spp=64).pixels[..., 0]
+    picture = rc.render(scenes.sky(), camera, effects=(), spp=64).pixels[..., 0]
     # Film radius of 4 x 4 points in each pixel.
     x = (np.arange(4 * columns) + 0.5) / 4 * pitch - width / 2
     y = (np.arange(4 * rows) + 0.5) / 4 * height / rows - height / 2
@@ -91,7 +91,7 @@ def test_relative_illumination_of_ideal_models_is_cos_to_the_fourth() -> None:
     for model, distance in distances.items():
         # One pixel wide: the rows' heights on the film are known.
         camera = rc.Camera(lens, film=rc.Film(0.01, 40, (1, 401)), exposure_time_s=1, model=model)
-        column = rc.render(scenes.sky(), camera, spp=64).pixels[:, 0, 0].astype(np.float64)
+        column = rc.render(scenes.sky(), camera, effects=(), spp=64).pixels[:, 0, 0].astype(np.float64)
         heights = (np.arange(401) - 200) * 40 / 401
         cosine = distance / np.hypot(distance, heights)
         # Within a pixel of 0.1 mm cos^4 differs by at most 1%, which 64 stratified samples average to 1e-3 or
@@ -113,7 +113,8 @@ def test_half_the_time_is_half_the_exposure_exactly() -> None:
     scene = scenes.scene_of(scenes.quad((0, 0, -3), 1, emission=(200, 100, 50))).with_environment(5.0)
     film = rc.Film(36, 24, (36, 24))
     whole, half = (
-        rc.render(scene, rc.Camera(lens, film=film, exposure_time_s=t), spp=8).pixels for t in (1 / 60, 1 / 120)
+        rc.render(scene, rc.Camera(lens, film=film, exposure_time_s=t), effects=(), spp=8).pixels
+        for t in (1 / 60, 1 / 120)
     )
     # Halving is exact in binary, wherever it happens.
     np.testing.assert_array_equal(half, whole / 2)
@@ -136,7 +137,7 @@ def grey_card_exposure(lens: rc.Lens, iso: float) -> rc.Image:
     """Card of 18% at 5 m, square to a sun of 80 klux behind the camera; f/16, 1/125 s."""
     scene = scenes.scene_of(scenes.quad((0, 0, -5), 5, diffuse=0.18)).with_sun((0, 0, -1), (8e4, 8e4, 8e4))
     camera = rc.Camera(lens.stopped_down(16), film=rc.Film(1, 1, (8, 8)), exposure_time_s=1 / 125, iso=iso)
-    return rc.render(scene, camera, spp=64)
+    return rc.render(scene, camera, effects=(), spp=64)
 
 
 @pytest.mark.parametrize("name", ["double-gauss-50mm", "cooke-triplet-50mm", "telephoto-250mm", "wide-22mm"])
@@ -180,6 +181,6 @@ def test_white_is_clipped_and_black_is_black() -> None:
 @pytest.mark.parametrize("name", LENSES)
 def test_most_sampled_rays_pass(name: str) -> None:
     lens = rc.Lens.load(name)
-    stats = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(*lens.film_mm, (120, 80))), spp=16).stats
+    stats = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(*lens.film_mm, (120, 80))), effects=(), spp=16).stats
     # The aim for whole frames wide open; at least 80000 samples have a standard deviation of 0.1%.
     assert stats.passed_rays / stats.sampled_rays >= 0.95

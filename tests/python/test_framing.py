@@ -47,7 +47,7 @@ def test_a_metered_picture_is_middle_grey_on_average() -> None:
     camera = rc.Camera(LENS, film=rc.Film(36, 24, (96, 64)), iso=400).framing(lit)
     metered = camera.metered(lit, device="cpu")
     assert metered == camera.replace(exposure_time_s=metered.exposure_time_s)
-    mean = rc.render(lit, metered, spp=64, device="cpu").pixels @ np.array([0.2126, 0.7152, 0.0722])
+    mean = rc.render(lit, metered, effects=(), spp=64, device="cpu").pixels @ np.array([0.2126, 0.7152, 0.0722])
     assert mean.mean() == pytest.approx(10 / 400, rel=0.02)
 
 
@@ -83,14 +83,14 @@ def test_daylight_is_what_a_sunny_day_is() -> None:
 def test_a_scene_without_light_warns_and_says_what_to_do() -> None:
     camera = rc.Camera(LENS, film=rc.Film(resolution=(2, 2))).framing(CHAIR)
     with pytest.warns(UserWarning, match=r"no light.*with_daylight\(camera\)") as caught:
-        rc.render(CHAIR, camera, spp=1, device="cpu")
+        rc.render(CHAIR, camera, effects=(), spp=1, device="cpu")
     assert caught[0].filename == __file__
     with pytest.warns(UserWarning, match="no light") as caught:
-        rc.render(CHAIR, camera, spp=1, device="cpu", progress=True)
+        rc.render(CHAIR, camera, effects=(), spp=1, device="cpu", progress=True)
     assert len(caught) == 1
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        rc.render(CHAIR.with_daylight(camera), camera, spp=1, device="cpu")
+        rc.render(CHAIR.with_daylight(camera), camera, effects=(), spp=1, device="cpu")
 
 
 @pytest.mark.parametrize("model", ["pinhole", "thin", "thick", "full"])

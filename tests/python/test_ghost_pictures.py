@@ -35,7 +35,7 @@ def ghosts(
 
 
 def lit_without_ghosts(scene: rc.Scene, camera: rc.Camera, **settings: object) -> np.ndarray:
-    return rc.render(scene, camera, device="cpu", **settings).pixels.astype(np.float64)  # type: ignore[arg-type]
+    return rc.render(scene, camera, effects=(), device="cpu", **settings).pixels.astype(np.float64)  # type: ignore[arg-type]
 
 
 def singlet(stop_mm: float) -> rc.Lens:

@@ -52,7 +52,7 @@ def photograph(size: float, shift: tuple[float, float, float]) -> np.ndarray:
         ],
     ).with_environment((1, 2, 4))
     camera = scenes.pinhole(FILM, position=shift, look_at=tuple(np.add(shift, (0, 0, -1))))
-    return np.asarray(rc.render(scene, camera, spp=32, max_bounces=8, device="cpu").pixels, float)
+    return np.asarray(rc.render(scene, camera, effects=(), spp=32, max_bounces=8, device="cpu").pixels, float)
 
 
 @pytest.mark.parametrize(
@@ -105,12 +105,14 @@ def test_through_two_panes_no_light_gets_lost_and_none_leaks(gap: float, distanc
     """
     camera = scenes.pinhole(FILM)
     lit = panes(gap * distance, distance)
-    picture = rc.render(lit, camera, spp=64, max_bounces=24, device="cpu").pixels
-    sky = rc.render(scenes.sky(), camera, spp=64, device="cpu").pixels
+    picture = rc.render(lit, camera, effects=(), spp=64, max_bounces=24, device="cpu").pixels
+    sky = rc.render(scenes.sky(), camera, effects=(), spp=64, device="cpu").pixels
     np.testing.assert_allclose(picture.mean() / sky.mean(), 1, rtol=2e-3)
     # A black wall close behind both: what is left is what the panes reflect, R + T R T / (1 - R^2) = 2 R / (1 + R).
     wall = scenes.quad((0, 0, -distance * 1.5), 3 * distance)
-    dark = rc.render(lit.with_instance(scenes.scene_of(wall)), camera, spp=256, max_bounces=24, device="cpu").pixels
+    dark = rc.render(
+        lit.with_instance(scenes.scene_of(wall)), camera, effects=(), spp=256, max_bounces=24, device="cpu"
+    ).pixels
     rays = camera.generate_rays(spp=16)
     one = pane_reflectance(-rays.directions[:, 2].astype(float))
     expected = np.average(2 * one / (1 + one), weights=rays.weights)
@@ -137,4 +139,4 @@ def test_a_box_of_two_sheets_is_dark_inside() -> None:
             .with_point_light(tuple(place + up), (1e4,) * 3)
         )
         camera = scenes.pinhole(FILM, position=tuple(place - 0.5 * ahead), look_at=tuple(place + ahead))
-        assert rc.render(lit, camera, spp=64, max_bounces=4, device="cpu").pixels.max() == 0
+        assert rc.render(lit, camera, effects=(), spp=64, max_bounces=4, device="cpu").pixels.max() == 0

@@ -66,13 +66,13 @@ except rc.DeviceError as error:
 @needs_gpu
 def test_a_gpu_that_is_not_there_is_named() -> None:
     with pytest.raises(rc.DeviceError, match=r"no GPU 77.*counted from 0"):
-        rc.render(frame_scene(spheres=1, boxes=1), camera(), device="cuda:77")
+        rc.render(frame_scene(spheres=1, boxes=1), camera(), effects=(), device="cuda:77")
 
 
 @pytest.mark.parametrize("name", ["gpu", "cuda:", "cuda:x", "cuda:0,", "cuda:-1", "cuda:0,0", "cuda0", ""])
 def test_a_device_that_makes_no_sense_is_the_users_mistake(name: str) -> None:
     with pytest.raises(rc.InputError, match="no device"):
-        rc.render(frame_scene(spheres=1, boxes=1), camera(), device=name)
+        rc.render(frame_scene(spheres=1, boxes=1), camera(), effects=(), device=name)
 
 
 @needs_gpu
@@ -93,7 +93,7 @@ def test_two_processes_share_a_gpu() -> None:
 def test_a_film_that_does_not_fit_is_taken_in_bands() -> None:
     torch = pytest.importorskip("torch")
     scene, wide = frame_scene(spheres=3, boxes=3), camera((6000, 4000))
-    expected = rc.render(scene, wide, spp=2, device="cuda:0").pixels
+    expected = rc.render(scene, wide, effects=(), spp=2, device="cuda:0").pixels
     # In a process of its own, because a backend keeps the memory that it once had.
     code = """
 import numpy, torch
@@ -118,7 +118,7 @@ print(repr(float(pixels.sum())), repr(float(pixels[::-1][:100].sum())))
 @one_or_several
 def test_progress_stops_a_picture_soon(device: str) -> None:
     scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
-    rc.render(scene, wide, spp=1, device=device)
+    rc.render(scene, wide, effects=(), spp=1, device=device)
     shares: list[float] = []
     times: list[float] = []
 
@@ -128,10 +128,10 @@ def test_progress_stops_a_picture_soon(device: str) -> None:
         return len(shares) < 3
 
     with pytest.raises(rc.Cancelled):
-        rc.render(scene, wide, spp=1 << 20, device=device, progress=progress)
+        rc.render(scene, wide, effects=(), spp=1 << 20, device=device, progress=progress)
     # The picture takes many minutes. What is under way ends within a sample of each thread; most of a tenth is slack.
     assert time.perf_counter() - times[-1] < 0.1
-    assert rc.render(scene, wide, spp=1, device=device).spp == 1
+    assert rc.render(scene, wide, effects=(), spp=1, device=device).spp == 1
 
 
 @needs_gpu
@@ -139,7 +139,7 @@ def test_progress_stops_a_picture_soon(device: str) -> None:
 @one_or_several
 def test_ctrl_c_stops_a_picture(device: str) -> None:
     scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
-    rc.render(scene, wide, spp=1, device=device)
+    rc.render(scene, wide, effects=(), spp=1, device=device)
     times: list[float] = []
 
     def interrupt() -> None:
@@ -148,9 +148,9 @@ def test_ctrl_c_stops_a_picture(device: str) -> None:
 
     threading.Timer(0.3, interrupt).start()
     with pytest.raises(KeyboardInterrupt):
-        rc.render(scene, wide, spp=1 << 20, device=device)
+        rc.render(scene, wide, effects=(), spp=1 << 20, device=device)
     assert time.perf_counter() - times[0] < 0.3  # signals are looked for 20 times a second
-    assert rc.render(scene, wide, spp=1, device=device).spp == 1
+    assert rc.render(scene, wide, effects=(), spp=1, device=device).spp == 1
 
 
 @needs_gpu
@@ -158,7 +158,7 @@ def test_ctrl_c_stops_a_picture(device: str) -> None:
 def test_a_hard_scene_after_an_easy_one_is_stopped_as_soon() -> None:
     wide = camera((1200, 800))
     sky = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
-    rc.render(sky, wide, spp=4096, max_bounces=0, device="cuda:0")  # many samples a millisecond
+    rc.render(sky, wide, effects=(), spp=4096, max_bounces=0, device="cuda:0")  # many samples a millisecond
     times: list[float] = []
 
     def progress(share: float) -> bool:
@@ -166,7 +166,7 @@ def test_a_hard_scene_after_an_easy_one_is_stopped_as_soon() -> None:
         return len(times) < 3
 
     with pytest.raises(rc.Cancelled):
-        rc.render(frame_scene(), wide, spp=1 << 20, max_bounces=64, device="cuda:0", progress=progress)
+        rc.render(frame_scene(), wide, effects=(), spp=1 << 20, max_bounces=64, device="cuda:0", progress=progress)
     # Of a path of 65 bounces, each a ray and a shadow ray, a GPU takes some milliseconds.
     assert time.perf_counter() - times[-1] < 0.1
 
@@ -234,7 +234,9 @@ def test_a_view_of_the_second_gpu_goes_on_in_another_thread() -> None:
     thread = threading.Thread(target=go_on)  # its current GPU is the first one
     thread.start()
     thread.join()
-    expected = rc.render(frame_scene(spheres=3, boxes=3), camera(), spp=8, max_bounces=1, device="cuda:1").pixels
+    expected = rc.render(
+        frame_scene(spheres=3, boxes=3), camera(), effects=(), spp=8, max_bounces=1, device="cuda:1"
+    ).pixels
     np.testing.assert_allclose(taken[1], expected, rtol=1e-6)
 
 
@@ -242,11 +244,11 @@ def test_a_view_of_the_second_gpu_goes_on_in_another_thread() -> None:
 @pytest.mark.gpu
 def test_a_gpu_without_a_sample_adds_nothing() -> None:
     scene, wide = frame_scene(spheres=3, boxes=3), camera((1200, 800))
-    expected = rc.render(scene, wide, spp=1, device="cuda:0").pixels
+    expected = rc.render(scene, wide, effects=(), spp=1, device="cuda:0").pixels
     for _ in range(20):
         # What the second GPU has left from this one is not to be seen in the next.
-        rc.render(scene, wide, spp=64, device="cuda:0,1")
-        np.testing.assert_array_equal(rc.render(scene, wide, spp=1, device="cuda:0,1").pixels, expected)
+        rc.render(scene, wide, effects=(), spp=64, device="cuda:0,1")
+        np.testing.assert_array_equal(rc.render(scene, wide, effects=(), spp=1, device="cuda:0,1").pixels, expected)
 
 
 # A kernel of another library in the same process that traps. From then on every call on that GPU fails until the

@@ -48,7 +48,7 @@ def test_camera_inside_of_a_ball(device: str, backend: str) -> None:
                 if shines:
                     worst = max(worst, relative(seen(ball, camera, device, spp=4), 1.0))
                 else:
-                    image = rc.render(ball, camera, spp=16, max_bounces=2, device=device)
+                    image = rc.render(ball, camera, effects=(), spp=16, max_bounces=2, device=device)
                     leaks = max(leaks, float(image.pixels.max()))
     tried = f"balls of {sizes[0]:g} to {sizes[-1]:g} m, 6 directions"
     what = "camera inside of a shining ball: radiance"
@@ -76,7 +76,7 @@ def test_sun_on_the_optical_axis(device: str, backend: str) -> None:
                 up=camera.up,
                 model=model,
             )
-            image = rc.render(wall.with_sun(tuple(-forward), (1e5,) * 3), facing, spp=16, device=device)
+            image = rc.render(wall.with_sun(tuple(-forward), (1e5,) * 3), facing, effects=(), spp=16, device=device)
             assert np.isfinite(image.pixels).all()
             against = max(against, float(image.pixels.max()))
     tried = "6 directions, 384 pixels each"

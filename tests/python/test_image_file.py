@@ -29,7 +29,7 @@ def image() -> rc.Image:
     # Of the upper half red, of the lower half blue; nothing at the sides.
     upper = scenes.quad((0, 0.25, -2.5), 0.2, 0.25, emission=(300, 10, 0))
     lower = scenes.quad((0, -0.25, -2.5), 0.2, 0.25, emission=(0, 10, 300))
-    return rc.render(scenes.scene_of(upper, lower), camera, spp=4, seed=11)
+    return rc.render(scenes.scene_of(upper, lower), camera, effects=(), spp=4, seed=11)
 
 
 def read(path: Path) -> tuple[np.ndarray, oiio.ImageSpec]:
@@ -94,7 +94,7 @@ def test_metadata_can_be_read_back(image: rc.Image, tmp_path: Path, suffix: str)
 @pytest.mark.parametrize("suffix", [".exr", ".png"])
 def test_focus_at_infinity_is_written_too(tmp_path: Path, focus: float, suffix: str) -> None:
     lens = rc.Lens.load("tessar-50mm").focused(focus)
-    picture = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(4, 4, (2, 2)), iso=3200), spp=1)
+    picture = rc.render(scenes.sky(), rc.Camera(lens, film=rc.Film(4, 4, (2, 2)), iso=3200), effects=(), spp=1)
     path = tmp_path / f"x{suffix}"
     picture.save(path)
     assert float(read(path)[1].getattribute("realcam:focus_distance_m")) == focus
@@ -272,8 +272,8 @@ def test_a_scene_takes_an_environment_from_a_file(tmp_path: Path) -> None:
     light = np.full((4, 8, 3), 7, np.float32)
     write(tmp_path / "sky.exr", light)
     camera = scenes.pinhole()
-    from_file = rc.render(scenes.sky(0.0).with_environment(tmp_path / "sky.exr"), camera, spp=1)
-    np.testing.assert_array_equal(from_file.pixels, rc.render(scenes.sky(7.0), camera, spp=1).pixels)
+    from_file = rc.render(scenes.sky(0.0).with_environment(tmp_path / "sky.exr"), camera, effects=(), spp=1)
+    np.testing.assert_array_equal(from_file.pixels, rc.render(scenes.sky(7.0), camera, effects=(), spp=1).pixels)
 
 
 def test_what_is_no_environment(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
@@ -336,8 +336,8 @@ def textured(folder: Path, name: str) -> np.ndarray:
     )
     scene = rc.Scene.load(folder / "card.obj").with_environment(1.0)
     assert scene.warnings == []
-    seen = rc.render(scene, scenes.pinhole(), spp=64, max_bounces=0)
-    sky = rc.render(scenes.sky(1.0), scenes.pinhole(), spp=1)
+    seen = rc.render(scene, scenes.pinhole(), effects=(), spp=64, max_bounces=0)
+    sky = rc.render(scenes.sky(1.0), scenes.pinhole(), effects=(), spp=1)
     return (seen.pixels / sky.pixels)[6:10, 10:14].mean(axis=(0, 1))
 
 

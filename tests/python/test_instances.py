@@ -98,7 +98,9 @@ def test_instances_look_like_their_triangles(device: str) -> None:
         objects = objects.with_instance(as_scene(ball()), matrix)
     triangles = union([as_scene(ball(), matrix) for matrix in PLACES])
     options = {"spp": 32, "device": device, "max_bounces": 2}
-    hold_same(rc.render(objects, camera(), **options), rc.render(triangles, camera(), **options))
+    hold_same(
+        rc.render(objects, camera(), effects=(), **options), rc.render(triangles, camera(), effects=(), **options)
+    )
     assert objects.triangle_count == triangles.triangle_count == GROUND.triangle_count + 3 * len(ball()[1])
 
 
@@ -108,7 +110,7 @@ def test_an_object_may_be_all_there_is_to_see(device: str) -> None:
     alone = whole.with_environment(1000)
     behind = scene_of(quad((0, 0, 1e4), 1)).with_environment(1000).with_instance(whole)
     options = {"spp": 16, "device": device}
-    hold_same(rc.render(behind, camera(), **options), rc.render(alone, camera(), **options))
+    hold_same(rc.render(behind, camera(), effects=(), **options), rc.render(alone, camera(), effects=(), **options))
 
 
 @pytest.mark.parametrize("scale", [1.0, (0.2, 3.0, 1.0), (-1.0, 1.0, 0.5)], ids=str)
@@ -118,7 +120,7 @@ def test_lamps_shine_where_they_stand(device: str, scale: float | tuple[float, .
     by_object = dark.with_instance(as_scene(ball(5), material=LAMP), matrix)
     by_triangles = dark.with_instance(as_scene(ball(5), matrix, material=LAMP))
     options = {"spp": 64, "device": device, "max_bounces": 1}
-    a, b = (rc.render(scene, camera(), **options) for scene in (by_object, by_triangles))
+    a, b = (rc.render(scene, camera(), effects=(), **options) for scene in (by_object, by_triangles))
     if np.linalg.det(matrix[:3, :3]) > 0:
         hold_same(a, b)
     else:  # corners in another order, and so other points on the lamp: the same in the mean of 2e5 samples
@@ -135,7 +137,7 @@ def test_a_point_light_moves_with_its_object(device: str) -> None:
     pictures = []
     for height in (1.0, 2.0):
         scene = floor.with_instance(lamp, placed(0, height - 1.0, 0, scale=2))
-        pictures.append(rc.render(scene, above, spp=16, device=device, max_bounces=0).pixels.mean())
+        pictures.append(rc.render(scene, above, effects=(), spp=16, device=device, max_bounces=0).pixels.mean())
     assert pictures[0] / pictures[1] == pytest.approx(4, rel=1e-3)
 
 
@@ -144,13 +146,13 @@ def test_a_moved_object_is_where_it_was_put(device: str) -> None:
     for i, matrix in enumerate(PLACES):
         scene = scene.with_instance(as_scene(ball(), material=LAMP), matrix, name=f"egg {i}")
     options = {"spp": 16, "device": device}
-    rc.render(scene, camera(), **options)
+    rc.render(scene, camera(), effects=(), **options)
     where = placed(0.5, 1.2, 0, turn=1)
-    after = rc.render(scene.moved("egg 1", where), camera(), **options)
+    after = rc.render(scene.moved("egg 1", where), camera(), effects=(), **options)
     anew = GROUND
     for matrix in (PLACES[0], where, PLACES[2]):
         anew = anew.with_instance(as_scene(ball(), material=LAMP), matrix)
-    hold_same(after, rc.render(anew, camera(), **options))
+    hold_same(after, rc.render(anew, camera(), effects=(), **options))
     # The scene itself has stayed what it was.
     np.testing.assert_array_equal(scene.instances[1][1], PLACES[1])
     assert [name for name, _ in scene.instances] == ["egg 0", "egg 1", "egg 2"]
@@ -164,7 +166,7 @@ def test_a_plain_as_an_object_is_as_exact_as_the_ground(device: str) -> None:
     scene = base.with_instance(plain, placed(1e6, 0, 0, turn=0.3), name="plain")
     above = camera(position=far + np.array([0, 1.5, 0]), look_at=far + np.array([0, 0, -3]))
     for moved, height in ((scene, 1.5), (scene.moved("plain", placed(1e6 + 1e5, 0.25, 0, turn=0.3)), 1.25)):
-        depth = rc.render(moved, above, spp=4, device=device).depth
+        depth = rc.render(moved, above, effects=(), spp=4, device=device).depth
         middle = depth[depth.shape[0] // 2 - 1 : depth.shape[0] // 2 + 1].mean()
         # Along the axis, which goes down by 1.5 in 3.
         expected = height / (1.5 / np.hypot(3, 1.5))
@@ -180,7 +182,7 @@ def test_a_plain_that_stands_twice_near_the_camera(device: str) -> None:
         LENS, film=rc.Film(36, 24, (72, 48)), position=(0, 0.6, 1.5), look_at=(0, 0.1, 0), model="pinhole"
     )
     roofed = sun.with_instance(plain, [placed(1e6, 0, 0), placed(0, 0.75, 0)])
-    assert rc.render(roofed, between, spp=16, device=device, max_bounces=0).pixels.max() == 0
+    assert rc.render(roofed, between, effects=(), spp=16, device=device, max_bounces=0).pixels.max() == 0
 
 
 @pytest.mark.parametrize("size", [1e3, 1e6])
@@ -190,7 +192,7 @@ def test_a_floor_made_by_scale_takes_shadows(device: str, size: float) -> None:
         panel = scene_of(quad((0, 0.2, 0), 0.2, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.2))
         scene = panel.with_environment((300, 300, 300)).with_sun((0.3, -1, 0.1), (8e4, 8e4, 8e4))
         place = placed(0.3, 0, 0.1, scale=scale)
-        return rc.render(scene.with_instance(floor, place), camera(), spp=32, device=device)
+        return rc.render(scene.with_instance(floor, place), camera(), effects=(), spp=32, device=device)
 
     hold_same(picture(1.0, size), picture(size, 1.0))
 
@@ -201,8 +203,10 @@ def test_objects_in_other_units(device: str, unit: float) -> None:
     vertices, triangles, normals, uvs = ball(16)
     small = as_scene((vertices * unit, triangles, normals, uvs))
     options = {"spp": 16, "device": device}
-    a = rc.render(GROUND.with_instance(small, placed(0, 0.7, -1, scale=1 / unit)), camera(), **options)
-    hold_same(a, rc.render(GROUND.with_instance(as_scene(ball(16)), placed(0, 0.7, -1)), camera(), **options))
+    a = rc.render(GROUND.with_instance(small, placed(0, 0.7, -1, scale=1 / unit)), camera(), effects=(), **options)
+    hold_same(
+        a, rc.render(GROUND.with_instance(as_scene(ball(16)), placed(0, 0.7, -1)), camera(), effects=(), **options)
+    )
 
 
 def test_a_speck_and_a_giant_share_an_object(device: str) -> None:
@@ -212,9 +216,9 @@ def test_a_speck_and_a_giant_share_an_object(device: str) -> None:
     whole = GROUND.with_instance(small, [placed(0, 0.01, -1, scale=1e2), placed(0.3, 0.7, -1, scale=5e5)], name="egg")
     grown = whole.moved("egg 0", placed(-0.5, 0.7, -1, scale=1e6))
     expected = GROUND.with_instance(as_scene(ball(16)), placed(0.3, 0.7, -1, scale=0.5))
-    hold_same(rc.render(whole, camera(), **options), rc.render(expected, camera(), **options))
+    hold_same(rc.render(whole, camera(), effects=(), **options), rc.render(expected, camera(), effects=(), **options))
     expected = expected.with_instance(as_scene(ball(16)), placed(-0.5, 0.7, -1))
-    hold_same(rc.render(grown, camera(), **options), rc.render(expected, camera(), **options))
+    hold_same(rc.render(grown, camera(), effects=(), **options), rc.render(expected, camera(), effects=(), **options))
 
 
 @pytest.mark.parametrize("ratio", [30.0, 1000.0])
@@ -225,7 +229,10 @@ def test_a_body_that_is_long_and_thin_in_its_own_frame(device: str, ratio: float
     options = {"spp": 32, "device": device}
     back = placed(0.2, 0.7, -1, turn=0.5, scale=tuple(stretch))
     plain = as_scene(ball(), placed(0.2, 0.7, -1, turn=0.5), LAMP)
-    pictures = [rc.render(scene, camera(), **options) for scene in (GROUND.with_instance(thin, back), union([plain]))]
+    pictures = [
+        rc.render(scene, camera(), effects=(), **options)
+        for scene in (GROUND.with_instance(thin, back), union([plain]))
+    ]
     hold_same(*pictures)
 
 
@@ -242,10 +249,10 @@ def test_no_light_leaves_a_closed_lantern(device: str, ratio: float) -> None:
     floor = scene_of(quad((0, 0, 0), 30, right=(1, 0, 0), up=(0, 0, -1), diffuse=0.5))
     lantern = placed(0.1, 0.7, -1, turn=0.5, scale=tuple(stretch))
     options = {"spp": 64, "device": device, "max_bounces": 1}
-    outside = rc.render(floor.with_instance(scene_of(*flat), lantern), camera(), **options)
+    outside = rc.render(floor.with_instance(scene_of(*flat), lantern), camera(), effects=(), **options)
     # A part in 1e4 of what the same walls give when they shine outwards; rays through edges are of that order.
     turned = [(corners[[0, 3, 2, 1]], material) for corners, material in flat]
-    shining = rc.render(floor.with_instance(scene_of(*turned), lantern), camera(), **options)
+    shining = rc.render(floor.with_instance(scene_of(*turned), lantern), camera(), effects=(), **options)
     assert shining.pixels.mean() > 0
     assert outside.pixels.mean() < 1e-4 * shining.pixels.mean()
 
@@ -256,9 +263,9 @@ def test_a_large_object_that_comes_near_is_placed_anew(device: str) -> None:
     options = {"spp": 8, "device": device}
     for near in (placed(0, -0.3, 0), placed(3e4, 5e3, -7e4, turn=0.1)):
         far = sky.with_instance(plain, placed(0, -1.5e6, 0), name="plain")
-        rc.render(far, camera(), **options)
-        moved = rc.render(far.moved("plain", near), camera(), **options)
-        hold_same(moved, rc.render(sky.with_instance(plain, near), camera(), **options))
+        rc.render(far, camera(), effects=(), **options)
+        moved = rc.render(far.moved("plain", near), camera(), effects=(), **options)
+        hold_same(moved, rc.render(sky.with_instance(plain, near), camera(), effects=(), **options))
 
 
 def test_objects_of_objects(device: str) -> None:
@@ -271,7 +278,7 @@ def test_objects_of_objects(device: str) -> None:
     # One that moves takes its parts along.
     for whole, place in ((scene, PLACES[0]), (scene.moved("egg", PLACES[1]), PLACES[1])):
         flat = union([as_scene(ball(), place), as_scene(ball(), place @ hat)])
-        hold_same(rc.render(whole, camera(), **options), rc.render(flat, camera(), **options))
+        hold_same(rc.render(whole, camera(), effects=(), **options), rc.render(flat, camera(), effects=(), **options))
 
 
 def test_many_instances_share_their_triangles(device: str) -> None:
@@ -287,7 +294,9 @@ def test_many_instances_share_their_triangles(device: str) -> None:
         np.tile(uvs, (400, 1)),
     )
     options = {"spp": 16, "device": device}
-    objects, triangles_alone = (rc.render(s, camera(), **options) for s in (scene, union([as_scene(one_mesh)])))
+    objects, triangles_alone = (
+        rc.render(s, camera(), effects=(), **options) for s in (scene, union([as_scene(one_mesh)]))
+    )
     hold_same(objects, triangles_alone)
 
 

@@ -60,7 +60,7 @@ def middle_points(taken_by: rc.Camera) -> np.ndarray:
 
 
 def test_every_layer_has_its_shape_and_type(device: str) -> None:
-    image = rc.render(two_walls(), camera(), spp=4, layers="all", device=device)
+    image = rc.render(two_walls(), camera(), effects=(), spp=4, layers="all", device=device)
     assert tuple(image.layers) == ALL
     for name, array in image.layers.items():
         assert array.shape == (16, 24) + ((3,) if name in THREE else (2,) if name == "motion" else ()), name
@@ -71,8 +71,8 @@ def test_every_layer_has_its_shape_and_type(device: str) -> None:
 
 @pytest.mark.parametrize("names", [(), ("depth",), ("normal", "variance"), ["object_id"], "albedo"])
 def test_only_what_is_asked_for_is_there_and_the_picture_is_the_same(names: object, device: str) -> None:
-    plain = rc.render(two_walls(), camera(), spp=4, device=device)
-    image = rc.render(two_walls(), camera(), spp=4, layers=names, device=device)  # type: ignore[arg-type]
+    plain = rc.render(two_walls(), camera(), effects=(), spp=4, device=device)
+    image = rc.render(two_walls(), camera(), effects=(), spp=4, layers=names, device=device)  # type: ignore[arg-type]
     assert set(image.layers) == ({names} if isinstance(names, str) else set(names))  # type: ignore[arg-type]
     np.testing.assert_array_equal(image.pixels, plain.pixels)
     np.testing.assert_array_equal(image.depth, plain.depth)
@@ -82,14 +82,14 @@ def test_only_what_is_asked_for_is_there_and_the_picture_is_the_same(names: obje
 def test_a_name_that_is_none() -> None:
     for wrong in ("colour", "", "depth,normal"):
         with pytest.raises(rc.InputError, match=r"unknown layer.*all, or some of depth, normal"):
-            rc.render(two_walls(), camera(), spp=1, layers=[wrong])
+            rc.render(two_walls(), camera(), effects=(), spp=1, layers=[wrong])
     with pytest.raises(rc.InputError, match="unknown layer"):
         rc.Session(two_walls(), camera(), layers="colour")
 
 
 def test_a_slanted_plane(device: str) -> None:
     taken_by = camera("pinhole")
-    image = rc.render(slanted_wall(), taken_by, spp=64, layers="all", device=device)
+    image = rc.render(slanted_wall(), taken_by, effects=(), spp=64, layers="all", device=device)
     slopes = middle_points(taken_by)
     pupil = -taken_by.entrance_pupil_position_m[2]
     # (x, y, -z) = s (slope_x, slope_y, 1) behind the pupil, on n . p = n_z * -3.
@@ -109,7 +109,7 @@ def test_normals_are_on_the_side_of_the_camera_and_in_the_axes_of_the_scene(devi
     behind = scenes.scene_of(scenes.quad((0, 0, -3), 50, right=(-0.8, 0, 0.6), diffuse=0.5)).with_environment(1.0)
     turned = camera("pinhole", position=(0, 0, 0), look_at=(0.2, 0.1, -3), up=(1, 1, 0))
     for taken_by in (camera(), turned):
-        image = rc.render(behind, taken_by, spp=4, layers=["normal", "normal_middle"], device=device)
+        image = rc.render(behind, taken_by, effects=(), spp=4, layers=["normal", "normal_middle"], device=device)
         for normals in image.layers.values():
             np.testing.assert_allclose(normals, np.broadcast_to(SLANT, (16, 24, 3)), atol=1e-6)
 
@@ -119,7 +119,7 @@ def test_an_instance_that_is_stretched_has_its_own_normals(device: str) -> None:
     matrix = np.diag([1.0, 1.0, 2.0, 1.0])
     matrix[2, 3] = -3
     scene = scenes.scene_of(scenes.quad((0, 0, 9), 1)).with_environment(1.0).with_instance(card, matrix, name="card")
-    image = rc.render(scene, camera(), spp=4, layers="all", device=device)
+    image = rc.render(scene, camera(), effects=(), spp=4, layers="all", device=device)
     expected = np.array([0.6, 0, 0.4]) / math.hypot(0.6, 0.4)  # by the inverse transpose
     for name in ("normal", "normal_middle"):
         np.testing.assert_allclose(image.layers[name], np.broadcast_to(expected, (16, 24, 3)), atol=1e-6)
@@ -128,7 +128,7 @@ def test_an_instance_that_is_stretched_has_its_own_normals(device: str) -> None:
 @pytest.mark.parametrize("model", ["full", "thin"])
 def test_two_walls_in_one_pixel(model: str, device: str) -> None:
     """The mean lies between them, and the middle ray meets one of them."""
-    image = rc.render(two_walls(), camera(model), spp=256, layers="all", device=device)
+    image = rc.render(two_walls(), camera(model), effects=(), spp=256, layers="all", device=device)
     depth, middle = image.layers["depth"], image.layers["depth_middle"]
     edge = depth[:, 11:13]
     assert ((edge > 1.2) & (edge < 2.8)).any()
@@ -148,7 +148,7 @@ def test_means_are_weighted_as_the_exposure_is(device: str) -> None:
     fisheye = rc.Lens.load("fisheye-6mm-220deg")
     taken_by = rc.Camera(fisheye, film=rc.Film(*fisheye.film_mm, (12, 12)), exposure_time_s=1)
     scene = scenes.sphere(3.0, 24, rc.Material(diffuse=(0.5,) * 3), inward=True).with_environment(1.0)
-    image = rc.render(scene, taken_by, spp=64, seed=3, layers=["depth"], device=device)
+    image = rc.render(scene, taken_by, effects=(), spp=64, seed=3, layers=["depth"], device=device)
     rays = taken_by.generate_rays(spp=64, seed=3)
     passed = rays.weights > 0
     # The triangles lie within 1% of the sphere. The weights differ by some percent within a pixel at the edge.
@@ -168,7 +168,9 @@ def test_the_circle_of_confusion_is_the_thin_lens_formula(device: str) -> None:
     focus = 2.0
     for wall_m in (0.7, 1.3, 2.0, 4.0, 1e4):
         wall = scenes.scene_of(scenes.quad((0, 0, -wall_m), 10 * wall_m, diffuse=0.5)).with_environment(1.0)
-        image = rc.render(wall, camera("thin", film, focus), spp=8, layers="circle_of_confusion_mm", device=device)
+        image = rc.render(
+            wall, camera("thin", film, focus), effects=(), spp=8, layers="circle_of_confusion_mm", device=device
+        )
         first = lens(focus).first_order()
         # Distances from the entrance pupil, mm.
         offset = lens(focus).film_position_mm - first.entrance_pupil_position_mm
@@ -200,7 +202,7 @@ def test_the_circle_of_confusion_is_what_the_rays_of_the_lens_cover(wall_m: floa
     chief = magnification_of(real) * (2.0 + taken_by.entrance_pupil_position_m[2])
     on_film = 1000 * np.ptp(on_wall) * chief / (wall_m + taken_by.entrance_pupil_position_m[2])
     wall = scenes.scene_of(scenes.quad((0, 0, -wall_m), 10, diffuse=0.5)).with_environment(1.0)
-    image = rc.render(wall, taken_by, spp=4, layers="circle_of_confusion_mm")
+    image = rc.render(wall, taken_by, effects=(), spp=4, layers="circle_of_confusion_mm")
     np.testing.assert_allclose(image.layers["circle_of_confusion_mm"], on_film, rtol=0.05)
 
 
@@ -209,7 +211,7 @@ def test_a_vignetted_corner_keeps_its_depth(device: str) -> None:
     film = rc.Film(60, 60, (24, 24))  # beyond the image circle
     taken_by = rc.Camera(real, film=film, exposure_time_s=1)
     wall = scenes.scene_of(scenes.quad((0, 0, -3), 100, diffuse=0.5)).with_environment(1.0)
-    image = rc.render(wall, taken_by, spp=64, layers="all", device=device)
+    image = rc.render(wall, taken_by, effects=(), spp=64, layers="all", device=device)
     light = image.pixels[..., 0]
     lit = light > 0
     vignetted = lit & (light < 0.2 * light.max())
@@ -233,7 +235,7 @@ def test_a_hole_in_the_pupil_does_not_blind_the_middle_ray(device: str) -> None:
     mirror = rc.Lens.load(name).focused(10.0)
     taken_by = rc.Camera(mirror, film=rc.Film(*mirror.film_mm, (12, 8)), exposure_time_s=1)
     wall = scenes.scene_of(scenes.quad((0, 0, -10), 30, diffuse=0.5)).with_environment(1.0)
-    image = rc.render(wall, taken_by, spp=16, layers=["depth_middle", "object_id"], device=device)
+    image = rc.render(wall, taken_by, effects=(), spp=16, layers=["depth_middle", "object_id"], device=device)
     lit = image.pixels[..., 0] > 0.1 * image.pixels.max()
     np.testing.assert_allclose(image.layers["depth_middle"][lit], 10.0, rtol=1e-4)
     assert (image.layers["object_id"][lit] == 1).all()
@@ -247,7 +249,7 @@ def test_ids_lead_to_names(device: str) -> None:
         matrix = np.eye(4)
         matrix[:3, 3] = place
         room = room.with_instance(ball, matrix, name=name)
-    image = rc.render(room, camera("pinhole"), spp=1, layers=["object_id", "material_id"], device=device)
+    image = rc.render(room, camera("pinhole"), effects=(), spp=1, layers=["object_id", "material_id"], device=device)
     assert image.object_names == ("", "static geometry", "left", "right")
     objects = np.array(image.object_names)[image.layers["object_id"]]
     materials = np.array(image.material_names)[image.layers["material_id"]]
@@ -260,7 +262,7 @@ def test_ids_lead_to_names(device: str) -> None:
 
 
 def test_where_nothing_is_met(device: str) -> None:
-    image = rc.render(scenes.sky(), camera(), spp=4, layers="all", device=device)
+    image = rc.render(scenes.sky(), camera(), effects=(), spp=4, layers="all", device=device)
     layers = image.layers
     assert np.isinf(layers["depth"]).all()
     assert np.isinf(layers["depth_middle"]).all()
@@ -285,7 +287,7 @@ def test_where_nothing_is_met(device: str) -> None:
 def test_albedo_of_materials(material: rc.Material, albedo: tuple[float, ...], device: str) -> None:
     wall = scenes.quad((0, 0, -3), 50)[0]
     scene = rc.Scene.from_arrays(wall, [[0, 1, 2], [0, 2, 3]], materials=[material]).with_environment(1.0)
-    image = rc.render(scene, camera(), spp=4, layers="albedo", device=device)
+    image = rc.render(scene, camera(), effects=(), spp=4, layers="albedo", device=device)
     np.testing.assert_allclose(image.layers["albedo"], np.broadcast_to(np.float32(albedo), (16, 24, 3)), rtol=1e-5)
 
 
@@ -309,7 +311,7 @@ def test_variance_is_that_of_pictures_with_other_seeds(device: str) -> None:
     scene, taken_by = speckled_scene(), camera("pinhole", SPECKLED_FILM)
     seeds, spp = 1000, 64
     options: dict[str, object] = {"spp": spp, "max_bounces": 0, "layers": "variance", "device": device}
-    images = [rc.render(scene, taken_by, seed=seed, **options) for seed in range(seeds)]  # type: ignore[arg-type]
+    images = [rc.render(scene, taken_by, effects=(), seed=seed, **options) for seed in range(seeds)]  # type: ignore[arg-type]
     pixels = np.stack([image.pixels for image in images]).astype(float)
     told = np.stack([image.layers["variance"] for image in images]).astype(float).mean(axis=0)
     assert (told > 0).all()
@@ -327,7 +329,9 @@ def test_variance_is_a_bound_where_the_samples_are_spread_evenly(device: str) ->
     """A wall with a slope of light over each pixel: pictures differ far less than independent samples would have it."""
     lamp = scenes.scene_of(scenes.quad((0, 0, -3), 50, diffuse=0.8)).with_point_light((0.5, 0, -2), (9.0,) * 3)
     images = [
-        rc.render(lamp, camera("pinhole"), spp=64, seed=seed, max_bounces=0, layers="variance", device=device)
+        rc.render(
+            lamp, camera("pinhole"), effects=(), spp=64, seed=seed, max_bounces=0, layers="variance", device=device
+        )
         for seed in range(50)
     ]
     actual = np.stack([image.pixels for image in images]).astype(float).var(axis=0, ddof=1)
@@ -340,7 +344,7 @@ def test_variance_scales_with_samples_and_exposure(device: str) -> None:
 
     def told(spp: int, time_s: float) -> np.ndarray:
         taken_by = camera("pinhole", SPECKLED_FILM, exposure_time_s=time_s)
-        image = rc.render(scene, taken_by, spp=spp, max_bounces=0, layers="variance", device=device)
+        image = rc.render(scene, taken_by, effects=(), spp=spp, max_bounces=0, layers="variance", device=device)
         return image.layers["variance"].astype(float)
 
     np.testing.assert_allclose(told(64, 0.25), told(64, 1.0) / 16, rtol=1e-6)
@@ -355,34 +359,34 @@ def test_layers_of_a_session_grow_with_its_samples(device: str) -> None:
         session.add(spp)
         session.image()
     image = session.image()
-    whole = rc.render(two_walls(), camera(), device=device, seed=2, spp=64, layers="all")
+    whole = rc.render(two_walls(), camera(), effects=(), device=device, seed=2, spp=64, layers="all")
     assert tuple(image.layers) == ALL
     for name, array in image.layers.items():
         np.testing.assert_allclose(array, whole.layers[name], rtol=1e-5, atol=1e-12, err_msg=name)
     session.set(camera=camera(focus_m=1.0))
     session.add(4)
-    again = rc.render(two_walls(), camera(focus_m=1.0), device=device, seed=2, spp=4, layers="all")
+    again = rc.render(two_walls(), camera(focus_m=1.0), effects=(), device=device, seed=2, spp=4, layers="all")
     np.testing.assert_allclose(
         session.image().layers["circle_of_confusion_mm"], again.layers["circle_of_confusion_mm"], rtol=1e-5
     )
 
 
 def test_images_with_layers_are_values() -> None:
-    image = rc.render(two_walls(), camera(), spp=2, layers="all")
+    image = rc.render(two_walls(), camera(), effects=(), spp=2, layers="all")
     for other in (pickle.loads(pickle.dumps(image)), copy.deepcopy(image)):
         assert other == image
         assert tuple(other.layers) == ALL
-    assert image != rc.render(two_walls(), camera(), spp=2)
+    assert image != rc.render(two_walls(), camera(), effects=(), spp=2)
     changed = copy.deepcopy(image)
     changed.layers["albedo"][0, 0, 0] += 1
     assert changed != image
     assert "with layers depth, normal" in repr(image)
-    assert "layers" not in repr(rc.render(two_walls(), camera(), spp=2))
+    assert "layers" not in repr(rc.render(two_walls(), camera(), effects=(), spp=2))
 
 
 @pytest.mark.pictures
 def test_layers_that_do_not_fit_the_picture_are_not_written(tmp_path: Path) -> None:
-    image = rc.render(two_walls(), camera(), spp=1, layers="all")
+    image = rc.render(two_walls(), camera(), effects=(), spp=1, layers="all")
     image.layers["albedo"] = image.layers["albedo"][:-1]  # type: ignore[index]
     with pytest.raises(rc.InputError, match=r'layer "albedo" must have the shape \(H, W, 3\)'):
         image.save(tmp_path / "a.exr")

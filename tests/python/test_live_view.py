@@ -46,7 +46,7 @@ def test_frames_collect_the_samples_of_one_picture(scene: rc.Scene, on: str) -> 
     live = rc.LiveView(scene, device=on, seed=3, max_bounces=1)
     frames = [live.shoot(camera(), spp=8) for _ in range(4)]
     assert [frame.samples for frame in frames] == [8, 16, 24, 32]
-    whole = rc.render(scene, camera(), spp=32, seed=3, max_bounces=1, device=on)
+    whole = rc.render(scene, camera(), effects=(), spp=32, seed=3, max_bounces=1, device=on)
     expected = rc._core.develop(whole.pixels, camera().iso)
     # Sums in double in another order: a code may change where a value lies on its border.
     assert np.abs(frames[-1].codes.astype(int) - expected).max() <= 1
@@ -69,7 +69,7 @@ def test_the_picture_on_the_cpu_is_that_of_render(scene: rc.Scene) -> None:
     for _ in range(2):
         live.shoot(camera(exposure_time_s=0.25), spp=8)
     pixels, depth = live.picture()
-    whole = rc.render(scene, camera(exposure_time_s=0.25), spp=16, seed=3, max_bounces=1, device="cpu")
+    whole = rc.render(scene, camera(exposure_time_s=0.25), effects=(), spp=16, seed=3, max_bounces=1, device="cpu")
     assert isinstance(pixels, np.ndarray)
     assert (pixels.dtype, depth.dtype) == (np.float32, np.float32)
     np.testing.assert_allclose(pixels, whole.pixels, rtol=1e-6)  # sums in double, of 8 and 8 samples
@@ -94,7 +94,7 @@ def test_a_frame_on_the_cpu_is_under_way_while_others_work(scene: rc.Scene) -> N
     live = rc.LiveView(scene, device="cpu", max_bounces=8)
     frame = live.shoot(camera(), spp=1 << 20)  # minutes
     assert not frame.ready
-    assert rc.render(scene, camera(), spp=1, device="cpu").spp == 1
+    assert rc.render(scene, camera(), effects=(), spp=1, device="cpu").spp == 1
     live.cancel()
     assert frame.ready
     with pytest.raises(rc.Cancelled):
@@ -160,7 +160,7 @@ def test_the_picture_on_the_gpu_is_that_of_render(scene: rc.Scene) -> None:
     for _ in range(2):
         live.shoot(camera(exposure_time_s=0.25), spp=8)
     pixels, depth = live.picture()
-    whole = rc.render(scene, camera(exposure_time_s=0.25), spp=16, seed=3, max_bounces=1, device="cuda:0")
+    whole = rc.render(scene, camera(exposure_time_s=0.25), effects=(), spp=16, seed=3, max_bounces=1, device="cuda:0")
     assert pixels.device == "cuda:0"
     np.testing.assert_allclose(pixels.numpy(), whole.pixels, rtol=1e-6)
     np.testing.assert_allclose(depth.numpy(), whole.depth, rtol=1e-6)
@@ -187,7 +187,7 @@ def test_an_object_moves_between_frames(scene: rc.Scene, on: str) -> None:
         live.show(scene)
         frame = live.shoot(camera(), spp=64)
         assert frame.samples == 64
-        expected = rc._core.develop(rc.render(scene, camera(), spp=64, device=on).pixels, camera().iso)
+        expected = rc._core.develop(rc.render(scene, camera(), effects=(), spp=64, device=on).pixels, camera().iso)
         # The hierarchy was refitted here and built there: a hit at an edge may be another, nothing else.
         assert (np.abs(frame.codes.astype(int) - expected) > 1).mean() < 1e-3
     live.show(frame_scene(spheres=2, boxes=2))

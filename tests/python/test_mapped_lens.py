@@ -22,7 +22,9 @@ def camera_with(name: str, model: str, resolution: tuple[int, int] = (48, 32), s
 def test_light_falls_off_as_through_the_real_lens(name: str) -> None:
     share = 0.6 if name == "fisheye-10mm" else 1.0  # its corners see 90 degrees
     full, mapped = (
-        rc.render(scenes.sky(), camera_with(name, model, (24, 16), share), spp=4096, device="cpu").pixels[..., 1]
+        rc.render(scenes.sky(), camera_with(name, model, (24, 16), share), effects=(), spp=4096, device="cpu").pixels[
+            ..., 1
+        ]
         for model in ("full", "mapped")
     )
     error = np.abs(mapped - full).max() / full.max()
@@ -65,7 +67,7 @@ def test_what_is_out_of_focus_is_blurred_as_by_a_thin_lens() -> None:
     widths = []
     for model in ("thin", "mapped"):
         camera = rc.Camera(lens, film=film, model=model, exposure_time_s=1)
-        light = rc.render(mark, camera, spp=512, max_bounces=0, device="cpu").pixels[..., 1].astype(float)
+        light = rc.render(mark, camera, effects=(), spp=512, max_bounces=0, device="cpu").pixels[..., 1].astype(float)
         along = (np.arange(60) + 0.5) * 0.1 - 3
         middle = (light * along).sum() / light.sum()
         widths.append(np.sqrt((light * (along - middle) ** 2).sum() / light.sum()))
@@ -75,7 +77,7 @@ def test_what_is_out_of_focus_is_blurred_as_by_a_thin_lens() -> None:
 def test_a_film_that_sees_behind_the_lens_has_no_mapped_lens() -> None:
     camera = camera_with("fisheye-6mm-220deg", "mapped")
     with pytest.raises(rc.InputError, match=r"mapped has no place for lens .* its film sees 90 degrees"):
-        rc.render(scenes.sky(), camera, spp=1)
+        rc.render(scenes.sky(), camera, effects=(), spp=1)
 
 
 def test_field_of_view_is_the_real_lens_s() -> None:

@@ -23,7 +23,7 @@ def wall(material: rc.Material) -> rc.Scene:
 
 
 def picture(material: rc.Material) -> np.ndarray:
-    return np.asarray(rc.render(wall(material), scenes.pinhole(), spp=16, seed=3, device="cpu").pixels)
+    return np.asarray(rc.render(wall(material), scenes.pinhole(), effects=(), spp=16, seed=3, device="cpu").pixels)
 
 
 def channel(index: int, value: float, others: float) -> np.ndarray:
@@ -162,7 +162,8 @@ def test_lamps_are_chosen_by_what_their_map_leaves_of_them() -> None:
 
     def noise_and_mean(scene: rc.Scene) -> tuple[float, float]:
         rounds = [
-            np.asarray(rc.render(scene, camera, spp=16, seed=s, max_bounces=1, device="cpu").pixels) for s in range(8)
+            np.asarray(rc.render(scene, camera, effects=(), spp=16, seed=s, max_bounces=1, device="cpu").pixels)
+            for s in range(8)
         ]
         pictures = np.array(rounds)[..., 0]
         return float(np.sqrt(pictures.var(axis=0, ddof=1).mean())), float(pictures.mean())

@@ -50,7 +50,7 @@ def metres_per_pixel(cam: rc.Camera, depth_m: float) -> float:
 
 
 def pixels_of(scene: rc.Scene, cam: rc.Camera, device: str, spp: int = 256) -> np.ndarray:
-    return rc.render(scene, cam, spp=spp, device=device).pixels[..., 1].astype(float)
+    return rc.render(scene, cam, effects=(), spp=spp, device=device).pixels[..., 1].astype(float)
 
 
 def lit_area(half: float, half_height: float | None = None) -> rc.Scene:
@@ -133,13 +133,13 @@ FLOOR = scene_of(quad((0, -0.4, -3), 6, up=(0, 0, -1), diffuse=0.5))
 def test_a_camera_that_passes_a_scene_sees_what_a_scene_does_that_passes_it(device: str, model: str) -> None:
     world = FLOOR.with_instance(BOX, shifted(0.2, 0, -3)).with_instance(lit_area(0.5), shifted(-1, 1, -4))
     view = camera(model=model, motion=[(0, (0, 0, 0), (0, 0, -1)), (SHUTTER, (0.3, 0.1, -0.2), (0.3, 0.1, -1.2))])
-    passing = rc.render(world, view, spp=16, device=device)
+    passing = rc.render(world, view, effects=(), spp=16, device=device)
 
     parts = NOTHING.with_instance(FLOOR, name="a").with_instance(BOX, shifted(0.2, 0, -3), name="b")
     parts = parts.with_instance(lit_area(0.5), shifted(-1, 1, -4), name="c")
     for name, matrix in parts.instances:
         parts = parts.moved(name, [matrix, shifted(-0.3, -0.1, 0.2) @ matrix], times_s=[0, SHUTTER])
-    passed = rc.render(parts, camera(model=model), spp=16, device=device)
+    passed = rc.render(parts, camera(model=model), effects=(), spp=16, device=device)
     # The same samples, but for roundings at edges.
     difference = np.abs(passing.pixels.astype(float) - passed.pixels).max(axis=2) / passing.pixels.max()
     assert (difference > 1e-3).mean() < 0.02
@@ -166,11 +166,11 @@ def test_a_picture_of_motion_is_the_mean_of_stills(device: str, kind: str) -> No
     scene = scene.moved(lamp, keys, times_s=[0, SHUTTER])
     scene = scene.moved("box", [shifted(0.2, 0, -3), shifted(0.5, 0.2, -3) @ turned(0.5)], times_s=[0, SHUTTER])
     cam = camera(model="thin", film=rc.Film(36, 24, (24, 16)))
-    moving = rc.render(scene, cam, spp=4096, max_bounces=1, device=device).pixels.astype(float)
+    moving = rc.render(scene, cam, effects=(), spp=4096, max_bounces=1, device=device).pixels.astype(float)
     times = (np.arange(64) + 0.5) / 64 * SHUTTER
     stills = np.mean(
         [
-            rc.render(scene.at_time(t), cam, spp=128, max_bounces=1, seed=i, device=device).pixels
+            rc.render(scene.at_time(t), cam, effects=(), spp=128, max_bounces=1, seed=i, device=device).pixels
             for i, t in enumerate(times)
         ],
         axis=0,
@@ -186,10 +186,10 @@ def test_what_stands_while_the_shutter_is_open_costs_no_sharpness(device: str) -
     scene = FLOOR.with_instance(BOX, name="box").with_instance(lit_area(0.5), shifted(-1, 1, -4))
     moving = scene.moved("box", [shifted(0, 0, -3), shifted(1, 0, -3)], times_s=[5, 6])
     cam = camera()
-    before = rc.render(moving, cam, spp=4, device=device)
-    assert np.array_equal(before.pixels, rc.render(moving.at_time(0), cam, spp=4, device=device).pixels)
-    after = rc.render(moving, cam.replace(shutter_opens_s=7), spp=4, device=device)
-    assert np.array_equal(after.pixels, rc.render(moving.at_time(6), cam, spp=4, device=device).pixels)
+    before = rc.render(moving, cam, effects=(), spp=4, device=device)
+    assert np.array_equal(before.pixels, rc.render(moving.at_time(0), cam, effects=(), spp=4, device=device).pixels)
+    after = rc.render(moving, cam.replace(shutter_opens_s=7), effects=(), spp=4, device=device)
+    assert np.array_equal(after.pixels, rc.render(moving.at_time(6), cam, effects=(), spp=4, device=device).pixels)
 
 
 def test_a_session_begins_anew_where_the_time_matters(device: str) -> None:
@@ -206,7 +206,7 @@ def test_a_session_begins_anew_where_the_time_matters(device: str) -> None:
     session.set(camera=cam.replace(shutter_opens_s=0.4))
     session.add(4)
     late = session.image().pixels
-    direct = rc.render(moving, cam.replace(shutter_opens_s=0.4), spp=4, device=device).pixels
+    direct = rc.render(moving, cam.replace(shutter_opens_s=0.4), effects=(), spp=4, device=device).pixels
     np.testing.assert_allclose(late, direct, rtol=1e-6)  # a GPU adds the same samples in another order
     assert np.abs(late - early).max() > 0.1 * early.mean()
 
@@ -225,11 +225,11 @@ def test_motion_vectors_lead_from_where_a_thing_was_to_where_it_will_be(device: 
             name = f"{i} {k}"
             scene = scene.with_instance(lit_area(0.05), name=name)
             scene = scene.moved(name, [begin @ card, end @ card], times_s=[0, SHUTTER])
-    motion = rc.render(scene, cam, spp=1, layers=["motion", "object_id"], device=device).layers
+    motion = rc.render(scene, cam, effects=(), spp=1, layers=["motion", "object_id"], device=device).layers
 
     def centers(time: float) -> dict[int, np.ndarray]:
         still = cam.replace(exposure_time_s=1e-6, shutter_opens_s=time)
-        ids = rc.render(scene, still, spp=1, layers=["object_id"], device=device).layers["object_id"]
+        ids = rc.render(scene, still, effects=(), spp=1, layers=["object_id"], device=device).layers["object_id"]
         rows, columns = np.mgrid[0:160, 0:240]
         inner = [i for i in np.unique(ids) if i > 1]
         whole = [i for i in inner if not (np.isin(i, ids[[0, -1]]) or np.isin(i, ids[:, [0, -1]]))]
@@ -253,7 +253,7 @@ def test_motion_vectors_of_a_turning_camera(device: str) -> None:
     angle = 0.02
     keys = [(0, (0, 0, 0), (0, 0, -1)), (SHUTTER, (0, 0, 0), (np.sin(angle), 0, -np.cos(angle)))]
     wall = scene_of(quad((0, 0, -1000), 2000, 100, emission=1))  # the sky above and below
-    image = rc.render(wall, camera(motion=keys), spp=1, layers=["motion"], device=device)
+    image = rc.render(wall, camera(motion=keys), effects=(), spp=1, layers=["motion"], device=device)
     x = np.arange(96) + 0.5 - 48
     pixel = metres_per_pixel(camera(), 1.0)
     expected = (np.tan(np.arctan(x * pixel) - angle / 2) - np.tan(np.arctan(x * pixel) + angle / 2)) / pixel
@@ -328,7 +328,7 @@ def test_a_wheel_that_turns_too_fast_is_refused() -> None:
     scene = NOTHING.with_instance(BOX, name="wheel")
     scene = scene.moved("wheel", [turned(2.5 * k) for k in range(400)], times_s=list(times))
     with pytest.raises(rc.InputError, match=r'"wheel"\): turns too fast'):
-        rc.render(scene.with_environment(1), camera(), spp=1, device="cpu")
+        rc.render(scene.with_environment(1), camera(), effects=(), spp=1, device="cpu")
     keys = [(k / 100, (0, 0, 0), (np.cos(2.5 * k), 0, np.sin(2.5 * k))) for k in range(100)]
     with pytest.raises(rc.InputError, match="the camera turns too fast"):
-        rc.render(NOTHING.with_environment(1), camera(motion=keys, exposure_time_s=1), spp=1, device="cpu")
+        rc.render(NOTHING.with_environment(1), camera(motion=keys, exposure_time_s=1), effects=(), spp=1, device="cpu")

@@ -44,8 +44,8 @@ def relative_rmse(a: np.ndarray, b: np.ndarray) -> float:
 
 @pytest.mark.parametrize("shift", [(1e6, 0.0, 0.0), (-1e6, 1e6, 1e6), (12345.678, -987.65, 4321.1)])
 def test_a_scene_far_from_the_origin_looks_the_same(shift: tuple[float, float, float]) -> None:
-    here = rc.render(room(), camera_at((0, 0, 0)), spp=16, seed=5, max_bounces=1)
-    there = rc.render(room(shift), camera_at(shift), spp=16, seed=5, max_bounces=1)
+    here = rc.render(room(), camera_at((0, 0, 0)), effects=(), spp=16, seed=5, max_bounces=1)
+    there = rc.render(room(shift), camera_at(shift), effects=(), spp=16, seed=5, max_bounces=1)
     # The same samples. At 1e6 m a double has steps of 1e-10 m, a thousandth of float32's at 2 m: coordinates
     # differ in their last bit, and of 55296 samples one or two may land on the other side of an edge. One
     # sample of 16 in one of 3456 pixels is sqrt(1 / 3456) / 16 = 0.1%. Without moving the scene, float32's 6
@@ -60,12 +60,12 @@ def test_a_scene_far_from_the_origin_looks_the_same(shift: tuple[float, float, f
 def test_a_picture_does_not_depend_on_the_one_before() -> None:
     """The scene stays placed while the camera moves by little; pictures must not show it."""
     scene, step = room(), (0.0, 0.0, 9.0)
-    rc.render(scene, camera_at(step), spp=1)
-    after_move = rc.render(scene, camera_at((0, 0, 0)), spp=16, seed=5)
-    fresh = rc.render(room(), camera_at((0, 0, 0)), spp=16, seed=5)
+    rc.render(scene, camera_at(step), effects=(), spp=1)
+    after_move = rc.render(scene, camera_at((0, 0, 0)), effects=(), spp=16, seed=5)
+    fresh = rc.render(room(), camera_at((0, 0, 0)), effects=(), spp=16, seed=5)
     # Coordinates ten times as large have ten times the rounding: some ten samples of 55296 at edges.
     assert relative_rmse(after_move.pixels, fresh.pixels) < 5e-3
-    other = rc.render(scene.with_environment(0.0), camera_at((0, 0, 0)), spp=16, seed=5)
+    other = rc.render(scene.with_environment(0.0), camera_at((0, 0, 0)), effects=(), spp=16, seed=5)
     assert other.pixels.mean() < 0.9 * fresh.pixels.mean()
 
 
@@ -82,7 +82,7 @@ def test_depth_of_a_plane_square_to_the_axis(model: str) -> None:
         look_at=tuple(np.add((0, 0, -1), shift)),
         model=model,
     )
-    depth = rc.render(scene, camera, spp=16).depth
+    depth = rc.render(scene, camera, effects=(), spp=16).depth
     # float32, relative to the camera.
     np.testing.assert_allclose(depth, 4.0, rtol=1e-6)
 
@@ -92,17 +92,17 @@ def test_depth_is_the_mean_over_the_samples_that_hit() -> None:
     slope = scenes.quad((0, 0, -3), 2, right=(0.8, 0, -0.6), diffuse=0.5)
     points, rays = scenes.points_on_plane(camera, 16, (0, 0, -3), np.cross((0.8, 0, -0.6), (0, 1, 0)))
     expected = scenes.mean_over_pixels(rays, -points[:, 2])  # weighted as the exposure is
-    depth = rc.render(scenes.scene_of(slope).with_environment(1), camera, spp=16).depth
+    depth = rc.render(scenes.scene_of(slope).with_environment(1), camera, effects=(), spp=16).depth
     np.testing.assert_allclose(depth, expected, rtol=1e-5)
     assert len(rays.weights) == 16 * 24 * 16
     # The left half of the picture is empty, and the pixels on the edge have the depth of what is there.
     half = scenes.quad((1, 0, -3), 1, 2, diffuse=0.5)
-    depth = rc.render(scenes.scene_of(half).with_environment(1), camera, spp=16).depth
+    depth = rc.render(scenes.scene_of(half).with_environment(1), camera, effects=(), spp=16).depth
     assert np.isposinf(depth[:, :12]).all()
     np.testing.assert_allclose(depth[:, 12:], 3.0, rtol=1e-6)
 
 
 def test_no_light_and_nothing_there() -> None:
-    image = rc.render(scenes.sky(0.0), scenes.pinhole(), spp=4)
+    image = rc.render(scenes.sky(0.0), scenes.pinhole(), effects=(), spp=4)
     np.testing.assert_array_equal(image.pixels, 0)
     assert np.isposinf(image.depth).all()

@@ -93,7 +93,7 @@ def test_glass_takes_what_its_transmittance_says() -> None:
     lens = camera.lens.with_coating("bare")
     radiance = 150.0
     scene = board(100.0, radiance=radiance)
-    taken = rc.render(scene, camera.replace(lens=lens), spp=16, device="cpu")
+    taken = rc.render(scene, camera.replace(lens=lens), effects=(), spp=16, device="cpu")
     value = 0.018 * 100 * float(taken.pixels[300, 450].mean())
     assert 0.1 < value < 1
     transmittance = (lens.first_order().f_number / lens.t_stop) ** 2
@@ -130,6 +130,7 @@ def test_what_is_named_stays() -> None:
 
 def test_a_chosen_model_stays_and_takes_what_it_can() -> None:
     camera = camera_of(f_number=5.6, model="thin", film=rc.Film(3.6, 2.4, (45, 30)))
+    camera = camera.replace(lens=camera.lens.with_coating("bare"))
     plan = rc.plan(board(10.0, radiance=150), camera, device="cpu")
     assert plan.model == "thin"
     coatings = next(d for d in plan.decisions if d.effect == "coatings")
@@ -137,6 +138,29 @@ def test_a_chosen_model_stays_and_takes_what_it_can() -> None:
     assert not coatings.is_kept
     assert "an ideal lens cannot show it" in coatings.reason
     rc.render(board(10.0, radiance=150), camera, spp=1, device="cpu", effects="auto")
+
+
+def test_what_nobody_knows_of_the_glass_is_left_to_the_user() -> None:
+    camera = camera_of(f_number=8.0, focus_m=5.0)
+    scene = board(5.0, radiance=1e-3).with_point_light((0.05, 0.05, -4.9), (100.0, 100.0, 100.0))
+    assert camera.lens.unknown_coatings
+    ghosts = decisions(scene, camera)["ghosts"]
+    assert ghosts.size > 10
+    assert not ghosts.is_kept
+    assert "nobody knows what covers the glass" in ghosts.reason
+    assert "ghosts" in rc.plan(scene, camera, device="cpu", effects={"ghosts"}).effects
+
+
+def test_where_there_is_nothing_to_plan_the_picture_is_taken() -> None:
+    camera = camera_of(film=rc.Film(3.6, 2.4, (45, 30)))
+    triangle = np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]])
+    behind = rc.Scene.from_arrays(triangle, [[0, 1, 2]])
+    with pytest.raises(rc.NothingToPlan):
+        rc.plan(behind, camera, device="cpu")
+    with pytest.warns(UserWarning, match="nothing to plan"):
+        picture = rc.render(behind, camera, spp=1, device="cpu")
+    assert (picture.effects, picture.plan) == ((), "")
+    assert picture.camera.model == "full"
 
 
 def test_qualities_are_thresholds() -> None:
@@ -171,7 +195,7 @@ def test_a_picture_says_what_was_decided(tmp_path: Path) -> None:
     written = dict(_pictures.read_film(os.fsencode(tmp_path / "picture.exr"))[1])
     # All that the file says, but for the version of the library that wrote it.
     assert {name: written[name] for name in picture.metadata()} == picture.metadata()
-    assert "realcam:plan" not in rc.render(scene, camera, spp=1, device="cpu").metadata()
+    assert "realcam:plan" not in rc.render(scene, camera, effects=(), spp=1, device="cpu").metadata()
 
 
 def test_a_plan_is_a_value() -> None:
@@ -211,6 +235,7 @@ def test_sessions_want_names() -> None:
 
 def test_a_lamp_behind_an_object_makes_neither_ghosts_nor_stars() -> None:
     lamp, camera = (0.05, 0.05, -4.9), camera_of(f_number=8.0, focus_m=5.0)
+    camera = camera.replace(lens=camera.lens.with_coating("bare"))
     dark = board(5.0, radiance=1e-3)
     for place, is_seen in ((lamp, True), ((lamp[0], lamp[1], -5.1), False)):
         of = decisions(dark.with_point_light(place, (100.0, 100.0, 100.0)), camera)

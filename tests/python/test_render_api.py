@@ -31,7 +31,7 @@ def camera(columns: int = 80, rows: int = 70, model: str = "full") -> rc.Camera:
 
 def test_what_is_returned() -> None:
     taken_by = camera(31, 17)
-    image = rc.render(small_scene(), taken_by, spp=3, seed=4)
+    image = rc.render(small_scene(), taken_by, effects=(), spp=3, seed=4)
     assert (image.pixels.shape, image.pixels.dtype) == ((17, 31, 3), np.float32)
     assert (image.depth.shape, image.depth.dtype) == ((17, 31), np.float32)
     assert np.isfinite(image.pixels).all()
@@ -64,28 +64,30 @@ def test_what_is_returned() -> None:
 )
 def test_settings_that_make_no_picture(arguments: dict[str, object], error: type[Exception], says: str) -> None:
     with pytest.raises(error, match=says):
-        rc.render(small_scene(), camera(4, 4), **arguments)  # type: ignore[arg-type]
+        rc.render(small_scene(), camera(4, 4), effects=(), **arguments)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("model", ["thin", "full"])
 def test_same_seed_same_picture_whatever_the_number_of_threads(model: str) -> None:
     """Random numbers belong to pixel and sample, not to a thread or to the order of the tiles."""
-    reference = rc.render(small_scene(), camera(model=model), spp=20, seed=7, max_bounces=2, threads=1)
+    reference = rc.render(small_scene(), camera(model=model), effects=(), spp=20, seed=7, max_bounces=2, threads=1)
     for threads in (2, 3, 0):
-        again = rc.render(small_scene(), camera(model=model), spp=20, seed=7, max_bounces=2, threads=threads)
+        again = rc.render(
+            small_scene(), camera(model=model), effects=(), spp=20, seed=7, max_bounces=2, threads=threads
+        )
         # Only the order of sums within a pixel could differ: 20 sums in double, rounded to float32 once.
         np.testing.assert_allclose(again.pixels, reference.pixels, rtol=1e-6)
         np.testing.assert_array_equal(again.depth, reference.depth)
-    other = rc.render(small_scene(), camera(model=model), spp=20, seed=8, max_bounces=2)
+    other = rc.render(small_scene(), camera(model=model), effects=(), spp=20, seed=8, max_bounces=2)
     assert (other.pixels != reference.pixels).mean() > 0.5
 
 
 def test_renders_side_by_side_do_not_disturb_each_other() -> None:
-    alone = [rc.render(small_scene(), camera(), spp=8, seed=seed).pixels for seed in range(3)]
+    alone = [rc.render(small_scene(), camera(), effects=(), spp=8, seed=seed).pixels for seed in range(3)]
     together: list[np.ndarray | None] = [None] * 3
 
     def work(seed: int) -> None:
-        together[seed] = rc.render(small_scene(), camera(), spp=8, seed=seed).pixels
+        together[seed] = rc.render(small_scene(), camera(), effects=(), spp=8, seed=seed).pixels
 
     threads = [threading.Thread(target=work, args=(seed,)) for seed in range(3)]
     for thread in threads:
@@ -99,9 +101,9 @@ def test_renders_side_by_side_do_not_disturb_each_other() -> None:
 
 def test_more_samples_than_one_visit_of_a_tile_continue_the_sequence() -> None:
     """Passes of up to 256 samples add up: no sample twice, none left out."""
-    many = rc.render(small_scene(), camera(8, 7), spp=700, seed=1).pixels
+    many = rc.render(small_scene(), camera(8, 7), effects=(), spp=700, seed=1).pixels
     rays = camera(8, 7).generate_rays(spp=700, seed=1)
-    sky = rc.render(scenes.sky(), camera(8, 7), spp=700, seed=1).pixels[..., 0]
+    sky = rc.render(scenes.sky(), camera(8, 7), effects=(), spp=700, seed=1).pixels[..., 0]
     expected = rays.weights.astype(np.float64).reshape(7, 8, 700).mean(axis=2)
     # 700 float32 weights, summed in double on both sides.
     np.testing.assert_allclose(sky, expected, rtol=1e-6)
@@ -110,7 +112,7 @@ def test_more_samples_than_one_visit_of_a_tile_continue_the_sequence() -> None:
 
 def test_film_of_one_pixel_and_of_odd_sizes() -> None:
     for size in ((1, 1), (33, 1), (1, 65), (31, 33)):
-        image = rc.render(scenes.sky(), camera(*size), spp=2)
+        image = rc.render(scenes.sky(), camera(*size), effects=(), spp=2)
         assert image.pixels.shape == (size[1], size[0], 3)
         assert (image.pixels > 0).mean() > 0.9
 
@@ -118,7 +120,7 @@ def test_film_of_one_pixel_and_of_odd_sizes() -> None:
 def test_progress_rises_from_0_to_1() -> None:
     seen: list[float] = []
     # Long enough for some reports: they come 20 times a second.
-    rc.render(small_scene(), camera(400, 350), spp=64, max_bounces=4, progress=seen.append)
+    rc.render(small_scene(), camera(400, 350), effects=(), spp=64, max_bounces=4, progress=seen.append)
     assert seen == sorted(seen)
     assert all(0 <= share <= 1 for share in seen)
     assert seen[-1] == 1.0
@@ -132,21 +134,21 @@ def test_progress_false_stops() -> None:
         return False
 
     with pytest.raises(rc.Cancelled):
-        rc.render(small_scene(), camera(2000, 1700), spp=20000, progress=stop)
+        rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=stop)
     assert len(calls) == 1
     assert calls[0] < 0.9
     # Nothing is left over in the backend.
-    assert rc.render(small_scene(), camera(4, 4), spp=1).pixels.shape == (4, 4, 3)
+    assert rc.render(small_scene(), camera(4, 4), effects=(), spp=1).pixels.shape == (4, 4, 3)
 
 
 def test_render_within_its_own_progress_is_an_error() -> None:
     def again(done: float) -> bool:
-        rc.render(small_scene(), camera(4, 4), spp=1)
+        rc.render(small_scene(), camera(4, 4), effects=(), spp=1)
         return True
 
     with pytest.raises(rc.InputError, match="progress function"):
-        rc.render(small_scene(), camera(2000, 1700), spp=20000, progress=again)
-    assert rc.render(small_scene(), camera(4, 4), spp=1).spp == 1
+        rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=again)
+    assert rc.render(small_scene(), camera(4, 4), effects=(), spp=1).spp == 1
 
 
 def test_an_error_in_progress_comes_out_as_it_is() -> None:
@@ -154,11 +156,11 @@ def test_an_error_in_progress_comes_out_as_it_is() -> None:
         raise LookupError(f"at {done >= 0}")
 
     with pytest.raises(LookupError, match="at True"):
-        rc.render(small_scene(), camera(2000, 1700), spp=20000, progress=fail)
+        rc.render(small_scene(), camera(2000, 1700), effects=(), spp=20000, progress=fail)
 
 
 def test_progress_bar_says_nothing_where_there_is_no_terminal(capfd: pytest.CaptureFixture[str]) -> None:
-    rc.render(small_scene(), camera(8, 8), spp=1, progress=True)
+    rc.render(small_scene(), camera(8, 8), effects=(), spp=1, progress=True)
     out, err = capfd.readouterr()
     assert (out, err.strip()) == ("", "")
 

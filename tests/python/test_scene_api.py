@@ -127,8 +127,8 @@ def test_scenes_are_values() -> None:
     np.testing.assert_array_equal(kept.bounds_m, [[0, 0, -3], [1, 1, -3]])
     # An environment replaces the one before; lights add up.
     camera = scenes.pinhole()
-    one = rc.render(scenes.sky(5.0).with_environment(1.0), camera, spp=1).pixels
-    np.testing.assert_array_equal(one, rc.render(scenes.sky(1.0), camera, spp=1).pixels)
+    one = rc.render(scenes.sky(5.0).with_environment(1.0), camera, effects=(), spp=1).pixels
+    np.testing.assert_array_equal(one, rc.render(scenes.sky(1.0), camera, effects=(), spp=1).pixels)
 
 
 def write_obj(folder: Path) -> Path:

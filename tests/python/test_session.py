@@ -27,7 +27,7 @@ def test_added_samples_are_those_of_one_render(device: str) -> None:
     session = rc.Session(room(), camera(), device=device, seed=5, max_bounces=2)
     for spp in (256, 256, 88):
         session.add(spp)
-    whole = rc.render(room(), camera(), spp=600, device=device, seed=5, max_bounces=2)
+    whole = rc.render(room(), camera(), effects=(), spp=600, device=device, seed=5, max_bounces=2)
     image = session.image()
     if device == "cpu":  # which adds up in steps of 256 samples in both cases
         assert image == whole
@@ -61,11 +61,13 @@ def test_another_picture_begins_anew_and_another_exposure_does_not(device: str) 
     session.set(camera=camera(x=0.1))
     assert not session.samples.any()
     session.add(8)
-    np.testing.assert_array_equal(session.image().pixels, rc.render(room(), camera(x=0.1), spp=8, device=device).pixels)
+    np.testing.assert_array_equal(
+        session.image().pixels, rc.render(room(), camera(x=0.1), effects=(), spp=8, device=device).pixels
+    )
     session.set(scene=room(lamp=100.0), camera=camera(20, 15))
     assert session.samples.shape == (15, 20)
     session.add(8)
-    expected = rc.render(room(lamp=100.0), camera(20, 15), spp=8, device=device)
+    expected = rc.render(room(lamp=100.0), camera(20, 15), effects=(), spp=8, device=device)
     np.testing.assert_array_equal(session.image().pixels, expected.pixels)
 
 
@@ -79,7 +81,7 @@ def test_an_object_moves_in_a_session(device: str) -> None:
         scene = scene.moved("ball", matrix)
         session.set(scene=scene)
         session.add(64)
-        expected = rc.render(scene, camera(), spp=64, device=device).pixels
+        expected = rc.render(scene, camera(), effects=(), spp=64, device=device).pixels
         # The hierarchy was refitted here and built there: a hit at an edge may be another, nothing else.
         assert (np.abs(session.image().pixels / expected - 1) > 1e-5).mean() < 0.01
 
@@ -130,7 +132,7 @@ def test_a_stop_keeps_what_was_taken(device: str) -> None:
     assert (image.pixels[~taken] == 0).all()
     assert not np.isnan(image.pixels).any()
     many = samples >= 64
-    expected = rc.render(sky, wide, spp=64, max_bounces=0, device=device).pixels[many]
+    expected = rc.render(sky, wide, effects=(), spp=64, max_bounces=0, device=device).pixels[many]
     # Weights of samples differ by natural vignetting within the pixel and rays that are lost at rims: by some percent.
     np.testing.assert_allclose(image.pixels[many], expected, rtol=0.2)
     session.add(1)
@@ -147,7 +149,7 @@ def test_the_samples_after_a_stop_are_others(device: str) -> None:
     before, counts = session.image().pixels.astype(float), session.samples[..., None]
     session.add(1)
     after = session.image().pixels * (counts + 1.0) - before * counts
-    first = rc.render(room(), camera(200, 150), spp=1, seed=3, device=device).pixels
+    first = rc.render(room(), camera(200, 150), effects=(), spp=1, seed=3, device=device).pixels
     # The same samples would differ by roundings only; others may agree in dark or evenly lit pixels.
     assert (np.abs(after - first) > 1e-3 * first.max()).mean() > 0.2
 
@@ -160,7 +162,7 @@ def test_threads_take_turns() -> None:
     for thread in threads:
         thread.join()
     assert (session.samples == 48).all()
-    whole = rc.render(room(), camera(), spp=48, device="cpu")
+    whole = rc.render(room(), camera(), effects=(), spp=48, device="cpu")
     # The same samples, in sums of 8.
     np.testing.assert_allclose(session.image().pixels, whole.pixels, rtol=1e-6)
 
@@ -191,10 +193,10 @@ def test_cancel_ends_the_turn_of_another_thread_and_no_other() -> None:
 
 def test_sessions_do_not_disturb_render_and_each_other() -> None:
     one, two = (rc.Session(room(lamp), camera(), device="cpu") for lamp in (50.0, 5000.0))
-    expected = [rc.render(room(lamp), camera(), spp=16, device="cpu").pixels for lamp in (50.0, 5000.0)]
+    expected = [rc.render(room(lamp), camera(), effects=(), spp=16, device="cpu").pixels for lamp in (50.0, 5000.0)]
     for _ in range(2):
         one.add(8)
-        rc.render(room(9.0), camera(x=1), spp=1, device="cpu")
+        rc.render(room(9.0), camera(x=1), effects=(), spp=1, device="cpu")
         two.add(8)
     for session, pixels in zip((one, two), expected, strict=True):
         np.testing.assert_allclose(session.image().pixels, pixels, rtol=1e-6)

@@ -64,7 +64,7 @@ def test_every_key_is_heard(tmp_path: Path) -> None:
     assert (shot.spp, shot.seed, shot.max_bounces, shot.tone) == (3, 4, 0, "linear")
     assert shot.layers == ("depth", "normal")
     assert set(shot.render().layers) == {"depth", "normal"}
-    lit = rc.render(shot.scene, camera, spp=1, max_bounces=0).pixels[10, 0]
+    lit = rc.render(shot.scene, camera, effects=(), spp=1, max_bounces=0).pixels[10, 0]
     np.testing.assert_allclose(lit / lit[0], [1, 2, 3], rtol=1e-5)
 
 
@@ -86,7 +86,7 @@ def test_blades(tmp_path: Path) -> None:
     assert (lens.iris_blades, lens.iris_rounding) == (7, 0.3)
     assert lens.iris_rotation_deg == pytest.approx(15)
     assert lens.first_order().f_number == pytest.approx(8)
-    assert rc.render(shot.scene, shot.camera, spp=1).metadata()["realcam:blades"] == "7"
+    assert rc.render(shot.scene, shot.camera, effects=(), spp=1).metadata()["realcam:blades"] == "7"
     for line, wanted in (
         ("blades = 2", r"shot\.toml:5: the iris has 2 blades; 0 \(round\) or 3 to 24 are wanted"),
         ("blades = 5.5", r"shot\.toml:5: .*whole numbers"),
@@ -162,8 +162,8 @@ def test_the_lights_of_a_shot_are_those_of_python(tmp_path: Path) -> None:
     other = rc.Scene.load(tmp_path / "part.obj")
     by_hand = by_hand.with_instance(other, shot.scene.instances[1][1])
     camera = shot.camera.replace(film=rc.Film(36, 24, (30, 20)))
-    expected = rc.render(by_hand, camera, spp=8, device="cpu").pixels
-    np.testing.assert_array_equal(rc.render(shot.scene, camera, spp=8, device="cpu").pixels, expected)
+    expected = rc.render(by_hand, camera, effects=(), spp=8, device="cpu").pixels
+    np.testing.assert_array_equal(rc.render(shot.scene, camera, effects=(), spp=8, device="cpu").pixels, expected)
     assert expected.max() > 0
 
 
@@ -171,7 +171,12 @@ def test_a_material_takes_the_place_of_those_of_its_name(tmp_path: Path) -> None
     (tmp_path / "m.mtl").write_text("newmtl wood\nKd 1 0 0\nnewmtl glass\nKd 0 1 0\n")
     obj = QUAD.replace("f 1 2 3 4", "mtllib m.mtl\nvt 0 0\nusemtl wood\nf 1/1 2/1 3/1\nusemtl glass\nf 1/1 3/1 4/1")
     (tmp_path / "two.obj").write_text(obj)
-    rc.render(rc.Scene.load(tmp_path / "two.obj").with_environment(1), rc.Camera(rc.Lens.load("tessar-50mm")), spp=1)
+    rc.render(
+        rc.Scene.load(tmp_path / "two.obj").with_environment(1),
+        rc.Camera(rc.Lens.load("tessar-50mm")),
+        effects=(),
+        spp=1,
+    )
     text = """
         format = 1
         scene = "two.obj"
@@ -192,7 +197,9 @@ def test_a_material_takes_the_place_of_those_of_its_name(tmp_path: Path) -> None
 def test_textures_of_a_material_are_files(tmp_path: Path) -> None:
     (tmp_path / "part.obj").write_text(TEAPOT)
     lens = rc.Lens.load("tessar-50mm")
-    rc.render(rc.Scene.load(tmp_path / "part.obj").with_environment(1), rc.Camera(lens), spp=1).save(tmp_path / "t.png")
+    rc.render(rc.Scene.load(tmp_path / "part.obj").with_environment(1), rc.Camera(lens), effects=(), spp=1).save(
+        tmp_path / "t.png"
+    )
     text = PLACED.replace("emission = 3", 'texture = "t.png"\nopacity_texture = "t.png"')
     assert load(tmp_path, text).scene.triangle_count == 4
     with pytest.raises(rc.InputError, match=r"shot\.toml:20: the material's object has no texture coordinates"):

@@ -138,18 +138,18 @@ def test_the_hierarchy_is_left_unfinished() -> None:
     scene = grid_scene(1225)
     told: list[float] = []
     with pytest.raises(rc.Cancelled):
-        rc.render(scene, camera, spp=1, device="cpu", progress=lambda done: bool(told.append(done)))
+        rc.render(scene, camera, effects=(), spp=1, device="cpu", progress=lambda done: bool(told.append(done)))
     assert len(told) == 1
     assert told[0] < 0.5
-    image = rc.render(scene, camera, spp=1, device="cpu")  # and the next picture builds it anew
+    image = rc.render(scene, camera, effects=(), spp=1, device="cpu")  # and the next picture builds it anew
     assert image.pixels.any()
-    assert rc.render(scene, camera, spp=1, device="cpu") == image
+    assert rc.render(scene, camera, effects=(), spp=1, device="cpu") == image
 
 
 def test_progress_is_told_while_the_scene_is_made_ready() -> None:
     shares: list[float] = []
     camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2)), position=(0, 3, 3))
-    rc.render(grid_scene(900), camera, spp=1, device="cpu", progress=lambda done: shares.append(done))
+    rc.render(grid_scene(900), camera, effects=(), spp=1, device="cpu", progress=lambda done: shares.append(done))
     assert shares.count(0) >= 2
     assert shares == sorted(shares)
     assert shares[-1] == 1
@@ -313,7 +313,9 @@ def test_a_process_forked_amid_a_render_ends_at_once() -> None:
 
 def test_more_threads_than_cores_are_no_reason_for_a_warning(capfd: pytest.CaptureFixture[str]) -> None:
     scene = rc.Scene.from_arrays([(0, 0, -2), (1, 0, -2), (0, 1, -2)], [(0, 1, 2)]).with_environment(1)
-    rc.render(scene, rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2))), spp=1, threads=1000)
+    rc.render(
+        scene, rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2))), effects=(), spp=1, threads=1000
+    )
     assert capfd.readouterr().err == ""
 
 
@@ -322,8 +324,10 @@ def test_more_threads_than_any_machine_has_are_refused() -> None:
     camera = rc.Camera(rc.Lens.load("tessar-50mm"), film=rc.Film(36, 24, (3, 2)))
     for threads in (4097, 100_000, 2**31 - 1, -1):
         with pytest.raises(rc.InputError, match=r"threads must be 0 \(all\) or a number up to 4096"):
-            rc.render(scene, camera, spp=1, device="cpu", threads=threads)
-    assert rc.render(scene, camera, spp=1, device="cpu", threads=64) == rc.render(scene, camera, spp=1, device="cpu")
+            rc.render(scene, camera, effects=(), spp=1, device="cpu", threads=threads)
+    assert rc.render(scene, camera, effects=(), spp=1, device="cpu", threads=64) == rc.render(
+        scene, camera, effects=(), spp=1, device="cpu"
+    )
 
 
 def test_no_thread_to_be_had_is_told() -> None:

@@ -24,7 +24,7 @@ def one_pixel(**more: object) -> rc.Camera:
 
 
 def exposure(scene: rc.Scene, camera: rc.Camera, device: str, spp: int) -> float:
-    return float(rc.render(scene, camera, spp=spp, max_bounces=0, device=device).pixels[0, 0, 0])
+    return float(rc.render(scene, camera, effects=(), spp=spp, max_bounces=0, device=device).pixels[0, 0, 0])
 
 
 def test_a_million_samples_of_a_pixel_do_not_drift(device: str, backend: str) -> None:
@@ -103,7 +103,7 @@ def test_exposure_scales_with_time_over_18_orders(device: str, backend: str) -> 
 
     def picture(time_s: float) -> np.ndarray:
         camera = rc.Camera(lens, film=scenes.FILM, exposure_time_s=time_s)
-        return rc.render(lit_room(), camera, spp=16, device=device).pixels.astype(np.float64)
+        return rc.render(lit_room(), camera, effects=(), spp=16, device=device).pixels.astype(np.float64)
 
     second, worst = picture(1), 0.0
     assert (second > 0).all()
@@ -127,7 +127,7 @@ def test_nothing_becomes_infinite(time_s: float, device: str, tmp_path: Path) ->
     camera = rc.Camera(
         rc.Lens.load("double-gauss-50mm").focused(2.0), film=scenes.FILM, exposure_time_s=time_s, iso=100
     )
-    image = rc.render(scene, camera, spp=64, max_bounces=2, device=device)
+    image = rc.render(scene, camera, effects=(), spp=64, max_bounces=2, device=device)
     assert np.isfinite(image.pixels).all()
     assert (image.pixels >= 0).all()
     for tone in ("film", "linear"):

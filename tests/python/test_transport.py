@@ -20,7 +20,7 @@ def corner(material: rc.Material) -> rc.Scene:
 
 
 def picture(scene: rc.Scene, spp: int = 32, **options: object) -> np.ndarray:
-    image = rc.render(scene, scenes.pinhole(), spp=spp, device="cpu", **options)  # type: ignore[arg-type]
+    image = rc.render(scene, scenes.pinhole(), effects=(), spp=spp, device="cpu", **options)  # type: ignore[arg-type]
     return np.asarray(image.pixels, float)
 
 
@@ -52,10 +52,10 @@ def test_a_clamp_cuts_off_what_comes_by_a_bounce_and_is_told() -> None:
     assert direct.mean() < clamped.mean() < free.mean()
     # Direct light is left alone.
     assert (clamped >= direct * (1 - 1e-5)).all()
-    image = rc.render(scene, scenes.pinhole(), spp=1, clamp_cd_m2=0.5, transport="whitted")
+    image = rc.render(scene, scenes.pinhole(), effects=(), spp=1, clamp_cd_m2=0.5, transport="whitted")
     assert image.metadata()["realcam:clamp_cd_m2"] == "0.5"
     assert image.metadata()["realcam:transport"] == "whitted"
-    plain = rc.render(scene, scenes.pinhole(), spp=1).metadata()
+    plain = rc.render(scene, scenes.pinhole(), effects=(), spp=1).metadata()
     assert not {"realcam:clamp_cd_m2", "realcam:transport"} & plain.keys()
     session = rc.Session(scene, scenes.pinhole(), device="cpu", max_bounces=2, clamp_cd_m2=0.5)
     session.add(32)

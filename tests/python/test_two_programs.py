@@ -105,7 +105,7 @@ def test_layers_are_channels_of_the_file(folder: Path, program: str) -> None:
     assert made.returncode == 0, made.stderr
     (folder / "shot.toml").write_text('format = 1\nscene = "card.obj"\nresolution = [30, 20]\nspp = 3\n')
     shot = rc.Shot.load(folder / "shot.toml")
-    layers = rc.render(shot.scene, shot.camera, spp=3, layers="all").layers
+    layers = rc.render(shot.scene, shot.camera, effects=(), spp=3, layers="all").layers
     picture = oiio.ImageInput.open(str(folder / "a.exr"))
     spec = picture.spec()
     assert spec.channelnames[:4] == ("R", "G", "B", "Z")

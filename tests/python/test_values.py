@@ -42,7 +42,7 @@ def scene() -> rc.Scene:
 
 
 def image() -> rc.Image:
-    return rc.render(floor_scene().with_environment(100), camera(), spp=2, device="cpu")
+    return rc.render(floor_scene().with_environment(100), camera(), effects=(), spp=2, device="cpu")
 
 
 ORIGINS, DIRECTIONS = np.full((4, 3), (0.0, 0.0, 80.0)), np.array([[0, 0.01 * i, -1] for i in range(4)])
@@ -92,7 +92,10 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
         lambda: rc.Sensor.load().replace(adc_bits=14),
     ],
     "RawImage": [lambda: rc.Sensor.load().expose(image()), lambda: rc.Sensor.load().expose(image(), seed=1)],
-    "Image": [image, lambda: rc.render(floor_scene().with_environment(100), camera(), spp=2, seed=1, device="cpu")],
+    "Image": [
+        image,
+        lambda: rc.render(floor_scene().with_environment(100), camera(), effects=(), spp=2, seed=1, device="cpu"),
+    ],
 }
 UNHASHABLE = {
     "CoatingResponse",

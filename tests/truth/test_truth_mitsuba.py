@@ -31,7 +31,7 @@ def camera() -> rc.Camera:
 
 
 def ours(scene: rc.Scene, taken: rc.Camera, spp: int, seed: int) -> np.ndarray:
-    image = rc.render(scene, taken, spp=spp, seed=seed, max_bounces=BOUNCES, device="cpu")
+    image = rc.render(scene, taken, effects=(), spp=spp, seed=seed, max_bounces=BOUNCES, device="cpu")
     return np.asarray(image.pixels, float) / taken.exposure_time_s
 
 

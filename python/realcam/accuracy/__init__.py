@@ -1,0 +1,5 @@
+"""What accuracy costs: the same shot at many levels of simulation, each with its time and its error."""
+
+from .ladder import AccuracyCost, Measured, Rung, accuracy_cost
+
+__all__ = ["AccuracyCost", "Measured", "Rung", "accuracy_cost"]

@@ -1,0 +1,31 @@
+"""How far one picture is from another, as people see them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..image import Image
+
+Codes = NDArray[np.float64]
+
+
+def codes(image: Image) -> Codes:
+    """(H, W, 3): sRGB's 8-bit codes of the developed picture (linear tone curve), without rounding."""
+    linear = np.clip(0.018 * image.camera.iso * image.pixels.astype(np.float64), 0, 1)
+    encoded: Codes = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return 255 * encoded
+
+
+def mean_square(a: Codes, b: Codes) -> float:
+    return float(np.mean((a - b) ** 2))
+
+
+def flip(reference: Codes, picture: Codes) -> float | None:
+    """Mean FLIP error (Andersson et al. 2020), 0 to 1; None without the package flip-evaluator."""
+    try:
+        import flip_evaluator
+    except ImportError:
+        return None
+    pictures = [(codes / 255).astype(np.float32) for codes in (reference, picture)]
+    return float(flip_evaluator.evaluate(*pictures, "LDR")[1])

@@ -1,0 +1,110 @@
+"""Error over time: the ladder as a drawing."""
+
+from __future__ import annotations
+
+import html
+import io
+import os
+from pathlib import Path
+
+import matplotlib
+import matplotlib.figure
+import numpy as np
+from matplotlib.axes import Axes
+
+from .. import files
+from .._core import ImageFileError
+from .ladder import AccuracyCost, Rung
+from .report import rows_of
+
+MOST_CODES = 32.0  # white in the thumbnails
+
+
+def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
+    """Writes .svg, or .html with the table below; either holds all that it shows. Raises ImageFileError."""
+    target = Path(path)
+    if target.suffix.lower() not in (".svg", ".html"):
+        raise ImageFileError(f"{target}: unknown suffix; .svg or .html is wanted")
+    if not cost.rungs:
+        raise ImageFileError(f"{target}: there is nothing to draw: no level was measured")
+    files.check_target(target)
+    drawing = _drawing(cost)
+    text = drawing if target.suffix.lower() == ".svg" else _page(cost, drawing)
+    files.write_whole(target, text.encode())
+
+
+def _drawing(cost: AccuracyCost) -> str:
+    count = len(cost.rungs)
+    figure = matplotlib.figure.Figure(figsize=(12, 9), layout="constrained")
+    above, below = np.asarray(figure.subfigures(2, 1, height_ratios=[3, 1.4])).ravel()
+    axes = above.subplots()
+    colours = matplotlib.colormaps["tab20"](np.arange(count) % 20)
+    for rung, colour in zip(cost.rungs, colours, strict=True):
+        _draw_rung(axes, rung, colour)
+    _draw_frontier(axes, cost)
+    axes.set(xscale="log", yscale="log", xlabel="seconds of samples", ylabel="error, root mean square, 8-bit codes")
+    axes.grid(which="both", alpha=0.2)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=8, frameon=False)
+    axes.set_title(f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}, against {cost.reference}", fontsize=9)
+    columns = (count + 1) // 2
+    thumbnails = np.atleast_1d(below.subplots(2, columns)).ravel()
+    for place in thumbnails:
+        place.set_axis_off()
+    for place, rung in zip(thumbnails, cost.rungs, strict=False):
+        place.imshow(rung.difference, cmap="inferno", vmin=0, vmax=MOST_CODES, interpolation="nearest")
+        place.set_title(rung.name, fontsize=6)
+    below.suptitle(
+        f"Difference of the best picture of each level to the reference; white: {MOST_CODES:g} codes", fontsize=8
+    )
+    text = io.StringIO()
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "realcam"}):
+        figure.savefig(text, format="svg", dpi=110, metadata={"Date": None})
+    return text.getvalue()
+
+
+def _draw_rung(axes: Axes, rung: Rung, colour: np.ndarray) -> None:
+    seconds = [picture.seconds for picture in rung.pictures]
+    errors = [picture.rmse for picture in rung.pictures]
+    axes.plot(seconds, errors, "o-", color=colour, markersize=4, linewidth=1.2, label=rung.name)
+
+
+def _draw_frontier(axes: Axes, cost: AccuracyCost) -> None:
+    """The pictures that none is both faster and better than."""
+    pictures = sorted((p.seconds, p.rmse) for rung in cost.rungs for p in rung.pictures)
+    best: list[tuple[float, float]] = []
+    for seconds, error in pictures:
+        if not best or error < best[-1][1]:
+            best.append((seconds, error))
+    axes.plot(*zip(*best, strict=True), color="black", linewidth=5, alpha=0.15, label="frontier", zorder=0)
+
+
+def _page(cost: AccuracyCost, drawing: str) -> str:
+    heads, rows = rows_of(cost)
+    cells = ["".join(f"<th>{html.escape(head)}</th>" for head in heads)]
+    cells += ["".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows]
+    table = "\n".join(f"<tr>{row}</tr>" for row in cells)
+    left_out = [
+        f"<p>{html.escape(text)}: {html.escape(', '.join(names))}.</p>"
+        for text, names in (("Cannot show what this lens sees", cost.impossible), ("Not measured", cost.missing))
+        if names
+    ]
+    return f"""<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<title>What accuracy costs</title>
+<style>
+body {{ font: 14px sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; }}
+svg {{ width: 100%; height: auto; }}
+td, th {{ padding: 0.2em 0.7em; text-align: right; }}
+td:first-child, th:first-child {{ text-align: left; }}
+</style>
+<h1>What accuracy costs</h1>
+<p>Bias, noise (with the most samples) and errors in 8-bit codes against {html.escape(cost.reference)}, whose own
+noise is {cost.reference_noise_codes:.2g} codes.</p>
+{drawing[drawing.index("<svg") :]}
+<table>
+{table}
+</table>
+{"".join(left_out)}
+</html>
+"""

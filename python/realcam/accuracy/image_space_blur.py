@@ -1,0 +1,81 @@
+"""Depth of field after the fact: a sharp picture is blurred by the circles of confusion of its depths.
+
+What rendering through a lens is compared with (docs/accuracy.md). Both work in pixels on linear light, (H, W, 3), with
+the diameters of the circles, (H, W), and know nothing of what a sharp picture does not show.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Picture = NDArray[np.float32]
+
+
+def gathered(picture: Picture, diameters: Picture, depth: Picture) -> Picture:
+    """Two passes of a one-dimensional filter, over rows and over columns.
+
+    After T. Zhou, J. X. Chen and M. Pullen, "Accurate depth of field simulation in real time", Computer Graphics Forum
+    26 (2007). A pixel gathers from those whose circles reach it; of one that lies behind it no further than its own
+    circle reaches, so that what is sharp is not veiled by a blurred background. Weights are Gaussian, of an even disc's
+    variance.
+    """
+    for axis in (0, 1):
+        picture = _gathered_along(axis, picture, diameters, depth)
+    return picture
+
+
+def _gathered_along(axis: int, picture: Picture, diameters: Picture, depth: Picture) -> Picture:
+    # An even disc of diameter d has the variance d^2 / 16 along each axis; a third of a pixel is sharp.
+    sigma = np.maximum(diameters / 4, 0.33).astype(np.float32)
+    total = np.zeros_like(picture)
+    weights = np.zeros_like(depth)
+    reach = min(int(np.ceil(3 * sigma.max())), picture.shape[axis] - 1)
+    for offset in range(-reach, reach + 1):
+        here, there = _overlap(picture.shape[axis], offset, axis)
+        behind = depth[there] > depth[here]
+        spread = np.where(behind, np.minimum(sigma[there], sigma[here]), sigma[there])
+        weight = np.exp(-0.5 * (offset / spread) ** 2) / spread
+        total[here] += weight[..., None] * picture[there]
+        weights[here] += weight
+    blurred: Picture = total / weights[..., None]
+    return blurred
+
+
+def _overlap(length: int, offset: int, axis: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
+    """Pixels, and those so far beside them."""
+    here = slice(max(0, -offset), length - max(0, offset))
+    there = slice(max(0, offset), length - max(0, -offset))
+    whole = slice(None)
+    return ((here, whole), (there, whole)) if axis == 0 else ((whole, here), (whole, there))
+
+
+def diffused(picture: Picture, diameters: Picture) -> Picture:
+    """Light spreads like heat, where circles are small it is held back.
+
+    After M. Kass, A. Lefohn and J. Owens, "Interactive depth of field using simulated diffusion on a GPU", Pixar
+    (2006): one implicit step along the rows and one along the columns, each a tridiagonal system; between two pixels
+    the smaller circle conducts.
+    """
+    variance = (diameters / 4).astype(np.float64) ** 2
+    spread = _step_along_rows(picture.astype(np.float64), variance)
+    spread = _step_along_rows(spread.swapaxes(0, 1), variance.T).swapaxes(0, 1)
+    blurred: Picture = spread.astype(np.float32)
+    return blurred
+
+
+def _step_along_rows(picture: NDArray[np.float64], variance: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solves u - (k u')' = picture, whose answer to a point has the variance 2 k; by elimination, all rows at once."""
+    conducts = 0.5 * np.minimum(variance[:, :-1], variance[:, 1:])
+    left, right = np.pad(conducts, ((0, 0), (1, 0))), np.pad(conducts, ((0, 0), (0, 1)))
+    middle = 1 + left + right
+    columns = picture.shape[1]
+    factors, values = np.empty_like(middle), np.empty_like(picture)
+    factors[:, 0], values[:, 0] = right[:, 0] / middle[:, 0], picture[:, 0] / middle[:, 0, None]
+    for x in range(1, columns):
+        pivot = middle[:, x] - left[:, x] * factors[:, x - 1]
+        factors[:, x] = right[:, x] / pivot
+        values[:, x] = (picture[:, x] + left[:, x, None] * values[:, x - 1]) / pivot[:, None]
+    for x in range(columns - 2, -1, -1):
+        values[:, x] += factors[:, x, None] * values[:, x + 1]
+    return values

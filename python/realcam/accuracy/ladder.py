@@ -1,0 +1,227 @@
+"""A shot at all levels of simulation: times, errors, and what is missing."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from .._core import Camera, Film, Scene
+from ..image import Image
+from ..render import ProgressCallback, render
+from .errors import Codes, codes, flip, mean_square
+from .rungs import Level, can_be_taken, known_effects, levels_of
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A picture. rmse: in 8-bit codes, against the reference; flip: 0 to 1, None without flip-evaluator."""
+
+    spp: int
+    seconds: float
+    rmse: float
+    flip: float | None
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One level of simulation.
+
+    bias_codes: what of the error is no noise, root mean square; noise_codes: of a picture of the most samples.
+    lens_share, scene_share, other_share: of the time. difference: (H, W) of the best picture to the reference, mean of
+    the channels' absolute differences, codes.
+    """
+
+    name: str
+    model: str
+    effects: tuple[str, ...]
+    pictures: tuple[Measured, ...]
+    samples_per_second: float
+    lens_share: float
+    scene_share: float
+    other_share: float
+    bias_codes: float
+    noise_codes: float
+    difference: np.ndarray = field(repr=False, compare=False)
+
+    def seconds_to(self, rmse: float) -> float:
+        """Seconds until the error is so small, between the pictures on a logarithmic scale; inf: never."""
+        if self.bias_codes >= rmse:
+            return math.inf
+        last = None
+        for picture in self.pictures:
+            if picture.rmse <= rmse:
+                if last is None:
+                    return picture.seconds
+                share = math.log(last.rmse / rmse) / math.log(last.rmse / picture.rmse)
+                return float(last.seconds * (picture.seconds / last.seconds) ** share)
+            last = picture
+        # Noise falls with the square root of the time.
+        assert last is not None
+        noise2 = last.rmse**2 - self.bias_codes**2
+        return last.seconds * max(1.0, noise2 / (rmse**2 - self.bias_codes**2))
+
+
+@dataclass(frozen=True)
+class AccuracyCost:
+    """What the levels of simulation cost. missing: those that were not measured, because it was interrupted, and
+    impossible: those that cannot show what this lens sees."""
+
+    device: str
+    size: tuple[int, int]
+    reference: str
+    reference_noise_codes: float
+    rungs: tuple[Rung, ...]
+    missing: tuple[str, ...]
+    impossible: tuple[str, ...]
+    reference_codes: Codes = field(repr=False, compare=False)
+
+    def __str__(self) -> str:
+        """A table."""
+        from .report import table_of
+
+        return table_of(self)
+
+    def json(self) -> str:
+        """All but the pictures."""
+
+        def plain(item: object) -> object:
+            if isinstance(item, dict):
+                return {k: plain(v) for k, v in item.items() if not isinstance(v, np.ndarray)}
+            if isinstance(item, list | tuple):
+                return [plain(value) for value in item]
+            return item
+
+        return json.dumps(plain(asdict(self)), indent=1)
+
+    def figure(self, path: object) -> None:
+        """Writes error over time as .svg, or as .html with the table. Raises ImageFileError."""
+        from .figure import save_figure
+
+        save_figure(self, path)  # type: ignore[arg-type]
+
+
+def accuracy_cost(
+    scene: Scene,
+    camera: Camera,
+    *,
+    device: str = "auto",
+    threads: int = 0,
+    seed: int = 0,
+    max_bounces: int = 1,
+    size: int = 320,
+    most_spp: int = 256,
+    reference_spp: int = 4096,
+    effects: Iterable[str] | None = None,
+    progress: ProgressCallback | None = None,
+) -> AccuracyCost:
+    """Takes a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects.
+
+    size: pixels of the longer side. most_spp: each level is taken with 1, 4, 16, ... samples up to these.
+    reference_spp: of the picture that they are compared with: every surface, with `effects`; None: those of which the
+    lens file says what they need. Ctrl-C ends it early; what was measured until then is returned, and what is missing.
+
+    Raises what render raises.
+    """
+    film = camera.film
+    columns, rows = film.resolution
+    scale = min(1.0, size / max(columns, rows))
+    small = (max(1, round(columns * scale)), max(1, round(rows * scale)))
+    camera = camera.replace(film=Film(film.width_mm, film.height_mm, small), model="full")
+    settings = {"device": device, "threads": threads, "max_bounces": max_bounces}
+    wanted = tuple(known_effects(camera) if effects is None else effects)
+
+    def tell(done: float) -> None:
+        if progress is not None:
+            progress(done)
+
+    tell(0.0)
+    reference = Reference(scene, camera, wanted, reference_spp, seed, settings)
+    levels = levels_of(scene, camera, wanted, **settings)
+    impossible = [level.name for level in levels if not can_be_taken(scene, camera, level, **settings)]
+    levels = [level for level in levels if level.name not in impossible]
+    rungs: list[Rung] = []
+    try:
+        for level in levels:
+            tell((1 + len(rungs)) / (1 + len(levels)))
+            rungs.append(_climb(level, scene, camera, reference, most_spp, seed, settings))
+    except KeyboardInterrupt:
+        pass
+    return AccuracyCost(
+        device=reference.image.stats.device,
+        size=small,
+        reference=", ".join(("full lens", *wanted)) + f", {2 * reference_spp} samples",
+        reference_noise_codes=math.sqrt(reference.variance),
+        rungs=tuple(rungs),
+        missing=tuple(level.name for level in levels[len(rungs) :]),
+        impossible=tuple(impossible),
+        reference_codes=reference.codes,
+    )
+
+
+class Reference:
+    """Two pictures of so many samples each, whose mean the others are compared with; variance: of it, codes^2."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        camera: Camera,
+        effects: tuple[str, ...],
+        spp: int,
+        seed: int,
+        settings: dict[str, object],
+    ) -> None:
+        # Seeds of their own: the noise of what is compared is not to be in what it is compared with.
+        pair = [
+            render(scene, camera, effects=effects, spp=spp, seed=seed + 1000 + k, **settings)  # type: ignore[arg-type]
+            for k in range(2)
+        ]
+        self.image: Image = pair[0]
+        a, b = (codes(image) for image in pair)
+        self.codes: Codes = (a + b) / 2
+        self.variance = mean_square(a, b) / 4
+
+
+def _climb(
+    level: Level,
+    scene: Scene,
+    camera: Camera,
+    reference: Reference,
+    most_spp: int,
+    seed: int,
+    settings: dict[str, object],
+) -> Rung:
+    level.image(scene, camera, spp=1, seed=seed, **settings)  # what is prepared once
+    pictures = []
+    spp = 1
+    while True:
+        image, seconds = level.image(scene, camera, spp=spp, seed=seed, **settings)
+        picture = codes(image)
+        error = math.sqrt(max(0.0, mean_square(picture, reference.codes) - reference.variance))
+        pictures.append(Measured(spp, seconds, error, flip(reference.codes, picture)))
+        if 4 * spp > most_spp:
+            break
+        spp *= 4
+    other, _ = level.image(scene, camera, spp=spp, seed=seed + 1, **settings)
+    second = codes(other)
+    noise2 = mean_square(picture, second) / 2
+    mean = (picture + second) / 2
+    bias2 = mean_square(mean, reference.codes) - noise2 / 2 - reference.variance
+    stats = image.stats
+    busy = max(stats.lens_seconds + stats.scene_seconds + stats.other_seconds, 1e-12)
+    return Rung(
+        name=level.name,
+        model=level.model,
+        effects=level.effects,
+        pictures=tuple(pictures),
+        samples_per_second=spp * picture.shape[0] * picture.shape[1] / seconds,
+        lens_share=stats.lens_seconds / busy,
+        scene_share=stats.scene_seconds / busy,
+        other_share=stats.other_seconds / busy,
+        bias_codes=math.sqrt(max(0.0, bias2)),
+        noise_codes=math.sqrt(noise2),
+        difference=np.abs(mean - reference.codes).mean(axis=2),
+    )

@@ -1,0 +1,53 @@
+"""realcam cost: what accuracy costs in time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+from rich.progress import Progress
+
+from .._core import InputError
+from ..shot import Shot
+
+
+def cost(
+    shot: Annotated[Path, typer.Argument(help="A shot file, .toml.", metavar="SHOT")],
+    figure: Annotated[
+        Optional[list[Path]],  # noqa: UP045
+        typer.Option("--figure", "-o", help="Error over time as .svg, or as .html with the table; may be repeated."),
+    ] = None,
+    size: Annotated[int, typer.Option(help="Pixels of the longer side.", min=8, max=4096)] = 320,
+    most_spp: Annotated[int, typer.Option(help="Each level is taken with 1, 4, 16, ... samples.", min=4)] = 256,
+    reference_spp: Annotated[int, typer.Option(help="Samples of what they are compared with.", min=16)] = 4096,
+    device: Annotated[str, typer.Option(help="auto (a GPU if there is one), cpu, cuda, or cuda:1.")] = "auto",
+    threads: Annotated[int, typer.Option(help="0: all.", min=0, max=4096)] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Take a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects."""
+    from ..accuracy import accuracy_cost  # brings matplotlib, which other commands need not load
+
+    for path in figure or []:
+        if path.suffix.lower() not in (".svg", ".html"):
+            raise InputError(f"{path}: unknown suffix; .svg or .html is wanted")
+    described = Shot.load(shot, device=device)
+    with Progress(transient=True) as bar:
+        task = bar.add_task("measuring", total=1.0)
+        result = accuracy_cost(
+            described.scene,
+            described.camera,
+            device=device,
+            threads=threads,
+            seed=described.seed,
+            max_bounces=described.max_bounces,
+            size=size,
+            most_spp=most_spp,
+            reference_spp=reference_spp,
+            progress=lambda done: bar.update(task, completed=done),
+        )
+    typer.echo(result.json() if as_json else str(result), nl=as_json)
+    for path in figure or []:
+        result.figure(path)
+    if result.missing:
+        raise KeyboardInterrupt

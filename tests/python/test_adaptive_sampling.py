@@ -1,0 +1,169 @@
+"""spp="auto": as many samples as the noise needs, by tiles of the film, and no bias from stopping."""
+
+from __future__ import annotations
+
+import time
+import warnings
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from . import scenes
+
+LENS = rc.Lens.load("tessar-50mm").focused(3.0)
+SIDE = 32
+
+
+def camera(**more: object) -> rc.Camera:
+    return rc.Camera(LENS, film=rc.Film(24, 24, (SIDE, SIDE)), **{"exposure_time_s": 1, **more})
+
+
+def half_noisy() -> rc.Scene:
+    """On the left a light that is the same everywhere, on the right a wall in the half shadow of a board."""
+    glowing = scenes.quad((-1.5, 0, -3), 1.5, 3, emission=0.5)
+    wall = scenes.quad((1.5, 0, -3), 1.5, 3, diffuse=0.8)
+    lamp = scenes.quad((2.5, 0, 3), 1.5, emission=2.0, right=(-1, 0, 0))
+    return scenes.scene_of(glowing, wall, lamp, scenes.quad((1.6, 0, -0.4), 0.25, diffuse=0.5))
+
+
+def tiles(squares: np.ndarray) -> np.ndarray:
+    """Root mean squares of tiles of 16 pixels."""
+    return np.sqrt(squares.reshape(SIDE // 16, 16, SIDE // 16, 16, 3).mean(axis=(1, 3, 4)))
+
+
+@pytest.fixture(scope="module")
+def converged() -> np.ndarray:
+    return rc.render(half_noisy(), camera(), effects=(), spp=8192, seed=77).pixels.astype(np.float64)
+
+
+def test_every_tile_reaches_the_noise_and_none_gets_many_more_samples(device: str, converged: np.ndarray) -> None:
+    goal = 0.02
+    image = rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=goal, device=device, layers="sample_count")
+    counts = image.layers["sample_count"]
+    assert image.spp == pytest.approx(counts.mean(), abs=0.51)
+    assert image.shortfall == ""
+    # What glows has the noise of the way through the lens alone.
+    assert counts[:, : SIDE // 4].mean() < counts.mean() / 2
+    mean = converged.reshape(SIDE // 16, 16, SIDE // 16, 16, 3).mean(axis=(1, 3, 4))
+    noise = tiles((image.pixels - converged) ** 2) / mean
+    # Of two halves of 128 pixels each, whose noise is known within 8%; and the noise of the converged picture itself.
+    assert noise.max() < 1.2 * goal
+    uniform = rc.render(half_noisy(), camera(), effects=(), spp=image.spp, device=device)
+    assert (tiles((uniform.pixels - converged) ** 2) / mean).max() > 1.4 * noise.max()
+
+
+def test_codes_are_those_of_the_developed_picture(device: str, converged: np.ndarray) -> None:
+    iso = 18 / float(converged.mean())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        image = rc.render(half_noisy(), camera(iso=iso), effects=(), spp="auto", noise_codes=3, device=device)
+
+    def codes(exposure: np.ndarray) -> np.ndarray:
+        linear = np.clip(0.018 * iso * exposure, 0, 1)
+        return 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+    noise = tiles((codes(image.pixels.astype(np.float64)) - codes(converged)) ** 2)
+    assert 1.5 < noise.max() < 3.6
+    # What is clipped has no noise.
+    white = rc.render(half_noisy(), camera(iso=1e4 * iso), effects=(), spp="auto", device=device)
+    assert white.spp < image.spp / 2
+
+
+def test_stopping_by_noise_does_not_bias_the_mean(device: str) -> None:
+    # A small lamp far out of focus, over a dark sky: few samples meet it, and a pixel that met none looks finished.
+    scene = scenes.scene_of(scenes.quad((0.05, 0.02, -30), 0.02, emission=2e4)).with_environment(1.0)
+    film = rc.Film(18, 12, (48, 32))
+    view = rc.Camera(LENS.focused(1.0), film=film, exposure_time_s=1)
+    expected = float(
+        rc.render(scene, view, effects=(), spp=2**14, seed=1000, device=device).pixels.astype(np.float64).mean()
+    )
+    means, spp = [], []
+    for seed in range(48):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            image = rc.render(scene, view, effects=(), spp="auto", noise=0.3, max_spp=256, seed=seed, device=device)
+        means.append(float(image.pixels.astype(np.float64).mean()))
+        spp.append(image.spp)
+    assert len(set(spp)) > 4  # where it stops depends on the samples
+    error = float(np.std(means, ddof=1)) / np.sqrt(len(means))
+    assert error < 0.05 * expected
+    assert abs(np.mean(means) - expected) < 4 * error
+
+
+def test_what_cannot_be_reached_is_said(device: str) -> None:
+    with pytest.warns(UserWarning, match=r"noise is .* where the picture is noisiest, not 0\.001; about .* samples"):
+        image = rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=0.001, max_spp=64, device=device)
+    assert image.shortfall
+    assert 8 < image.spp <= 64
+    session = rc.Session(half_noisy(), camera(), device=device)
+    reached = session.add_until(0.001, max_spp=64)
+    assert not reached.is_reached
+    assert reached.noise > 0.001
+    assert reached.spp_wanted > 64
+    again = session.add_until(1.05 * reached.noise, max_spp=256)
+    assert again.is_reached
+    assert session.samples.max() <= 256
+
+
+def test_a_picture_ends_after_its_seconds(device: str) -> None:
+    rc.render(half_noisy(), camera(), effects=(), spp=1, device=device)  # what a device needs once
+    start = time.perf_counter()
+    with pytest.warns(UserWarning, match="noise"):
+        image = rc.render(
+            half_noisy(), camera(), effects=(), spp="auto", noise=1e-5, max_spp=2**24, seconds=0.5, device=device
+        )
+    # A busy machine may be several times slower than it was for the first samples.
+    assert time.perf_counter() - start < 10
+    assert image.spp >= 8
+
+
+def test_the_same_bits_on_any_number_of_threads_and_after_add() -> None:
+    def image(threads: int) -> rc.Image:
+        return rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=0.02, threads=threads, device="cpu")
+
+    assert image(1) == image(2)
+    session = rc.Session(half_noisy(), camera(), device="cpu")
+    session.add(8)
+    session.add_until(0.02)
+    np.testing.assert_allclose(session.image().pixels, image(0).pixels, rtol=1e-6)
+    session.add(4)  # goes on behind all samples that were taken
+    assert session.samples.min() >= 20
+
+
+def test_layers_and_progress_go_along(device: str) -> None:
+    shares: list[float] = []
+    image = rc.render(
+        half_noisy(),
+        camera(),
+        effects=(),
+        spp="auto",
+        noise=0.02,
+        layers="normal",
+        progress=shares.append,
+        device=device,
+    )
+    assert np.isfinite(image.layers["normal"]).all()
+    assert shares == sorted(shares)
+    assert shares[-1] == 1
+    with pytest.raises(rc.Cancelled):
+        rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=1e-6, progress=lambda _: False, device=device)
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"spp": 8, "noise": 0.1}, 'noise, noise_codes, seconds and max_spp belong to spp="auto"'),
+        ({"spp": 8, "seconds": 3}, 'belong to spp="auto"'),
+        ({"spp": "all"}, 'spp must be a number of samples or "auto"'),
+        ({"noise": 0}, "noise must be above 0"),
+        ({"noise": float("nan")}, "noise must be above 0"),
+        ({"noise_codes": -1}, "noise must be above 0"),
+        ({"noise": 0.1, "noise_codes": 1}, "exclude each other"),
+        ({"seconds": 0}, "seconds must be above 0"),
+        ({"max_spp": 1}, "max_spp must lie between 2 and"),
+    ],
+)
+def test_goals_that_are_none_are_refused(settings: dict[str, object], message: str) -> None:
+    with pytest.raises(rc.InputError, match=message):
+        rc.render(half_noisy(), camera(), effects=(), **{"spp": "auto", **settings})
