@@ -17,6 +17,9 @@ LENSES = (
     "mirror-telephoto-500mm",
     "zoom-70-210mm-at-70mm",
 )
+KINDS = ("daylight", "night", "sun", "near", "landscape", "moving", "verge", "verge", "single")
+ON_THE_VERGE = ("defocus", "aberrations", "distortion", "dispersion", "diffraction")
+SIZE = (240, 160)
 
 
 @dataclass
@@ -26,23 +29,23 @@ class Shot:
     camera: rc.Camera
 
 
-def board(middle: tuple[float, float, float], width: float) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and texture coordinates of a square that faces +z."""
+def board(middle: tuple[float, float, float], width: float, patterns: float) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and texture coordinates of a square that faces +z, with so many patterns from left to right."""
     x, y, z = middle
     half = width / 2
     corners = np.array(
         [[x - half, y - half, z], [x + half, y - half, z], [x + half, y + half, z], [x - half, y + half, z]]
     )
-    return corners, np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    return corners, patterns * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
 
 def pattern(random: np.random.Generator) -> np.ndarray:
-    """Bars, squares and a ramp, of two greys."""
+    """Squares and bars and a ramp, of two greys."""
     side = 256
     x, y = np.meshgrid(np.arange(side), np.arange(side))
-    cell = int(random.choice([16, 32, 64]))
+    cell = int(random.choice([16, 32]))
     picture = np.where((x // cell + y // cell) % 2 == 0, 230, 40).astype(np.uint8)
-    picture[: side // 4] = np.linspace(40, 230, side).astype(np.uint8)
+    picture[: side // 8] = np.linspace(40, 230, side).astype(np.uint8)
     return np.repeat(picture[..., None], 3, axis=2)
 
 
@@ -53,66 +56,107 @@ def scene_of(boards: list[tuple[np.ndarray, np.ndarray]], random: np.random.Gene
     return scene.with_texture(0, pattern(random))
 
 
-def drawn_shot(number: int, seed: int) -> Shot:
-    random = np.random.default_rng([seed, number])
-    kind = ("daylight", "night", "sun", "near", "far", "moving")[number % 6]
+def drawn_lens(kind: str, random: np.random.Generator) -> tuple[rc.Lens, float]:
+    """And the distance of what is looked at, m."""
     name = LENSES[int(random.integers(len(LENSES)))]
     lens = rc.Lens.load(name)
     first = lens.first_order()
     nearest = 1.5 * max(0.3, 10 * abs(first.effective_focal_length_mm) / 1000)
-    distance = {"near": nearest, "far": 100 * nearest}.get(kind, float(nearest * random.uniform(2, 20)))
-    focus = distance * float(random.choice([1.0, 1.0, 0.7, 1.5]))
-    lens = lens.focused(focus)
+    distance = {"near": nearest, "landscape": 100 * nearest}.get(kind, float(nearest * random.uniform(2, 20)))
+    lens = lens.focused(distance * (1.0 if kind == "landscape" else float(random.choice([1.0, 1.0, 0.7, 1.5]))))
     # A mirror telephoto can hardly be stopped down: its middle is dark.
     most = 2 if name.startswith("mirror") else 5
     f_number = first.f_number * float(random.choice([1.0, 1.4, 2.0, 4.0, 8.0][:most]))
     if f_number > first.f_number:
         lens = lens.stopped_down(f_number)
-    lens = lens.with_coating(str(random.choice(["bare", "quarter_wave"])))
-    width = min(lens.film_mm) * float(random.choice([0.05, 0.3, 1.0]))
-    film = rc.Film(width, width * 2 / 3, (240, 160))
-    field = width / abs(lens.first_order().effective_focal_length_mm)
-    at = [
-        board(
-            (
-                field * distance * float(random.uniform(-0.3, 0.3)) * k,
-                field * distance * float(random.uniform(-0.2, 0.2)),
-                -distance * k,
-            ),
-            0.5 * field * distance * k,
-        )
-        for k in (1.0, 1.6, 3.0)
-    ]
+    return lens.with_coating(str(random.choice(["bare", "quarter_wave"]))), distance
+
+
+def drawn_scene(
+    kind: str, field: float, distance: float, random: np.random.Generator
+) -> tuple[rc.Scene, float, list[tuple[np.ndarray, np.ndarray]]]:
+    """field: the picture's width over its distance. And the exposure time, s, and a board for a moving object."""
+    at = []
+    for k in (1.0, 1.6, 3.0):
+        across, down = (field * distance * float(random.uniform(-side, side)) * k for side in (0.3, 0.2))
+        at.append(board((across, down, -distance * k), 0.5 * field * distance * k, 1))
     back = 12 * distance
-    at.append(board((0, 0, -back), 6 * field * back))
+    at.append(board((0, 0, -back), 6 * field * back, 12))
     scene = scene_of(at, random)
-    exposure = 1 / 200
     if kind == "night":
         scene = scene.with_environment(0.05)
         for _ in range(3):
-            place = (
-                field * distance * float(random.uniform(-0.4, 0.4)),
-                field * distance * float(random.uniform(-0.25, 0.25)),
-                -0.95 * distance,
-            )
-            candela = (30.0 * distance**2,) * 3
-            scene = scene.with_point_light(place, candela)
-        exposure = 1 / 15
-    else:
-        towards = np.array([0.4, -0.6, -0.7])
-        if kind == "sun":
-            towards = np.array([0.25 * field, -0.2 * field, 1.0])
-        towards = towards / np.linalg.norm(towards)
-        scene = scene.with_environment(3000.0).with_sun(tuple(towards), (8e4, 8e4, 8e4))
-    camera = rc.Camera(lens, film=film, exposure_time_s=exposure)
-    if kind == "moving":
-        pixels = float(random.choice([0.1, 0.3, 0.8, 3.0]))
-        way = pixels * width / 240 / 1000 * distance / (abs(first.effective_focal_length_mm) / 1000)
-        there, further = np.eye(4), np.eye(4)
-        further[:3, 3] = (way / exposure, 0, 0)
-        object_ = scene_of([board((0, 0, -0.9 * distance), 0.3 * field * distance)], random)
-        scene = scene.with_instance(object_, name="moving").moved("moving", [there, further], times_s=[0, 1])
+            across, down = (field * distance * float(random.uniform(-side, side)) for side in (0.4, 0.25))
+            scene = scene.with_point_light((across, down, -0.95 * distance), (30.0 * distance**2,) * 3)
+        return scene, 1 / 15, []
+    towards = np.array([0.25 * field, -0.2 * field, 1.0] if kind == "sun" else [0.4, -0.6, -0.7])
+    towards = towards / np.linalg.norm(towards)
+    scene = scene.with_environment(3000.0).with_sun(tuple(towards), (8e4, 8e4, 8e4))
+    return scene, 1 / 200, [board((0, 0, -0.9 * distance), 0.3 * field * distance, 1)]
+
+
+def set_moving(scene: rc.Scene, thing: rc.Scene, speed_m_s: float) -> rc.Scene:
+    there, further = np.eye(4), np.eye(4)
+    further[:3, 3] = (speed_m_s, 0, 0)
+    return scene.with_instance(thing, name="moving").moved("moving", [there, further], times_s=[0, 1])
+
+
+def exposed(scene: rc.Scene, camera: rc.Camera) -> rc.Camera:
+    """So that what is bright comes to half of white."""
     dim = rc.render(scene, camera.replace(model="pinhole"), effects=(), spp=32, device="cpu", max_bounces=0)
     bright = float(np.quantile(dim.pixels.mean(axis=2), 0.9))
-    camera = camera.replace(iso=float(np.clip(0.5 / (0.018 * max(bright, 1e-12)), 1e-6, 1e9)))
-    return Shot(f"{number} {kind} {name} f/{f_number:.1f} {1000 * width / 240:.1f} um", scene, camera)
+    return camera.replace(iso=float(np.clip(0.5 / (0.018 * max(bright, 1e-12)), 1e-6, 1e9)))
+
+
+def composed(
+    kind: str, lens: rc.Lens, distance: float, width_mm: float, seeds: list[int]
+) -> tuple[rc.Scene, rc.Camera]:
+    """The shot of a film of that width: the boards fill the picture alike, whatever that is."""
+    random = np.random.default_rng(seeds)
+    focal_length_mm = abs(lens.first_order().effective_focal_length_mm)
+    field = width_mm / focal_length_mm
+    scene, exposure_s, moving = drawn_scene(kind, field, distance, random)
+    if kind == "moving":
+        pixels = float(random.choice([0.1, 0.3, 0.8, 3.0]))
+        way_m = pixels * width_mm / SIZE[0] * distance / focal_length_mm
+        scene = set_moving(scene, scene_of(moving, random), way_m / exposure_s)
+    film = rc.Film(width_mm, width_mm * SIZE[1] / SIZE[0], SIZE)
+    return scene, exposed(scene, rc.Camera(lens, film=film, exposure_time_s=exposure_s))
+
+
+def sizes_of(scene: rc.Scene, camera: rc.Camera) -> dict[str, rc.Decision]:
+    return {decision.effect: decision for decision in rc.plan(scene, camera, device="cpu").decisions}
+
+
+def shot_of(kind: str, number: int, seeds: list[int]) -> Shot:
+    """On the verge: pixels so wide that the planner sees one effect at 0.8 or 1.25 of its threshold."""
+    random = np.random.default_rng(seeds)
+    lens, distance = drawn_lens(kind, random)
+    widest = min(lens.film_mm)
+    width_mm = widest * float(random.choice([0.05, 0.3, 1.0]))
+    scene, camera = composed(kind, lens, distance, width_mm, [*seeds, 1])
+    if kind == "verge":
+        effect, wanted = str(random.choice(ON_THE_VERGE)), float(random.choice([0.8, 1.25]))
+        for _ in range(3):
+            decision = sizes_of(scene, camera)[effect]
+            if decision.unit != "px" or not 0 < decision.size < np.inf:
+                break
+            width_mm = float(np.clip(width_mm * decision.size / (wanted * decision.threshold), widest / 50, widest))
+            scene, camera = composed(kind, lens, distance, width_mm, [*seeds, 1])
+        kind = f"verge of {effect}"
+    f_number = lens.first_order().f_number
+    return Shot(f"{number} {kind} {lens.name} f/{f_number:.1f} {1000 * width_mm / SIZE[0]:.1f} um", scene, camera)
+
+
+def drawn_shot(number: int, seed: int) -> Shot:
+    """Single: the first of up to 40 shots that the planner thinks to need one effect alone."""
+    kind = KINDS[number % len(KINDS)]
+    shot = shot_of(kind, number, [seed, number])
+    for further in range(1, 40):
+        if kind != "single":
+            break
+        needed = [d for d in sizes_of(shot.scene, shot.camera).values() if d.size >= d.threshold]
+        if len(needed) == 1:
+            return Shot(shot.name.replace("single", f"{needed[0].effect} alone"), shot.scene, shot.camera)
+        shot = shot_of(kind, number, [seed, number, further])
+    return shot

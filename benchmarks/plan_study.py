@@ -4,8 +4,9 @@
     python benchmarks/plan_study.py --page  # docs/plan-study.md from the figures of all devices
 
 An effect is measured by leaving it out of a picture that has all, a camera model against the next better one without
-effects. The noise of two pictures that differ in their random numbers alone is taken off in squares. The oracle knows
-what was measured: it keeps what reaches its threshold and takes the cheapest camera model that the measurements allow.
+effects. A decision is too noisy to tell where the threshold lies within four standard deviations of what is measured.
+The oracle knows what was measured: it keeps what reaches its threshold and takes the cheapest camera model that the
+measurements allow.
 Times are those of the samples, without the preparation of scene and lens.
 """
 
@@ -23,9 +24,10 @@ from statistics import median
 import flip_evaluator
 import numpy as np
 import realcam as rc
-from picture_changes import change_in_codes, change_in_pixels, codes
+from picture_changes import Comparison, Picture, Size, added_codes, values
 from plan_shots import Shot, drawn_shot
 from realcam.bench import machine
+from srgb import srgb_codes
 
 EFFECTS = ("dispersion", "coatings", "ghosts", "diffraction")
 MODELS = {  # without, with
@@ -34,6 +36,7 @@ MODELS = {  # without, with
     "vignetting": ("thin", "mapped"),
     "aberrations": ("mapped", "full"),
 }
+NOISY = "too noisy to tell"
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
 PAGE = ROOT / "docs" / "plan-study.md"
@@ -46,7 +49,8 @@ class Decision:
     threshold: float
     foreseen: float
     measured: float
-    noise: float
+    measured_at_least: float
+    measured_at_most: float
     is_kept: bool
 
     @property
@@ -55,12 +59,12 @@ class Decision:
 
     @property
     def verdict(self) -> str:
-        if self.noise > self.threshold and self.measured < 3 * self.noise:
-            return "too noisy to tell"
-        said = self.foreseen >= self.threshold
-        if said == self.is_needed:
-            return "right"
-        return "false drop" if self.is_needed else "false keep"
+        """What comes along with a camera model that something else calls for is neither."""
+        if self.measured_at_least < self.threshold <= self.measured_at_most:
+            return NOISY
+        if self.is_needed:
+            return "right" if self.is_kept else "false drop"
+        return "false keep" if self.is_kept and self.foreseen >= self.threshold else "right"
 
 
 @dataclass
@@ -96,48 +100,65 @@ class Darkroom:
             )
         return self.taken[key]
 
-    def codes(self, effects: Iterable[str], model: str = "full", seed: int = 1) -> np.ndarray:
+    def values(self, effects: Iterable[str], model: str = "full", seed: int = 1) -> Picture:
         try:
-            return codes(self.image(effects, model, seed))
+            return values(self.image(effects, model, seed))
         except rc.InputError:  # the lens sees more than that model can
-            return np.zeros_like(codes(self.image((), "full", seed)))
+            return np.zeros_like(values(self.image((), "full", seed)))
 
     def seconds(self, effects: Iterable[str], model: str) -> float:
         stats = self.image(effects, model).stats
         return stats.seconds - stats.setup_seconds
 
 
-def measured(effect: str, unit: str, a: np.ndarray, b: np.ndarray) -> float:
+def size_of(
+    effect: str, unit: str, before: Picture, after: Picture, detail: Picture, noise: tuple[Picture, Picture]
+) -> Size:
+    """Light changes slowly over a picture, and its noise is small: smaller parts show more of the corners."""
     if effect in ("vignetting", "coatings"):
-        return change_in_pixels(a, b).light_codes
+        return Comparison(before, after, detail, noise, parts=(8, 12)).light_codes()
     if unit == "codes":
-        return change_in_codes(a, b)
-    change = change_in_pixels(a, b)
+        return added_codes(srgb_codes(before), srgb_codes(after), (srgb_codes(noise[0]), srgb_codes(noise[1])))
+    change = Comparison(before, after, detail, noise, is_diffraction=effect == "diffraction")
+    if effect == "diffraction":
+        return change.airy_diameter_px()
     if effect == "distortion":
-        return change.moved_px
-    return max(change.colours_px, change.blur_px) if effect == "dispersion" else change.blur_px
+        return change.moved_px()
+    return change.colours_px() if effect == "dispersion" else change.blurred_px()
+
+
+def measured(effect: str, unit: str, room: Darkroom, everything: frozenset[str]) -> Size | None:
+    """By leaving it out; None where there is no such effect in pictures."""
+    detail, full, plain = room.values((), seed=3), room.values(everything), room.values(())
+    plain_noise = (plain, room.values((), seed=2))
+    if effect in MODELS:
+        without, with_it = (room.values((), model) for model in MODELS[effect])
+        return size_of(effect, unit, without, with_it, detail, plain_noise)
+    if effect == "motion_blur":
+        return size_of(effect, unit, plain, room.values({"-motion_blur"}), detail, plain_noise)
+    if effect not in EFFECTS:
+        return None
+    noise = (full, room.values(everything, seed=2))
+    left_out = size_of(effect, unit, room.values(everything - {effect}), full, detail, noise)
+    if unit == "codes":
+        return left_out
+    # The noise of the other effects hides the sizes of blurs: where they are alone they show better.
+    with_it = room.values({effect})
+    alone = size_of(effect, unit, plain, with_it, detail, (with_it, room.values({effect}, seed=2)))
+    return min(left_out, alone, key=lambda size: size.at_most - size.at_least)
 
 
 def decisions_of(plan: rc.Plan, room: Darkroom, everything: frozenset[str]) -> list[Decision]:
-    plain, plain_again = room.codes(()), room.codes((), seed=2)
-    full, again = room.codes(everything), room.codes(everything, seed=2)
     decisions = []
     for decision in plan.decisions:
-        effect, unit = decision.effect, decision.unit
-        if effect in MODELS:
-            without, with_it = (room.codes((), model) for model in MODELS[effect])
-            noise = (plain, plain_again)
-        elif effect in EFFECTS:
-            without, with_it = room.codes(everything - {effect}), full
-            noise = (full, again)
-        elif effect == "motion_blur":
-            without, with_it = room.codes({"-motion_blur"}), plain
-            noise = (plain, plain_again)
-        else:
-            continue
-        change, least = measured(effect, unit, without, with_it), measured(effect, unit, *noise)
-        size = float(np.sqrt(max(change**2 - least**2, 0)))
-        decisions.append(Decision(effect, unit, decision.threshold, decision.size, size, least, decision.is_kept))
+        size = measured(decision.effect, decision.unit, room, everything)
+        if size is not None:
+            sizes = (size.likely, size.at_least, size.at_most)
+            decisions.append(
+                Decision(
+                    decision.effect, decision.unit, decision.threshold, decision.size, *sizes, is_kept=decision.is_kept
+                )
+            )
     return decisions
 
 
@@ -154,14 +175,13 @@ def oracle_of(decisions: list[Decision], moves: bool) -> tuple[frozenset[str], s
     return frozenset(effects), "thin" if "defocus" in needed else "pinhole"
 
 
-def flip(a: np.ndarray, b: np.ndarray) -> float:
-    pictures = [(picture / 255).astype(np.float32) for picture in (a, b)]
+def flip(a: Picture, b: Picture) -> float:
+    pictures = [(srgb_codes(picture) / 255).astype(np.float32) for picture in (a, b)]
     return float(flip_evaluator.evaluate(*pictures, "LDR")[1])
 
 
-def rms_of_white(a: rc.Image, b: rc.Image) -> float:
-    difference = (a.pixels.astype(np.float64) - b.pixels) * 0.018 * a.camera.iso
-    return float(np.sqrt(np.mean(difference**2)))
+def rms_of_white(a: Picture, b: Picture) -> float:
+    return float(np.sqrt(np.mean((a - b) ** 2)))
 
 
 def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
@@ -182,16 +202,16 @@ def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
         everything_s=room.seconds(everything, "full"),
         planned_s=room.seconds(plan.effects, plan.model),
         oracle_s=room.seconds(oracle, oracle_model),
-        flip=flip(codes(full), codes(planned)),
-        flip_noise=flip(codes(full), codes(again)),
-        rms=rms_of_white(full, planned),
-        rms_noise=rms_of_white(full, again),
+        flip=flip(values(full), values(planned)),
+        flip_noise=flip(values(full), values(again)),
+        rms=rms_of_white(values(full), values(planned)),
+        rms_noise=rms_of_white(values(full), values(again)),
     )
 
 
 def summary(outcomes: list[Outcome]) -> list[str]:
     every = [d for outcome in outcomes for d in outcome.decisions]
-    decisions = [d for d in every if d.verdict != "too noisy to tell"]
+    decisions = [d for d in every if d.verdict != NOISY]
     wrong = [d for d in decisions if d.verdict != "right"]
     large_drops = [d for d in wrong if d.verdict == "false drop" and d.measured > 2 * d.threshold]
     times = [outcome.planned_s / outcome.everything_s for outcome in outcomes]
@@ -264,7 +284,8 @@ def main() -> None:
         print(f"{outcome.shot}: {outcome.planned}; {outcome.planned_s:.2f} of {outcome.everything_s:.2f} s", flush=True)
         for d in outcome.decisions:
             if d.verdict != "right":
-                sizes = f"foreseen {d.foreseen:.3g}, measured {d.measured:.3g} {d.unit} (noise {d.noise:.2g})"
+                between = f"{d.measured_at_least:.2g} to {d.measured_at_most:.2g}"
+                sizes = f"foreseen {d.foreseen:.3g}, measured {d.measured:.3g} ({between}) {d.unit}"
                 print(f"    {d.verdict}: {d.effect} {sizes}", flush=True)
     print("\n" + "\n".join(summary(outcomes)))
     if words.output:

@@ -102,6 +102,22 @@ REALCAM_INLINE unsigned count_bits(unsigned v) {
 #endif
 }
 
+/// Whether this is compiled for a GPU.
+#if defined(__CUDA_ARCH__)
+inline constexpr bool kIsDeviceCode = true;
+#else
+inline constexpr bool kIsDeviceCode = false;
+#endif
+
+/// Other threads of a GPU may do the same; of a CPU none.
+REALCAM_INLINE void add_bits(unsigned* to, unsigned bits) {
+#if defined(__CUDA_ARCH__)
+    atomicOr(to, bits);
+#else
+    *to |= bits;
+#endif
+}
+
 /// Memory that nobody writes while the kernel runs, 128 bits at a time.
 template <class T>
 REALCAM_INLINE T load_constant(const T* from) {

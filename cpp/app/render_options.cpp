@@ -161,7 +161,7 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
     option("--readout-time", w.readout_time,
            "Of a rolling shutter: seconds from the top row of pixels to the bottom [0]", "SECONDS");
     option("--iso", w.iso, "Sensitivity [100]", "ISO");
-    option("--model", w.model, "full, thick, mapped, thin or pinhole [full]", "MODEL");
+    option("--model", w.model, "full, full_double, polynomial, thick, mapped, thin or pinhole [full]", "MODEL");
     command.option_defaults()->group("Scene");
     option("--scale", w.scale, "Metres per unit of the scene's file [1]", "METRES");
     option(

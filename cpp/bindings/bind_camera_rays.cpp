@@ -36,7 +36,9 @@ struct RayOrder {
 RayOrder order_of(const Camera& camera, int spp, std::int64_t seed, const std::string& device) {
     if (spp < 1) throw InputError("spp must be at least 1");
     if (seed < 0 || seed > 0xffffffff) throw InputError("the seed must lie between 0 and 4294967295");
-    return {camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), gpu_for_rays(device)};
+    const std::optional<int> gpu = gpu_for_rays(device);
+    if (gpu) validate_on_gpu(camera);
+    return {camera, static_cast<std::uint32_t>(spp), static_cast<std::uint32_t>(seed), gpu};
 }
 
 /// To be called without the interpreter's lock.

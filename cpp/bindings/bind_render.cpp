@@ -53,6 +53,11 @@ LightTransport transport_from(const std::string& name) {
     throw InputError("unknown transport \"" + name + "\"; " + shot::kTransportNames + " is wanted");
 }
 
+PupilSampling pupil_sampling_from(const std::string& name) {
+    if (const auto sampling = shot::pupil_sampling_named(name)) return *sampling;
+    throw InputError("unknown pupil_sampling \"" + name + "\"; " + shot::kPupilSamplingNames + " is wanted");
+}
+
 }  // namespace
 
 std::uint32_t seed_from(std::int64_t seed, const char* what) {
@@ -100,9 +105,11 @@ namespace {
 py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::optional<NoiseRequest>& noise,
                  const std::string& device, std::int64_t seed, int max_bounces, const std::string& transport,
                  float clamp_cd_m2, int threads, const std::vector<std::string>& layers,
-                 const std::vector<std::string>& effects, const std::string& illuminant, const py::object& progress) {
+                 const std::vector<std::string>& effects, const std::string& illuminant,
+                 const std::string& pupil_sampling, const py::object& progress) {
     RenderSettings settings =
         settings_from(spp, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, illuminant);
+    settings.pupil_sampling = pupil_sampling_from(pupil_sampling);
     if (noise) settings.noise = goal_of(*noise);
     Session& session = session_for(device);
     const Progress report = progress_of(progress);
@@ -153,7 +160,8 @@ void bind_render(py::module_& m) {
                       std::optional<std::int64_t>>(),
              "noise"_a, "noise_codes"_a, "seconds"_a, "max_spp"_a);
     m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "noise"_a, "device"_a, "seed"_a, "max_bounces"_a,
-          "transport"_a, "clamp_cd_m2"_a, "threads"_a, "layers"_a, "effects"_a, "illuminant"_a, "progress"_a);
+          "transport"_a, "clamp_cd_m2"_a, "threads"_a, "layers"_a, "effects"_a, "illuminant"_a, "pupil_sampling"_a,
+          "progress"_a);
     m.def(
         "_effect_notices",
         [](const LensSystem& lens, const std::vector<std::string>& effects) {

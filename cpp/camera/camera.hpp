@@ -13,12 +13,14 @@
 #include "../optics/exposure.hpp"
 #include "../optics/fit_coatings.hpp"
 #include "../optics/focus.hpp"
+#include "../optics/lens_polynomial.hpp"
 #include "../optics/pupil.hpp"
 #include "camera_view.hpp"
 #include "diffraction_tables.hpp"
 #include "film_spectrum.hpp"
 #include "ghost_tables.hpp"
 #include "lens_map.hpp"
+#include "pupil_sampling.hpp"
 #include "starburst_tables.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -335,9 +337,16 @@ struct LensEffects {
     bool diffraction = false;  ///< by the edges of the aperture
     bool coatings = false;  ///< what the surfaces pass on of the light
     std::optional<GhostChoice> ghosts = {};
+    PupilSampling pupil_sampling = PupilSampling::outline;
 
     bool operator==(const LensEffects&) const = default;
 };
+
+/// Throws InputError where a GPU has no code for the camera's model.
+inline void validate_on_gpu(const Camera& camera) {
+    if (camera.model == CameraModel::full_lens_double)
+        throw InputError("the camera model full_double is for the CPU; device cpu is wanted");
+}
 
 /// A camera made ready: owns the tables that its view points to.
 class CameraSetup {
@@ -354,10 +363,11 @@ public:
         if (effects.coatings) set_coatings(last);
         const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
         for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
-        if (last && last->has_pupil_of(camera, pupil_wavelengths_))
+        if (last && last->has_pupil_of(camera, pupil_wavelengths_, effects.pupil_sampling))
             pupil_ = last->pupil_;
-        else if (camera.model == CameraModel::full_lens)
-            pupil_ = std::make_shared<const Pupil>(camera.lens, film_radius(), tracer, pupil_wavelengths_);
+        else if (has_real_pupil(camera.model))
+            pupil_ = std::make_shared<const Pupil>(sampled_lens(camera.lens, effects.pupil_sampling), film_radius(),
+                                                   tracer, pupil_wavelengths_);
         if (effects.ghosts) {
             if (last && last->ghosts_ && last->effects_ == effects && last->has_lens_and_film_of(camera))
                 ghosts_ = last->ghosts_;
@@ -385,6 +395,12 @@ public:
             throw InputError(
                 "the stop of " + lens + ", a hole of radius " + std::to_string(1000 * camera.lens.stop_semi_diameter) +
                 " um, is too small for pictures through every surface; open it, or use another camera model");
+        if (camera.model == CameraModel::polynomial_lens)
+            polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
+        if (camera.model == CameraModel::full_lens_double) {
+            path_in_double_.emplace(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm);
+            view_in_double_ = path_in_double_->view();
+        }
     }
 
     /// `origin_m`: of the placed scene. `scene_moves`: whether that does during the exposure.
@@ -410,6 +426,8 @@ public:
         view.axis_irradiance = axis_irradiance_;
         if (pupil_) view.pupil = pupil_->view();
         view.lens = path_.view();
+        if (path_in_double_) view.lens_in_double = &view_in_double_;
+        if (polynomial_) view.polynomial = polynomial_->view();
         const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
         if (spectrum_) {
             view.dispersion = {spectrum_->cells().data(),
@@ -429,6 +447,8 @@ public:
     }
 
     const Camera& camera() const { return camera_; }
+    /// Of a camera with the model polynomial_lens; else null.
+    const LensPolynomial* polynomial() const { return polynomial_ ? &*polynomial_ : nullptr; }
     /// Of a picture with ghosts; else null.
     const GhostTables* ghosts() const { return ghosts_.get(); }
     /// Of a picture with diffraction; else null.
@@ -522,14 +542,17 @@ private:
         return camera_.lens == camera.lens && camera_.film.width_mm == camera.film.width_mm &&
                camera_.film.height_mm == camera.film.height_mm;
     }
-    bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths) const {
-        return pupil_ && camera.model == CameraModel::full_lens && has_lens_and_film_of(camera) &&
-               pupil_wavelengths_ == wavelengths;
+    bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths, PupilSampling sampling) const {
+        return pupil_ && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&
+               pupil_wavelengths_ == wavelengths && effects_.pupil_sampling == sampling;
     }
 
     Camera camera_;
     LensEffects effects_;
     LensPath<float> path_;
+    std::optional<LensPath<double>> path_in_double_;
+    LensView<double> view_in_double_{};
+    std::optional<LensPolynomial> polynomial_;
     std::vector<CameraPlacement> keys_;  ///< positions relative to the first
     std::optional<FilmSpectrum> spectrum_;  ///< of a picture whose samples have wavelengths, as what follows
     std::vector<IndexCubic> to_scene_, to_film_;

@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include "../math/key_interval.hpp"
+#include "../optics/lens_polynomial_view.hpp"
 #include "../optics/lens_view.hpp"
 #include "../optics/pupil_view.hpp"
 #include "circle_of_confusion.hpp"
@@ -9,6 +10,7 @@
 #include "diffraction_view.hpp"
 #include "dispersion_view.hpp"
 #include "lens_map_view.hpp"
+#include "pixel_pupil.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -18,8 +20,16 @@ enum class CameraModel : int {
     thin_lens,   ///< an ideal lens in the entrance pupil: defocus only, light falls off with cos^4
     mapped_lens,  ///< the same with the real lens's distortion and vignetting laid on
     thick_lens,  ///< the paraxial matrix of the real lens, with its two pupils and its real film distance
-    full_lens,   ///< every surface of the prescription
+    polynomial_lens,   ///< polynomials fitted to the rays of the real lens
+    full_lens,         ///< every surface of the prescription
+    full_lens_double,  ///< the same in double precision: for comparison, on a CPU
 };
+
+/// Whether rays are sent where the real lens lets light pass.
+inline bool has_real_pupil(CameraModel model) {
+    return model == CameraModel::polynomial_lens || model == CameraModel::full_lens ||
+           model == CameraModel::full_lens_double;
+}
 
 /// An ideal lens in its entrance pupil. mm.
 struct ThinLens {
@@ -55,7 +65,10 @@ struct CameraView : CameraPlacement {
     LensMapView map;  ///< of a mapped lens; else without nodes
     CircleOfConfusion circle;
     PupilView pupil;
+    PixelPupils pixel_pupils;
     LensView<float> lens;
+    const LensView<double>* lens_in_double;  ///< of the model full_lens_double; else null
+    LensPolynomialView polynomial;           ///< of the model polynomial_lens; else without coefficients
     // Of an exposure during which something moves; else 0. Times are shares of it:
     float row_time;      ///< by which each row of pixels begins later than the one above
     float exposed_time;  ///< for which each is exposed
@@ -100,6 +113,7 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.dispersion.film_surfaces, view.lens.count);
     move(view.dispersion.cells, view.dispersion.cell_count);
     move(view.map.nodes, view.map.count);
+    move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);
     move(view.coatings.one_wavelength, view.lens.count);
     move(view.coatings.to_scene, view.lens.count);
     move(view.coatings.to_film, view.lens.count);

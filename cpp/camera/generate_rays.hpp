@@ -139,19 +139,9 @@ REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const Sampl
     }
 }
 
-/// Rays from film and pupil, in front of the last surface.
-template <int N, class Points>
-REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
-                                    LensRays<float, N>& inside, CameraRays<N>& rays) {
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) {
-        const Vec2f at = film[i];
-        const Vec2f u = block.random(i, dimension::pupil);
-        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.x, u.y);
-        inside.origin.set(i, {at.x, at.y, camera.film_distance});
-        inside.direction.set(i, pupil.direction);
-        rays.weight[i] = pupil.weight;
-    }
+/// Lanes whose rays have a weight.
+template <class T, int N>
+REALCAM_INLINE void mark_sampled(const SampleBlock<N>& block, LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         rays.sampled[i] = select(rays.weight[i] > 0.0f, block.used[i], 0);
@@ -159,14 +149,33 @@ REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<
     }
 }
 
+/// Rays from film and pupil, in front of the last surface.
+template <class T, int N, class Points>
+REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                    LensRays<T, N>& inside, CameraRays<N>& rays) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec2f at = film[i];
+        const Vec2f u = block.random(i, dimension::pupil);
+        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.x, u.y);
+        inside.origin.set(i, static_cast<Vec3<T>>(Vec3f{at.x, at.y, camera.film_distance}));
+        inside.direction.set(i, static_cast<Vec3<T>>(pupil.direction));
+        rays.weight[i] = pupil.weight;
+    }
+    mark_sampled(block, inside, rays);
+}
+
 /// Those that have left the lens, in the scene.
-template <int N>
-REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<float, N>& inside, CameraRays<N>& rays) {
+template <class T, int N>
+REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool passed = inside.status[i] == 0;
         // The trace leaves a length of about 1: to 1e-4 for a ray that comes from far beside the lens.
-        place_ray(camera, rays, i, {inside.origin[i], normalized(inside.direction[i]), rays.weight[i]}, passed);
+        place_ray(
+            camera, rays, i,
+            {static_cast<Vec3f>(inside.origin[i]), static_cast<Vec3f>(normalized(inside.direction[i])), rays.weight[i]},
+            passed);
         rays.passed[i] = select(passed, 1, 0);
     }
 }
@@ -178,6 +187,68 @@ REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const Sample
     start_lens_rays(camera, block, film, inside, rays);
     trace_lens<lens_kind>(camera.lens, inside);
     place_lens_rays(camera, inside, rays);
+}
+
+template <int N, class Points>
+REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, const SampleBlock<N>& block,
+                                                    const Points& film, CameraRays<N>& rays) {
+    LensRays<double, N> inside;
+    start_lens_rays(camera, block, film, inside, rays);
+    trace_lens(*camera.lens_in_double, inside);
+    place_lens_rays(camera, inside, rays);
+}
+
+/// generate_lens_rays of a camera whose pixels learn where light passes.
+template <int N, class Points>
+REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
+                                              CameraRays<N>& rays) {
+    LensRays<float, N> inside;
+    int cells[N];
+    const auto pixel_of = [&](int lane) { return block.row[lane] * camera.width + block.column[lane]; };
+    for (int i = 0; i < N; ++i) {
+        const Vec2f at = film[i];
+        const GuidedPlace u = guided(camera.pixel_pupils.known[pixel_of(i)],
+                                     pixel_pupil::random_of_pass(block.stream[i], block.sample[i], dimension::pupil));
+        cells[i] = pixel_pupil::cell_of(u.place);
+        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.place.x, u.place.y);
+        inside.origin.set(i, {at.x, at.y, camera.film_distance});
+        inside.direction.set(i, pupil.direction);
+        rays.weight[i] = pupil.weight * u.weight;
+    }
+    mark_sampled(block, inside, rays);
+    trace_lens(camera.lens, inside);
+    place_lens_rays(camera, inside, rays);
+    for (int i = 0; i < N; ++i)
+        if (rays.passed[i]) add_bits(camera.pixel_pupils.found + pixel_of(i), 1u << cells[i]);
+}
+
+/// Through the polynomials, and past the rims of first and last surface and the stop.
+template <int N, class Points>
+REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const SampleBlock<N>& block,
+                                                const Points& film, CameraRays<N>& rays) {
+    const LensPolynomialView& lens = camera.polynomial;
+    const auto squared = [](Vec2f v) { return v.x * v.x + v.y * v.y; };
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec2f at = film[i], u = block.random(i, dimension::pupil);
+        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.x, u.y);
+        const float way = camera.film_distance / pupil.direction.z;
+        const Vec2f last = {at.x - way * pupil.direction.x, at.y - way * pupil.direction.y};
+        const LensPolynomialRay ray = evaluate(lens, at, last);
+        const float rest = 1.0f - squared(ray.direction), down = -sqrt_or_zero(rest);
+        const float to_front = (lens.front_rim - lens.plane) / down, back = way - lens.last_rim / pupil.direction.z;
+        const Vec2f rim = {at.x - back * pupil.direction.x, at.y - back * pupil.direction.y};
+        const Vec2f front = {ray.position.x + to_front * ray.direction.x, ray.position.y + to_front * ray.direction.y};
+        const bool sampled = (block.used[i] != 0) & (pupil.weight > 0.0f);
+        const bool passes = sampled & (squared(rim) <= lens.last_radius_squared) & (squared(ray.at_stop) <= 1.0f) &
+                            (rest > 0.0f) & (squared(front) <= lens.front_radius_squared);
+        place_ray(
+            camera, rays, i,
+            {{ray.position.x, ray.position.y, lens.plane}, {ray.direction.x, ray.direction.y, down}, pupil.weight},
+            passes);
+        rays.sampled[i] = select(sampled, 1, 0);
+        rays.passed[i] = select(passes, 1, 0);
+    }
 }
 
 /// Samples the pupil as film points see it and takes the rays through the lens. `film`[lane]: the point of a lane, mm.
@@ -200,7 +271,22 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
             generate_ideal_rays(camera, block, film, rays,
                                 [&](Vec2f at, Vec2f u) { return thick_lens_ray(camera, at, u); });
             break;
-        case CameraModel::full_lens: generate_lens_rays<lens_kind>(camera, block, film, rays); break;
+        case CameraModel::full_lens:
+            if constexpr (lens_kind == LensKind::any) {
+                if (camera.pixel_pupils.known) {
+                    generate_learning_rays(camera, block, film, rays);
+                    break;
+                }
+            }
+            generate_lens_rays<lens_kind>(camera, block, film, rays);
+            break;
+        case CameraModel::polynomial_lens:
+            if constexpr (lens_kind == LensKind::any) generate_polynomial_rays(camera, block, film, rays);
+            break;
+        case CameraModel::full_lens_double:
+            if constexpr (lens_kind == LensKind::any && !kIsDeviceCode)
+                generate_lens_rays_in_double(camera, block, film, rays);
+            break;
     }
 }
 

@@ -48,10 +48,11 @@ public:
         const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
         std::vector<GhostPair> pairs;
         std::vector<double> axial;
+        const AxialShares axial_share(lens, lens.wavelength_nm);
         const auto look_at = [&](const std::vector<GhostPair>& wanted) {
             for (const GhostPair pair : wanted) {
                 // A way that no more light can take than ten times what the lens itself takes is not worth the search.
-                const double share = axial_share(lens, crossings_of(of_lens, pair), lens.wavelength_nm);
+                const double share = axial_share(crossings_of(of_lens, pair));
                 if (!(10 * share > choice.least_share)) continue;
                 pairs.push_back(pair);
                 axial.push_back(share);

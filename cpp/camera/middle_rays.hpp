@@ -78,7 +78,7 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
 
 template <int N>
 REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
-    if (camera.model == CameraModel::full_lens) {
+    if (has_real_pupil(camera.model)) {
         lens_rays(camera, block, rays);
         return;
     }

@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 /// radians. Where the film is larger than the image of a full lens: that of the image's edge.
 inline double picture_angle(const Camera& camera, double image_height_mm) {
     const LensSystem& lens = camera.lens;
-    if (camera.model == CameraModel::full_lens || camera.model == CameraModel::mapped_lens)
+    if (has_real_pupil(camera.model) || camera.model == CameraModel::mapped_lens)
         return widest_field_angle(lens, image_height_mm);
     camera_detail::validate_ideal(lens, camera.model);
     const FirstOrder data = first_order(lens, lens.wavelength_nm);

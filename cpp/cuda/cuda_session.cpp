@@ -9,6 +9,7 @@
 
 #include "../camera/last_setup.hpp"
 #include "../render/film_sums.hpp"
+#include "../render/learning_passes.hpp"
 #include "../render/seconds_since.hpp"
 #include "cuda_devices.hpp"
 #include "device_frame.hpp"
@@ -48,6 +49,7 @@ public:
 private:
     void prepare(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                  const KeepGoing& keep_going, OwnStop& stop) override {
+        validate_on_gpu(camera);
         setup_ = last_setup_.make(camera, tracer_, settings.lens_effects());
         const auto place = [&] { scene_.place(scene, camera, [&] { return !stop; }); };
         if (scene_.change_to(scene, camera) == SceneChange::all) {
@@ -84,7 +86,10 @@ private:
         rows_ = 0;
         film_ = {};
         stats_ = {};
-        for (const auto& renderer : renderers_) renderer->clear_counts();
+        for (const auto& renderer : renderers_) {
+            renderer->clear_counts();
+            renderer->forget_pupils(settings().pupil_sampling == PupilSampling::pixel);
+        }
         front().clear_splats(width(), height());
     }
 
@@ -92,14 +97,13 @@ private:
               OwnStop& stop) override {
         if (rows_ == 0) lay_out_film();
         const auto exposing = std::chrono::steady_clock::now();
-        const std::int64_t columns = width();
-        for (int row = 0; row < height() && !stop; row += rows_) {
-            const int rows = std::min(rows_, height() - row);
-            PixelSum* const kept = fits() ? nullptr : film_.data() + row * columns;
-            if (kept) front().upload_film(kept, rows * columns);
-            const PixelCounts in_band{counts.counts ? counts.counts + row * columns : nullptr, counts.taken};
-            expose_band(row, rows, range, in_band, stop, done);
-            if (kept) front().download_film(kept);
+        if (settings().pupil_sampling == PupilSampling::pixel) {
+            for (const SampleRange& pass : learning_passes(range)) {
+                expose_bands(pass, counts.behind(pass.first - range.first), stop, done);
+                for (const auto& renderer : renderers_) renderer->learn_pupils();
+            }
+        } else {
+            expose_bands(range, counts, stop, done);
         }
         front().splat(range, settings().path());
         for (const auto& renderer : renderers_) renderer->wait();
@@ -244,6 +248,19 @@ private:
 
     /// Samples of some rows, whose film the first GPU has: each GPU takes a range of them. One that fails stops the
     /// others.
+    void expose_bands(const SampleRange& range, const PixelCounts& counts, OwnStop& stop,
+                      std::atomic<std::int64_t>& done) {
+        const std::int64_t columns = width();
+        for (int row = 0; row < height() && !stop; row += rows_) {
+            const int rows = std::min(rows_, height() - row);
+            PixelSum* const kept = fits() ? nullptr : film_.data() + row * columns;
+            if (kept) front().upload_film(kept, rows * columns);
+            const PixelCounts in_band{counts.counts ? counts.counts + row * columns : nullptr, counts.taken};
+            expose_band(row, rows, range, in_band, stop, done);
+            if (kept) front().download_film(kept);
+        }
+    }
+
     void expose_band(int first_row, int rows, const SampleRange& range, const PixelCounts& counts, OwnStop& stop,
                      std::atomic<std::int64_t>& done) {
         const auto share = [&](std::size_t i) {

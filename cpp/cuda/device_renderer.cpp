@@ -72,6 +72,23 @@ void DeviceRenderer::set_camera(const CameraView& camera) {
         camera, [&](const auto* from, std::size_t count) { return camera_arrays_.copy(from, count, stream_); });
 }
 
+void DeviceRenderer::forget_pupils(bool learns) {
+    const CurrentDevice current(ordinal_);
+    const std::size_t pixels = static_cast<std::size_t>(camera_.width) * static_cast<std::size_t>(camera_.height);
+    for (auto* cells : {&known_, &found_}) {
+        cells->resize(learns ? pixels : 0);
+        cells->clear(stream_);
+    }
+    camera_.pixel_pupils = {learns ? known_.data() : nullptr, found_.data()};
+}
+
+void DeviceRenderer::learn_pupils() {
+    const CurrentDevice current(ordinal_);
+    check_cuda(cudaMemcpyAsync(known_.data(), found_.data(), known_.size() * sizeof(std::uint32_t),
+                               cudaMemcpyDeviceToDevice, stream_),
+               "copying on it");
+}
+
 void DeviceRenderer::set_splats(const SplatSource& ghosts, const SplatSource& ghosts_of_objects,
                                 const SplatSource& starbursts) {
     const CurrentDevice current(ordinal_);

@@ -33,6 +33,10 @@ public:
     void set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_camera(const CameraView& camera);
+    /// Of a new picture, whose pixels learn where light passes, or not.
+    void forget_pupils(bool learns);
+    /// Later samples know what those until now have found.
+    void learn_pupils();
 
     /// What is traced from lights on. Without a view there is nothing.
     struct SplatSource {
@@ -119,6 +123,7 @@ private:
     DeviceGhosts ghosts_, ghosts_of_objects_, starbursts_;
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<std::uint32_t> sample_counts_;
+    DeviceArray<std::uint32_t> known_, found_;  ///< of each pixel: PixelPupils
     DeviceArray<LayerSum> layer_sums_;
     DeviceArray<MiddleSurface> middle_surfaces_;
     DeviceArray<float> exposure_, depth_;

@@ -63,7 +63,7 @@ RenderKernel kernel_for(const RenderJob& job, bool timed) {
     static constexpr Chooser kChoosers[] = {kernel_without_effects, kernel_with_effects<1>, kernel_with_effects<2>,
                                             kernel_with_effects<3>, kernel_with_effects<4>, kernel_with_effects<5>};
     static_assert(kCompiledEffects[0] == kNoEffects && std::size(kChoosers) == std::size(kCompiledEffects));
-    return kChoosers[number_of(effects_of(job.camera))](kind_of(job.scene, job.camera), job.camera.lens.kind,
+    return kChoosers[number_of(effects_of(job.camera))](kind_of(job.scene, job.camera), lens_kind_of(job.camera),
                                                         job.scene.instance_count > 0, timed);
 }
 

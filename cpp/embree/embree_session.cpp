@@ -13,6 +13,7 @@
 
 #include "../camera/last_setup.hpp"
 #include "../render/film_sums.hpp"
+#include "../render/learning_passes.hpp"
 #include "../render/scene_change.hpp"
 #include "embree_scene.hpp"
 #include "fast_pupil_tracer.hpp"
@@ -82,11 +83,22 @@ private:
         ghosts_ = empty_film(settings().effects.have_ghosts());
         ghosts_of_objects_ = empty_film(settings().effects.have_ghosts());
         starbursts_ = empty_film(settings().effects.diffraction);
+        const bool learns = settings().pupil_sampling == PupilSampling::pixel;
+        known_.assign(learns ? pixels : 0, 0);
+        found_ = known_;
+        if (learns) camera_view_.pixel_pupils = {known_.data(), found_.data()};
         stats_ = {};
     }
 
     void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done, OwnStop&) override {
-        expose(range, counts, settings(), done);
+        if (camera_view_.pixel_pupils.known) {
+            for (const SampleRange& pass : learning_passes(range)) {
+                expose(pass, counts.behind(pass.first - range.first), settings(), done);
+                known_ = found_;
+            }
+        } else {
+            expose(range, counts, settings(), done);
+        }
         splat(range, settings());
     }
 
@@ -323,6 +335,7 @@ private:
     LastSetup last_setup_;
     std::shared_ptr<const CameraSetup> setup_;  ///< owns what the view points to
     CameraView camera_view_{};
+    std::vector<std::uint32_t> known_, found_;  ///< of each pixel: PixelPupils
     SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
     SplatFilm ghosts_, ghosts_of_objects_, starbursts_;

@@ -22,6 +22,8 @@ std::string name_of(CameraModel model) {
         case CameraModel::thin_lens: return "thin";
         case CameraModel::mapped_lens: return "mapped";
         case CameraModel::thick_lens: return "thick";
+        case CameraModel::polynomial_lens: return "polynomial";
+        case CameraModel::full_lens_double: return "full_double";
         case CameraModel::full_lens: break;
     }
     return "full";

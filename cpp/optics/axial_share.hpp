@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "coated_surface.hpp"
@@ -6,22 +7,44 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What is left of light along the axis that takes this way: the product of what the surfaces reflect and let pass at
-/// normal incidence. Throws InputError where an index is not known.
-inline double axial_share(const LensSystem& lens, const std::vector<Crossing>& way, double wavelength_nm) {
-    const std::vector<double> indices = lens.indices(wavelength_nm);
-    double share = 1;
-    for (const Crossing& crossing : way) {
-        const auto index = static_cast<std::size_t>(crossing.surface);
-        if (!lens.surfaces[index].bends_light()) continue;
-        const CoatedSurface surface =
-            coated_surface(lens, index, wavelength_nm,
-                           crossing.in_order ? LightDirection::to_film : LightDirection::to_scene, indices);
-        const PolarisedResponse response = surface.at(1);
-        share *=
-            crossing.is_reflected || surface.is_mirror() ? response.mean_reflectance() : response.mean_transmittance();
+/// What is left of light along the axis, for any way through a lens: the product of what the surfaces reflect and let
+/// pass at normal incidence.
+class AxialShares {
+public:
+    /// Throws InputError where an index is not known at that wavelength.
+    AxialShares(const LensSystem& lens, double wavelength_nm) {
+        const std::vector<double> indices = lens.indices(wavelength_nm);
+        for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+            std::array<Face, 2> faces;
+            if (lens.surfaces[i].bends_light())
+                for (const bool in_order : {false, true}) {
+                    const CoatedSurface surface = coated_surface(
+                        lens, i, wavelength_nm, in_order ? LightDirection::to_film : LightDirection::to_scene, indices);
+                    const PolarisedResponse response = surface.at(1);
+                    faces[in_order] = {response.mean_reflectance(), surface.is_mirror()
+                                                                        ? response.mean_reflectance()
+                                                                        : response.mean_transmittance()};
+                }
+            surfaces_.push_back(faces);
+        }
     }
-    return share;
-}
+
+    double operator()(const std::vector<Crossing>& way) const {
+        double share = 1;
+        for (const Crossing& crossing : way) {
+            const Face& face = surfaces_[static_cast<std::size_t>(crossing.surface)][crossing.in_order];
+            share *= crossing.is_reflected ? face.reflects : face.sends_on;
+        }
+        return share;
+    }
+
+private:
+    /// A surface that bends no light keeps all of it.
+    struct Face {
+        double reflects = 1;
+        double sends_on = 1;  ///< towards the film: what glass lets pass and a mirror reflects
+    };
+    std::vector<std::array<Face, 2>> surfaces_;  ///< each met against the lens's order, and in it
+};
 
 }  // namespace REALCAM_NAMESPACE

@@ -12,6 +12,12 @@ struct GhostPath {
     double effective_focal_length;  ///< mm
     double back_focal_distance;     ///< last vertex to where light from infinity is focused, mm; negative: before it
     ParaxialRay of_height, of_slope;  ///< at the last vertex, what has height or slope 1 alone at the first one
+    /// A surface that it meets, and the heights there of those two rays.
+    struct Meeting {
+        int surface;
+        double of_height, of_slope;
+    };
+    std::vector<Meeting> meetings;  ///< in its order; the film is none
 };
 
 /// The ghost of a pair of surfaces.
@@ -36,6 +42,7 @@ inline GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostP
     ParaxialRay rays[] = {{1, 0}, {0, 1}};
     double direction_sign = 1;  // of the light along z
     double at = 0;              // z of the vertex that it met last
+    std::vector<GhostPath::Meeting> meetings;
     for (const Crossing& crossing : crossings_of(lens, pair)) {
         const double here = z[static_cast<std::size_t>(crossing.surface)];
         const double before = direction_sign * crossing.index_before(n);
@@ -46,9 +53,10 @@ inline GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostP
             ray.height += (here - at) * ray.slope;
             ray = refract_paraxial(ray, surface(crossing.surface).curvature, before, behind);
         }
+        if (!is_film(lens, crossing.surface)) meetings.push_back({crossing.surface, rays[0].height, rays[1].height});
         at = here;
     }
-    return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1]};
+    return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1], meetings};
 }
 
 }  // namespace REALCAM_NAMESPACE

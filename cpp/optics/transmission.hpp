@@ -52,7 +52,7 @@ inline BundleTransmission bundle_transmission(const LensSystem& lens, double wav
 /// incidence. An obstruction on the axis counts for nothing here.
 inline double axial_transmittance(const LensSystem& lens, double wavelength_nm) {
     check_wavelength_in_glasses(lens, wavelength_nm, "transmission");
-    return axial_share(lens, crossings_of(lens), wavelength_nm);
+    return AxialShares(lens, wavelength_nm)(crossings_of(lens));
 }
 
 /// Share of the stop's area through which light from the axis at infinity passes: less than 1 where a central

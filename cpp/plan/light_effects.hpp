@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -79,78 +80,164 @@ inline double brightest(const SceneFacts& facts) {
     return most;
 }
 
-/// What light from everywhere brings by a pair of surfaces, as the value of the picture.
-///
-/// Light that comes together on the film with the sine s makes pi L s^2 of the radiance L there, and comes from
-/// directions about the axis whose pencils are as wide as the ghost's disc. s is that of the ghost's image of the
-/// entrance pupil, or of the last rim where it is narrower.
-inline double veil_of(const LensSystem& lens, const FirstOrder& data, const GhostPath& path, double growth,
-                      const WideView& seen) {
-    const double radius = 0.5 * data.entrance_pupil_diameter, f = std::fabs(data.effective_focal_length);
-    const double rim = lens.surfaces.back().clear_semi_diameter;
-    const double widest = rim / std::hypot(rim, lens.film_distance);
-    const double slope = radius * std::fabs(path.of_height.slope);
-    const double sine = std::min(slope, widest), of_lens = std::min(radius / f, 1.0);
-    return (sine / of_lens) * (sine / of_lens) * seen.mean_within(growth * slope);
+/// Which light comes to the film by a pair of surfaces, by first order.
+class GhostBundle {
+public:
+    GhostBundle(const LensSystem& lens, GhostPair pair)
+        : lens_(lens),
+          path_(ghost_path(lens, lens.wavelength_nm, pair)),
+          of_height_(on_film(path_.of_height)),
+          of_slope_(on_film(path_.of_slope)) {}
+
+    /// Of a parallel bundle: the middle of its place on the film and its radius there, mm, and its radius in front of
+    /// the lens. Nothing where the rims leave none of it.
+    struct Spot {
+        double middle, radius, radius_in_front;
+    };
+
+    std::optional<Spot> spot_of(double slope) const {
+        double low = -kInfinity, high = kInfinity;
+        for (const GhostPath::Meeting& meeting : path_.meetings) {
+            const double middle = -meeting.of_slope * slope / meeting.of_height;
+            const double radius = std::fabs(rim(meeting.surface) / meeting.of_height);
+            low = std::max(low, middle - radius);
+            high = std::min(high, middle + radius);
+        }
+        if (!(high > low)) return {};
+        const double radius = (high - low) / 2;
+        return Spot{of_height_ * (low + high) / 2 + of_slope_ * slope, std::fabs(of_height_) * radius, radius};
+    }
+
+    /// What the middle of the film sees: the sine of half the angle from which light comes to it, and the slope in the
+    /// scene of its outermost ray. As wide as the narrowest rim lets it be.
+    struct View {
+        double sine, slope_in_scene;
+    };
+
+    View view_from_the_middle() const {
+        // Rays to the middle of the film have heights and slopes in front of the lens in the ratio of these two.
+        const double height = of_slope_, slope = -of_height_;
+        double most = kInfinity;
+        for (const GhostPath::Meeting& meeting : path_.meetings)
+            most =
+                std::min(most, rim(meeting.surface) / std::fabs(meeting.of_height * height + meeting.of_slope * slope));
+        const double tangent = most * std::fabs(path_.of_height.slope * height + path_.of_slope.slope * slope);
+        return {tangent / std::hypot(tangent, 1), most * std::fabs(slope)};
+    }
+
+private:
+    double on_film(const ParaxialRay& ray) const { return ray.height + lens_.film_distance * ray.slope; }
+    double rim(int surface) const {
+        const double clear = lens_.surfaces[static_cast<std::size_t>(surface)].clear_semi_diameter;
+        return surface == lens_.stop_index() ? std::min(clear, lens_.stop_semi_diameter) : clear;
+    }
+
+    const LensSystem& lens_;
+    GhostPath path_;
+    double of_height_, of_slope_;  ///< on the film
+};
+
+/// In the middle of what red, green and blue show.
+inline constexpr double kColours_nm[] = {610, 540, 460};
+inline constexpr std::size_t kColours = std::size(kColours_nm);
+
+/// In each of the colours, and last at the lens's own wavelength, which stands for all of them without dispersion.
+inline std::vector<AxialShares> shares_of(const LensSystem& lens) {
+    std::vector<AxialShares> shares;
+    for (const double wavelength_nm : kColours_nm) shares.emplace_back(lens, wavelength_nm);
+    shares.emplace_back(lens, lens.wavelength_nm);
+    return shares;
 }
 
 }  // namespace light_effects_detail
 
-/// What the surfaces keep, where the picture is brightest without being clipped.
-inline double coating_codes(const Camera& camera, const SceneFacts& facts) {
-    const double value = std::min(light_effects_detail::brightest(facts), 1.0);
-    return code_of(value) - code_of(value * axial_transmittance(camera.lens, camera.lens.wavelength_nm));
-}
-
-/// A ghost and how bright it may be.
-struct BrightestGhost {
-    double codes = 0;
-    GhostPair pair{-1, -1};  ///< none: it is the veil of all
+/// By how much an effect of surfaces changes the light of the picture.
+struct LightChange {
+    double codes = 0;  ///< in the colour that shows it most
+    double colour_codes = 0;  ///< by which it is more than at one wavelength for all colours
 };
 
-/// By first order. The light of a lamp fills a disc about where the chief ray meets the film; where the picture is darkest in it, it shows most. The veil that
-/// all ghosts make of what the lens sees shows most where the picture is darkest.
-inline BrightestGhost ghost_codes(const Camera& camera, const SceneFacts& facts) {
+/// What the surfaces keep, where the picture is brightest without being clipped.
+inline LightChange coating_codes(const Camera& camera, const SceneFacts& facts) {
+    using namespace light_effects_detail;
+    const double value = std::min(brightest(facts), 1.0);
+    const auto way = crossings_of(camera.lens);
+    LightChange change;
+    double of_one = 0;
+    for (const AxialShares& share : shares_of(camera.lens)) {
+        of_one = code_of(value) - code_of(value * share(way));
+        change.codes = std::max(change.codes, of_one);
+    }
+    change.colour_codes = change.codes - of_one;
+    return change;
+}
+
+/// Ghosts, and which of them is the brightest.
+struct GhostChange : LightChange {
+    GhostPair brightest{-1, -1};  ///< none: it is the veil of all
+};
+
+/// By first order, in the colour that shows it most. The light of a lamp fills a disc; where the picture is darkest in
+/// it, it shows most. The veil that all ghosts make of what the lens sees shows most where the picture is darkest:
+/// light that comes together on the film with the sine s makes pi L s^2 of the radiance L.
+inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const LensSystem& lens = camera.lens;
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    const double radius = 0.5 * data.entrance_pupil_diameter;
+    const double f = std::fabs(data.effective_focal_length);
+    const double sine_of_lens = std::min(0.5 * data.entrance_pupil_diameter / f, 1.0);
     const double pixel = camera.film.width_mm / camera.film.width;
     const std::vector<SeenLight> lights = brightest_in_front(facts);
+    const std::vector<AxialShares> shares = shares_of(lens);
     struct Spot {
         GhostPair pair;
+        std::size_t colour;
         double value, dark;
     };
     std::vector<Spot> spots;
-    double veil = 0;
+    std::array<double, kColours + 1> veil{};
     for (const GhostPair pair : ghost_pairs(lens)) {
-        const GhostPath path = ghost_path(lens, lens.wavelength_nm, pair);
-        const double share = axial_share(lens, crossings_of(lens, pair), lens.wavelength_nm);
-        const auto on_film = [&](const ParaxialRay& ray) { return ray.height + lens.film_distance * ray.slope; };
-        const double growth = std::fabs(on_film(path.of_height));
-        veil += share * veil_of(lens, data, path, growth, facts.surroundings);
-        const double chief = on_film(path.of_slope) - data.entrance_pupil_position * on_film(path.of_height);
+        const GhostBundle bundle(lens, pair);
+        const auto way = crossings_of(lens, pair);
+        std::array<double, kColours + 1> share;
+        for (std::size_t c = 0; c <= kColours; ++c) share[c] = shares[c](way);
+        const GhostBundle::View view = bundle.view_from_the_middle();
+        const double relative = (view.sine / sine_of_lens) * (view.sine / sine_of_lens);
+        const double seen = facts.surroundings.mean_within(view.slope_in_scene);
+        for (std::size_t c = 0; c <= kColours; ++c) veil[c] += share[c] * relative * seen;
         for (const SeenLight& light : lights) {
+            const double across = light.from.x / -light.from.z, down = light.from.y / -light.from.z;
+            // On the axis too the place of the ghost moves with the slope, by as much as close to it.
+            const double slope = std::max(std::hypot(across, down), 1e-6);
+            const std::optional<GhostBundle::Spot> spot = bundle.spot_of(slope);
+            if (!spot) continue;
+            const double chief = spot->middle / slope;
             const double image = light.solid_angle_sr * chief * chief;
-            const double disc = std::sqrt(std::max(growth * growth * radius * radius, pixel * pixel / 4) +
-                                          image / std::numbers::pi);
-            const PicturePlace place =
-                place_of(camera, chief * light.from.x / light.from.z, chief * light.from.y / light.from.z);
-            const auto dark =
-                darkest_within(facts, place, disc / camera.film.width_mm, disc / camera.film.height_mm);
+            const double disc =
+                std::sqrt(std::max(spot->radius * spot->radius, pixel * pixel / 4) + image / std::numbers::pi);
+            const PicturePlace place = place_of(camera, -chief * across, -chief * down);
+            const auto dark = darkest_within(facts, place, disc / camera.film.width_mm, disc / camera.film.height_mm);
             if (!dark) continue;
-            const double lux =
-                light.illuminance_lux * -light.from.z * share * radius * radius / (disc * disc);
-            spots.push_back({pair, value_of(camera, lux), *dark});
+            const double gathered = spot->radius_in_front / disc;
+            const double lux = light.illuminance_lux * -light.from.z * gathered * gathered;
+            for (std::size_t c = 0; c <= kColours; ++c)
+                spots.push_back({pair, c, value_of(camera, share[c] * lux), *dark});
         }
     }
     double darkest = brightest(facts);
     for (const SeenTile& tile : facts.tiles) darkest = std::min(darkest, tile.value);
-    BrightestGhost most{codes_between(darkest, veil)};
+    GhostChange most;
+    double of_one = codes_between(darkest, veil.back());
+    most.codes = codes_between(darkest, *std::max_element(veil.begin(), veil.end()));
     for (const Spot& spot : spots) {
-        const double codes = codes_between(spot.dark, spot.value + veil);
-        if (codes > most.codes) most = {codes, spot.pair};
+        const double codes = codes_between(spot.dark, spot.value + veil[spot.colour]);
+        if (codes > most.codes) {
+            most.codes = codes;
+            most.brightest = spot.pair;
+        }
+        if (spot.colour == kColours) of_one = std::max(of_one, codes);
     }
+    most.colour_codes = most.codes - of_one;
     return most;
 }
 

@@ -66,9 +66,9 @@ public:
 
     Plan plan() {
         plan_.effects = without_plan(request_.effects);
-        decide_colour();
         decide_coatings();
         decide_ghosts();
+        decide_colour();
         decide_diffraction();
         decide_motion();
         decide_model();
@@ -103,7 +103,11 @@ private:
 
     /// Glass without a word on its coating is taken as bare, which few lenses are.
     std::string doubt_of_coatings() const {
-        return surfaces_with_unknown_coating(camera_.lens).empty()
+        const std::vector<Surface>& surfaces = camera_.lens.surfaces;
+        const std::vector<int> unknown = surfaces_with_unknown_coating(camera_.lens);
+        return std::none_of(
+                   unknown.begin(), unknown.end(),
+                   [&](int i) { return surfaces[static_cast<std::size_t>(i)].type == SurfaceType::refracting; })
                    ? ""
                    : "but nobody knows what covers the glass, and bare it is only where the effect is named";
     }
@@ -111,29 +115,40 @@ private:
     static std::string px(double size) { return short_size(size) + " px"; }
     static std::string codes(double size) { return short_size(size) + (size == 1 ? " code" : " codes"); }
 
-    void decide_colour() {
-        const bool is_lateral = errors_.lateral_colour_px >= errors_.axial_colour_px;
-        const double size = std::max(errors_.lateral_colour_px, errors_.axial_colour_px);
-        decide("dispersion", size, SizeUnit::pixels,
-               is_lateral ? "blue and red light fall " + px(size) + " apart"
-                          : "discs of confusion of blue and red light differ by " + px(size));
-    }
-
     void decide_coatings() {
-        const double size = coating_codes(camera_, facts_);
-        decide("coatings", size, SizeUnit::codes, "the glass takes " + codes(size) + " from what is bright",
-               doubt_of_coatings());
+        const LightChange light = coating_codes(camera_, facts_);
+        decide("coatings", light.codes, SizeUnit::codes,
+               "the glass takes " + codes(light.codes) + " from what is bright", doubt_of_coatings());
+        note_colour(plan_.effects.coatings, light);
     }
 
     void decide_ghosts() {
-        const BrightestGhost ghost = ghost_codes(camera_, facts_);
+        const GhostChange light = ghost_codes(camera_, facts_);
         const auto surface = [](int number) { return std::to_string(number + 1); };
-        decide("ghosts", ghost.codes, SizeUnit::codes,
-               ghost.pair.first < 0
-                   ? "the veil of all ghosts brings " + codes(ghost.codes) + " to what is dark"
-                   : "ghosts and their veil bring " + codes(ghost.codes) + " to what is dark, most by surfaces " +
-                         surface(ghost.pair.first) + " and " + surface(ghost.pair.second),
+        decide("ghosts", light.codes, SizeUnit::codes,
+               light.brightest.first < 0
+                   ? "the veil of all ghosts brings " + codes(light.codes) + " to what is dark"
+                   : "ghosts and their veil bring " + codes(light.codes) + " to what is dark, most by surfaces " +
+                         surface(light.brightest.first) + " and " + surface(light.brightest.second),
                doubt_of_coatings());
+        note_colour(plan_.effects.ghosts, light);
+    }
+
+    void note_colour(bool is_kept, const LightChange& light) {
+        if (is_kept) coating_colour_codes_ = std::max(coating_colour_codes_, light.colour_codes);
+    }
+
+    /// Of glass, and of coatings, which without dispersion are of one wavelength.
+    void decide_colour() {
+        const double lateral = errors_.lateral_colour_px, axial = errors_.axial_colour_px;
+        const double size = std::max(lateral, axial);
+        if (size / request_.thresholds.pixels < coating_colour_codes_ / request_.thresholds.codes)
+            decide("dispersion", coating_colour_codes_, SizeUnit::codes,
+                   "what the coatings reflect has a colour of " + codes(coating_colour_codes_));
+        else
+            decide("dispersion", size, SizeUnit::pixels,
+                   lateral >= axial ? "blue and red light fall " + px(size) + " apart"
+                                    : "discs of confusion of blue and red light differ by " + px(size));
     }
 
     void decide_diffraction() {
@@ -192,6 +207,7 @@ private:
     const PlanRequest& request_;
     bool on_gpu_;
     Plan plan_;
+    double coating_colour_codes_ = 0;  ///< the most of the effects that are kept
 };
 
 }  // namespace plan_shot_detail

@@ -24,13 +24,15 @@ struct RenderSettings {
     EffectChoice effects = {};
     std::optional<Illuminant> illuminant = {};  ///< of dispersion and diffraction; none: D65, the white of RGB
     std::optional<NoiseGoal> noise = {};  ///< instead of spp
+    PupilSampling pupil_sampling = PupilSampling::outline;  ///< of a full lens
 
     /// The light of a picture whose samples have wavelengths; nothing of others.
     std::optional<Illuminant> spectral_light() const {
         return effects.have_wavelengths() ? std::optional(illuminant.value_or(Illuminant())) : std::nullopt;
     }
     LensEffects lens_effects() const {
-        return {spectral_light(), effects.dispersion, effects.diffraction, effects.coatings, ghost_choice()};
+        return {spectral_light(), effects.dispersion, effects.diffraction,
+                effects.coatings, ghost_choice(),     pupil_sampling};
     }
     std::optional<GhostChoice> ghost_choice() const {
         if (!effects.have_ghosts()) return std::nullopt;
@@ -61,14 +63,20 @@ inline void validate(const RenderSettings& settings) {
 inline void validate_effects(const RenderSettings& settings, const Camera& camera) {
     if (settings.effects.is_automatic)
         throw InputError("effects: \"auto\" is for pictures that are planned first; names of effects are wanted");
-    if (camera.model == CameraModel::full_lens) return;
     const EffectChoice& effects = settings.effects;
+    if (settings.pupil_sampling != PupilSampling::outline && camera.model != CameraModel::full_lens)
+        throw InputError("pupil_sampling: the camera's model must be full");
+    if (settings.pupil_sampling == PupilSampling::pixel && (effects.have_wavelengths() || effects.coatings))
+        throw InputError(
+            "pupil_sampling: pixels learn where light passes only without dispersion, coatings and "
+            "diffraction");
+    if (camera.model == CameraModel::full_lens) return;
     if (effects.dispersion || effects.coatings || effects.have_ghosts())
         throw InputError(std::string(effects.dispersion ? "dispersion"
                                      : effects.coatings ? "coatings"
                                      : effects.ghosts   ? "ghosts"
                                                         : "film_reflection") +
-                         ": the camera's model is an ideal lens; the model full is wanted");
+                         ": the camera's model must be full");
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -17,6 +17,9 @@ struct PixelCounts {
     const std::uint32_t* counts = nullptr;  ///< of the film's pixels, row by row; none: all samples
     std::uint32_t taken = 0;                ///< of them, before the range
 
+    /// Of the rest of the range, behind so many of its samples.
+    PixelCounts behind(std::uint32_t samples) const { return {counts, taken + samples}; }
+
     std::uint32_t of(std::size_t pixel, const SampleRange& range) const {
         if (!counts) return range.count;
         return std::min(counts[pixel] > taken ? counts[pixel] - taken : 0, range.count);

@@ -4,22 +4,34 @@
 
 #include "../camera/camera_view.hpp"
 #include "../camera/develop.hpp"
+#include "../camera/pupil_sampling.hpp"
 #include "../render/path_settings.hpp"
 
 namespace realcam::shot {
 
-// The words for camera models, tone curves and light transport, as command line and shot files have them.
+// The words for camera models, tone curves, light transport and pupil sampling, as command line and shot files have them.
 
-inline constexpr const char* kModelNames = "full, thick, mapped, thin or pinhole";
+inline constexpr const char* kModelNames = "full, full_double, polynomial, thick, mapped, thin or pinhole";
 inline constexpr const char* kToneNames = "film or linear";
 inline constexpr const char* kTransportNames = "paths or whitted";
+inline constexpr const char* kPupilSamplingNames = "outline, rear_element, exit_pupil or pixel";
 
 inline std::optional<CameraModel> model_named(std::string_view name) {
     if (name == "full") return CameraModel::full_lens;
+    if (name == "full_double") return CameraModel::full_lens_double;
+    if (name == "polynomial") return CameraModel::polynomial_lens;
     if (name == "thick") return CameraModel::thick_lens;
     if (name == "mapped") return CameraModel::mapped_lens;
     if (name == "thin") return CameraModel::thin_lens;
     if (name == "pinhole") return CameraModel::pinhole;
+    return std::nullopt;
+}
+
+inline std::optional<PupilSampling> pupil_sampling_named(std::string_view name) {
+    if (name == "outline") return PupilSampling::outline;
+    if (name == "rear_element") return PupilSampling::rear_element;
+    if (name == "exit_pupil") return PupilSampling::exit_pupil;
+    if (name == "pixel") return PupilSampling::pixel;
     return std::nullopt;
 }
 

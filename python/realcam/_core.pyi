@@ -1097,6 +1097,7 @@ def _render(
     layers: Sequence[str],
     effects: Sequence[str],
     illuminant: str,
+    pupil_sampling: str,
     progress: _Progress | None,
 ) -> _Picture: ...
 def _effect_notices(lens: Lens, effects: Sequence[str]) -> list[str]: ...

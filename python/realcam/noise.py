@@ -16,11 +16,11 @@ def noise_request(
     seconds: float | None,
     max_spp: int | None,
 ) -> _core._NoiseRequest | None:
-    """What is said of the noise where spp is "auto"; else None, and InputError where something is."""
+    """What is said of the noise where spp is "auto"; else None, and InputError where something is said all the same."""
     if spp == "auto":
         return _core._NoiseRequest(noise, noise_codes, seconds, max_spp)
     if isinstance(spp, str):
-        raise _core.InputError(f'spp must be a number of samples or "auto", not {spp!r:.60}')
+        raise _core.ArgumentError(f'spp must be a whole number or "auto"; it is {spp!r:.60}')
     if any(value is not None for value in (noise, noise_codes, seconds, max_spp)):
         raise _core.InputError('noise, noise_codes, seconds and max_spp belong to spp="auto"')
     return None

@@ -53,6 +53,7 @@ def render(
     threshold_px: float | None = None,
     threshold_codes: float | None = None,
     illuminant: Illuminant | None = None,
+    pupil_sampling: str = "outline",
     progress: bool | ProgressCallback = False,
 ) -> Image:
     """Photographs a scene: every sample is a ray from the film, through the lens, to the scene and its lights.
@@ -71,6 +72,8 @@ def render(
     them; docs/dispersion.md), () for none. Warns of what the lens cannot give of them.
     illuminant: of dispersion and diffraction, the spectrum of all light: "D65", "A", "FL2", a wavelength in nm, or
     (wavelength_nm, power) pairs; None: D65.
+    pupil_sampling: where a full lens's rays are sent: "outline", where real rays were found to pass; to compare with it
+    (docs/accuracy.md), "rear_element", "exit_pupil", or "pixel", where the pixel's earlier samples have passed.
     progress: True for a bar on stderr, or a function that is called about 20 times a second with the share done,
     0 to 1, and stops the render where it returns False. Warns of a scene without light.
 
@@ -118,6 +121,7 @@ def render(
             names,
             wanted,
             light,
+            pupil_sampling,
             callback,
         )
         return image_of(picture, camera, seed, transport, clamp_cd_m2, wanted, light, decisions)

@@ -102,7 +102,7 @@ expect(2 "a file that the picture is made from" render quad.obj -o x.png -o ./a.
 expect(2 "given twice" render quad.obj -o link.png -o linked.png)
 expect(2 "--seed: " render quad.obj -o x.png --seed "")
 expect(2 "scale must be" render quad.obj -o x.png --scale 0)
-expect(2 "full, thick, mapped, thin or pinhole" render quad.obj -o x.png --model real)
+expect(2 "full, full_double, polynomial, thick, mapped, thin or pinhole" render quad.obj -o x.png --model real)
 expect(2 "film or linear" render quad.obj -o x.png --tone flat)
 expect(2 "auto, cpu" render quad.obj -o x.png --device abacus)
 expect(2 "gone\\.hdr\": there is no such file" render quad.obj -o x.png --environment gone.hdr)

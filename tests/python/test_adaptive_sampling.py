@@ -155,7 +155,7 @@ def test_layers_and_progress_go_along(device: str) -> None:
     [
         ({"spp": 8, "noise": 0.1}, 'noise, noise_codes, seconds and max_spp belong to spp="auto"'),
         ({"spp": 8, "seconds": 3}, 'belong to spp="auto"'),
-        ({"spp": "all"}, 'spp must be a number of samples or "auto"'),
+        ({"spp": "all"}, 'spp must be a whole number or "auto"'),
         ({"noise": 0}, "noise must be above 0"),
         ({"noise": float("nan")}, "noise must be above 0"),
         ({"noise_codes": -1}, "noise must be above 0"),

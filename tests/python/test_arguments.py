@@ -71,7 +71,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: rc.Scene.load("a.obj", scale="big"), "scale must be a number; it is 'big'"),
     (lambda: rc.render(3, CAMERA, effects=()), "scene must be a Scene; it is 3"),
     (lambda: rc.render(SCENE, SCENE, effects=()), "camera must be a Camera; it is <realcam.Scene"),
-    (lambda: rc.render(SCENE, CAMERA, effects=(), spp="many"), "spp must be a whole number; it is 'many'"),
+    (lambda: rc.render(SCENE, CAMERA, effects=(), spp="many"), "spp must be a whole number or \"auto\"; it is 'many'"),
     (lambda: rc.LiveView(3), "scene must be a Scene; it is 3"),
 ]
 

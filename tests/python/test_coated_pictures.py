@@ -120,7 +120,7 @@ def test_an_unknown_coating_is_said_and_taken_as_bare() -> None:
 
 def test_ideal_lenses_have_no_coatings() -> None:
     camera = rc.Camera(rc.Lens.load("double-gauss-50mm"), model="thin")
-    with pytest.raises(rc.InputError, match="coatings: the camera's model is an ideal lens; the model full is wanted"):
+    with pytest.raises(rc.InputError, match="coatings: the camera's model must be full"):
         rc.render(scenes.sky(), camera, spp=1, effects="coatings")
 
 

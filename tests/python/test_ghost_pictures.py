@@ -35,7 +35,8 @@ def ghosts(
 
 
 def lit_without_ghosts(scene: rc.Scene, camera: rc.Camera, **settings: object) -> np.ndarray:
-    return rc.render(scene, camera, effects=(), device="cpu", **settings).pixels.astype(np.float64)  # type: ignore[arg-type]
+    image = rc.render(scene, camera, device="cpu", **{"effects": (), **settings})  # type: ignore[arg-type]
+    return image.pixels.astype(np.float64)
 
 
 def singlet(stop_mm: float) -> rc.Lens:

@@ -100,7 +100,7 @@ def test_what_is_left_out_is_told() -> None:
     [
         (
             ["motion"],
-            'unknown effect "motion"; some of auto, dispersion, coatings, ghosts, film_reflection, diffraction, '
+            'unknown effect "motion"; some of auto, none, dispersion, coatings, ghosts, film_reflection, diffraction, '
             "-motion_blur, -rolling_shutter are wanted",
         ),
         (["--motion_blur"], 'unknown effect "--motion_blur"'),

@@ -259,7 +259,10 @@ def test_what_is_wrong_with_an_addition_is_told_with_its_line(text: str, says: s
         ),
         ("format = 1\nscene = 'quad.obj'\nfocus_m = nan", r':3: "focus_m" must be'),
         ("format = 1\nscene = 'quad.obj'\nscale = 0", r':3: "scale" must be a positive number'),
-        ("format = 1\nscene = 'quad.obj'\nmodel = 'real'", r':3: "model" must be full, thick, mapped, thin or pinhole'),
+        (
+            "format = 1\nscene = 'quad.obj'\nmodel = 'real'",
+            r':3: "model" must be full, full_double, polynomial, thick, mapped, thin or pinhole',
+        ),
         ("format = 1\nscene = 'quad.obj'\nresolution = [1.5, 2]", r':3: "resolution" wants whole numbers from 0 to'),
         ("format = 1\nscene = 'quad.obj'\nresolution = [1]", r':3: "resolution" must be an array of 2 numbers'),
         ("format = 1\nscene = 'quad.obj'\nspp = 0", r":3: spp must lie between"),

@@ -58,13 +58,13 @@ def started(code: str) -> Iterator[subprocess.Popen[str]]:
 
 LONG_CALLS = {
     # 25 s, and a tile of 1024 pixels takes 4 s.
-    "64 bounces": 'rc.render(room(), camera, spp=256, max_bounces=64, device="cpu")',
+    "64 bounces": 'rc.render(room(), camera, effects=(), spp=256, max_bounces=64, device="cpu")',
     # Which waits for another thread's picture.
     "a second picture": """
-        work = lambda: rc.render(room(), camera, spp=4096, device="cpu")
+        work = lambda: rc.render(room(), camera, effects=(), spp=4096, device="cpu")
         threading.Thread(target=work, daemon=True).start()
         time.sleep(0.3)
-        rc.render(room(), camera, spp=1, device="cpu")
+        rc.render(room(), camera, effects=(), spp=1, device="cpu")
         """,
     "metering": 'while True: camera.metered(room(), device="cpu", max_bounces=64)',
     "a session": 'rc.Session(room(), camera, device="cpu", max_bounces=64).add(256)',
@@ -156,7 +156,7 @@ def test_progress_is_told_while_the_scene_is_made_ready() -> None:
 
 
 AT_WORK = {
-    "render": 'rc.render(room(), camera, spp=64, device="cpu")',
+    "render": 'rc.render(room(), camera, effects=(), spp=64, device="cpu")',
     "session": 'rc.Session(room(), camera, device="cpu").add(64)',
     "live": "live.shoot(camera, spp=64).codes",
     "generate_rays": "camera.generate_rays(spp=20)",
@@ -246,7 +246,7 @@ def test_python_ends_cleanly_while_a_daemon_thread_is_at_a_picture(what: str, tm
     (tmp_path / "shot.toml").write_text(SHOT)
     code = f"""
         os.chdir({str(tmp_path)!r})
-        image = rc.render(room(), camera.replace(film=rc.Film(36, 24, (1500, 1000))), spp=1, device="cpu")
+        image = rc.render(room(), camera.replace(film=rc.Film(36, 24, (1500, 1000))), effects=(), spp=1, device="cpu")
         image.save("a.exr")
         once = threading.Event()
         def work():
@@ -267,17 +267,17 @@ FORK = """
     lit = room()
     ended = False
     def work():
-        rc.render(lit, camera, spp=10**6, device="cpu", progress=lambda done: not ended)
+        rc.render(lit, camera, effects=(), spp=10**6, device="cpu", progress=lambda done: not ended)
     thread = threading.Thread(target=work)
     if {concurrent}:
         thread.start()
         time.sleep(0.5)
     else:
-        rc.render(lit, camera, spp=1, device="cpu")
+        rc.render(lit, camera, effects=(), spp=1, device="cpu")
     child = os.fork()
     if child == 0:
         try:
-            image = rc.render(lit, camera.replace(film=rc.Film(36, 24, (30, 20))), spp=1, device="cpu")
+            image = rc.render(lit, camera.replace(film=rc.Film(36, 24, (30, 20))), effects=(), spp=1, device="cpu")
             print("rendered", image.pixels.shape, flush=True)
         except rc.InputError as error:
             print(error, flush=True)
@@ -298,7 +298,7 @@ def test_a_forked_process_works_or_says_why_not(concurrent: bool) -> None:
 def test_a_process_forked_amid_a_render_ends_at_once() -> None:
     """By sys.exit, which runs what waits for work under way: there is none in the child."""
     code = """
-        thread = threading.Thread(target=lambda: rc.render(room(), camera, spp=10**6, device="cpu"), daemon=True)
+        thread = threading.Thread(target=lambda: rc.render(room(), camera, effects=(), spp=10**6, device="cpu"), daemon=True)
         thread.start()
         time.sleep(0.5)
         if os.fork() == 0:
@@ -336,13 +336,13 @@ def test_no_thread_to_be_had_is_told() -> None:
         import resource
         lit, small = room(), camera.replace(film=rc.Film(36, 24, (3, 2)))
         try:
-            rc.render(lit, small, spp=0, device="cpu")  # starts Embree alone
+            rc.render(lit, small, effects=(), spp=0, device="cpu")  # starts Embree alone
         except rc.InputError:
             pass
         size = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_AS, (size + {room} * 2**20,) * 2)
         try:
-            rc.render(lit, small, spp=1, device="cpu", progress=lambda done: True)
+            rc.render(lit, small, effects=(), spp=1, device="cpu", progress=lambda done: True)
             print("rendered", flush=True)
         except (rc.DeviceError, MemoryError) as error:
             print(error, flush=True)

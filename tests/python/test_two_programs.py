@@ -101,6 +101,7 @@ CHANNELS = {
 @pytest.mark.parametrize("program", ["executable", "python"])
 def test_layers_are_channels_of_the_file(folder: Path, program: str) -> None:
     words = ["render", "card.obj", "-o", "a.exr", "--resolution", "30x20", "--spp", "3", "--layers", "all"]
+    words += ["--effects", "none"]
     made = run([executable()] if program == "executable" else PYTHON, *words, folder=folder)
     assert made.returncode == 0, made.stderr
     (folder / "shot.toml").write_text('format = 1\nscene = "card.obj"\nresolution = [30, 20]\nspp = 3\n')

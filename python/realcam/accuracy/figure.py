@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from .. import files
 from .._core import ImageFileError
 from .ladder import AccuracyCost, Rung
-from .report import rows_of
+from .report import tables_of
 
 MOST_CODES = 32.0  # white in the thumbnails
 
@@ -35,17 +35,14 @@ def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
 
 def _drawing(cost: AccuracyCost) -> str:
     count = len(cost.rungs)
-    figure = matplotlib.figure.Figure(figsize=(12, 9), layout="constrained")
-    above, below = np.asarray(figure.subfigures(2, 1, height_ratios=[3, 1.4])).ravel()
-    axes = above.subplots()
-    colours = matplotlib.colormaps["tab20"](np.arange(count) % 20)
-    for rung, colour in zip(cost.rungs, colours, strict=True):
-        _draw_rung(axes, rung, colour)
-    _draw_frontier(axes, cost)
-    axes.set(xscale="log", yscale="log", xlabel="seconds of samples", ylabel="error, root mean square, 8-bit codes")
-    axes.grid(which="both", alpha=0.2)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=8, frameon=False)
-    axes.set_title(f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}, against {cost.reference}", fontsize=9)
+    heights = [3.2, 2.4, 1.5] if cost.samplings else [3.2, 1.5]
+    figure = matplotlib.figure.Figure(figsize=(12, 2.6 * sum(heights) / 1.5), layout="constrained")
+    *above, below = np.asarray(figure.subfigures(len(heights), 1, height_ratios=heights)).ravel()
+    _draw_errors(above[0].subplots(), cost.rungs)
+    above[0].suptitle(f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}, against {cost.reference}", fontsize=9)
+    if cost.samplings:
+        _draw_errors(above[1].subplots(), cost.samplings)
+        above[1].suptitle("Ways to sample the full lens, against the same without effects", fontsize=9)
     columns = (count + 1) // 2
     thumbnails = np.atleast_1d(below.subplots(2, columns)).ravel()
     for place in thumbnails:
@@ -62,15 +59,25 @@ def _drawing(cost: AccuracyCost) -> str:
     return text.getvalue()
 
 
+def _draw_errors(axes: Axes, rungs: tuple[Rung, ...]) -> None:
+    colours = matplotlib.colormaps["tab20"](np.arange(len(rungs)) % 20)
+    for rung, colour in zip(rungs, colours, strict=True):
+        _draw_rung(axes, rung, colour)
+    _draw_frontier(axes, rungs)
+    axes.set(xscale="log", yscale="log", xlabel="seconds of samples", ylabel="error, root mean square, 8-bit codes")
+    axes.grid(which="both", alpha=0.2)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=8, frameon=False)
+
+
 def _draw_rung(axes: Axes, rung: Rung, colour: np.ndarray) -> None:
     seconds = [picture.seconds for picture in rung.pictures]
     errors = [picture.rmse for picture in rung.pictures]
     axes.plot(seconds, errors, "o-", color=colour, markersize=4, linewidth=1.2, label=rung.name)
 
 
-def _draw_frontier(axes: Axes, cost: AccuracyCost) -> None:
+def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
     """The pictures that none is both faster and better than."""
-    pictures = sorted((p.seconds, p.rmse) for rung in cost.rungs for p in rung.pictures)
+    pictures = sorted((p.seconds, p.rmse) for rung in rungs for p in rung.pictures)
     best: list[tuple[float, float]] = []
     for seconds, error in pictures:
         if not best or error < best[-1][1]:
@@ -79,13 +86,13 @@ def _draw_frontier(axes: Axes, cost: AccuracyCost) -> None:
 
 
 def _page(cost: AccuracyCost, drawing: str) -> str:
-    heads, rows = rows_of(cost)
-    cells = ["".join(f"<th>{html.escape(head)}</th>" for head in heads)]
-    cells += ["".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows]
-    table = "\n".join(f"<tr>{row}</tr>" for row in cells)
+    tables = "\n".join(f"<table>\n{_rows([title, *heads], rows)}\n</table>" for title, heads, rows in tables_of(cost))
     left_out = [
         f"<p>{html.escape(text)}: {html.escape(', '.join(names))}.</p>"
-        for text, names in (("Cannot show what this lens sees", cost.impossible), ("Not measured", cost.missing))
+        for text, names in (
+            ("Cannot be had of this lens on this device", cost.impossible),
+            ("Not measured", cost.missing),
+        )
         if names
     ]
     return f"""<!doctype html>
@@ -102,9 +109,13 @@ td:first-child, th:first-child {{ text-align: left; }}
 <p>Bias, noise (with the most samples) and errors in 8-bit codes against {html.escape(cost.reference)}, whose own
 noise is {cost.reference_noise_codes:.2g} codes.</p>
 {drawing[drawing.index("<svg") :]}
-<table>
-{table}
-</table>
+{tables}
 {"".join(left_out)}
 </html>
 """
+
+
+def _rows(heads: list[str], rows: list[list[str]]) -> str:
+    cells = ["".join(f"<th>{html.escape(head)}</th>" for head in heads)]
+    cells += ["".join(f"<td>{html.escape(cell)}</td>" for cell in row) for row in rows]
+    return "\n".join(f"<tr>{row}</tr>" for row in cells)

@@ -13,7 +13,7 @@ from .._core import Camera, Film, Scene
 from ..image import Image
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
-from .rungs import Level, can_be_taken, known_effects, levels_of
+from .rungs import Level, can_be_taken, known_effects, levels_of, ways_to_sample
 
 
 @dataclass(frozen=True)
@@ -67,23 +67,28 @@ class Rung:
 
 @dataclass(frozen=True)
 class AccuracyCost:
-    """What the levels of simulation cost. missing: those that were not measured, because it was interrupted, and
-    impossible: those that cannot show what this lens sees."""
+    """What the levels of simulation cost, and what ways there are to sample one of them.
+
+    rungs: of a reference with all effects; samplings: of the full lens without effects, against its own reference.
+    missing: those that were not measured, because it was interrupted, and impossible: those that cannot show what this
+    lens sees, or not on this device.
+    """
 
     device: str
     size: tuple[int, int]
     reference: str
     reference_noise_codes: float
     rungs: tuple[Rung, ...]
+    samplings: tuple[Rung, ...]
     missing: tuple[str, ...]
     impossible: tuple[str, ...]
     reference_codes: Codes = field(repr=False, compare=False)
 
     def __str__(self) -> str:
-        """A table."""
-        from .report import table_of
+        """Tables."""
+        from .report import text_of
 
-        return table_of(self)
+        return text_of(self)
 
     def json(self) -> str:
         """All but the pictures."""
@@ -116,13 +121,15 @@ def accuracy_cost(
     most_spp: int = 256,
     reference_spp: int = 4096,
     effects: Iterable[str] | None = None,
+    samplings: bool = True,
     progress: ProgressCallback | None = None,
 ) -> AccuracyCost:
     """Takes a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects.
 
     size: pixels of the longer side. most_spp: each level is taken with 1, 4, 16, ... samples up to these.
     reference_spp: of the picture that they are compared with: every surface, with `effects`; None: those of which the
-    lens file says what they need. Ctrl-C ends it early; what was measured until then is returned, and what is missing.
+    lens file says what they need. samplings: whether to compare ways to sample the pupil, too. Ctrl-C ends it early;
+    what was measured until then is returned, and what is missing.
 
     Raises what render raises.
     """
@@ -140,14 +147,20 @@ def accuracy_cost(
 
     tell(0.0)
     reference = Reference(scene, camera, wanted, reference_spp, seed, settings)
-    levels = levels_of(scene, camera, wanted, **settings)
-    impossible = [level.name for level in levels if not can_be_taken(scene, camera, level, **settings)]
-    levels = [level for level in levels if level.name not in impossible]
-    rungs: list[Rung] = []
+    climbs = [(level, reference) for level in levels_of(scene, camera, wanted, **settings)]
+    rung_count = len(climbs)
+    if samplings:
+        without_effects = Reference(scene, camera, (), reference_spp, seed, settings)
+        climbs += [(level, without_effects) for level in ways_to_sample()]
+    possible = [can_be_taken(scene, camera, level, **settings) for level, _ in climbs]
+    done: list[tuple[bool, Rung]] = []
+    missing = [level.name for (level, _), is_possible in zip(climbs, possible, strict=True) if is_possible]
     try:
-        for level in levels:
-            tell((1 + len(rungs)) / (1 + len(levels)))
-            rungs.append(_climb(level, scene, camera, reference, most_spp, seed, settings))
+        for number, (level, against) in enumerate(climbs):
+            tell((1 + number) / (1 + len(climbs)))
+            if possible[number]:
+                done.append((number < rung_count, _climb(level, scene, camera, against, most_spp, seed, settings)))
+                missing.remove(level.name)
     except KeyboardInterrupt:
         pass
     return AccuracyCost(
@@ -155,9 +168,12 @@ def accuracy_cost(
         size=small,
         reference=", ".join(("full lens", *wanted)) + f", {2 * reference_spp} samples",
         reference_noise_codes=math.sqrt(reference.variance),
-        rungs=tuple(rungs),
-        missing=tuple(level.name for level in levels[len(rungs) :]),
-        impossible=tuple(impossible),
+        rungs=tuple(rung for is_level, rung in done if is_level),
+        samplings=tuple(rung for is_level, rung in done if not is_level),
+        missing=tuple(missing),
+        impossible=tuple(
+            level.name for (level, _), is_possible in zip(climbs, possible, strict=True) if not is_possible
+        ),
         reference_codes=reference.codes,
     )
 

@@ -1,4 +1,4 @@
-"""The ladder as a table."""
+"""The ladder as tables."""
 
 from __future__ import annotations
 
@@ -11,21 +11,29 @@ from rich.table import Table
 from .ladder import AccuracyCost, Rung
 
 
-def goals_of(cost: AccuracyCost) -> list[float]:
-    """Errors that the ladder says the time to, codes: of the best level at the most samples, and twice and four times
+def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
+    """Errors that the table says the time to, codes: of the best level at the most samples, and twice and four times
     that."""
-    if not cost.rungs:
+    if not rungs:
         return []
-    best = min(rung.pictures[-1].rmse for rung in cost.rungs)
+    best = min(rung.pictures[-1].rmse for rung in rungs)
     return [4 * best, 2 * best, best]
 
 
-def rows_of(cost: AccuracyCost) -> tuple[list[str], list[list[str]]]:
-    """Heads and cells."""
-    goals = goals_of(cost)
-    heads = ["level", "M samples/s", "lens", "scene", "rest", "bias", "noise", "FLIP"]
+def tables_of(cost: AccuracyCost) -> list[tuple[str, list[str], list[list[str]]]]:
+    """Of each table what it is of, heads and cells."""
+    return [
+        (title, *_rows_of(rungs))
+        for title, rungs in (("level", cost.rungs), ("every surface, sampled over", cost.samplings))
+        if rungs
+    ]
+
+
+def _rows_of(rungs: tuple[Rung, ...]) -> tuple[list[str], list[list[str]]]:
+    goals = goals_of(rungs)
+    heads = ["M samples/s", "lens", "scene", "rest", "bias", "noise", "FLIP"]
     heads += [f"s to {goal:.2g} codes" for goal in goals]
-    return heads, [_cells(rung, goals) for rung in cost.rungs]
+    return heads, [_cells(rung, goals) for rung in rungs]
 
 
 def _cells(rung: Rung, goals: list[float]) -> list[str]:
@@ -43,24 +51,29 @@ def _cells(rung: Rung, goals: list[float]) -> list[str]:
     ]
 
 
-def table_of(cost: AccuracyCost) -> str:
-    """As Markdown, with what was compared above, and what is missing below."""
-    heads, rows = rows_of(cost)
+def text_of(cost: AccuracyCost) -> str:
+    """Markdown tables, with what was compared above, and what is missing below."""
+    lines = [
+        f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}. Bias, noise (with the most samples) and errors in "
+        f"8-bit codes against: {cost.reference}, whose own noise is {cost.reference_noise_codes:.2g} codes; ways of "
+        "sampling against the same without effects.",
+    ]
+    for title, heads, rows in tables_of(cost):
+        lines += ["", *_markdown([title, *heads], rows)]
+    if cost.impossible:
+        lines += ["", f"Cannot be had of this lens on this device: {', '.join(cost.impossible)}."]
+    if cost.missing:
+        lines += ["", f"Interrupted; not measured: {', '.join(cost.missing)}."]
+    return "\n".join(lines) + "\n"
+
+
+def _markdown(heads: list[str], rows: list[list[str]]) -> list[str]:
     table = Table(box=MARKDOWN, header_style="")
     for number, head in enumerate(heads):
         table.add_column(head, justify="left" if number == 0 else "right", no_wrap=True)
     for row in rows:
         table.add_row(*row)
-    console = Console(width=400, no_color=True, record=True, file=None, quiet=False)
+    console = Console(width=400, no_color=True)
     with console.capture() as captured:
         console.print(table)
-    lines = [
-        f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}. Bias, noise (with the most samples) and errors in "
-        f"8-bit codes against: {cost.reference}, whose own noise is {cost.reference_noise_codes:.2g} codes.",
-        *(line.rstrip() for line in captured.get().splitlines() if line.strip()),
-    ]
-    if cost.impossible:
-        lines.append(f"Cannot show what this lens sees: {', '.join(cost.impossible)}.")
-    if cost.missing:
-        lines.append(f"Interrupted; not measured: {', '.join(cost.missing)}.")
-    return "\n".join(lines) + "\n"
+    return [line.rstrip() for line in captured.get().splitlines() if line.strip()]

@@ -19,23 +19,44 @@ Blur = Callable[[Image], Picture]
 
 @dataclass(frozen=True)
 class Level:
-    """One way to take the picture. model, effects: of render; blur: what is done to it afterwards."""
+    """One way to take the picture.
+
+    model, effects, pupil_sampling: of render; blur: what is done to the picture afterwards; is_stratified: else each
+    sample has random numbers of its own, whatever the others of its pixel have.
+    """
 
     name: str
     model: str = "full"
     effects: tuple[str, ...] = ()
+    pupil_sampling: str = "outline"
+    is_stratified: bool = True
     blur: Blur | None = field(default=None, compare=False)
 
-    def image(self, scene: Scene, camera: Camera, **settings: object) -> tuple[Image, float]:
+    def image(self, scene: Scene, camera: Camera, spp: int, seed: int, **settings: object) -> tuple[Image, float]:
         """The picture, and the seconds of its samples and of what is done to them."""
-        layers = ("circle_of_confusion_mm",) if self.blur else ()
-        image = render(scene, camera.replace(model=self.model), effects=self.effects, layers=layers, **settings)  # type: ignore[arg-type]
+        image = self._rendered(scene, camera, spp, seed, settings)
         seconds = image.stats.seconds - image.stats.setup_seconds
+        if not self.is_stratified:
+            # The first samples of many seeds: each is random alone. They are the same work as many of one seed.
+            total = sum(self._rendered(scene, camera, 1, seed * spp + k, settings).pixels for k in range(spp))
+            image = replace(image, pixels=np.asarray(total / spp, np.float32))
         if self.blur:
             begin = time.perf_counter()
             image = replace(image, pixels=self.blur(image))
             seconds += time.perf_counter() - begin
         return image, seconds
+
+    def _rendered(self, scene: Scene, camera: Camera, spp: int, seed: int, settings: dict[str, object]) -> Image:
+        return render(
+            scene,
+            camera.replace(model=self.model),
+            spp=spp,
+            seed=seed,
+            effects=self.effects,
+            pupil_sampling=self.pupil_sampling,
+            layers=("circle_of_confusion_mm",) if self.blur else (),
+            **settings,  # type: ignore[arg-type]
+        )
 
 
 def _diameters_px(image: Image) -> Picture:
@@ -57,6 +78,18 @@ def known_effects(camera: Camera) -> tuple[str, ...]:
     return ("dispersion", "diffraction") + (() if camera.lens.unknown_coatings else ("coatings", "ghosts"))
 
 
+def ways_to_sample() -> list[Level]:
+    """The same picture, every surface of the lens, by other samples."""
+    return [
+        Level("rear element, random", pupil_sampling="rear_element", is_stratified=False),
+        Level("rear element", pupil_sampling="rear_element"),
+        Level("exit pupil", pupil_sampling="exit_pupil"),
+        Level("pixel pupil", pupil_sampling="pixel"),
+        Level("fitted outline, random", is_stratified=False),
+        Level("fitted outline"),
+    ]
+
+
 def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings: object) -> list[Level]:
     """From the crudest to the best; the last with `effects`, which are those of the reference."""
     levels = [
@@ -66,7 +99,9 @@ def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings
         Level("thin lens", "thin"),
         Level("thin lens, distortion and vignetting", "mapped"),
         Level("thick lens", "thick"),
+        Level("polynomial lens", "polynomial"),
         Level("full lens"),
+        Level("full lens, double precision", "full_double"),
     ]
     for count in range(1, len(effects) + 1):
         levels.append(Level(f"+ {effects[count - 1]}", effects=effects[:count]))
@@ -76,11 +111,12 @@ def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings
 
 
 def can_be_taken(scene: Scene, camera: Camera, level: Level, **settings: object) -> bool:
-    """Whether the camera model can show what the lens sees: an ideal lens sees nothing at 90 degrees to the side."""
+    """An ideal lens sees nothing at 90 degrees to the side, a GPU has no double precision, and an exit pupil may lie
+    behind the film."""
     film = camera.film
     small = camera.replace(film=type(film)(film.width_mm, film.height_mm, (4, 4)))
     try:
-        level.image(scene, small, spp=1, **settings)
+        level.image(scene, small, spp=1, seed=0, **settings)
     except InputError:
         return False
     return True

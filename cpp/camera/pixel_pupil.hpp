@@ -1,0 +1,85 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+#include "../math/lanes.hpp"
+#include "../math/random.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What each pixel has learnt of where light passes the lens, as bits for the cells of the unit square from which the
+/// pupil is sampled (after B. Steinert et al., "General Spectral Camera Lens Simulation", Computer Graphics Forum 30,
+/// 2011). Of a camera that does not learn, null.
+struct PixelPupils {
+    const std::uint32_t* known;  ///< of each pixel, row by row: those through which light came in earlier passes
+    std::uint32_t* found;        ///< the same, and those of this pass
+};
+
+namespace pixel_pupil {
+
+inline constexpr int kColumns = 8, kRows = 4;
+/// Of the samples, that go anywhere: cells that look dark may still let some light pass.
+inline constexpr float kAnywhere = 0.125f;
+
+REALCAM_INLINE int cell_of(Vec2f u) {
+    return static_cast<int>(u.y * kRows) * kColumns + static_cast<int>(u.x * kColumns);
+}
+
+/// Passes end at 4, 8, 16, ... samples.
+inline constexpr std::uint32_t kFirstPass = 4;
+
+/// Number of the pass that a sample belongs to.
+REALCAM_INLINE std::uint32_t pass_of(std::uint32_t sample) {
+    std::uint32_t pass = 0;
+    for (std::uint32_t left = sample / kFirstPass; left > 0; left /= 2) ++pass;
+    return pass;
+}
+
+/// The numbers of a sample. Each pass has a sequence of its own: samples of one sequence keep away from each other, and
+/// what was learnt from the first of them would tell where the later ones are not.
+REALCAM_INLINE Vec2f random_of_pass(std::uint32_t stream, std::uint32_t sample, std::uint32_t dimension) {
+    return sample_2d(hash32(stream, pass_of(sample)), sample, dimension);
+}
+
+/// Number of the bit that has `below` others below it.
+REALCAM_INLINE int place_of_bit(std::uint32_t bits, std::uint32_t below) {
+    int place = 0;
+    for (int half = 16; half > 0; half /= 2) {
+        const std::uint32_t low = bits & ((1u << half) - 1u), count = count_bits(low);
+        const bool is_above = below >= count;
+        below -= select(is_above, count, 0u);
+        bits = select(is_above, bits >> half, low);
+        place += select(is_above, half, 0);
+    }
+    return place;
+}
+
+}  // namespace pixel_pupil
+
+/// A place in the unit square, and one over its density.
+struct GuidedPlace {
+    Vec2f place;
+    float weight;
+};
+
+/// Mixes cells that are known to let light pass with all cells, so that no light is missed whatever is known.
+REALCAM_INLINE GuidedPlace guided(std::uint32_t known, Vec2f u) {
+    using namespace pixel_pupil;
+    if (known == 0) return {u, 1.0f};
+    const std::uint32_t count = count_bits(known);
+    Vec2f place = {u.x * (1.0f / kAnywhere), u.y};
+    if (u.x >= kAnywhere) {
+        const float along = (u.x - kAnywhere) * (1.0f / (1.0f - kAnywhere)) * static_cast<float>(count);
+        const std::uint32_t below = std::min(static_cast<std::uint32_t>(along), count - 1u);
+        const int cell = place_of_bit(known, below);
+        // Rounded down, so that it stays in the cell.
+        const float within = std::min(along - static_cast<float>(below), 0x1.fffffep-1f);
+        place = {(static_cast<float>(cell % kColumns) + within) * (1.0f / kColumns),
+                 (static_cast<float>(cell / kColumns) + u.y) * (1.0f / kRows)};
+    }
+    const bool is_known = (known >> cell_of(place) & 1u) != 0;
+    const float of_cells = select(is_known, (1.0f - kAnywhere) * (kColumns * kRows) / static_cast<float>(count), 0.0f);
+    return {place, 1.0f / (kAnywhere + of_cells)};
+}
+
+}  // namespace REALCAM_NAMESPACE
