@@ -35,7 +35,18 @@ struct Place {
     std::uint32_t pixel, column, row, sample, samples, seed;
 };
 
-/// What the renderer takes: each pair of dimensions a shuffled and scrambled (0,2)-sequence by itself.
+/// What the renderer takes.
+struct Joint {
+    static constexpr const char* name = "joint";
+    static Point at(const Place& place) {
+        const std::uint32_t stream = hash32(place.pixel, place.seed);
+        const auto pair = [&](std::uint32_t number) { return sample_joint_2d(stream, place.sample, number); };
+        const Vec2f film = pair(0), pupil = pair(1), light = pair(2), time = pair(4);
+        return {film.x, film.y, pupil.x, pupil.y, light.x, light.y, time.x};
+    }
+};
+
+/// Each pair of dimensions a shuffled and scrambled (0,2)-sequence by itself.
 struct Pairs {
     static constexpr const char* name = "(0,2) pairs";
     static Point at(const Place& place) {
@@ -80,8 +91,8 @@ struct SobolMatrix {
     }
 };
 
-const SobolMatrix kSobol[] = {{1, 0, {1}},          {2, 1, {1, 3}},       {3, 1, {1, 3, 1}},
-                              {3, 2, {1, 1, 1}},    {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}};
+const SobolMatrix kSobol[] = {{1, 0, {1}},       {2, 1, {1, 3}},       {3, 1, {1, 3, 1}},
+                              {3, 2, {1, 1, 1}}, {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}};
 
 float sobol(std::uint32_t index, int dimension, std::uint32_t seed) {
     const std::uint32_t v = dimension == 0 ? reverse_bits(index) : kSobol[dimension - 1](index);
@@ -166,13 +177,12 @@ struct Eights {
     static constexpr const char* name = "(0,8)-sequence";
     static Point at(const Place& place) {
         using Matrix = FieldMatrix<3, 0b1011>;
-        static const Matrix matrices[] = {Matrix(0), Matrix(1), Matrix(2), Matrix(3),
-                                          Matrix(4), Matrix(5), Matrix(6)};
+        static const Matrix matrices[] = {Matrix(0), Matrix(1), Matrix(2), Matrix(3), Matrix(4), Matrix(5), Matrix(6)};
         const std::uint32_t stream = hash32(place.pixel, place.seed), index = shuffled(place.sample, stream);
         Point point;
         for (std::size_t d = 0; d < kDimensions; ++d)
-            point[d] = unit_float(reverse_bits(scramble_reversed(
-                reverse_bits(matrices[d](index)), hash32(stream, static_cast<std::uint32_t>(d)))));
+            point[d] = unit_float(reverse_bits(
+                scramble_reversed(reverse_bits(matrices[d](index)), hash32(stream, static_cast<std::uint32_t>(d)))));
         return point;
     }
 };
@@ -187,8 +197,9 @@ struct TwiceFour {
         Point point;
         for (std::size_t d = 0; d < kDimensions; ++d) {
             const std::uint32_t group = hash32(stream, static_cast<std::uint32_t>(d / 4));
-            point[d] = unit_float(reverse_bits(scramble_reversed(
-                reverse_bits(matrices[d % 4](shuffled(place.sample, group))), hash32(group, static_cast<std::uint32_t>(d)))));
+            point[d] =
+                unit_float(reverse_bits(scramble_reversed(reverse_bits(matrices[d % 4](shuffled(place.sample, group))),
+                                                          hash32(group, static_cast<std::uint32_t>(d)))));
         }
         return point;
     }
@@ -353,8 +364,8 @@ void compare(const std::vector<std::string>& lenses) {
     constexpr std::size_t kSamplers = sizeof...(Samplers);
     std::array<std::array<Errors, std::size(kCounts)>, kSamplers> logarithms{};
     for (const std::string& name : lenses) {
-        const Scene scene(focused(io::read_lens(name), 3000));
-        const Picture reference = picture_of<Pairs>(scene, 1u << 16, 99);
+        const Scene scene(focused(io::read_lens(name), 3500));
+        const Picture reference = picture_of<Joint>(scene, 1u << 16, 99);
         std::printf("\n%s: error, percent of the mean\n\n| samples |", name.c_str());
         for (const char* sampler : {Samplers::name...}) std::printf(" %s |", sampler);
         std::printf("\n|---|");
@@ -391,5 +402,5 @@ int main(int count, char** words) {
     std::vector<std::string> lenses(words + 1, words + count);
     if (lenses.empty())
         for (const auto& file : io::bundled_lens_files()) lenses.emplace_back(file.name);
-    compare<Pairs, Fours, Sevens, TwiceFour, Eights, MortonPairs, Random>(lenses);
+    compare<Joint, Pairs, Fours, Sevens, TwiceFour, Eights, MortonPairs, Random>(lenses);
 }

@@ -18,7 +18,8 @@ struct SampleBlock {
     alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t sample[N];
 
     REALCAM_INLINE Vec2f random(int lane, std::uint32_t dimension) const {
-        return sample_2d(stream[lane], sample[lane], dimension);
+        return dimension < kJointPairs ? sample_joint_2d(stream[lane], sample[lane], dimension)
+                                       : sample_2d(stream[lane], sample[lane], dimension);
     }
     /// Random bits of a sample that are in no sequence.
     REALCAM_INLINE std::uint32_t bits(int lane, std::uint32_t salt) const {
@@ -31,19 +32,21 @@ REALCAM_INLINE std::uint32_t pixel_stream(std::int32_t pixel, std::uint32_t seed
     return hash32(static_cast<std::uint32_t>(pixel), seed);
 }
 
-/// Dimension pairs of the random sequence.
+/// Dimension pairs of the random sequence. Those below kJointPairs, which are all up to the first bounce, are of one
+/// sequence together.
 namespace dimension {
 inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
+/// Of the time, for which most samples have no use; its second number is the wavelength's.
+inline constexpr std::uint32_t time = 4;
+inline constexpr std::uint32_t second_bounce = kJointPairs;
 /// For the end of long paths, far behind those of the last bounce.
 inline constexpr std::uint32_t roulette = 0x10000;
-/// Of the time, for which most samples have no use; its second number is the wavelength's.
-inline constexpr std::uint32_t time = 0x20000;
 /// Two pairs of diffraction's.
 inline constexpr std::uint32_t diffraction = 0x30000;
 
 /// The first of a bounce.
 REALCAM_INLINE constexpr std::uint32_t of_bounce(int bounce) {
-    return first_bounce + static_cast<std::uint32_t>(bounce) * per_bounce;
+    return bounce == 0 ? first_bounce : second_bounce + static_cast<std::uint32_t>(bounce - 1) * per_bounce;
 }
 }  // namespace dimension
 
@@ -207,7 +210,7 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
     const auto pixel_of = [&](int lane) { return block.row[lane] * camera.width + block.column[lane]; };
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
-        const GuidedPlace u = guided(camera.pixel_pupils.known[pixel_of(i)],
+        const GuidedPlace u = guided(camera.pixel_pupils.known[pixel_of(i)].promising(),
                                      pixel_pupil::random_of_pass(block.stream[i], block.sample[i], dimension::pupil));
         cells[i] = pixel_pupil::cell_of(u.place);
         const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.place.x, u.place.y);
@@ -218,8 +221,11 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
     mark_sampled(block, inside, rays);
     trace_lens(camera.lens, inside);
     place_lens_rays(camera, inside, rays);
-    for (int i = 0; i < N; ++i)
-        if (rays.passed[i]) add_bits(camera.pixel_pupils.found + pixel_of(i), 1u << cells[i]);
+    for (int i = 0; i < N; ++i) {
+        PixelPupil& pupil = camera.pixel_pupils.found[pixel_of(i)];
+        if (rays.sampled[i]) add_bits(&pupil.tried, 1u << cells[i]);
+        if (rays.passed[i]) add_bits(&pupil.passed, 1u << cells[i]);
+    }
 }
 
 /// Through the polynomials, and past the rims of first and last surface and the stop.

@@ -7,19 +7,27 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What each pixel has learnt of where light passes the lens, as bits for the cells of the unit square from which the
-/// pupil is sampled (after B. Steinert et al., "General Spectral Camera Lens Simulation", Computer Graphics Forum 30,
-/// 2011). Of a camera that does not learn, null.
+/// What a pixel has learnt of where light passes the lens: a bit for each cell of the unit square from which the pupil
+/// is sampled (after B. Steinert et al., "General Spectral Camera Lens Simulation", Computer Graphics Forum 30, 2011).
+struct PixelPupil {
+    std::uint32_t tried;   ///< to which rays were sent
+    std::uint32_t passed;  ///< and through which some came
+
+    REALCAM_INLINE std::uint32_t promising() const { return passed | ~tried; }
+};
+
+/// Of all pixels, row by row. Of a camera that does not learn, null.
 struct PixelPupils {
-    const std::uint32_t* known;  ///< of each pixel, row by row: those through which light came in earlier passes
-    std::uint32_t* found;        ///< the same, and those of this pass
+    const PixelPupil* known;  ///< from earlier passes
+    PixelPupil* found;        ///< the same, and of this pass
 };
 
 namespace pixel_pupil {
 
 inline constexpr int kColumns = 8, kRows = 4;
-/// Of the samples, that go anywhere: cells that look dark may still let some light pass.
-inline constexpr float kAnywhere = 0.125f;
+/// Of the samples, that go anywhere: cells that look dark may still let some light pass, whose few samples then have
+/// weights of up to one over this.
+inline constexpr float kAnywhere = 0.25f;
 
 REALCAM_INLINE int cell_of(Vec2f u) {
     return static_cast<int>(u.y * kRows) * kColumns + static_cast<int>(u.x * kColumns);
@@ -62,23 +70,25 @@ struct GuidedPlace {
     float weight;
 };
 
-/// Mixes cells that are known to let light pass with all cells, so that no light is missed whatever is known.
-REALCAM_INLINE GuidedPlace guided(std::uint32_t known, Vec2f u) {
+/// Mixes some cells with all cells, so that no light is missed whatever was learnt.
+REALCAM_INLINE GuidedPlace guided(std::uint32_t cells, Vec2f u) {
     using namespace pixel_pupil;
-    if (known == 0) return {u, 1.0f};
-    const std::uint32_t count = count_bits(known);
+    if (cells == 0) return {u, 1.0f};
+    const std::uint32_t count = count_bits(cells);
     Vec2f place = {u.x * (1.0f / kAnywhere), u.y};
     if (u.x >= kAnywhere) {
         const float along = (u.x - kAnywhere) * (1.0f / (1.0f - kAnywhere)) * static_cast<float>(count);
         const std::uint32_t below = std::min(static_cast<std::uint32_t>(along), count - 1u);
-        const int cell = place_of_bit(known, below);
-        // Rounded down, so that it stays in the cell.
-        const float within = std::min(along - static_cast<float>(below), 0x1.fffffep-1f);
-        place = {(static_cast<float>(cell % kColumns) + within) * (1.0f / kColumns),
-                 (static_cast<float>(cell / kColumns) + u.y) * (1.0f / kRows)};
+        const int cell = place_of_bit(cells, below);
+        // The sum of a cell's number and a share must not be rounded up to the next cell.
+        const auto within = [](int number, float share) {
+            return static_cast<float>(number) + std::min(share, 0x1.ffffep-1f);
+        };
+        place = {within(cell % kColumns, along - static_cast<float>(below)) * (1.0f / kColumns),
+                 within(cell / kColumns, u.y) * (1.0f / kRows)};
     }
-    const bool is_known = (known >> cell_of(place) & 1u) != 0;
-    const float of_cells = select(is_known, (1.0f - kAnywhere) * (kColumns * kRows) / static_cast<float>(count), 0.0f);
+    const bool is_chosen = (cells >> cell_of(place) & 1u) != 0;
+    const float of_cells = select(is_chosen, (1.0f - kAnywhere) * (kColumns * kRows) / static_cast<float>(count), 0.0f);
     return {place, 1.0f / (kAnywhere + of_cells)};
 }
 

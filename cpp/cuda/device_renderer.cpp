@@ -84,7 +84,7 @@ void DeviceRenderer::forget_pupils(bool learns) {
 
 void DeviceRenderer::learn_pupils() {
     const CurrentDevice current(ordinal_);
-    check_cuda(cudaMemcpyAsync(known_.data(), found_.data(), known_.size() * sizeof(std::uint32_t),
+    check_cuda(cudaMemcpyAsync(known_.data(), found_.data(), known_.size() * sizeof(PixelPupil),
                                cudaMemcpyDeviceToDevice, stream_),
                "copying on it");
 }

@@ -123,7 +123,7 @@ private:
     DeviceGhosts ghosts_, ghosts_of_objects_, starbursts_;
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<std::uint32_t> sample_counts_;
-    DeviceArray<std::uint32_t> known_, found_;  ///< of each pixel: PixelPupils
+    DeviceArray<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils
     DeviceArray<LayerSum> layer_sums_;
     DeviceArray<MiddleSurface> middle_surfaces_;
     DeviceArray<float> exposure_, depth_;

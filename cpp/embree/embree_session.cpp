@@ -84,7 +84,7 @@ private:
         ghosts_of_objects_ = empty_film(settings().effects.have_ghosts());
         starbursts_ = empty_film(settings().effects.diffraction);
         const bool learns = settings().pupil_sampling == PupilSampling::pixel;
-        known_.assign(learns ? pixels : 0, 0);
+        known_.assign(learns ? pixels : 0, PixelPupil{});
         found_ = known_;
         if (learns) camera_view_.pixel_pupils = {known_.data(), found_.data()};
         stats_ = {};
@@ -335,7 +335,7 @@ private:
     LastSetup last_setup_;
     std::shared_ptr<const CameraSetup> setup_;  ///< owns what the view points to
     CameraView camera_view_{};
-    std::vector<std::uint32_t> known_, found_;  ///< of each pixel: PixelPupils
+    std::vector<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils
     SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
     SplatFilm ghosts_, ghosts_of_objects_, starbursts_;

@@ -38,8 +38,13 @@ TEST_CASE("weights make up for where samples go") {
         }
         for (const double area : areas) CHECK(area == doctest::Approx(1.0 / 32).epsilon(0.01));
         const double share = std::popcount(known) / 32.0;
-        if (known) CHECK(in_known == doctest::Approx(0.875 + 0.125 * share).epsilon(0.01));
+        if (known) CHECK(in_known == doctest::Approx(0.75 + 0.25 * share).epsilon(0.01));
     }
+}
+
+TEST_CASE("cells are promising until rays sent there were lost") {
+    CHECK(PixelPupil{0, 0}.promising() == 0xffffffffu);
+    CHECK(PixelPupil{0xff, 0x0f}.promising() == 0xffffff0fu);
 }
 
 TEST_CASE("passes end where pixels learn, wherever a range begins") {

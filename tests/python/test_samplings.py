@@ -41,7 +41,7 @@ def test_pixels_learn_where_light_passes(device: str) -> None:
 
     rear, pixel, outline = (share(sampling) for sampling in ("rear_element", "pixel", "outline"))
     assert rear < pixel < outline
-    assert pixel > 0.5 * (rear + outline)
+    assert pixel > 0.6 * rear + 0.4 * outline  # a quarter of the rays goes anywhere
 
 
 def test_what_pixels_know_does_not_depend_on_threads() -> None:

@@ -298,7 +298,8 @@ def test_a_forked_process_works_or_says_why_not(concurrent: bool) -> None:
 def test_a_process_forked_amid_a_render_ends_at_once() -> None:
     """By sys.exit, which runs what waits for work under way: there is none in the child."""
     code = """
-        thread = threading.Thread(target=lambda: rc.render(room(), camera, effects=(), spp=10**6, device="cpu"), daemon=True)
+        work = lambda: rc.render(room(), camera, effects=(), spp=10**6, device="cpu")
+        thread = threading.Thread(target=work, daemon=True)
         thread.start()
         time.sleep(0.5)
         if os.fork() == 0:

@@ -121,6 +121,7 @@ def accuracy_cost(
     most_spp: int = 256,
     reference_spp: int = 4096,
     effects: Iterable[str] | None = None,
+    levels: bool = True,
     samplings: bool = True,
     progress: ProgressCallback | None = None,
 ) -> AccuracyCost:
@@ -128,8 +129,8 @@ def accuracy_cost(
 
     size: pixels of the longer side. most_spp: each level is taken with 1, 4, 16, ... samples up to these.
     reference_spp: of the picture that they are compared with: every surface, with `effects`; None: those of which the
-    lens file says what they need. samplings: whether to compare ways to sample the pupil, too. Ctrl-C ends it early;
-    what was measured until then is returned, and what is missing.
+    lens file says what they need. levels, samplings: whether to take the levels, and whether to compare ways to sample
+    the pupil. Ctrl-C ends it early; what was measured until then is returned, and what is missing.
 
     Raises what render raises.
     """
@@ -147,7 +148,7 @@ def accuracy_cost(
 
     tell(0.0)
     reference = Reference(scene, camera, wanted, reference_spp, seed, settings)
-    climbs = [(level, reference) for level in levels_of(scene, camera, wanted, **settings)]
+    climbs = [(level, reference) for level in levels_of(scene, camera, wanted, **settings)] if levels else []
     rung_count = len(climbs)
     if samplings:
         without_effects = Reference(scene, camera, (), reference_spp, seed, settings)

@@ -1,0 +1,54 @@
+"""What does it save to send rays where a lens lets them pass? For every bundled lens, at equal error.
+
+    python benchmarks/pupil_methods.py [--device cpu] [--size 96] [--most-spp 64]
+
+The time of the fitted outline over that of each other way to sample the pupil, to the error that the outline has with
+the most samples: random points all over the rear element (Kolb et al. 1995), the same stratified, the paraxial exit
+pupil, and what each pixel has learnt. "never": light is lost, so that the error stays larger.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import warnings
+
+import realcam as rc
+from tile_samples import partly_sharp
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--device", default="cpu")
+    parser.add_argument("--size", type=int, default=96)
+    parser.add_argument("--most-spp", type=int, default=64)
+    parser.add_argument("--reference-spp", type=int, default=2048)
+    words = parser.parse_args()
+    warnings.simplefilter("ignore", UserWarning)
+    for number, name in enumerate(rc.lens_names()):
+        lens = rc.Lens.load(name)
+        distance = 1.5 * max(0.3, 15 * abs(lens.first_order().effective_focal_length_mm) / 1000)
+        scene, camera = partly_sharp(name, distance, 6.0)
+        cost = rc.accuracy_cost(
+            scene,
+            camera,
+            device=words.device,
+            size=words.size,
+            most_spp=words.most_spp,
+            reference_spp=words.reference_spp,
+            effects=(),
+            levels=False,
+        )
+        if number == 0:
+            heads = [f"{rung.name} ({rung.samples_per_second / 1e6:.2g} M/s)" for rung in cost.samplings[:-1]]
+            print("| lens | " + " | ".join(heads) + " |\n|---" + "|---" * len(heads) + "|")
+        ours = cost.samplings[-1]
+        goal = ours.pictures[-1].rmse
+        found = {rung.name: rung.seconds_to(goal) / ours.seconds_to(goal) for rung in cost.samplings[:-1]}
+        cells = ["never" if math.isinf(ratio) else f"{ratio:.2f}" for ratio in found.values()]
+        impossible = f" (not {', '.join(cost.impossible)})" if cost.impossible else ""
+        print(f"| {name}{impossible} | " + " | ".join(cells) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
