@@ -176,24 +176,29 @@ def _as_disc(variance: NDArray[np.float64], noise: NDArray[np.float64]) -> Size:
 
 
 def added_codes(before: Picture, after: Picture, noise: tuple[Picture, Picture]) -> Size:
-    """What `after` has more, all pictures in codes: as the mean of the darkest tenth of all squares of 8 by 8 pixels,
-    or in the single squares of 4 by 4 and of 16 by 16 pixels that have most (99th percentile), in the channel that has
-    most."""
-    light = _squares(after.mean(axis=2, keepdims=True), 8)[..., 0]
+    """By how much light changes, all pictures in codes: as the mean of the darkest or of the brightest tenth of all
+    squares of 8 by 8 pixels (what is clipped aside), or in the single squares of 4 by 4 and of 16 by 16 pixels that
+    change most (99th percentile), in the channel that changes most."""
+    light = square_means(after.mean(axis=2, keepdims=True), 8)[..., 0]
     dark = light <= np.quantile(light, 0.1)
-    doubt = 2 * float(_squares(noise[1] - noise[0], 8)[dark].std() / np.sqrt(dark.sum()))
-    in_the_dark = float(np.abs(_squares(after - before, 8)[dark].mean(axis=0)).max())
-    veil = Size(in_the_dark, in_the_dark - doubt, in_the_dark + doubt)
-    return veil | _most_of_squares(before, after, noise, 4) | _most_of_squares(before, after, noise, 16)
+    bright = (light >= np.quantile(light[light < 250], 0.9)) & (light < 250) if (light < 250).any() else dark
+    size = _mean_of(dark, before, after, noise) | _mean_of(bright, before, after, noise)
+    return size | _most_of_squares(before, after, noise, 4) | _most_of_squares(before, after, noise, 16)
+
+
+def _mean_of(chosen: NDArray[np.bool_], before: Picture, after: Picture, noise: tuple[Picture, Picture]) -> Size:
+    doubt = 2 * float(square_means(noise[1] - noise[0], 8)[chosen].std() / np.sqrt(chosen.sum()))
+    likely = float(np.abs(square_means(after - before, 8)[chosen].mean(axis=0)).max())
+    return Size(likely, likely - doubt, likely + doubt)
 
 
 def _most_of_squares(before: Picture, after: Picture, noise: tuple[Picture, Picture], side: int) -> Size:
-    change, noises = (np.abs(_squares(picture, side)) for picture in (after - before, noise[1] - noise[0]))
+    change, noises = (np.abs(square_means(picture, side)) for picture in (after - before, noise[1] - noise[0]))
     least, most = float(np.quantile(noises, 0.99)), float(np.quantile(change, 0.99))
     return Size(float(np.sqrt(max(0, most**2 - least**2))), most - 2 * least, most + 2 * least)
 
 
-def _squares(picture: Picture, side: int) -> Picture:
+def square_means(picture: Picture, side: int = 8) -> Picture:
     height, width = (length // side for length in picture.shape[:2])
     cut = picture[: height * side, : width * side]
     return np.asarray(cut.reshape(height, side, width, side, -1).mean(axis=(1, 3)))

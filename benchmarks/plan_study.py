@@ -24,7 +24,7 @@ from statistics import median
 import flip_evaluator
 import numpy as np
 import realcam as rc
-from picture_changes import Comparison, Picture, Size, added_codes, values
+from picture_changes import Comparison, Picture, Size, added_codes, square_means, values
 from plan_shots import Shot, drawn_shot
 from realcam.bench import machine
 from srgb import srgb_codes
@@ -106,6 +106,11 @@ class Darkroom:
         except rc.InputError:  # the lens sees more than that model can
             return np.zeros_like(values(self.image((), "full", seed)))
 
+    def of_even_sky(self) -> Darkroom:
+        corner = [(0.0, 0.0, 1.0), (1e-3, 0.0, 1.0), (0.0, 1e-3, 1.0)]  # behind the camera
+        scene = rc.Scene.from_arrays(corner, [(0, 1, 2)]).with_environment(1)
+        return Darkroom(Shot("sky", scene, self.shot.camera), self.device, 256)
+
     def seconds(self, effects: Iterable[str], model: str) -> float:
         stats = self.image(effects, model).stats
         return stats.seconds - stats.setup_seconds
@@ -114,23 +119,35 @@ class Darkroom:
 def size_of(
     effect: str, unit: str, before: Picture, after: Picture, detail: Picture, noise: tuple[Picture, Picture]
 ) -> Size:
-    """Light changes slowly over a picture, and its noise is small: smaller parts show more of the corners."""
-    if effect in ("vignetting", "coatings"):
+    """Light and distortion change slowly over a picture, and their noise is small: smaller parts show more of the
+    corners."""
+    if effect == "coatings":
         return Comparison(before, after, detail, noise, parts=(8, 12)).light_codes()
     if unit == "codes":
         return added_codes(srgb_codes(before), srgb_codes(after), (srgb_codes(noise[0]), srgb_codes(noise[1])))
+    if effect == "distortion":
+        return Comparison(before, after, detail, noise, parts=(8, 12)).moved_px()
     change = Comparison(before, after, detail, noise, is_diffraction=effect == "diffraction")
     if effect == "diffraction":
         return change.airy_diameter_px()
-    if effect == "distortion":
-        return change.moved_px()
     return change.colours_px() if effect == "dispersion" else change.blurred_px()
+
+
+def vignetting_codes(room: Darkroom, plain: Picture) -> Size:
+    """What the two models make of an even sky, at the brightness of the picture: nothing else changes there."""
+    sky = room.of_even_sky()
+    without, with_it = (square_means(sky.values((), model)) for model in MODELS["vignetting"])
+    light = square_means(plain)
+    codes = np.abs(srgb_codes(light * without / np.maximum(with_it, 1e-12)) - srgb_codes(light)).max(axis=2)
+    return Size(*3 * (float(codes.max()),))
 
 
 def measured(effect: str, unit: str, room: Darkroom, everything: frozenset[str]) -> Size | None:
     """By leaving it out; None where there is no such effect in pictures."""
     detail, full, plain = room.values((), seed=3), room.values(everything), room.values(())
     plain_noise = (plain, room.values((), seed=2))
+    if effect == "vignetting":
+        return vignetting_codes(room, plain)
     if effect in MODELS:
         without, with_it = (room.values((), model) for model in MODELS[effect])
         return size_of(effect, unit, without, with_it, detail, plain_noise)
@@ -265,6 +282,16 @@ def write_page() -> None:
     PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+def gpu_name() -> str:
+    """As the list of devices has it."""
+    return next(line.split(": ", 1)[1] for line in rc.devices() if line.startswith("cuda"))
+
+
+def write_record(path: Path, where: str, outcomes: list[Outcome]) -> None:
+    record = {"where": where, "machine": machine(), "outcomes": [asdict(outcome) for outcome in outcomes]}
+    path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device", default="cpu")
@@ -277,7 +304,9 @@ def main() -> None:
     if words.page:
         return write_page()
     warnings.simplefilter("ignore", UserWarning)
-    outcomes = []
+    outcomes: list[Outcome] = []
+    device = machine()["processor"] if words.device == "cpu" else gpu_name()
+    where = f"{device}, {words.spp} samples, shots of seed {words.seed}"
     for number in range(words.shots):
         outcome = outcome_of(drawn_shot(number, words.seed), words.device, words.spp)
         outcomes.append(outcome)
@@ -287,12 +316,9 @@ def main() -> None:
                 between = f"{d.measured_at_least:.2g} to {d.measured_at_most:.2g}"
                 sizes = f"foreseen {d.foreseen:.3g}, measured {d.measured:.3g} ({between}) {d.unit}"
                 print(f"    {d.verdict}: {d.effect} {sizes}", flush=True)
+        if words.output:
+            write_record(words.output, where, outcomes)
     print("\n" + "\n".join(summary(outcomes)))
-    if words.output:
-        device = machine()["processor"] if words.device == "cpu" else words.device
-        where = f"{device}, {words.spp} samples, shots of seed {words.seed}"
-        record = {"where": where, "machine": machine(), "outcomes": [asdict(outcome) for outcome in outcomes]}
-        words.output.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

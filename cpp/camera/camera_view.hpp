@@ -26,7 +26,7 @@ enum class CameraModel : int {
 };
 
 /// Whether rays are sent where the real lens lets light pass.
-inline bool has_real_pupil(CameraModel model) {
+REALCAM_INLINE bool has_real_pupil(CameraModel model) {
     return model == CameraModel::polynomial_lens || model == CameraModel::full_lens ||
            model == CameraModel::full_lens_double;
 }

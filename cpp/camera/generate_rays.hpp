@@ -210,8 +210,8 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
     const auto pixel_of = [&](int lane) { return block.row[lane] * camera.width + block.column[lane]; };
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
-        const GuidedPlace u = guided(camera.pixel_pupils.known[pixel_of(i)].promising(),
-                                     pixel_pupil::random_of_pass(block.stream[i], block.sample[i], dimension::pupil));
+        const GuidedPlace u =
+            guided(camera.pixel_pupils.known[pixel_of(i)].promising(), block.random(i, dimension::pupil));
         cells[i] = pixel_pupil::cell_of(u.place);
         const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.place.x, u.place.y);
         inside.origin.set(i, {at.x, at.y, camera.film_distance});

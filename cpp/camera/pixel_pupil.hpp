@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "../math/lanes.hpp"
-#include "../math/random.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -35,19 +34,6 @@ REALCAM_INLINE int cell_of(Vec2f u) {
 
 /// Passes end at 4, 8, 16, ... samples.
 inline constexpr std::uint32_t kFirstPass = 4;
-
-/// Number of the pass that a sample belongs to.
-REALCAM_INLINE std::uint32_t pass_of(std::uint32_t sample) {
-    std::uint32_t pass = 0;
-    for (std::uint32_t left = sample / kFirstPass; left > 0; left /= 2) ++pass;
-    return pass;
-}
-
-/// The numbers of a sample. Each pass has a sequence of its own: samples of one sequence keep away from each other, and
-/// what was learnt from the first of them would tell where the later ones are not.
-REALCAM_INLINE Vec2f random_of_pass(std::uint32_t stream, std::uint32_t sample, std::uint32_t dimension) {
-    return sample_2d(hash32(stream, pass_of(sample)), sample, dimension);
-}
 
 /// Number of the bit that has `below` others below it.
 REALCAM_INLINE int place_of_bit(std::uint32_t bits, std::uint32_t below) {

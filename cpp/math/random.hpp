@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <utility>
 
 #include "vec3.hpp"
 
@@ -96,21 +97,25 @@ inline constexpr SobolMatrix kSobol[kJointPairs - 1][2] = {
     {{5, 4, {1, 1, 5, 5, 5}}, {5, 7, {1, 1, 7, 11, 19}}},
 };
 
+/// Adds the columns of `bits` to both numbers of a pair. As constants in the code: a GPU cannot look them up here.
+template <std::uint32_t pair, int first, int... bits>
+REALCAM_INLINE void add_columns(std::uint32_t index, std::uint32_t& x, std::uint32_t& y,
+                                std::integer_sequence<int, bits...>) {
+    const auto add = [&]<int bit>(std::integral_constant<int, bit>) {
+        constexpr std::uint32_t of_x = kSobol[pair - 1][0].columns[bit], of_y = kSobol[pair - 1][1].columns[bit];
+        const std::uint32_t wanted = 0u - (index >> bit & 1u);
+        x ^= of_x & wanted;
+        y ^= of_y & wanted;
+    };
+    (add(std::integral_constant<int, first + bits>{}), ...);
+}
+
 template <std::uint32_t pair>
 REALCAM_INLINE void sobol_pair(std::uint32_t index, std::uint32_t& x, std::uint32_t& y) {
     x = y = 0;
-    REALCAM_UNROLL
-    for (int i = 0; i < kQuickBits; ++i) {
-        const std::uint32_t wanted = 0u - (index >> i & 1u);
-        x ^= kSobol[pair - 1][0].columns[i] & wanted;
-        y ^= kSobol[pair - 1][1].columns[i] & wanted;
-    }
-    if (index >> kQuickBits == 0) return;
-    for (int i = kQuickBits; i < 32; ++i) {
-        const std::uint32_t wanted = 0u - (index >> i & 1u);
-        x ^= kSobol[pair - 1][0].columns[i] & wanted;
-        y ^= kSobol[pair - 1][1].columns[i] & wanted;
-    }
+    add_columns<pair, 0>(index, x, y, std::make_integer_sequence<int, kQuickBits>{});
+    if (index >> kQuickBits != 0)
+        add_columns<pair, kQuickBits>(index, x, y, std::make_integer_sequence<int, 32 - kQuickBits>{});
 }
 
 }  // namespace random_detail

@@ -17,9 +17,10 @@ inline constexpr double kWideDisc = 10;
 
 /// How a picture through another camera model differs from that through every surface: the most over the film.
 struct ModelError {
-    double moved_px = 0;    ///< by which it shows things elsewhere
-    double blur_px = 0;  ///< difference of the diameters of discs of confusion; of discs wider than kWideDisc as many
-                         ///< times less as they are wider, because of those a twentieth is not seen
+    // Of what discs of confusion wider than kWideDisc blur, as many times less as they are wider: of those a twentieth
+    // is not seen.
+    double moved_px = 0;  ///< by which it shows things elsewhere
+    double blur_px = 0;  ///< difference of the diameters of discs of confusion
     double light_codes = 0;  ///< by which it is brighter or darker
 
     bool is_within(const PlanThresholds& thresholds) const {
@@ -29,6 +30,7 @@ struct ModelError {
 
 struct LensErrors {
     ModelError pinhole, thin, mapped, thick;
+    double defocus_px = 0;  ///< widest disc of confusion of a lens without aberrations
     double lateral_colour_px = 0;  ///< between blue and red light
     double axial_colour_px = 0;  ///< difference of the diameters of their discs of confusion
     double film_sine = 0;  ///< of half the angle at which the film's middle sees the aperture
@@ -45,9 +47,10 @@ inline void raise(double& most, double value) {
 }
 
 inline void compare(const BundleSpot& full, const BundleSpot& other, double px_per_mm, ModelError& error) {
-    raise(error.moved_px, px_per_mm * std::hypot(full.x - other.x, full.y - other.y));
     const double smaller = px_per_mm * std::min(full.diameter, other.diameter);
-    raise(error.blur_px, px_per_mm * std::fabs(full.diameter - other.diameter) / std::max(1.0, smaller / kWideDisc));
+    const double visible = px_per_mm / std::max(1.0, smaller / kWideDisc);
+    raise(error.moved_px, visible * std::hypot(full.x - other.x, full.y - other.y));
+    raise(error.blur_px, visible * std::fabs(full.diameter - other.diameter));
 }
 
 /// Where the scene is, and where it would be sharp, as far as that lies between.
@@ -111,7 +114,9 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
         for (const double depth : depths) {
             const BundleSpot spot = spot_of(traced, full.circle, depth);
             compare(spot, spot_of(pinhole, full.circle, depth), px_per_mm, errors.pinhole);
-            compare(spot, spot_of(thin, full.circle, depth), px_per_mm, errors.thin);
+            const BundleSpot without_aberrations = spot_of(thin, full.circle, depth);
+            raise(errors.defocus_px, px_per_mm * without_aberrations.diameter);
+            compare(spot, without_aberrations, px_per_mm, errors.thin);
             compare(spot, spot_of(mapped, full.circle, depth), px_per_mm, errors.mapped);
             compare(spot, spot_of(thick, full.circle, depth), px_per_mm, errors.thick);
             ModelError colour;

@@ -269,6 +269,12 @@ inline double starburst_codes(const Camera& camera, const SceneFacts& facts) {
     return codes;
 }
 
+/// By how much more an aperture with a dark middle softens what is large than an open one. What diffraction takes from
+/// the contrast of coarse detail is in the ratio of the aperture's edge to its area: 1 / (1 - the ratio of the radii).
+inline double edge_of_obstruction(const LensSystem& lens) {
+    return 1 / (1 - std::sqrt(1 - unobstructed_share(lens, lens.wavelength_nm)));
+}
+
 /// Diameter of the disc within Airy's first dark ring, in the middle of the film. `film_sine`: see LensErrors.
 inline double airy_diameter_px(const Camera& camera, double film_sine) {
     return 1.22 * light_effects_detail::kGreen_mm / film_sine * camera.film.width / camera.film.width_mm;

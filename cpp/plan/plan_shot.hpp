@@ -153,8 +153,13 @@ private:
 
     void decide_diffraction() {
         const double airy = airy_diameter_px(camera_, errors_.film_sine), star = starburst_codes(camera_, facts_);
-        if (airy / request_.thresholds.pixels >= star / request_.thresholds.codes)
-            decide("diffraction", airy, SizeUnit::pixels, "Airy's disc is " + px(airy) + " wide");
+        const double more = edge_of_obstruction(camera_.lens), spread = more * airy;
+        if (spread / request_.thresholds.pixels >= star / request_.thresholds.codes)
+            decide("diffraction", spread, SizeUnit::pixels,
+                   more == 1 ? "Airy's disc is " + px(airy) + " wide"
+                             : "with the edge of what blocks the lens's middle, as much light is spread as by an "
+                               "Airy disc of " +
+                                   px(spread));
         else
             decide("diffraction", star, SizeUnit::codes, "two pixels beside lamps stars bring " + codes(star));
     }
@@ -191,8 +196,8 @@ private:
             plan_.decisions.push_back({name, size, unit, threshold, is_kept, by, 0,
                                        reason + (comes_along ? "; it comes along with the camera model" : "")});
         };
-        add("defocus", errors_.pinhole.blur_px, SizeUnit::pixels, !is_pinhole,
-            "discs of confusion are up to " + px(errors_.pinhole.blur_px) + " wide");
+        add("defocus", errors_.defocus_px, SizeUnit::pixels, !is_pinhole,
+            "discs of confusion are up to " + px(errors_.defocus_px) + " wide");
         add("aberrations", errors_.mapped.blur_px, SizeUnit::pixels, is_full,
             "a thin lens's discs of confusion differ by " + px(errors_.mapped.blur_px));
         add("distortion", errors_.thin.moved_px, SizeUnit::pixels, has_map,

@@ -15,7 +15,9 @@ namespace REALCAM_NAMESPACE {
 ///
 /// The film is divided into tiles, and each tile into two halves like the squares of a chessboard. How many samples
 /// the pixels of one half get is decided by what those of the other half have shown: a number of samples that depends
-/// on the samples themselves would bias their mean, because pixels that happen to miss bright things look finished.
+/// on the samples themselves would bias their mean, because pixels that happen to miss bright things look finished. For
+/// the same reason a half that is finished stays so, whatever the other one finds later. It may have gone on looking
+/// because this half had bright samples; more samples would level these out, and never dark ones.
 ///
 /// Noise is measured by doubling: a picture of n samples and the same with n more differ by as much as n samples err.
 /// The samples of a pixel are stratified, so that where it is smooth its variance falls faster than with 1 / n, like
@@ -44,10 +46,11 @@ public:
     }
 
     /// Samples that each pixel is to get more; all 0: it is finished. `most`: of all pixels together, about.
-    std::vector<std::uint32_t> next(double most) const {
+    std::vector<std::uint32_t> next(double most) {
         std::vector<double> wanted(halves_.size());
         double sum = 0;
         for (std::size_t h = 0; h < halves_.size(); ++h) {
+            halves_[h].is_finished |= end_of(other(h)) <= halves_[h].samples;
             wanted[h] = next_of(halves_[h], other(h));
             sum += wanted[h] * halves_[h].pixels;
         }
@@ -88,7 +91,7 @@ public:
             worst = {noise, true, end_of(halves_[h])};
         }
         for (std::size_t h = 0; h < halves_.size(); ++h)
-            worst.is_reached &= halves_[h].pixels == 0 || end_of(other(h)) <= halves_[h].samples;
+            worst.is_reached &= halves_[h].pixels == 0 || halves_[h].is_finished;
         return worst;
     }
 
@@ -96,6 +99,7 @@ public:
     double left() const {
         double sum = 0;
         for (std::size_t h = 0; h < halves_.size(); ++h) {
+            if (halves_[h].is_finished) continue;
             const double end = std::min(end_of(other(h)), static_cast<double>(goal_.most_samples));
             sum += halves_[h].pixels * std::max(0.0, end - halves_[h].samples);
         }
@@ -103,13 +107,17 @@ public:
     }
 
 private:
+    /// More is too good to be believed of few doublings.
+    static constexpr double kMostDecay = 1.5;
+
     /// The pixels of a tile that are decided upon together.
     struct Half {
         double pixels = 0, samples = 0;
+        bool is_finished = false;
         double mean = 0;
         double first_difference = 0, doublings = 0;  ///< mean square of the first doubling; how many there were
         double variance = -1;  ///< of a pixel's mean; below 0: not known yet
-        double decay = 1;      ///< p: variance falls with samples^-p
+        double decay = 1;  ///< p: variance falls with samples^-p
 
         void add(double square, double taken) {
             if (taken < samples) {
@@ -120,7 +128,7 @@ private:
                 if (doublings == 0)
                     first_difference = square;
                 else if (square > 0)
-                    decay = std::clamp((std::log2(first_difference / square) - 0.5) / doublings, 1.0, 1.75);
+                    decay = std::clamp((std::log2(first_difference / square) - 0.5) / doublings, 1.0, kMostDecay);
                 ++doublings;
                 variance = square / (std::exp2(decay) - 1);
             }
@@ -174,9 +182,9 @@ private:
     /// Of a half, by what the other has shown: as many as it has, or fewer where that is expected to be enough.
     double next_of(const Half& half, const Half& shown) const {
         const double most = std::min(half.samples, static_cast<double>(goal_.most_samples) - half.samples);
-        if (half.pixels == 0 || most < 1) return 0;
-        // In quarters: the strata of the sequence are powers of two.
-        const double step = std::max(1.0, half.samples / 4);
+        if (half.is_finished || half.pixels == 0 || most < 1) return 0;
+        // Where samples are better than random because they are stratified, they are so in powers of two.
+        const double step = std::max(1.0, shown.decay > 1 ? half.samples : half.samples / 4);
         return std::clamp(std::ceil((end_of(shown) - half.samples) / step) * step, 0.0, most);
     }
 

@@ -121,6 +121,7 @@ TEST_CASE("of noise that is not there no samples are taken, and what is clipped 
     AdaptiveSampling bright(kSide, kSide, {}, 1e6, exposure, samples);
     for (std::size_t i = 0; i < exposure.size(); ++i) exposure[i] += 0.5f * static_cast<float>(i % 2);
     bright.add(exposure, eight);
+    CHECK(bright.next(1e18) == std::vector<std::uint32_t>(kSide * kSide, 0));
     CHECK(bright.reached().is_reached);
 }
 
@@ -156,4 +157,44 @@ TEST_CASE("goals that are none are refused") {
     CHECK_THROWS_AS(goal_of({0.01, 1, {}, {}}), InputError);
     CHECK(goal_of({0.01, {}, {}, {}}).unit == NoiseUnit::relative);
     CHECK(goal_of({}) == NoiseGoal{});
+}
+
+// Light that one sample in 2500 meets, in a tile that most often sees nothing of it while it is decided that its eight
+// or sixteen samples are enough.
+TEST_CASE("stopping does not bias the mean") {
+    constexpr int kSide = 16, kPictures = 1500;
+    constexpr double kDark = 0.08, kLamp = 100, kChance = 4e-4;
+    constexpr std::size_t kPixels = kSide * kSide;
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> uniform;
+    double sum = 0, squares = 0;
+    for (int picture = 0; picture < kPictures; ++picture) {
+        std::vector<double> light(kPixels);
+        std::vector<std::int64_t> samples(kPixels);
+        std::vector<float> exposure(3 * kPixels);
+        const auto take = [&](const std::vector<std::uint32_t>& counts) {
+            for (std::size_t i = 0; i < kPixels; ++i) {
+                for (std::uint32_t k = 0; k < counts[i]; ++k)
+                    light[i] += kDark + (uniform(random) < kChance ? kLamp : 0);
+                samples[i] += counts[i];
+                for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
+                    exposure[c] = static_cast<float>(light[i] / static_cast<double>(samples[i]));
+            }
+        };
+        const std::vector<std::uint32_t> eight(kPixels, 8);
+        take(eight);
+        AdaptiveSampling tiles(kSide, kSide, {0.3, NoiseUnit::relative, 256}, 100, exposure, samples);
+        for (std::vector<std::uint32_t> counts = eight; *std::max_element(counts.begin(), counts.end()) > 0;
+             counts = tiles.next(1e18)) {
+            take(counts);
+            tiles.add(exposure, counts);
+        }
+        double mean = 0;
+        for (std::size_t i = 0; i < kPixels; ++i) mean += light[i] / static_cast<double>(samples[i]) / kPixels;
+        sum += mean / kPictures;
+        squares += mean * mean / kPictures;
+    }
+    const double error = std::sqrt((squares - sum * sum) / kPictures);
+    CHECK(error < 0.02 * kLamp * kChance);
+    CHECK(std::fabs(sum - (kDark + kLamp * kChance)) < 4 * error);
 }

@@ -38,7 +38,7 @@ def converged() -> np.ndarray:
 
 
 def test_every_tile_reaches_the_noise_and_none_gets_many_more_samples(device: str, converged: np.ndarray) -> None:
-    goal = 0.02
+    goal = 0.005
     image = rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=goal, device=device, layers="sample_count")
     counts = image.layers["sample_count"]
     assert image.spp == pytest.approx(counts.mean(), abs=0.51)
@@ -66,8 +66,8 @@ def test_codes_are_those_of_the_developed_picture(device: str, converged: np.nda
     noise = tiles((codes(image.pixels.astype(np.float64)) - codes(converged)) ** 2)
     assert 1.5 < noise.max() < 3.6
     # What is clipped has no noise.
-    white = rc.render(half_noisy(), camera(iso=1e4 * iso), effects=(), spp="auto", device=device)
-    assert white.spp < image.spp / 2
+    white = rc.render(scenes.sky(), camera(iso=1e4 * iso), effects=(), spp="auto", device=device)
+    assert white.spp == 16
 
 
 def test_stopping_by_noise_does_not_bias_the_mean(device: str) -> None:
@@ -79,7 +79,7 @@ def test_stopping_by_noise_does_not_bias_the_mean(device: str) -> None:
         rc.render(scene, view, effects=(), spp=2**14, seed=1000, device=device).pixels.astype(np.float64).mean()
     )
     means, spp = [], []
-    for seed in range(48):
+    for seed in range(96):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             image = rc.render(scene, view, effects=(), spp="auto", noise=0.3, max_spp=256, seed=seed, device=device)

@@ -169,7 +169,7 @@ def test_three_blades_make_a_triangle_of_the_same_area() -> None:
     def blurred(blades: int) -> np.ndarray:
         lens = rc.Lens(surfaces=surfaces, iris_blades=blades, allow_crossing=True)
         lens = lens.focused((FOCUS_MM + IMAGE_MM) / 1000).stopped_down(16)
-        return picture(lens, mark_at(700 + IMAGE_MM, IMAGE_MM / 700, (0, 0)), model="full")
+        return picture(lens, mark_at(700 + IMAGE_MM, IMAGE_MM / 700, (0, 0)), model="full", spp=4 * SPP)
 
     round_blur, triangle = blurred(0), blurred(3)
     # f-numbers mean the same light. Of the samples over the circle that holds the triangle, 41% pass.

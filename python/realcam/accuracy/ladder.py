@@ -227,6 +227,9 @@ def _climb(
     noise2 = mean_square(picture, second) / 2
     mean = (picture + second) / 2
     bias2 = mean_square(mean, reference.codes) - noise2 / 2 - reference.variance
+    # A mean square of so many numbers is itself uncertain; what is less than three times that may be noise.
+    if bias2 < 3 * math.sqrt(2 / picture.size) * (noise2 + reference.variance):
+        bias2 = 0.0
     stats = image.stats
     busy = max(stats.lens_seconds + stats.scene_seconds + stats.other_seconds, 1e-12)
     return Rung(
