@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import realcam as rc
 from plan_shots import board, scene_of
-from srgb import srgb_codes
+from realcam.accuracy.errors import codes
 
 SIZE = (240, 160)
 TILE = 16
@@ -50,7 +50,7 @@ def shots() -> Iterator[tuple[str, rc.Scene, rc.Camera]]:
     demo = Path(__file__).parents[1] / "scenes" / "demo.toml"
     try:
         shot = rc.Shot.load(demo)
-    except rc.InputError as missing:  # of a build without OpenImageIO
+    except (rc.InputError, rc.ImageFileError) as missing:  # of a build without OpenImageIO
         print(missing)
         return
     film = shot.camera.film
@@ -61,15 +61,11 @@ class Noise:
     """Of pictures of one shot, against one of many samples."""
 
     def __init__(self, reference: rc.Image) -> None:
-        self.reference = self.codes(reference)
-
-    @staticmethod
-    def codes(image: rc.Image) -> np.ndarray:
-        return srgb_codes(0.018 * image.camera.iso * image.pixels.astype(np.float64))
+        self.reference = codes(reference)
 
     def of(self, image: rc.Image) -> tuple[float, float]:
         """Of the noisiest tile but one in a hundred, and of all."""
-        squares = (self.codes(image) - self.reference) ** 2
+        squares = (codes(image) - self.reference) ** 2
         rows, columns = (length // TILE for length in squares.shape[:2])
         tiles = squares[: rows * TILE, : columns * TILE].reshape(rows, TILE, columns, TILE, 3).mean(axis=(1, 3, 4))
         return float(np.sqrt(np.quantile(tiles, 0.99))), float(np.sqrt(squares.mean()))

@@ -9,7 +9,8 @@
 
 namespace realcam::shot {
 
-// The words for camera models, tone curves, light transport and pupil sampling, as command line and shot files have them.
+// The words for camera models, tone curves, light transport and pupil sampling, as command line and shot files have
+// them.
 
 inline constexpr const char* kModelNames = "full, full_double, polynomial, thick, mapped, thin or pinhole";
 inline constexpr const char* kToneNames = "film or linear";

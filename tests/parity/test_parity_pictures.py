@@ -111,7 +111,7 @@ SCENES = {
 
 
 def pictures(scene: rc.Scene, camera: rc.Camera, devices: tuple[str, str], **options: Any) -> list[rc.Image]:
-    return [rc.render(scene, camera, effects=(), device=device, **options) for device in devices]
+    return [rc.render(scene, camera, device=device, **{"effects": (), **options}) for device in devices]
 
 
 def hold_parity(a: rc.Image, b: rc.Image) -> None:

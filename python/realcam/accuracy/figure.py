@@ -9,6 +9,7 @@ from pathlib import Path
 
 import matplotlib
 import matplotlib.figure
+import matplotlib.ticker
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -65,6 +66,10 @@ def _draw_errors(axes: Axes, rungs: tuple[Rung, ...]) -> None:
         _draw_rung(axes, rung, colour)
     _draw_frontier(axes, rungs)
     axes.set(xscale="log", yscale="log", xlabel="seconds of samples", ylabel="error, root mean square, 8-bit codes")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     axes.grid(which="both", alpha=0.2)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=8, frameon=False)
 
