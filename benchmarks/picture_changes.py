@@ -84,6 +84,7 @@ def terms_of(picture: Picture, blur: Callable[[Picture], Picture]) -> Picture:
 
 LEAST_SLOPE = 0.004  # a pixel, of white
 ACROSS, DOWN, BLUR, LIGHT = range(4)
+WIDE_SHARE = 0.05  # of the diameter of a wide disc: as much as half a pixel where all is sharp
 
 
 class Comparison:
@@ -91,7 +92,8 @@ class Comparison:
     in noise like that of `after` (all (H, W, 3), linear).
 
     found, noise: (parts, 3 channels, 4), of the change and of noise alone: shift in px, strength of the blur, and light
-    in 8-bit codes. What diffraction alone blurs is told so; else the blur is told by its variance, px^2.
+    in 8-bit codes. What diffraction alone blurs is told so; else the blur is told by its variance, px^2: less of parts
+    that are soft already, against a `sharp` picture, as the planner has it (blur_between in cpp/plan/lens_errors.hpp).
     """
 
     def __init__(
@@ -102,11 +104,15 @@ class Comparison:
         noise: tuple[Picture, Picture],
         parts: tuple[int, int] = (4, 6),
         is_diffraction: bool = False,
+        sharp: Picture | None = None,
     ) -> None:
         before, after, detail = smooth(before), smooth(after), smooth(detail)
         blur = diffracted if is_diffraction else (lambda picture: laplacian(picture) / 2)
         terms, instruments, change = terms_of(before, blur), terms_of(detail, blur), after - before
         noises = smooth(noise[1]) - smooth(noise[0])
+        if sharp is not None:
+            sharp = smooth(sharp)
+            sharp_terms, softer = terms_of(sharp, blur), before - sharp
         answers = []
         for part in parts_of(before, *parts):
             across, down = instruments[ACROSS][part].ravel(), instruments[DOWN][part].ravel()
@@ -114,6 +120,9 @@ class Comparison:
             if np.linalg.eigvalsh(np.cov(across, down, ddof=0))[0] < LEAST_SLOPE**2:
                 continue
             answer = np.array([self._solve(terms, instruments, (change, noises), part, c) for c in range(3)])
+            if sharp is not None:
+                base = [self._solve(sharp_terms, sharp_terms, (softer,), part, c)[0, BLUR] for c in range(3)]
+                answer[..., BLUR] /= 1 + 8 * WIDE_SHARE * 16 * max(0.0, float(np.mean(base)))
             if np.isfinite(answer).all():
                 answers.append(answer)
         self.found, self.noise = np.moveaxis(np.array(answers).reshape(-1, 3, 2, 4), 2, 0)
@@ -122,7 +131,7 @@ class Comparison:
     def _solve(
         terms: Picture,
         instruments: Picture,
-        wanted: tuple[Picture, Picture],
+        wanted: tuple[Picture, ...],
         part: tuple[np.ndarray, ...],
         channel: int,
     ) -> NDArray[np.float64]:
@@ -132,7 +141,7 @@ class Comparison:
         try:
             answers = np.linalg.solve(z @ x.T, z @ y).T
         except np.linalg.LinAlgError:
-            return np.full((2, 4), np.nan)
+            return np.full((len(wanted), 4), np.nan)
         mean = x[3].mean()
         brighter = mean + answers[:, 3] * mean + answers[:, 4]
         return np.column_stack([answers[:, :3], srgb_codes(brighter) - srgb_codes(mean)])

@@ -15,12 +15,19 @@ namespace REALCAM_NAMESPACE {
 /// Pixels.
 inline constexpr double kWideDisc = 10;
 
+/// By how much one disc blurs more than another, px: the diameter of a disc that makes the sharper one's picture as
+/// soft as the other's. A picture has as much detail at every scale (its spectrum falls with the frequency), so that of
+/// wide discs the share counts by which they differ: kShare of the diameter as much as half a pixel where all is sharp.
+inline double blur_between(double a, double b) {
+    constexpr double kShare = 0.05;
+    const double smaller = std::min(a, b), visible = 1 + 8 * kShare * smaller * smaller;
+    return std::sqrt(std::fabs(a * a - b * b) / visible);
+}
+
 /// How a picture through another camera model differs from that through every surface: the most over the film.
 struct ModelError {
-    // Of what discs of confusion wider than kWideDisc blur, as many times less as they are wider: of those a twentieth
-    // is not seen.
-    double moved_px = 0;  ///< by which it shows things elsewhere
-    double blur_px = 0;  ///< difference of the diameters of discs of confusion
+    double moved_px = 0;  ///< by which it shows things elsewhere; less of what discs wider than kWideDisc blur
+    double blur_px = 0;  ///< see blur_between
     double light_codes = 0;  ///< by which it is brighter or darker
 
     bool is_within(const PlanThresholds& thresholds) const {
@@ -32,7 +39,7 @@ struct LensErrors {
     ModelError pinhole, thin, mapped, thick;
     double defocus_px = 0;  ///< widest disc of confusion of a lens without aberrations
     double lateral_colour_px = 0;  ///< between blue and red light
-    double axial_colour_px = 0;  ///< difference of the diameters of their discs of confusion
+    double axial_colour_px = 0;  ///< by which one of them is blurred more
     double film_sine = 0;  ///< of half the angle at which the film's middle sees the aperture
 };
 
@@ -50,14 +57,18 @@ inline void compare(const BundleSpot& full, const BundleSpot& other, double px_p
     const double smaller = px_per_mm * std::min(full.diameter, other.diameter);
     const double visible = px_per_mm / std::max(1.0, smaller / kWideDisc);
     raise(error.moved_px, visible * std::hypot(full.x - other.x, full.y - other.y));
-    raise(error.blur_px, visible * std::fabs(full.diameter - other.diameter));
+    raise(error.blur_px, blur_between(px_per_mm * full.diameter, px_per_mm * other.diameter));
 }
 
-/// Where the scene is, and where it would be sharp, as far as that lies between.
+/// Codes of a tile that is so dark that nothing in it is seen to be blurred: it may be black and twice as bright, and
+/// half a pixel of blur takes an eighth of that.
+inline constexpr double kDarkCodes = 4;
+
+/// Where something is seen of the scene, and where it would be sharp, as far as that lies between.
 inline std::vector<double> depths_of(const SceneFacts& facts, const LensSystem& lens) {
     double nearest = kInfinity, farthest = 0;
     for (const SeenTile& tile : facts.tiles) {
-        if (!(tile.depth_mm > 0)) continue;
+        if (!(tile.depth_mm > 0) || code_of(tile.value) < kDarkCodes) continue;
         nearest = std::min(nearest, tile.depth_mm);
         farthest = std::max(farthest, tile.depth_mm);
     }

@@ -68,8 +68,8 @@ public:
         plan_.effects = without_plan(request_.effects);
         decide_coatings();
         decide_ghosts();
-        decide_colour();
         decide_diffraction();
+        decide_colour();
         decide_motion();
         decide_model();
         return plan_;
@@ -138,19 +138,6 @@ private:
         if (is_kept) coating_colour_codes_ = std::max(coating_colour_codes_, light.colour_codes);
     }
 
-    /// Of glass, and of coatings, which without dispersion are of one wavelength.
-    void decide_colour() {
-        const double lateral = errors_.lateral_colour_px, axial = errors_.axial_colour_px;
-        const double size = std::max(lateral, axial);
-        if (size / request_.thresholds.pixels < coating_colour_codes_ / request_.thresholds.codes)
-            decide("dispersion", coating_colour_codes_, SizeUnit::codes,
-                   "what the coatings reflect has a colour of " + codes(coating_colour_codes_));
-        else
-            decide("dispersion", size, SizeUnit::pixels,
-                   lateral >= axial ? "blue and red light fall " + px(size) + " apart"
-                                    : "discs of confusion of blue and red light differ by " + px(size));
-    }
-
     void decide_diffraction() {
         const double airy = airy_diameter_px(camera_, errors_.film_sine), star = starburst_codes(camera_, facts_);
         const double more = edge_of_obstruction(camera_.lens), spread = more * airy;
@@ -162,6 +149,20 @@ private:
                                    px(spread));
         else
             decide("diffraction", star, SizeUnit::codes, "two pixels beside lamps stars bring " + codes(star));
+    }
+
+    /// Of glass; and of coatings, which are of one wavelength where neither dispersion nor diffraction brings others.
+    void decide_colour() {
+        const double lateral = errors_.lateral_colour_px, axial = errors_.axial_colour_px;
+        const double size = std::max(lateral, axial);
+        const double of_coatings = plan_.effects.diffraction ? 0.0 : coating_colour_codes_;
+        if (size / request_.thresholds.pixels < of_coatings / request_.thresholds.codes)
+            decide("dispersion", of_coatings, SizeUnit::codes,
+                   "what the coatings reflect has a colour of " + codes(of_coatings));
+        else
+            decide("dispersion", size, SizeUnit::pixels,
+                   lateral >= axial ? "blue and red light fall " + px(size) + " apart"
+                                    : "blue and red light are not blurred alike, by a disc of " + px(size));
     }
 
     void decide_motion() {
@@ -199,7 +200,7 @@ private:
         add("defocus", errors_.defocus_px, SizeUnit::pixels, !is_pinhole,
             "discs of confusion are up to " + px(errors_.defocus_px) + " wide");
         add("aberrations", errors_.mapped.blur_px, SizeUnit::pixels, is_full,
-            "a thin lens's discs of confusion differ by " + px(errors_.mapped.blur_px));
+            "a thin lens's picture is sharper or softer by a disc of " + px(errors_.mapped.blur_px));
         add("distortion", errors_.thin.moved_px, SizeUnit::pixels, has_map,
             "a thin lens shows things " + px(errors_.thin.moved_px) + " elsewhere");
         add("vignetting", errors_.thin.light_codes, SizeUnit::codes, has_map,

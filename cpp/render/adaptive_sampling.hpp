@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "../camera/picture_codes.hpp"
@@ -21,8 +22,8 @@ namespace REALCAM_NAMESPACE {
 ///
 /// Noise is measured by doubling: a picture of n samples and the same with n more differ by as much as n samples err.
 /// The samples of a pixel are stratified, so that where it is smooth its variance falls faster than with 1 / n, like
-/// n^-p; the variance of the mean of all samples is then that of the last difference over 2^p - 1. p is what the
-/// differences of all doublings show with some certainty, and else 1.
+/// n^-p; the variance of the mean of all samples is then that of the last difference over 2^p - 1. p is what the last
+/// two doublings of a tile and of those about it show with some certainty, and else 1.
 class AdaptiveSampling {
 public:
     static constexpr int kTileSide = 16;
@@ -50,8 +51,9 @@ public:
         std::vector<double> wanted(halves_.size());
         double sum = 0;
         for (std::size_t h = 0; h < halves_.size(); ++h) {
-            halves_[h].is_finished |= end_of(other(h)) <= halves_[h].samples;
-            wanted[h] = next_of(halves_[h], other(h));
+            const double end = end_of(other(h));
+            halves_[h].is_finished |= end <= halves_[h].samples;
+            wanted[h] = next_of(halves_[h], end);
             sum += wanted[h] * halves_[h].pixels;
         }
         const double scale = std::clamp(most / std::max(sum, 1.0), 0.0, 1.0);
@@ -85,10 +87,10 @@ public:
     ReachedNoise reached() const {
         ReachedNoise worst{0, true, 0};
         for (std::size_t h = 0; h < halves_.size(); ++h) {
-            if (halves_[h].pixels > 0 && halves_[h].variance < 0) return {};
-            const double excess = excess_of(halves_[h]), noise = goal_.noise * std::sqrt(excess);
-            if (!(noise > worst.noise)) continue;
-            worst = {noise, true, end_of(halves_[h])};
+            if (halves_[h].pixels == 0) continue;
+            if (halves_[h].doublings == 0) return {};
+            const double noise = goal_.noise * std::sqrt(excess_of(h));
+            if (noise > worst.noise) worst = {noise, true, end_of(h)};
         }
         for (std::size_t h = 0; h < halves_.size(); ++h)
             worst.is_reached &= halves_[h].pixels == 0 || halves_[h].is_finished;
@@ -115,24 +117,19 @@ private:
         double pixels = 0, samples = 0;
         bool is_finished = false;
         double mean = 0;
-        double first_difference = 0, doublings = 0;  ///< mean square of the first doubling; how many there were
-        double variance = -1;  ///< of a pixel's mean; below 0: not known yet
-        double decay = 1;  ///< p: variance falls with samples^-p
+        double doublings = 0;
+        double square = 0, square_before = 0;  ///< mean squares of what the last doubling changed, and the one before
+        double doubled_to = 0;  ///< samples after the last doubling
 
-        void add(double square, double taken) {
-            if (taken < samples) {
-                variance *= std::pow(samples / (samples + taken), decay);
-            } else {
-                // A mean square over 128 pixels is uncertain by a fifth and more, the logarithm of a quotient by a
-                // half.
-                if (doublings == 0)
-                    first_difference = square;
-                else if (square > 0)
-                    decay = std::clamp((std::log2(first_difference / square) - 0.5) / doublings, 1.0, kMostDecay);
-                ++doublings;
-                variance = square / (std::exp2(decay) - 1);
-            }
+        void add(double change, double taken) {
+            // Of fewer samples than there are the difference says little.
+            const bool is_doubling = taken >= samples;
             samples += taken;
+            if (!is_doubling) return;
+            square_before = square;
+            square = change;
+            doubled_to = samples;
+            ++doublings;
         }
     };
 
@@ -142,16 +139,22 @@ private:
     template <class F>
     void for_pixels(F&& f) const {
         for (int y = 0; y < height_; ++y) {
-            const std::size_t row = static_cast<std::size_t>(y * down_ / height_) * static_cast<std::size_t>(across_);
+            const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
             for (int x = 0; x < width_; ++x)
-                f(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x),
-                  2 * (row + static_cast<std::size_t>(x * across_ / width_)) + static_cast<std::size_t>((x + y) % 2));
+                f(row + static_cast<std::size_t>(x),
+                  half_at(y * down_ / height_, x * across_ / width_, static_cast<std::size_t>((x + y) % 2)));
         }
     }
 
-    const Half& other(std::size_t half) const {
+    std::size_t half_at(int row, int column, std::size_t half) const {
+        return 2 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(across_) +
+                    static_cast<std::size_t>(column)) +
+               half;
+    }
+
+    std::size_t other(std::size_t half) const {
         // Of a picture of one pixel, say, there is no other half.
-        return halves_[half ^ 1].pixels > 0 ? halves_[half ^ 1] : halves_[half];
+        return halves_[half ^ 1].pixels > 0 ? half ^ 1 : half;
     }
 
     std::vector<float> values_of(const std::vector<float>& exposure) const {
@@ -163,29 +166,48 @@ private:
         return values;
     }
 
-    /// Variance over that of the goal.
-    double excess_of(const Half& half) const {
+    /// p of a half: by the halves of the same colour of its tile and those about it.
+    double decay_of(std::size_t half) const {
+        const int tile = static_cast<int>(half / 2), row = tile / across_, column = tile % across_;
+        double last = 0, before = 0, numbers = 0;
+        for (int y = std::max(0, row - 1); y <= std::min(down_ - 1, row + 1); ++y)
+            for (int x = std::max(0, column - 1); x <= std::min(across_ - 1, column + 1); ++x) {
+                const Half& near = halves_[half_at(y, x, half % 2)];
+                if (near.doublings < 2) continue;
+                last += near.square * near.pixels;
+                before += near.square_before * near.pixels;
+                numbers += 3 * near.pixels;
+            }
+        if (!(last > 0) || !(before > 0)) return 1;
+        // Two deviations of the logarithm of a quotient of mean squares over so many numbers.
+        return std::clamp(std::log2(before / last) - 2 * std::numbers::log2e * 2 / std::sqrt(numbers), 1.0, kMostDecay);
+    }
+
+    /// Variance of a pixel's mean over that of the goal.
+    double excess_of(std::size_t half) const {
         constexpr double kDarkest = 0.01;  // of white
-        const double goal = goal_.unit == NoiseUnit::codes ? goal_.noise : goal_.noise * std::max(half.mean, kDarkest);
-        return half.variance / (goal * goal);
+        const Half& h = halves_[half];
+        const double goal = goal_.unit == NoiseUnit::codes ? goal_.noise : goal_.noise * std::max(h.mean, kDarkest);
+        const double decay = decay_of(half);
+        return h.square / (std::exp2(decay) - 1) * std::pow(h.doubled_to / h.samples, decay) / (goal * goal);
     }
 
     /// What is measured is uncertain, and who stops where it is small stops too early.
     static constexpr double kMargin = 0.8;
 
     /// Samples of a pixel with which the goal is reached, by what these have shown.
-    double end_of(const Half& shown) const {
-        return shown.variance < 0 ? std::numeric_limits<double>::infinity()
-                                  : shown.samples * std::pow(excess_of(shown) / kMargin, 1 / shown.decay);
+    double end_of(std::size_t half) const {
+        const Half& h = halves_[half];
+        return h.doublings == 0 ? std::numeric_limits<double>::infinity()
+                                : h.samples * std::pow(excess_of(half) / kMargin, 1 / decay_of(half));
     }
 
-    /// Of a half, by what the other has shown: as many as it has, or fewer where that is expected to be enough.
-    double next_of(const Half& half, const Half& shown) const {
+    /// As many as there are, or fewer where that is expected to be enough.
+    double next_of(const Half& half, double end) const {
         const double most = std::min(half.samples, static_cast<double>(goal_.most_samples) - half.samples);
         if (half.is_finished || half.pixels == 0 || most < 1) return 0;
-        // Where samples are better than random because they are stratified, they are so in powers of two.
-        const double step = std::max(1.0, shown.decay > 1 ? half.samples : half.samples / 4);
-        return std::clamp(std::ceil((end_of(shown) - half.samples) / step) * step, 0.0, most);
+        const double step = std::max(1.0, half.samples / 4);
+        return std::clamp(std::ceil((end - half.samples) / step) * step, 0.0, most);
     }
 
     int width_, height_;

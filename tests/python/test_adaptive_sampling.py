@@ -50,7 +50,11 @@ def test_every_tile_reaches_the_noise_and_none_gets_many_more_samples(device: st
     # Of two halves of 128 pixels each, whose noise is known within 8%; and the noise of the converged picture itself.
     assert noise.max() < 1.2 * goal
     uniform = rc.render(half_noisy(), camera(), effects=(), spp=image.spp, device=device)
-    assert (tiles((uniform.pixels - converged) ** 2) / mean).max() > 1.4 * noise.max()
+    # The noisy tiles have more samples than then, and errors fall at least with their square root; either is known
+    # within 8%.
+    fewer = counts[:, SIDE // 2 :].mean() / counts.mean()
+    assert fewer > 1.4
+    assert (tiles((uniform.pixels - converged) ** 2) / mean).max() > 0.84 * np.sqrt(fewer) * noise.max()
 
 
 def test_codes_are_those_of_the_developed_picture(device: str, converged: np.ndarray) -> None:
@@ -146,8 +150,10 @@ def test_layers_and_progress_go_along(device: str) -> None:
     assert np.isfinite(image.layers["normal"]).all()
     assert shares == sorted(shares)
     assert shares[-1] == 1
+    # Long enough that a fast GPU is asked before it is done.
+    goal = {"spp": "auto", "noise": 1e-9, "max_spp": 2**24, "seconds": 30}
     with pytest.raises(rc.Cancelled):
-        rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=1e-6, progress=lambda _: False, device=device)
+        rc.render(half_noisy(), camera(), effects=(), progress=lambda _: False, device=device, **goal)
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ def test_a_coarse_film_sees_no_diffraction() -> None:
 def test_defocus_is_the_circle_of_confusion(distance_m: float) -> None:
     camera = camera_of(f_number=8.0, focus_m=2.0)
     first = camera.lens.first_order()
-    size = decisions(board(distance_m), camera)["defocus"].size
+    size = decisions(board(distance_m, radiance=200), camera)["defocus"].size
     # The ideal lens: distances from its front principal plane, which is within millimetres of the front vertex.
     f = first.effective_focal_length_mm
     s, s0 = (1000 * d - camera.lens.film_position_mm for d in (distance_m, 2.0))

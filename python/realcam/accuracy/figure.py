@@ -81,13 +81,12 @@ def _draw_rung(axes: Axes, rung: Rung, colour: np.ndarray) -> None:
 
 
 def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
-    """The pictures that none is both faster and better than."""
-    pictures = sorted((p.seconds, p.rmse) for rung in rungs for p in rung.pictures)
-    best: list[tuple[float, float]] = []
-    for seconds, error in pictures:
-        if not best or error < best[-1][1]:
-            best.append((seconds, error))
-    axes.plot(*zip(*best, strict=True), color="black", linewidth=5, alpha=0.15, label="frontier", zorder=0)
+    """The least error that any of the lines has reached by then."""
+    lines = [np.log([(p.seconds, p.rmse) for p in rung.pictures]).T for rung in rungs]
+    times = np.linspace(min(line[0, 0] for line in lines), max(line[0, -1] for line in lines), 400)
+    errors = [np.interp(times, *line, left=np.inf) for line in lines]
+    best = np.minimum.accumulate(np.min(errors, axis=0))
+    axes.plot(np.exp(times), np.exp(best), color="black", linewidth=5, alpha=0.15, label="frontier", zorder=0)
 
 
 def _page(cost: AccuracyCost, drawing: str) -> str:
