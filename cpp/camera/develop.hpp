@@ -34,8 +34,9 @@ REALCAM_HD inline double apply_tone_curve(ToneCurve curve, double value) {
 }
 
 /// sRGB transfer function (IEC 61966-2-1) of a linear value in [0, 1].
-REALCAM_HD inline double srgb_encoded(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+template <class T>
+REALCAM_HD T srgb_encoded(T linear) {
+    return linear <= T(0.0031308) ? T(12.92) * linear : T(1.055) * std::pow(linear, T(1 / 2.4)) - T(0.055);
 }
 
 /// The same as an 8-bit code.

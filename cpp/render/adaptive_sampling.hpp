@@ -38,7 +38,8 @@ public:
           across_(tiles_of(width)),
           down_(tiles_of(height)),
           halves_(2 * static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {
-        values_ = values_of(exposure);
+        values_.reserve(exposure.size());
+        for (const float e : exposure) values_.push_back(value_of(e));
         for_pixels([&](std::size_t pixel, std::size_t half) {
             ++halves_[half].pixels;
             halves_[half].samples += static_cast<double>(samples[pixel]);
@@ -66,13 +67,16 @@ public:
 
     /// Takes in the picture with these samples.
     void add(const std::vector<float>& exposure, const std::vector<std::uint32_t>& counts) {
-        const std::vector<float> values = values_of(exposure);
         std::vector<double> difference(halves_.size()), mean(halves_.size()), taken(halves_.size());
         for_pixels([&](std::size_t pixel, std::size_t half) {
             for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) {
-                const double step = static_cast<double>(values[c]) - static_cast<double>(values_[c]);
-                difference[half] += step * step;
-                mean[half] += static_cast<double>(values[c]);
+                if (counts[pixel] > 0) {
+                    const float value = value_of(exposure[c]);
+                    const double step = static_cast<double>(value) - static_cast<double>(values_[c]);
+                    difference[half] += step * step;
+                    values_[c] = value;
+                }
+                mean[half] += static_cast<double>(values_[c]);
             }
             taken[half] = counts[pixel];
         });
@@ -81,7 +85,6 @@ public:
             halves_[h].mean = mean[h] / numbers;
             if (taken[h] > 0) halves_[h].add(difference[h] / numbers, taken[h]);
         }
-        values_ = values;
     }
 
     ReachedNoise reached() const {
@@ -157,13 +160,9 @@ private:
         return halves_[half ^ 1].pixels > 0 ? half ^ 1 : half;
     }
 
-    std::vector<float> values_of(const std::vector<float>& exposure) const {
-        std::vector<float> values = exposure;
-        for (float& value : values) {
-            const double developed = sensor_value(static_cast<double>(value), iso_);
-            value = static_cast<float>(goal_.unit == NoiseUnit::codes ? code_of(developed) : developed);
-        }
-        return values;
+    float value_of(float exposure) const {
+        const auto developed = static_cast<float>(sensor_value(static_cast<double>(exposure), iso_));
+        return goal_.unit == NoiseUnit::codes ? code_of(developed) : developed;
     }
 
     /// p of a half: by the halves of the same colour of its tile and those about it.

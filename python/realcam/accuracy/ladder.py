@@ -217,18 +217,21 @@ def _climb(
     while True:
         image, seconds = level.image(scene, camera, spp=spp, seed=seed, **settings)
         picture = codes(image)
-        error = math.sqrt(max(0.0, mean_square(picture, reference.codes) - reference.variance))
-        pictures.append(Measured(spp, seconds, error, flip(reference.codes, picture)))
-        if 4 * spp > most_spp:
+        is_last = 4 * spp > most_spp
+        if is_last or not level.is_stratified:
+            second = codes(level.image(scene, camera, spp=spp, seed=seed + 1, **settings)[0])
+            noise2 = mean_square(picture, second) / 2
+        # First samples of many seeds have textures as soft as a first sample has them, which is no fault of random
+        # numbers: their error is their noise.
+        error2 = mean_square(picture, reference.codes) - reference.variance if level.is_stratified else noise2
+        pictures.append(Measured(spp, seconds, math.sqrt(max(0.0, error2)), flip(reference.codes, picture)))
+        if is_last:
             break
         spp *= 4
-    other, _ = level.image(scene, camera, spp=spp, seed=seed + 1, **settings)
-    second = codes(other)
-    noise2 = mean_square(picture, second) / 2
     mean = (picture + second) / 2
     bias2 = mean_square(mean, reference.codes) - noise2 / 2 - reference.variance
     # A mean square of so many numbers is itself uncertain; what is less than three times that may be noise.
-    if bias2 < 3 * math.sqrt(2 / picture.size) * (noise2 + reference.variance):
+    if not level.is_stratified or bias2 < 3 * math.sqrt(2 / picture.size) * (noise2 + reference.variance):
         bias2 = 0.0
     stats = image.stats
     busy = max(stats.lens_seconds + stats.scene_seconds + stats.other_seconds, 1e-12)
