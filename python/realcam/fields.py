@@ -78,19 +78,20 @@ def angle_of_height(
     least = max(1, _passing(_meridional_spot(lens, 0.0, object_distance_m, wavelength)) // 4)
     focal_length = lens.first_order(wavelength).effective_focal_length_mm
     guess = math.degrees(math.atan(height_mm / abs(focal_length)))
-    low, step = 0.0, min(max(guess, 1e-3), _LARGEST_STEP_DEG)
+    low, step, growth = 0.0, min(max(guess, 1e-3), _LARGEST_STEP_DEG), 2.0
     while at_low < 0:
         high = low + step
         at_high = missing(high)
         if at_high >= 0:
-            low = high = root_between(missing, low, high, at_low, at_high, 1e-10)
+            low = root_between(missing, low, high, at_low, at_high, 1e-10)
             break
         if math.isnan(at_high):
-            step *= 0.5
+            step, growth = 0.5 * step, 1.0
             if step < 1e-6:
                 break
         else:
             low, at_low = high, at_high
+            step = min(growth * step, _LARGEST_STEP_DEG)
     return low, abs(_meridional_spot(lens, low, object_distance_m, wavelength).chief_ray_mm[1])
 
 
