@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import pytest
 import realcam as rc
@@ -180,7 +181,7 @@ def test_a_summary_has_the_spots_of_its_fields() -> None:
         assert 0 < place.mtf_tangential[0] < 1
 
 
-def test_the_commands_print_figures(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_the_commands_print_figures(tmp_path: Path) -> None:
     run = CliRunner().invoke
     result = run(cli.app, ["lens", "photo", "double-gauss-50mm", "--focus", "3", "--f-number", "8"])
     assert result.exit_code == 0, result.output
@@ -196,3 +197,19 @@ def test_the_commands_print_figures(tmp_path) -> None:  # type: ignore[no-untype
     assert "Sonnar 50 mm" in target.read_text(encoding="utf-8")
     result = run(cli.app, ["lens", "compare", "tessar-50mm", "sonnar-50mm", "--json"])
     assert [lens["lens"] for lens in json.loads(result.output)] == ["tessar-50mm", "sonnar-50mm"]
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (["--exposure-time", "1/0"], "divides by 0"),
+        (["--exposure-time", "x"], '--exposure-time: "x" is not a number'),
+        (["--exposure-time", "-1"], "positive number of seconds"),
+        (["--exposure-time", "1", "--iso", "0"], "ISO must be a positive number"),
+        (["--circle-of-confusion", "0"], "circle of confusion must be a positive length"),
+    ],
+)
+def test_a_mistake_is_named(options: list[str], why: str) -> None:
+    result = CliRunner().invoke(cli.app, ["lens", "photo", "tessar-50mm", *options])
+    assert isinstance(result.exception, rc.InputError)
+    assert why in str(result.exception)

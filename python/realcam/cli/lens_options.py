@@ -51,4 +51,7 @@ def seconds(text: str) -> float:
     """A time, 0.008 or 1/125. Raises InputError."""
     above, slash, below = text.partition("/")
     value = options.number(above, "--exposure-time")
-    return value / options.number(below, "--exposure-time") if slash else value
+    divisor = options.number(below, "--exposure-time") if slash else 1.0
+    if divisor == 0:
+        raise InputError(f'--exposure-time: "{text}" divides by 0')
+    return value / divisor
