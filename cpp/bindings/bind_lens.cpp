@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <map>
+#include <tuple>
 
 #include "../optics/focus.hpp"
 #include "../optics/lens_changes.hpp"
@@ -360,6 +361,18 @@ void bind_lens(py::module_& m) {
         .def_readonly("surfaces", &LensSystem::surfaces)
         .def_readonly("wavelength_nm", &LensSystem::wavelength_nm)
         .def_readonly("allow_crossing", &LensSystem::allow_crossing)
+        .def(
+            "crossings",
+            [](const LensSystem& lens) {
+                std::vector<std::tuple<int, int, double, double>> list;
+                for (const FaceCrossing& c : find_crossings(lens))
+                    list.emplace_back(c.first, c.second, c.depth, c.radius);
+                return list;
+            },
+            "Pairs of faces that cross inside their rims, as (first, second, depth_mm, radius_mm): the indices of the "
+            "two,\n"
+            "how far they reach into each other at most, and how far from the axis that is. Empty but with "
+            "allow_crossing.")
         .def_readonly("film_distance_mm", &LensSystem::film_distance)
         .def_property_readonly("film_position_mm", &LensSystem::film_position, "Front vertex to film.")
         .def_property_readonly("film_mm", [](const LensSystem& l) { return std::pair(l.film_width, l.film_height); })

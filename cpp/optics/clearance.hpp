@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -60,9 +61,10 @@ inline bool is_sunk(const Surface& front, const Surface& back, double direction)
     return direction * smaller.sag(smaller.clear_semi_diameter) * (is_back ? 1 : -1) > 0;
 }
 
-/// The first crossing of a run of faces. `in_glass`: for each face, whether glass lies between it and the next one.
-inline std::optional<FaceCrossing> crossing_of(const LensSystem& lens, const std::vector<Face>& run,
-                                               const std::vector<bool>& in_glass, double direction) {
+/// Appends the crossings of a run of faces, at most `most` in all. `in_glass`: for each face, whether glass lies
+/// between it and the next one.
+inline void append_crossings(const LensSystem& lens, const std::vector<Face>& run, const std::vector<bool>& in_glass,
+                             double direction, std::size_t most, std::vector<FaceCrossing>& crossings) {
     const auto surface = [&](std::size_t i) -> const Surface& {
         return lens.surfaces[static_cast<std::size_t>(run[i].index)];
     };
@@ -79,41 +81,50 @@ inline std::optional<FaceCrossing> crossing_of(const LensSystem& lens, const std
             const double touch = kPrintedDigits * std::min(a.clear_semi_diameter, b.clear_semi_diameter);
             if (from < to) {
                 const FaceCrossing found = deepest(lens, run[i], run[j], direction, from, to);
-                if (found.depth > touch) return found;
+                if (found.depth > touch) crossings.push_back(found);
+                if (crossings.size() >= most) return;
             }
             if (b.inner_semi_diameter == 0) between = std::max(between, b.clear_semi_diameter);
             if (between >= a.clear_semi_diameter) break;
         }
     }
-    return {};
 }
 
 }  // namespace clearance_detail
 
-/// The first two refracting or reflecting faces that cross inside their clear apertures, whether or not they are
+/// Pairs of refracting or reflecting faces that cross inside their clear apertures, whether or not they are
 /// neighbours; or of an element, anywhere up to the larger of its two rims, the smaller face being edged flat unless it
 /// is hollow. Stops and apertures are planes of no substance, and may cross a face: a stop may be given at the vertex
-/// of one.
-inline std::optional<FaceCrossing> find_crossing(const LensSystem& lens) {
+/// of one. In the order of the light, and no more than `most`.
+inline std::vector<FaceCrossing> find_crossings(const LensSystem& lens,
+                                                std::size_t most = std::numeric_limits<std::size_t>::max()) {
     using namespace clearance_detail;
     const std::vector<double> z = lens.vertices();
+    std::vector<FaceCrossing> crossings;
     std::vector<Face> run;
     std::vector<bool> in_glass;
     double direction = 1;
     bool glass = false;
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    for (std::size_t i = 0; i < lens.surfaces.size() && crossings.size() < most; ++i) {
         const Surface& surface = lens.surfaces[i];
         if (!surface.bends_light()) continue;
         if (surface.type == SurfaceType::refracting) glass = !surface.material.is_air();
         run.push_back({static_cast<int>(i), z[i]});
         in_glass.push_back(glass);
         if (surface.type != SurfaceType::mirror) continue;
-        if (const auto found = crossing_of(lens, run, in_glass, direction)) return found;
+        append_crossings(lens, run, in_glass, direction, most, crossings);
         run = {run.back()};
         in_glass = {glass};
         direction = -direction;
     }
-    return crossing_of(lens, run, in_glass, direction);
+    if (crossings.size() < most) append_crossings(lens, run, in_glass, direction, most, crossings);
+    return crossings;
+}
+
+/// The first of them.
+inline std::optional<FaceCrossing> find_crossing(const LensSystem& lens) {
+    const std::vector<FaceCrossing> first = find_crossings(lens, 1);
+    return first.empty() ? std::nullopt : std::optional(first.front());
 }
 
 /// Whether the film lies in front of the rim of the last face, as far as its corners reach.

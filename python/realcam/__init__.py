@@ -54,9 +54,11 @@ from ._core import (
     sensor_names,
 )
 from .accuracy import AccuracyCost, accuracy_cost
+from .drawing import CrossSection, cross_section
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
+from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
@@ -74,6 +76,8 @@ __all__ = [
     "Coating",
     "CoatingLayer",
     "CoatingResponse",
+    "CrossSection",
+    "DepthOfField",
     "DeviceArray",
     "DeviceError",
     "FieldOfView",
@@ -91,6 +95,7 @@ __all__ = [
     "Material",
     "Mirror",
     "NothingToPlan",
+    "PhotographicFigures",
     "Plan",
     "PlanDecision",
     "RawImage",
@@ -112,9 +117,12 @@ __all__ = [
     "Wavefront",
     "__version__",
     "accuracy_cost",
+    "cross_section",
+    "depth_of_field",
     "devices",
     "effects",
     "lens_names",
+    "photographic_figures",
     "plan",
     "read_environment",
     "render",

@@ -1,176 +1,184 @@
-"""Cross-sections of lenses, with matplotlib."""
+"""Drawings of lenses, with matplotlib. What they show, as arrays: realcam.drawing."""
 
 from __future__ import annotations
 
-import io
+import math
 import os
-from pathlib import Path
+from collections.abc import Sequence
+from typing import Any
 
-import matplotlib.figure
-import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from . import files
-from ._core import ImageFileError, InputError, Lens, RayStatus, Surface
+from ._core import InputError, Lens
+from .drawing.draw import draw_section, extent_of, prepare_axes
+from .drawing.figure import Row, check_picture, figure_of, save_figure
+from .drawing.section import CrossSection, cross_section
+from .drawing.style import Style
+from .drawing.themes import theme_named
 
-GLASS = "#cfe3f2"
-EDGE = "#27547a"
-RAYS = ("#c0392b", "#27864a", "#2c5fb3")  # axis, 0.7 of the field, edge of the field
+__all__ = ["draw_cross_section", "draw_states", "save_cross_section", "save_states", "states_of"]
 
 
-def save_cross_section(lens: Lens, path: str | os.PathLike[str], rays: int = 7) -> None:
-    """Writes the meridional section of a lens as .svg or .png; the film is on the right.
+def save_cross_section(
+    lens: Lens,
+    path: str | os.PathLike[str],
+    rays: int = 7,
+    *,
+    rays_from: str = "object",
+    fields: Sequence[float] = (0.0, 0.7, 1.0),
+    fields_deg: Sequence[float] | None = None,
+    wavelengths_nm: Sequence[float] | None = None,
+    object_distance_m: float | None = None,
+    radius_colours: bool = False,
+    marks: bool = False,
+    insets: bool = True,
+    ghost: Lens | None = None,
+    theme: str = "light",
+    width_px: int = 1600,
+) -> None:
+    """Writes the meridional section of a lens as .svg, .png or .pdf; the film is on the right.
 
-    rays: how many from each of three points of the film. Raises ImageFileError.
+    rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section takes them.
+    radius_colours: faces in blue where the radius of curvature is positive, in red where it is negative.
+    marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
+    insets: the rays of each field where they meet the film, magnified.
+    ghost: the lens in another state, of which the glass that stands elsewhere is drawn as outlines.
+    theme: "light" or "dark". width_px: of the picture.
+    Raises ImageFileError, and InputError where no light passes the lens or what is asked makes no sense.
     """
-    target = Path(path)
-    if target.suffix.lower() not in (".svg", ".png"):
-        raise ImageFileError(f"{target}: unknown suffix; .svg or .png is wanted")
-    files.check_target(target)
-    figure = matplotlib.figure.Figure(figsize=(10, 6), layout="constrained")
-    draw_cross_section(lens, figure.add_subplot(), rays)
-    # In memory, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
-    drawing = io.BytesIO()
-    figure.savefig(drawing, format=target.suffix[1:].lower(), dpi=160)
-    files.write_whole(target, drawing.getvalue())
-
-
-def draw_cross_section(lens: Lens, axes: Axes, rays: int = 7) -> None:
-    """Draws glass, stop, film and rays on axes that share one scale in mm."""
-    _draw_glass(lens, axes)
-    z = lens.vertices_mm
-    for position, surface in zip(z, lens.surfaces, strict=True):
-        if surface.type in ("stop", "aperture"):
-            _draw_stop(axes, position, surface, lens)
-        else:
-            _draw_surface(axes, position, surface)
-    heights = _film_heights(lens)
-    span = lens.film_position_mm - min(z)
-    for colour, height in zip(RAYS, heights, strict=True):
-        for path in _ray_paths(lens, height, rays, reach=0.25 * span):
-            axes.plot(path[:, 2], path[:, 1], color=colour, linewidth=0.7, zorder=5)
-    half = 0.5 * float(np.hypot(*lens.film_mm))
-    axes.plot([lens.film_position_mm] * 2, [-half, half], color="black", linewidth=2)
-    data = lens.first_order()
-    title = f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}"
-    # Titles are text, and a dollar sign in one begins no formula.
-    axes.set_title("".join(c for c in title if c.isprintable()), parse_math=False)
-    axes.set_xlabel("z / mm")
-    axes.set_ylabel("y / mm")
-    axes.set_aspect("equal")
-    axes.spines[["top", "right"]].set_visible(False)
-
-
-def _profile(surface: Surface, position: float, points: int = 81) -> np.ndarray:
-    y = np.linspace(-surface.clear_semi_diameter_mm, surface.clear_semi_diameter_mm, points)
-    return np.column_stack([position + np.array([surface.sag_mm(abs(v)) for v in y]), y])
-
-
-def _draw_glass(lens: Lens, axes: Axes) -> None:
-    """Fills the glass between neighbouring surfaces; the smaller one is carried out to the larger one's rim."""
-    z = lens.vertices_mm
-    for i, (front, back) in enumerate(zip(lens.surfaces, lens.surfaces[1:], strict=False)):
-        if front.type != "refracting" or front.material.index(lens.wavelength_nm) <= 1.0001:
-            continue
-        rim = max(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm)
-        a, b = (_out_to_rim(_profile(*place), rim) for place in ((front, z[i]), (back, z[i + 1])))
-        axes.fill(
-            *np.concatenate([a, b[::-1]]).T,
-            facecolor=GLASS,
-            edgecolor=EDGE,
-            linewidth=0.8,
-            zorder=2,
-            alpha=0.8,
-        )
-
-
-def _out_to_rim(profile: np.ndarray, rim: float) -> np.ndarray:
-    ends = profile[[0, -1]].copy()
-    ends[:, 1] = (-rim, rim)
-    return np.concatenate([ends[:1], profile, ends[1:]])
-
-
-def _draw_surface(axes: Axes, position: float, surface: Surface) -> None:
-    profile = _profile(surface, position, 161)
-    inner = surface.inner_semi_diameter_mm
-    mirror = surface.type == "mirror"
-    for part in (profile[profile[:, 1] >= inner], profile[profile[:, 1] <= -inner]) if inner else (profile,):
-        axes.plot(
-            part[:, 0],
-            part[:, 1],
-            color="black" if mirror else EDGE,
-            linewidth=2 if mirror else 0.8,
-            zorder=3,
-        )
-
-
-def _draw_stop(axes: Axes, position: float, surface: Surface, lens: Lens) -> None:
-    rim = surface.clear_semi_diameter_mm
-    opening = min(lens.stop_semi_diameter_mm, rim) if surface.type == "stop" else rim
-    for side in (-1, 1):
-        axes.plot([position] * 2, [side * opening, side * 1.25 * rim], color="black", linewidth=2.5, zorder=4)
-    if surface.inner_semi_diameter_mm:
-        inner = surface.inner_semi_diameter_mm
-        axes.plot([position] * 2, [-inner, inner], color="black", linewidth=2.5, zorder=4)
-
-
-def _film_heights(lens: Lens) -> list[float]:
-    """Heights on the film of axis, 0.7 and full field: the corner of the film, or the edge of the image circle."""
-    corner = 0.5 * float(np.hypot(*lens.film_mm))
-    lit = [h for h in np.linspace(0, corner, 41) if len(_passing_angles(lens, h))]
-    if not lit:
-        raise InputError(f'no light passes lens "{lens.name}"')
-    return [0.0, 0.7 * lit[-1], lit[-1]]
-
-
-def _passing_angles(lens: Lens, height: float, count: int = 2001) -> np.ndarray:
-    """Angles in the meridional plane under which rays from a film point leave the lens."""
-    last = lens.surfaces[-1].clear_semi_diameter_mm
-    ends = np.arctan2(np.array([-last, last]) * 1.05 - height, lens.film_distance_mm)
-    angle = np.linspace(ends[0], ends[1], count)
-    # A closed diaphragm may lie between two of these rays: the next ones go between the two beside its middle, until
-    # there are enough that pass.
-    for _ in range(4):
-        passing: np.ndarray = angle[lens.trace(*_film_rays(lens, height, angle), start="film").status == RayStatus.OK]
-        if len(passing) > count // 20:
-            break
-        around = passing if len(passing) else _beside_the_middle_of_the_stop(lens, height, angle)
-        if not len(around):
-            break
-        step = angle[1] - angle[0]
-        angle = np.linspace(around[0] - step, around[-1] + step, count)
-    return passing
-
-
-def _beside_the_middle_of_the_stop(lens: Lens, height: float, angle: np.ndarray) -> np.ndarray:
-    """Of rays that all miss the stop's opening: the two between which its middle lies. Empty where there are none."""
-    behind = len(lens.surfaces) - lens.stop_index
-    out = lens.trace(*_film_rays(lens, height, angle), start="film", surface_count=behind)
-    at_stop = (out.surface_index == lens.stop_index) & (out.status != RayStatus.MISSED)
-    y = np.where(at_stop, out.origins_mm[:, 1], np.nan)
-    crossing = np.flatnonzero(y[:-1] * y[1:] <= 0)[:1]
-    return np.concatenate([angle[crossing], angle[crossing + 1]])
-
-
-def _film_rays(lens: Lens, height: float, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    zero = np.zeros_like(angle)
-    origins = np.column_stack([zero, zero + height, zero + lens.film_position_mm])
-    return origins, np.column_stack([zero, np.sin(angle), -np.cos(angle)])
-
-
-def _ray_paths(lens: Lens, height: float, count: int, reach: float) -> list[np.ndarray]:
-    """Points of each ray, from the film to `reach` mm past the front surface: (surfaces + 2, 3) mm each."""
-    passing = _passing_angles(lens, height)
-    if not len(passing):  # the image may be lit in a ring alone
-        return []
-    angle = (
-        np.linspace(passing[0], passing[-1], count) if count > 1 else passing[len(passing) // 2 : len(passing) // 2 + 1]
+    target = check_picture(path)
+    style = Style(theme_named(theme), radius_colours, marks)
+    section = cross_section(
+        lens,
+        rays=rays,
+        rays_from=rays_from,
+        fields=fields,
+        fields_deg=fields_deg,
+        wavelengths_nm=wavelengths_nm,
+        object_distance_m=object_distance_m,
     )
-    origins, directions = _film_rays(lens, height, angle)
-    points = [origins]
-    for surfaces in range(1, len(lens.surfaces) + 1):
-        out = lens.trace(origins, directions, start="film", surface_count=surfaces)
-        points.append(out.origins_mm)
-    points.append(out.origins_mm + reach * out.directions)
-    paths = np.stack(points, axis=1)
-    return list(paths[out.status == RayStatus.OK])
+    other = None if ghost is None else cross_section(ghost, rays=0)
+    row = Row(lens.title or lens.name, _data_of(lens, section), section, other)
+    # Rays that were sent from one point of the film meet in it, whatever the lens does.
+    figure = figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
+    save_figure(figure, target, width_px)
+
+
+def draw_cross_section(
+    lens: Lens,
+    axes: Axes,
+    rays: int = 7,
+    *,
+    rays_from: str = "object",
+    fields: Sequence[float] = (0.0, 0.7, 1.0),
+    fields_deg: Sequence[float] | None = None,
+    wavelengths_nm: Sequence[float] | None = None,
+    object_distance_m: float | None = None,
+    radius_colours: bool = False,
+    marks: bool = False,
+    ghost: Lens | None = None,
+    theme: str = "light",
+) -> CrossSection:
+    """Draws the same on axes of one's own, without insets, and returns the arrays behind it."""
+    style = Style(theme_named(theme), radius_colours, marks)
+    section = cross_section(
+        lens,
+        rays=rays,
+        rays_from=rays_from,
+        fields=fields,
+        fields_deg=fields_deg,
+        wavelengths_nm=wavelengths_nm,
+        object_distance_m=object_distance_m,
+    )
+    other = None if ghost is None else cross_section(ghost, rays=0)
+    prepare_axes(axes, extent_of(section, style), style)
+    draw_section(section, axes, style, ghost=other)
+    # Titles are text, and a dollar sign in one begins no formula.
+    title = f"{lens.title or lens.name}   {_data_of(lens, section)}"
+    axes.set_title("".join(c for c in title if c.isprintable()), parse_math=False, color=style.theme.text)
+    return section
+
+
+def draw_states(
+    states: Sequence[tuple[str, Lens]],
+    *,
+    rays: int = 7,
+    rays_from: str = "object",
+    fields: Sequence[float] = (0.0, 0.7, 1.0),
+    wavelengths_nm: Sequence[float] | None = None,
+    radius_colours: bool = False,
+    marks: bool = False,
+    insets: bool = True,
+    theme: str = "light",
+    width_px: int = 1600,
+) -> Figure:
+    """Several lenses, or states of one, in rows of one scale with their films below each other.
+
+    states: (name, lens) pairs, as states_of gives them. Raises InputError.
+    """
+    if not states:
+        raise InputError("there is no lens to draw")
+    style = Style(theme_named(theme), radius_colours, marks)
+    rows = []
+    for name, lens in states:
+        section = cross_section(lens, rays=rays, rays_from=rays_from, fields=fields, wavelengths_nm=wavelengths_nm)
+        rows.append(Row(name, _data_of(lens, section), section))
+    return figure_of(rows, style, width_px=width_px, insets=insets and rays_from == "object", align="film")
+
+
+def save_states(
+    states: Sequence[tuple[str, Lens]],
+    path: str | os.PathLike[str],
+    *,
+    rays: int = 7,
+    rays_from: str = "object",
+    fields: Sequence[float] = (0.0, 0.7, 1.0),
+    wavelengths_nm: Sequence[float] | None = None,
+    radius_colours: bool = False,
+    marks: bool = False,
+    insets: bool = True,
+    theme: str = "light",
+    width_px: int = 1600,
+) -> None:
+    """Writes draw_states as .svg, .png or .pdf. Raises ImageFileError and InputError."""
+    target = check_picture(path)
+    figure = draw_states(
+        states,
+        rays=rays,
+        rays_from=rays_from,
+        fields=fields,
+        wavelengths_nm=wavelengths_nm,
+        radius_colours=radius_colours,
+        marks=marks,
+        insets=insets,
+        theme=theme,
+        width_px=width_px,
+    )
+    save_figure(figure, target, width_px)
+
+
+def states_of(lens: Lens) -> list[tuple[str, Lens]]:
+    """The zoom positions of a lens that has some; else infinity and its nearest focus, if its file names one."""
+    zoom: Any = lens if hasattr(lens, "zoom_positions") else None
+    if zoom is not None and zoom.zoom_positions:
+        return [(f"{lens.title or lens.name}, {name}", zoom.zoomed(name)) for name in zoom.zoom_positions]
+    name = lens.title or lens.name
+    states = [(f"{name}, focused at infinity", lens.focused(math.inf))]
+    if lens.nearest_focus_m > 0:
+        states.append((f"{name}, focused at {lens.nearest_focus_m:.4g} m", lens.focused(lens.nearest_focus_m)))
+    return states
+
+
+def _data_of(lens: Lens, section: CrossSection) -> str:
+    data = lens.first_order()
+    words = [f"f = {data.effective_focal_length_mm:.4g} mm"]
+    is_far = math.isinf(lens.focus_distance_m)
+    # An f-number is one of the lens at infinity, and a group that has moved makes another lens.
+    if is_far or lens.focus_group is None:
+        words.append(f"f/{data.f_number:.3g}")
+    if not is_far:
+        words.append(f"focused at {lens.focus_distance_m:.4g} m")
+    if len(section.wavelengths_nm) == 1:
+        words.append(f"{section.wavelengths_nm[0]:.4g} nm")
+    return ", ".join(words) + ("   * asphere" if any(face.is_asphere for face in section.faces) else "")

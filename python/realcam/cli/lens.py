@@ -9,7 +9,7 @@ from typing import Annotated, Optional
 import typer
 
 from .._core import InputError
-from . import options
+from . import lens_figures, lens_options, options
 
 app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
 
@@ -18,6 +18,11 @@ LensName = Annotated[
 ]
 FNumber = Annotated[Optional[float], typer.Option("--f-number", help="Close the diaphragm to this f-number.")]  # noqa: UP045
 Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to film in metres, or inf.")]  # noqa: UP045
+Circle = Annotated[
+    Optional[float],  # noqa: UP045
+    typer.Option("--circle-of-confusion", help="Largest blur that is sharp, in mm [the film's diagonal / 1500]."),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null.")]
 
 
 options.add_command_of_the_executable(app, "list", "List the bundled lenses.")
@@ -27,18 +32,162 @@ options.add_command_of_the_executable(app, "info", "Print a lens's table of surf
 @app.command("draw")
 def draw(
     name: LensName,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="A .svg or .png file [LENS.svg, here].")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="A .svg, .png or .pdf file [LENS.svg, here].")
+    ] = None,
     f_number: FNumber = None,
     focus: Focus = None,
-    rays: Annotated[int, typer.Option(help="Rays for each of three points of the film.", min=1, max=101)] = 7,
+    rays: lens_options.Rays = 7,
+    rays_from: lens_options.RaysFrom = "object",
+    fields: lens_options.Fields = "0,0.7,1",
+    fields_deg: lens_options.FieldsDeg = None,
+    wavelengths: lens_options.Wavelengths = None,
+    radius_colours: lens_options.RadiusColours = False,
+    marks: lens_options.Marks = False,
+    insets: Annotated[bool, typer.Option(help="Show the rays at the film magnified.")] = True,
+    states: Annotated[
+        str,
+        typer.Option(
+            help="rows: zoom positions, or farthest and nearest focus, one below the other; ghost: the nearest "
+            "focus as outlines in the same drawing; one: as --focus says."
+        ),
+    ] = "one",
+    theme: lens_options.ThemeName = "light",
+    width: lens_options.Width = 1600,
 ) -> None:
-    """Write the cross-section of a lens, with rays from three points of the film."""
-    from ..draw import save_cross_section
+    """Write the cross-section of a lens, with rays from the object in focus."""
+    from ..draw import save_cross_section, save_states, states_of
 
+    if states not in ("one", "rows", "ghost"):
+        raise InputError(f'--states: "{states:.40}" is unknown; one, rows or ghost is wanted')
+    if states == "rows" and (focus is not None or fields_deg is not None):
+        raise InputError(
+            "--states rows shows focus states or zoom positions, by shares of the film: --focus and "
+            "--fields-deg do not go with it"
+        )
     lens = options.lens(name, focus, f_number)
     # By what the user called the lens: the name in a file may be any text.
     target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.svg")
-    if Path(name).is_file() and target.exists() and target.samefile(name):
-        raise InputError(f"{target}: is the lens file itself; the drawing needs another name")
-    save_cross_section(lens, target, rays=rays)
+    lens_options.check_not_the_lens(target, name)
+    places = lens_options.numbers(fields, "--fields") or []
+    colours = lens_options.numbers(wavelengths, "--wavelengths")
+    if states == "rows":
+        save_states(
+            states_of(lens),
+            target,
+            rays=rays,
+            rays_from=rays_from,
+            fields=places,
+            wavelengths_nm=colours,
+            radius_colours=radius_colours,
+            marks=marks,
+            insets=insets,
+            theme=theme,
+            width_px=width,
+        )
+    else:
+        ghost = None
+        if states == "ghost":
+            if not lens.nearest_focus_m > 0:
+                raise InputError(f'--states ghost: the file of lens "{lens.name}" names no nearest focus')
+            ghost = lens.focused(lens.nearest_focus_m)
+        save_cross_section(
+            lens,
+            target,
+            rays,
+            rays_from=rays_from,
+            fields=places,
+            fields_deg=lens_options.numbers(fields_deg, "--fields-deg"),
+            wavelengths_nm=colours,
+            radius_colours=radius_colours,
+            marks=marks,
+            insets=insets,
+            ghost=ghost,
+            theme=theme,
+            width_px=width,
+        )
     typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")
+
+
+@app.command("photo")
+def photo(
+    name: LensName,
+    f_number: FNumber = None,
+    focus: Focus = None,
+    circle: Circle = None,
+    exposure_time: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--exposure-time", help="In seconds, 1/125 or 0.008: also print exposure values."),
+    ] = None,
+    iso: Annotated[float, typer.Option("--iso", help="Sensitivity, for exposure values.")] = 100.0,
+    as_json: AsJson = False,
+) -> None:
+    """Print photographers' figures: depth of field, angle of view, breathing, T-stop, exposure value."""
+    from ..photography import photographic_figures
+
+    lens = options.lens(name, focus, f_number)
+    figures = photographic_figures(
+        lens,
+        circle_of_confusion_mm=circle,
+        exposure_time_s=None if exposure_time is None else lens_options.seconds(exposure_time),
+        iso=iso,
+    )
+    if as_json:
+        typer.echo(lens_figures.as_json(figures))
+        return
+    lens_figures.print_columns([lens.title or lens.name], [lens_figures.photo_rows(figures)])
+
+
+@app.command("compare")
+def compare(
+    first: LensName,
+    second: Annotated[str, typer.Argument(help="Another one.", metavar="LENS")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Also draw both at one scale: .svg, .png or .pdf.")
+    ] = None,
+    f_number: FNumber = None,
+    focus: Focus = None,
+    circle: Circle = None,
+    mtf: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--mtf", help="Also the MTF at these frequencies, in periods per mm: 10,30. Takes seconds."),
+    ] = None,
+    wavelengths: lens_options.Wavelengths = None,
+    radius_colours: lens_options.RadiusColours = False,
+    marks: lens_options.Marks = False,
+    theme: lens_options.ThemeName = "light",
+    width: lens_options.Width = 1600,
+    as_json: AsJson = False,
+) -> None:
+    """Print figures of two lenses side by side, at the same focus and stop if these are given, and draw both."""
+    from ..photography import lens_summary
+
+    lenses = [options.lens(name, focus, f_number) for name in (first, second)]
+    colours = lens_options.numbers(wavelengths, "--wavelengths")
+    if output is not None:
+        from ..drawing.figure import check_picture
+
+        lens_options.check_not_the_lens(check_picture(output), first, second)
+    frequencies = lens_options.numbers(mtf, "--mtf") or []
+    summaries = [
+        lens_summary(lens, mtf_frequencies_per_mm=frequencies, circle_of_confusion_mm=circle) for lens in lenses
+    ]
+    if as_json:
+        typer.echo(lens_figures.as_json(summaries))
+    else:
+        rows = [lens_figures.summary_rows(summary) for summary in summaries]
+        lens_figures.print_columns([lens.title or lens.name for lens in lenses], rows)
+    if output is not None:
+        from ..draw import save_states
+
+        save_states(
+            [(lens.title or lens.name, lens) for lens in lenses],
+            output,
+            wavelengths_nm=colours,
+            radius_colours=radius_colours,
+            marks=marks,
+            theme=theme,
+            width_px=width,
+        )
+        if not as_json:
+            typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")

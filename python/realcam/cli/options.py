@@ -32,8 +32,9 @@ def number(text: str, what: str) -> float:
 def lens(name: str, focus: str | None, f_number: float | None) -> Lens:
     """A lens with its rings set."""
     result = Lens.load(name)
-    if focus is not None:
-        result = result.focused(number(focus, "--focus"))
+    # The stop first: f-numbers are of the lens at infinity, and a focusing group that has moved makes another lens.
     if f_number is not None:
         result = result.stopped_down(f_number)
+    if focus is not None:
+        result = result.focused(number(focus, "--focus"))
     return result

@@ -1,0 +1,145 @@
+"""realcam lens photo and compare: figures of lenses as text and JSON."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from typing import Any
+
+import numpy as np
+import typer
+
+from .._core import FieldOfView, Lens
+from ..photography import DepthOfField, LensSummary, PhotographicFigures, SharpRange
+
+Rows = list[tuple[str, str]]
+
+
+def as_json(value: Any) -> str:
+    """Numbers that are not finite become null, as in the executable's JSON."""
+    return json.dumps(_plain(value), indent=2, ensure_ascii=False)
+
+
+def photo_rows(figures: PhotographicFigures) -> Rows:
+    """What `lens photo` prints."""
+    f, dof, breath = figures, figures.depth_of_field, figures.breathing
+    formula, real = "  by formula", "  by real rays"
+    rows: Rows = [
+        ("focus", _metres(f.focus_distance_m)),
+        ("focal length", _focal_length(f)),
+        ("f-number", f"f/{f.f_number:.3g}"),
+        ("T-stop", f"T/{f.t_stop:.3g}"),
+        ("working f-number", f"f/{f.working_f_number:.3g}; N (1 + m / p) is f/{f.working_f_number_by_formula:.3g}"),
+        ("magnification", _magnification(f.magnification)),
+        ("angle of view", "horizontal, vertical, diagonal"),
+        (real, _angles(f.angle_of_view_deg)),
+        (formula, _angles(f.angle_of_view_by_formula_deg)),
+    ]
+    if breath is not None:
+        assumed = " (assumed: magnification 1/10)" if breath.is_assumed else ""
+        rows += [
+            ("breathing", f"{breath.change_percent:+.2f}% in the diagonal angle of view, from infinity to "
+                          f"{_metres(breath.nearest_focus_m)}{assumed}"),
+        ]  # fmt: skip
+    rows += [
+        ("depth of field", f"for a blur of {1000 * dof.circle_of_confusion_mm:.4g} um"),
+        (real, _range(dof)),
+        (formula, _sharp(dof.formula)),
+        ("  2 N c (m + 1) / m^2", _metres(dof.approximate_depth_m)),
+        ("hyperfocal distance", ""),
+        (real, _metres(dof.real_hyperfocal_m)),
+        (formula, _metres(dof.formula_hyperfocal_m)),
+        ("blur in focus", f"{1000 * dof.blur_in_focus_mm:.3g} um, of aberrations"),
+    ]
+    if f.exposure is not None:
+        e = f.exposure
+        rows += [
+            ("exposure value", f"EV {e.ev:.2f} at {e.exposure_time_s:.4g} s; for light of EV100 {e.ev100:.2f}"),
+            ("  by T-stop", f"for light of EV100 {e.ev100_at_film:.2f}, with the lens's losses and extension"),
+        ]
+    return rows
+
+
+def summary_rows(summary: LensSummary) -> Rows:
+    """What `lens compare` prints of one lens; the same rows of every lens."""
+    f, dof = summary.figures, summary.figures.depth_of_field
+    rows: Rows = [
+        ("focus", _metres(f.focus_distance_m)),
+        ("focal length", _focal_length(f)),
+        ("f-number, T-stop", f"f/{f.f_number:.3g}, T/{f.t_stop:.3g}"),
+        ("working f-number", f"f/{f.working_f_number:.3g}"),
+        ("film", f"{summary.lens.film_mm[0]:g} x {summary.lens.film_mm[1]:g} mm"),
+        ("elements, front to film", f"{summary.element_count}, {summary.length_mm:.4g} mm"),
+        ("angle of view h, v, d", _angles(f.angle_of_view_deg)),
+        ("breathing", "none known" if f.breathing is None else f"{f.breathing.change_percent:+.2f}%"),
+        ("circle of confusion", f"{1000 * dof.circle_of_confusion_mm:.4g} um"),
+        ("depth of field, rays", _range(dof)),
+        ("depth of field, formula", _sharp(dof.formula)),
+        ("hyperfocal, rays", _metres(dof.real_hyperfocal_m)),
+        ("hyperfocal, formula", _metres(dof.formula_hyperfocal_m)),
+    ]
+    for place in summary.fields:
+        share = f"{place.field.share:g}" if place.field.share is not None else f"{place.field.angle_deg:.3g}°"
+        rows.append(
+            (f"RMS spot at {share}", f"{place.rms_spot_radius_um:.3g} um ({place.field.film_height_mm:.3g} mm)")
+        )
+        if place.mtf_tangential is None or place.mtf_sagittal is None:
+            continue
+        for k, frequency in enumerate(summary.mtf_frequencies_per_mm):
+            both = f"{place.mtf_tangential[k]:.2f} tangential, {place.mtf_sagittal[k]:.2f} sagittal"
+            rows.append((f"  MTF at {frequency:g}/mm", both))
+    return rows
+
+
+def print_columns(titles: list[str], rows: list[Rows]) -> None:
+    """Rows of the same names side by side."""
+    names = [name for name, _ in rows[0]]
+    columns = [[title, *(value for _, value in column)] for title, column in zip(titles, rows, strict=True)]
+    widths = [max(map(len, ["", *names])), *(max(map(len, column)) for column in columns)]
+    for line in zip(["", *names], *columns, strict=True):
+        typer.echo("  ".join(f"{text:{width}}" for text, width in zip(line, widths, strict=True)).rstrip())
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Lens):
+        return value.name
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {field.name: _plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, FieldOfView):
+        return {name: _plain(angle) for name, angle in value._asdict().items()}
+    if isinstance(value, (tuple, list, np.ndarray)):
+        return [_plain(item) for item in value]
+    if isinstance(value, (float, np.floating)):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def _focal_length(figures: PhotographicFigures) -> str:
+    here, far = figures.focal_length_mm, figures.focal_length_at_infinity_mm
+    text = f"{far:.4g} mm"
+    return text if f"{here:.4g}" == f"{far:.4g}" else f"{text}; {here:.4g} mm as focused"
+
+
+def _metres(value: float) -> str:
+    if math.isnan(value):
+        return "none"
+    return "infinity" if math.isinf(value) else f"{value:.4g} m"
+
+
+def _range(dof: DepthOfField) -> str:
+    if math.isnan(dof.real.near_m):
+        return f"nothing is sharp: {1000 * dof.blur_in_focus_mm:.3g} um in focus"
+    return _sharp(dof.real)
+
+
+def _sharp(sharp: SharpRange) -> str:
+    return f"{_metres(sharp.near_m)} to {_metres(sharp.far_m)}, {_metres(sharp.depth_m)}"
+
+
+def _angles(angles: FieldOfView) -> str:
+    return ", ".join(f"{angle:.4g}" for angle in angles) + " deg"
+
+
+def _magnification(m: float) -> str:
+    return "0" if m == 0 else f"{m:.4g} (1:{1 / m:.3g})"

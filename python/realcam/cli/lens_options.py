@@ -1,0 +1,57 @@
+"""Options that drawings of lenses share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from .._core import InputError
+from . import options
+
+Rays = Annotated[int, typer.Option(help="Rays of each bundle.", min=0, max=101)]
+RaysFrom = Annotated[
+    str, typer.Option("--rays-from", help="object: bundles of points of it; film: what points of the film send out.")
+]
+Fields = Annotated[
+    str, typer.Option("--fields", help="Places in the field, as shares of the height of the film's corner.")
+]
+FieldsDeg = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option("--fields-deg", help="Places in the field as angles before the lens, in degrees, instead."),
+]
+Wavelengths = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option("--wavelengths", help="Of the rays, in nm: 486,588,656 [the lens's]."),
+]
+RadiusColours = Annotated[
+    bool, typer.Option("--radius-colours", help="Faces by the sign of their radius: blue positive, red negative.")
+]
+Marks = Annotated[
+    bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F').")
+]
+ThemeName = Annotated[str, typer.Option("--theme", help="light or dark.")]
+Width = Annotated[int, typer.Option("--width", help="Of the picture, in pixels.", min=200, max=20000)]
+
+
+def check_not_the_lens(target: Path, *names: str) -> None:
+    """Raises InputError where a drawing would go over the file of a lens that it shows."""
+    for name in names:
+        if Path(name).is_file() and target.exists() and target.samefile(name):
+            raise InputError(f"{target}: is the lens file itself; the drawing needs another name")
+
+
+def numbers(text: str | None, option: str) -> list[float] | None:
+    """Numbers with commas between them. Raises InputError."""
+    return None if text is None else [options.number(word.strip(), option) for word in text.split(",")]
+
+
+def seconds(text: str) -> float:
+    """A time, 0.008 or 1/125. Raises InputError."""
+    above, slash, below = text.partition("/")
+    value = options.number(above, "--exposure-time")
+    divisor = options.number(below, "--exposure-time") if slash else 1.0
+    if divisor == 0:
+        raise InputError(f'--exposure-time: "{text}" divides by 0')
+    return value / divisor

@@ -1,0 +1,153 @@
+"""A cross-section on matplotlib's axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from .notes import draw_crossings, draw_focus_group, draw_marks
+from .outlines import Element, Face, Points
+from .section import CrossSection
+from .style import Style, ray_colour
+from .themes import Theme
+
+
+@dataclass(frozen=True)
+class Extent:
+    """What a drawing has to show, mm."""
+
+    z_low: float
+    z_high: float
+    y_low: float
+    y_high: float
+
+    @property
+    def width(self) -> float:
+        return self.z_high - self.z_low
+
+    @property
+    def height(self) -> float:
+        return self.y_high - self.y_low
+
+
+def extent_of(section: CrossSection, style: Style) -> Extent:
+    """The bounds of a section, with some air around it."""
+    points: list[Points] = [polygon for element in section.elements for polygon in element.polygons]
+    points += [part for face in section.faces for part in face.parts]
+    points += [np.array([[b.z_mm, b.outer_mm], [b.z_mm, -b.outer_mm]]) for b in section.blockers]
+    points += [bundle.paths_mm[:, :, [2, 1]].reshape(-1, 2) for bundle in section.bundles]
+    semi = section.film_semi_diagonal_mm
+    points.append(np.array([[section.film_z_mm, semi], [section.film_z_mm, -semi]]))
+    every = np.concatenate(points)
+    (z_low, y_low), (z_high, y_high) = every.min(axis=0), every.max(axis=0)
+    if style.marks:
+        room = 0.25 * (z_high - z_low)
+        near = [mark for mark in section.marks if z_low - room < mark.z_mm < z_high + room]
+        z_low = min([z_low, *(mark.z_mm for mark in near)])
+        z_high = max([z_high, *(mark.z_mm for mark in near)])
+        y_high = max([y_high, *(mark.semi_diameter_mm for mark in near)])
+        y_low = min([y_low, *(-mark.semi_diameter_mm for mark in near)])
+    air = 0.04 * max(z_high - z_low, y_high - y_low)
+    above = 3.2 * air if section.focus_group else air
+    return Extent(z_low - air, z_high + air, y_low - air, y_high + above)
+
+
+def draw_section(
+    section: CrossSection, axes: Axes, style: Style, *, shift_mm: float = 0.0, ghost: CrossSection | None = None
+) -> None:
+    """Draws a section on axes of one scale; `shift_mm` is added to z.
+
+    ghost: another state, as outlines where it differs. The films of both lie on each other, as in a camera.
+    """
+    theme = style.theme
+    colours = {face.surface: _colour_of(face, style) for face in section.faces}
+    for element in section.elements:
+        for polygon in element.polygons:
+            axes.fill(*_moved(polygon, shift_mm), facecolor=theme.glass, edgecolor=theme.edge, linewidth=0.7, zorder=2)
+    for face in section.faces:
+        for part in face.parts:
+            width = 2.2 if face.is_mirror else 1.4 if style.radius_colours else 0.9
+            axes.plot(*_moved(part, shift_mm), color=colours[face.surface], linewidth=width, zorder=3)
+        if face.is_asphere:
+            z, y = face.parts[-1][-1]
+            axes.annotate(
+                "*", (z + shift_mm, y), (0, 0), textcoords="offset points", color=colours[face.surface],
+                fontsize=style.font_pt, ha="center", va="bottom", zorder=6,
+            )  # fmt: skip
+    if ghost is not None:
+        _draw_ghost(section, ghost, axes, theme, shift_mm)
+    _draw_blockers(section, axes, theme, shift_mm)
+    _draw_rays(section, axes, theme, shift_mm)
+    semi = section.film_semi_diagonal_mm
+    axes.plot([section.film_z_mm + shift_mm] * 2, [-semi, semi], color=theme.text, linewidth=2, zorder=4)
+    if style.marks:
+        draw_marks(section, axes, style, shift_mm)
+    draw_focus_group(section, axes, style, shift_mm)
+    draw_crossings(section, axes, style, shift_mm)
+
+
+def prepare_axes(axes: Axes, extent: Extent, style: Style, z_label: str = "z / mm") -> None:
+    """Limits, labels and colours."""
+    theme = style.theme
+    axes.set_xlim(extent.z_low, extent.z_high)
+    axes.set_ylim(extent.y_low, extent.y_high)
+    axes.set_aspect("equal")
+    axes.set_facecolor("none")
+    axes.set_xlabel(z_label, color=theme.text, fontsize=style.font_pt)
+    axes.set_ylabel("y / mm", color=theme.text, fontsize=style.font_pt)
+    axes.tick_params(colors=theme.text, labelsize=style.font_pt)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(theme.text)
+
+
+def _moved(points: Points, shift: float) -> tuple[Points, Points]:
+    return points[:, 0] + shift, points[:, 1]
+
+
+def _colour_of(face: Face, style: Style) -> str:
+    theme = style.theme
+    if style.radius_colours:
+        return {1: theme.positive, -1: theme.negative, 0: theme.plane}[face.radius_sign]
+    return theme.text if face.is_mirror else theme.edge
+
+
+def _draw_ghost(section: CrossSection, ghost: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
+    to_film = section.film_z_mm - ghost.film_z_mm
+    here = {(e.front, e.back): e for e in section.elements}
+    for element in ghost.elements:
+        if not _is_moved(element, here.get((element.front, element.back)), to_film):
+            continue
+        for polygon in element.polygons:
+            axes.fill(*_moved(polygon, to_film + shift), fill=False, edgecolor=theme.faint, linewidth=0.9,
+                      linestyle=(0, (3, 2)), zorder=3.5)  # fmt: skip
+
+
+def _is_moved(element: Element, other: Element | None, shift: float) -> bool:
+    if other is None:
+        return True
+    return any(
+        a.shape != b.shape or not np.allclose(a + np.array([shift, 0.0]), b, rtol=0, atol=1e-6)
+        for a, b in zip(element.polygons, other.polygons, strict=True)
+    )
+
+
+def _draw_blockers(section: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
+    for blocker in section.blockers:
+        z = blocker.z_mm + shift
+        width, colour = (2.4, theme.text) if blocker.is_stop else (1.6, theme.faint)
+        for side in (-1, 1):
+            if blocker.outer_mm > blocker.opening_mm:
+                axes.plot([z] * 2, [side * blocker.opening_mm, side * blocker.outer_mm], color=colour,
+                          linewidth=width, solid_capstyle="butt", zorder=4)  # fmt: skip
+        if blocker.obstruction_mm > 0:
+            axes.plot([z] * 2, [-blocker.obstruction_mm, blocker.obstruction_mm], color=theme.faint, linewidth=1.6,
+                      solid_capstyle="butt", zorder=4)  # fmt: skip
+
+
+def _draw_rays(section: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
+    for bundle in section.bundles:
+        colour = ray_colour(section, bundle, theme)
+        for path in bundle.paths_mm:
+            axes.plot(path[:, 2] + shift, path[:, 1], color=colour, linewidth=0.7, zorder=5, alpha=0.85, gid="ray")

@@ -1,0 +1,174 @@
+"""Figures of cross-sections: one lens, or several states in rows of one scale; with insets of the film."""
+
+from __future__ import annotations
+
+import io
+import os
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import matplotlib.figure
+
+from .. import files
+from .._core import ImageFileError, InputError
+from .draw import Extent, draw_section, extent_of, prepare_axes
+from .inset import draw_inset, shown_in_insets
+from .section import CrossSection
+from .style import Style, legend_of_wavelengths
+
+SUFFIXES = (".svg", ".png", ".pdf")
+_SETTINGS: Any = {"svg.fonttype": "none", "svg.hashsalt": "realcam", "pdf.fonttype": 42}  # text stays text
+
+
+@dataclass(frozen=True)
+class Row:
+    """One lens in one state of its rings, with its title."""
+
+    title: str
+    subtitle: str
+    section: CrossSection
+    ghost: CrossSection | None = None
+
+
+def check_picture(path: str | os.PathLike[str]) -> Path:
+    """Raises ImageFileError where a drawing cannot go there."""
+    target = Path(path)
+    if target.suffix.lower() not in SUFFIXES:
+        raise ImageFileError(f"{target}: unknown suffix; {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} is wanted")
+    files.check_target(target)
+    return target
+
+
+def save_figure(figure: matplotlib.figure.Figure, target: Path, width_px: int) -> None:
+    """Writes it as a whole or not at all. Raises ImageFileError."""
+    kind = target.suffix[1:].lower()
+    # In memory, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
+    drawing = io.BytesIO()
+    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind, {})
+    with matplotlib.rc_context(_SETTINGS):
+        figure.savefig(
+            drawing,
+            format=kind,
+            dpi=width_px / figure.get_figwidth(),
+            facecolor=figure.get_facecolor(),
+            metadata=metadata,
+        )
+    files.write_whole(target, drawing.getvalue())
+
+
+def figure_of(
+    rows: Sequence[Row], style: Style, *, width_px: int = 1600, insets: bool = True, align: str = "front"
+) -> matplotlib.figure.Figure:
+    """All rows at one scale, one below the other.
+
+    width_px: of the picture as pixels; a narrow one has fewer inches, so that its text is not too small.
+    align: what lies below each other, the "front" vertices or the "film". Raises InputError.
+    """
+    if not 200 <= width_px <= 20000:
+        raise InputError("the width of a drawing must be 200 to 20000 pixels")
+    layout = _Layout(rows, style, min(max(width_px / 160, 5.0), 10.0), insets, align)
+    figure = matplotlib.figure.Figure(figsize=(layout.width, layout.height), facecolor=style.theme.page)
+    top = layout.height
+    for index, row in enumerate(rows):
+        top -= layout.title_height(index)
+        extent, shift = layout.extents[index], layout.shifts[index]
+        height = layout.heights[index]
+        bottom = top - height
+        axes = figure.add_axes(layout.share(layout.left, bottom, layout.plot_width, height))
+        last = index == len(rows) - 1
+        label = "z from the film / mm" if align == "film" else "z / mm"
+        prepare_axes(axes, extent, layout.style, label if last else "")
+        draw_section(row.section, axes, layout.style, shift_mm=shift, ghost=row.ghost)
+        _write_titles(figure, layout, index, top)
+        fields = shown_in_insets(row.section) if insets else []
+        for box, field in zip(layout.inset_boxes(len(fields), bottom, height), fields, strict=True):
+            draw_inset(figure.add_axes(layout.share(*box)), row.section, field, layout.style, layout.scale)
+        top = bottom - layout.below(index)
+    return figure
+
+
+class _Layout:
+    """Places in inches; all rows have one scale, and the same z stands above the same z."""
+
+    right, gap = 0.12, 0.22
+    inset_title = 0.24
+
+    def __init__(self, rows: Sequence[Row], style: Style, width: float, insets: bool, align: str) -> None:
+        self.rows, self.width = rows, width
+        font = 7.5 if width < 7 else 9.5
+        self.style = Style(style.theme, style.radius_colours, style.marks, font)
+        self.line, self.left = 1.45 * font / 72, 0.08 * font
+        self.with_insets = insets and any(row.section.bundles for row in rows)
+        self.inset_width = 0.19 * width if self.with_insets else 0.0
+        room = self.left + self.right + (self.inset_width + self.gap if self.with_insets else 0)
+        self.plot_width = width - room
+        self.shifts = [-row.section.film_z_mm if align == "film" else 0.0 for row in rows]
+        bounds = [
+            _shifted(extent_of(row.section, self.style), shift) for row, shift in zip(rows, self.shifts, strict=True)
+        ]
+        z_low, z_high = min(b.z_low for b in bounds), max(b.z_high for b in bounds)
+        # A tall lens gets less of the width, so that the figure stays no taller than it is wide.
+        tallest = max(0.95 * width / len(rows), 0.4 * width)
+        self.scale = min(self.plot_width / (z_high - z_low), tallest / max(b.height for b in bounds))
+        spare = 0.5 * (self.plot_width / self.scale - (z_high - z_low))
+        least = 0.0
+        if self.with_insets:
+            most = max(len(shown_in_insets(row.section)) for row in rows)
+            least = most * (0.48 * self.inset_width + self.inset_title)
+        self.extents, self.heights = [], []
+        for b in bounds:
+            more = max(0.0, 0.5 * (least / self.scale - b.height))
+            self.extents.append(Extent(z_low - spare, z_high + spare, b.y_low - more, b.y_high + more))
+            self.heights.append(self.extents[-1].height * self.scale)
+        self.titles = [self._wrapped(row) for row in rows]
+        self.height = sum(self.heights) + sum(self.title_height(i) + self.below(i) for i in range(len(rows)))
+
+    def title_height(self, index: int) -> float:
+        legend = bool(legend_of_wavelengths(self.rows[index].section, self.style.theme))
+        return (len(self.titles[index]) + 1 + legend) * self.line + 0.16
+
+    def below(self, index: int) -> float:
+        return 2.9 * self.line if index == len(self.rows) - 1 else 1.9 * self.line
+
+    def share(self, left: float, bottom: float, width: float, height: float) -> tuple[float, float, float, float]:
+        return left / self.width, bottom / self.height, width / self.width, height / self.height
+
+    def inset_boxes(self, count: int, bottom: float, height: float) -> list[tuple[float, float, float, float]]:
+        """From the one of the highest field down to that of the axis, as their points lie on the film."""
+        if count == 0:
+            return []
+        cell = height / count
+        tall = min(cell - self.inset_title, self.inset_width)
+        left = self.width - self.right - self.inset_width
+        return [(left, bottom + k * cell, self.inset_width, tall) for k in range(count)]
+
+    def _wrapped(self, row: Row) -> list[str]:
+        characters = int(1.75 * 72 * (self.width - self.left) / (1.15 * self.style.font_pt))
+        text = "".join(c for c in row.title if c.isprintable())
+        return textwrap.wrap(text, characters) or [""]
+
+
+def _shifted(extent: Extent, shift: float) -> Extent:
+    return Extent(extent.z_low + shift, extent.z_high + shift, extent.y_low, extent.y_high)
+
+
+def _write_titles(figure: matplotlib.figure.Figure, layout: _Layout, index: int, top: float) -> None:
+    # Titles are text, and a dollar sign in one begins no formula.
+    row, style = layout.rows[index], layout.style
+    x = 0.12 / layout.width
+    y = top + layout.title_height(index) - 0.06
+    for line in layout.titles[index]:
+        figure.text(x, y / layout.height, line, ha="left", va="top", fontsize=1.15 * style.font_pt,
+                    color=style.theme.text, parse_math=False)  # fmt: skip
+        y -= 1.1 * layout.line
+    figure.text(x, y / layout.height, row.subtitle, ha="left", va="top", fontsize=style.font_pt,
+                color=style.theme.text, parse_math=False)  # fmt: skip
+    y -= layout.line
+    for k, (text, colour) in enumerate(legend_of_wavelengths(row.section, style.theme)):
+        left = 0.12 + k * 6.5 * style.font_pt / 72
+        figure.text(left / layout.width, y / layout.height, text, ha="left", va="top", fontsize=style.font_pt,
+                    color=colour)  # fmt: skip

@@ -1,0 +1,84 @@
+"""The rays of one field where they meet the film, magnified."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from ..fields import Field
+from .section import CrossSection
+from .style import Style, ray_colour
+
+_STEPS = (1, 2, 5)
+
+
+def shown_in_insets(section: CrossSection, most: int = 4) -> list[Field]:
+    """The fields that get a picture of their spot, by their height on the film: all, or `most` from end to end."""
+    lit = [f for f in section.fields if any(len(b.paths_mm) for b in section.bundles if b.field == f)]
+    lit.sort(key=lambda field: field.film_height_mm)
+    if len(lit) <= most:
+        return lit
+    return [lit[i] for i in np.linspace(0, len(lit) - 1, most).round().astype(int)]
+
+
+def letter_of(section: CrossSection, field: Field) -> str:
+    return chr(ord("a") + section.fields.index(field) % 26)
+
+
+def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, inches_per_mm: float) -> float:
+    """The rays of one field where they meet the film, magnified; returns the magnification against the drawing.
+
+    The magnification is the largest of 1, 2, 5, 10 ... at which the spot fills no more than two thirds of the height.
+    """
+    theme = style.theme
+    bundles = [bundle for bundle in section.bundles if bundle.field == field and len(bundle.paths_mm)]
+    heights = np.concatenate([bundle.paths_mm[:, -1, 1] for bundle in bundles])
+    middle, size = 0.5 * (heights.min() + heights.max()), float(np.ptp(heights))
+    box = axes.get_window_extent()
+    width, height = box.width / axes.figure.dpi, box.height / axes.figure.dpi
+    magnification = _rounded_down(2 / 3 * height / (inches_per_mm * max(size, 1e-9)))
+    magnification = min(max(magnification, 1.0), 1e5)
+    half_z, half_y = (0.5 * inches / (inches_per_mm * magnification) for inches in (width, height))
+    for bundle in bundles:
+        slopes = bundle.directions_at_film[:, 1] / bundle.directions_at_film[:, 2]
+        for y, slope in zip(bundle.paths_mm[:, -1, 1] - middle, slopes, strict=True):
+            # Cut at the frame here, because not every viewer of SVG clips.
+            z = np.clip((np.array([-half_y, half_y]) - y) / slope, -half_z, half_z) if slope else [-half_z, half_z]
+            axes.plot(z, y + slope * np.asarray(z), color=ray_colour(section, bundle, theme), linewidth=0.7)
+    axes.axvline(0, color=theme.text, linewidth=1.5)
+    bar = _rounded_down(0.8 * half_z)
+    y_bar = -0.86 * half_y
+    axes.plot([0.9 * half_z - bar, 0.9 * half_z], [y_bar] * 2, color=theme.text, linewidth=2, solid_capstyle="butt")
+    small = 0.85 * style.font_pt
+    halo = {"facecolor": theme.page, "edgecolor": "none", "alpha": 0.75, "pad": 1.0}
+    axes.text(0.9 * half_z, y_bar + 0.06 * half_y, _length(bar), ha="right", va="bottom", fontsize=small,
+              color=theme.text, bbox=halo)  # fmt: skip
+    axes.text(-0.94 * half_z, -0.92 * half_y, f"× {magnification:g}", ha="left", va="bottom", fontsize=small,
+              color=theme.text, bbox=halo)  # fmt: skip
+    colour = ray_colour(section, bundles[0], theme) if len(section.wavelengths_nm) == 1 else theme.text
+    axes.set_title(
+        f"{letter_of(section, field)}: {field.angle_deg:.3g}°, {field.film_height_mm:.3g} mm",
+        fontsize=small,
+        color=colour,
+        pad=3,
+    )
+    axes.set_xlim(-half_z, half_z)
+    axes.set_ylim(-half_y, half_y)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.set_facecolor("none")
+    for spine in axes.spines.values():
+        spine.set_color(theme.faint)
+    return magnification
+
+
+def _rounded_down(value: float) -> float:
+    """To 1, 2 or 5 times a power of ten."""
+    power = math.floor(math.log10(value))
+    return float(max(step for step in _STEPS if step * 10.0**power <= value * (1 + 1e-12)) * 10.0**power)
+
+
+def _length(mm: float) -> str:
+    return f"{mm:g} mm" if mm >= 0.1 else f"{1000 * mm:g} µm"

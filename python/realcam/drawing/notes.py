@@ -1,0 +1,84 @@
+"""What is written into a section: pupils and planes, the group that focuses, faces that cross."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from .marks import Mark
+from .section import CrossSection
+from .style import Style
+
+
+def draw_marks(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
+    theme = style.theme
+    low, high = axes.get_xlim()
+    shown = [mark for mark in section.marks if low <= mark.z_mm + shift <= high]
+    outside = [mark for mark in section.marks if mark not in shown]
+    tall = 1.06 * max(face.parts[-1][-1, 1] for face in section.faces)
+    for mark in shown:
+        z = mark.z_mm + shift
+        if mark.kind == "pupil":
+            axes.plot([z] * 2, [-mark.semi_diameter_mm, mark.semi_diameter_mm], color=theme.text, linewidth=1,
+                      linestyle=(0, (4, 2)), zorder=6, marker="_", markersize=7)  # fmt: skip
+            _label(axes, mark, z, mark.semi_diameter_mm, 4, style)
+        elif mark.kind == "principal plane":
+            axes.plot([z] * 2, [-tall, tall], color=theme.text, linewidth=0.9, linestyle=(0, (6, 2, 1, 2)), zorder=6)
+            _label(axes, mark, z, -tall, -3, style)
+        else:
+            axes.plot([z], [0], "o", color=theme.text, markersize=4, zorder=6)
+            _label(axes, mark, z, 0, -5, style)
+    if outside:
+        text = "outside: " + ", ".join(f"{mark.label} at {mark.z_mm:.4g} mm" for mark in outside)
+        axes.text(0.01, 0.01, text, transform=axes.transAxes, fontsize=0.85 * style.font_pt, color=theme.text, zorder=7)
+
+
+def _label(axes: Axes, mark: Mark, z: float, y: float, points_up: float, style: Style) -> None:
+    axes.annotate(
+        mark.label, (z, y), (0, points_up), textcoords="offset points", ha="center",
+        va="bottom" if points_up > 0 else "top", fontsize=style.font_pt, color=style.theme.text, zorder=7,
+        bbox={"facecolor": style.theme.page, "edgecolor": "none", "alpha": 0.7, "pad": 0.5},
+    )  # fmt: skip
+
+
+def draw_focus_group(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
+    group = section.focus_group
+    if group is None:
+        return
+    inside = [p for face in section.faces if group.first <= face.surface <= group.last for p in face.parts]
+    if not inside:
+        return
+    points = np.concatenate(inside)
+    z_low, z_high = points[:, 0].min() + shift, points[:, 0].max() + shift
+    # Above everything, so that no glass and no pupil stands behind the words.
+    tops = [float(face.parts[-1][:, 1].max()) for face in section.faces]
+    tallest = max(tops + [mark.semi_diameter_mm for mark in section.marks if style.marks])
+    base = 1.04 * tallest + (0.12 * tallest if style.marks else 0)
+    top = base + 0.06 * tallest
+    colour = style.theme.text
+    axes.plot([z_low, z_low, z_high, z_high], [base, top, top, base], color=colour, linewidth=1, zorder=6)
+    for z in (z_low, z_high):
+        axes.plot([z, z], [points[:, 1].max(), base], color=style.theme.faint, linewidth=0.6, zorder=1)
+    text = "focus group"
+    if group.travel_mm is not None:
+        arrow = "→" if group.travel_mm > 0 else "←"
+        text += f" {arrow} {abs(group.travel_mm):.3g} mm to {group.nearest_focus_m:.3g} m"
+    axes.annotate(text, (0.5 * (z_low + z_high), top), (0, 2), textcoords="offset points", ha="center", va="bottom",
+                  fontsize=0.85 * style.font_pt, color=colour, zorder=6)  # fmt: skip
+
+
+def draw_crossings(section: CrossSection, axes: Axes, style: Style, shift: float) -> None:
+    colour = style.theme.error
+    lines = []
+    for crossing in section.crossings:
+        for zone in crossing.zones:
+            axes.fill(
+                zone[:, 0] + shift, zone[:, 1], facecolor=colour, edgecolor=colour, linewidth=1.2, alpha=0.75, zorder=8
+            )
+        lines.append(
+            f"error: surfaces {crossing.first + 1} and {crossing.second + 1} cross, by {crossing.depth_mm:.3g} mm at "
+            f"{crossing.radius_mm:.3g} mm from the axis"
+        )
+    if lines:
+        axes.text(0.01, 0.99, "\n".join(lines), transform=axes.transAxes, ha="left", va="top", color=colour,
+                  fontsize=style.font_pt, zorder=9)  # fmt: skip

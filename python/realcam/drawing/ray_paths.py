@@ -1,0 +1,154 @@
+"""Rays through a lens, with all the points that a drawing joins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Lens, RayStatus
+from ..fields import Field
+
+Array = NDArray[np.float64]
+
+_PUPIL = np.column_stack([np.zeros(401), np.linspace(-1, 1, 401)])
+
+
+@dataclass(frozen=True)
+class RayBundle:
+    """Rays of one place in the field and one wavelength, in the meridional plane. Lens frame."""
+
+    field: Field
+    wavelength_nm: float
+    paths_mm: Array  #: (rays, surfaces + 2, 3): before the lens, on each surface, on the film
+    directions_at_film: Array  #: (rays, 3), unit
+
+
+def bundles_from_object(
+    lens: Lens,
+    fields: Sequence[Field],
+    wavelengths_nm: Sequence[float],
+    count: int,
+    reach_mm: float,
+    object_distance_m: float | None = None,
+) -> tuple[RayBundle, ...]:
+    """Bundles of light from the object, `count` rays each, evenly over what the lens lets pass.
+
+    Paths begin on one plane across the light of each bundle, `reach_mm` before its first surface, or at the object if
+    that is nearer. Raises InputError.
+    """
+    bundles = []
+    for wavelength in wavelengths_nm:
+        aimed = [_aimed(lens, field, wavelength, count, object_distance_m) for field in fields]
+        for field, (origins, directions) in zip(fields, aimed, strict=True):
+            points, out = _points(lens, origins, directions, wavelength, "scene")
+            start = _start(lens, points[:, 0], directions, reach_mm, object_distance_m)
+            last = points[:, -1]
+            film = last + out * ((lens.film_position_mm - last[:, 2]) / out[:, 2])[:, None]
+            paths = np.concatenate([start[:, None], points, film[:, None]], axis=1)
+            bundles.append(RayBundle(field, wavelength, paths, out))
+    return tuple(bundles)
+
+
+def bundles_from_film(
+    lens: Lens, fields: Sequence[Field], wavelengths_nm: Sequence[float], count: int, reach_mm: float
+) -> tuple[RayBundle, ...]:
+    """The rays that points of the film send through the lens backwards, `count` each; paths begin before the lens."""
+    bundles = []
+    for wavelength in wavelengths_nm:
+        for field in fields:
+            angles = _passing_angles(lens, field.film_height_mm, wavelength)
+            chosen = angles[_spread(len(angles), count)]
+            origins, directions = _film_rays(lens, field.film_height_mm, chosen)
+            points, out = _points(lens, origins, directions, wavelength, "film")
+            start = points[:, -1] + reach_mm * out
+            paths = np.concatenate([origins[:, None], points, start[:, None]], axis=1)[:, ::-1]
+            bundles.append(RayBundle(field, wavelength, np.ascontiguousarray(paths), -directions))
+    return tuple(bundles)
+
+
+def _spread(passing: int, count: int) -> NDArray[np.intp]:
+    """Which `count` of those that pass are drawn: evenly from the first to the last; of one, the middle."""
+    if passing == 0:
+        return np.empty(0, np.intp)
+    if count == 1:
+        return np.array([passing // 2])
+    return np.unique(np.linspace(0, passing - 1, count).round().astype(np.intp))
+
+
+def _aimed(
+    lens: Lens, field: Field, wavelength_nm: float, count: int, object_distance_m: float | None
+) -> tuple[Array, Array]:
+    rays = lens.aim(_PUPIL, field.angle_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm)
+    passing = np.flatnonzero(rays.status == RayStatus.OK)
+    chosen = passing[_spread(len(passing), count)]
+    return rays.origins_mm[chosen], rays.directions[chosen]
+
+
+def _points(lens: Lens, origins: Array, directions: Array, wavelength_nm: float, start: str) -> tuple[Array, Array]:
+    """Where rays that pass meet each surface, (rays, surfaces, 3), and their directions behind the last one."""
+    points, out = [], directions
+    for surfaces in range(1, len(lens.surfaces) + 1):
+        traced = lens.trace(origins, directions, start=start, surface_count=surfaces, wavelength_nm=wavelength_nm)
+        points.append(traced.origins_mm)
+        out = traced.directions
+    return np.stack(points, axis=1), out
+
+
+def _start(lens: Lens, first: Array, directions: Array, reach_mm: float, object_distance_m: float | None) -> Array:
+    """Where the paths begin, on the straight lines before the first surface."""
+    if not len(first):
+        return first
+    middle = directions[len(directions) // 2]
+    along = first @ middle
+    plane = np.min(along) - reach_mm
+    start: Array = first - ((along - plane) / (directions @ middle))[:, None] * directions
+    distance = object_distance_m
+    if distance is None:
+        distance = lens.focus_distance_m - lens.film_position_mm / 1000
+    at_object = -1000 * distance
+    if math.isfinite(distance):
+        to_object = first + ((at_object - first[:, 2]) / directions[:, 2])[:, None] * directions
+        if np.any((to_object - start) @ middle > 0):
+            start = to_object
+    return start
+
+
+def _film_rays(lens: Lens, height_mm: float, angle: Array) -> tuple[Array, Array]:
+    zero = np.zeros_like(angle)
+    origins = np.column_stack([zero, zero + height_mm, zero + lens.film_position_mm])
+    return origins, np.column_stack([zero, np.sin(angle), -np.cos(angle)])
+
+
+def _passing_angles(lens: Lens, height_mm: float, wavelength_nm: float, count: int = 2001) -> Array:
+    """Angles in the meridional plane under which rays from a film point leave the lens."""
+    last = lens.surfaces[-1].clear_semi_diameter_mm
+    ends = np.arctan2(np.array([-last, last]) * 1.05 - height_mm, lens.film_distance_mm)
+    angle = np.linspace(ends[0], ends[1], count)
+    # A closed diaphragm may lie between two of these rays: the next ones go between the two beside its middle, until
+    # there are enough that pass.
+    for _ in range(4):
+        out = lens.trace(*_film_rays(lens, height_mm, angle), start="film", wavelength_nm=wavelength_nm)
+        passing: Array = angle[out.status == RayStatus.OK]
+        if len(passing) > count // 20:
+            break
+        around = passing if len(passing) else _beside_the_middle_of_the_stop(lens, height_mm, angle, wavelength_nm)
+        if not len(around):
+            break
+        step = angle[1] - angle[0]
+        angle = np.linspace(around[0] - step, around[-1] + step, count)
+    return passing
+
+
+def _beside_the_middle_of_the_stop(lens: Lens, height_mm: float, angle: Array, wavelength_nm: float) -> Array:
+    """Of rays that all miss the stop's opening: the two between which its middle lies. Empty where there are none."""
+    behind = len(lens.surfaces) - lens.stop_index
+    origins, directions = _film_rays(lens, height_mm, angle)
+    out = lens.trace(origins, directions, start="film", surface_count=behind, wavelength_nm=wavelength_nm)
+    at_stop = (out.surface_index == lens.stop_index) & (out.status != RayStatus.MISSED)
+    y = np.where(at_stop, out.origins_mm[:, 1], np.nan)
+    crossing = np.flatnonzero(y[:-1] * y[1:] <= 0)[:1]
+    return np.concatenate([angle[crossing], angle[crossing + 1]])

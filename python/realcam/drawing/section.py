@@ -1,0 +1,91 @@
+"""The meridional section of a lens as arrays: what a drawing shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .._core import InputError, Lens
+from ..fields import Field, fields_at, fields_of_angles
+from .marks import FocusGroup, Mark, focus_group_of, marks_of
+from .outlines import Blocker, Crossing, Element, Face, blockers_of, crossings_of, elements_of, faces_of
+from .ray_paths import RayBundle, bundles_from_film, bundles_from_object
+
+
+@dataclass(frozen=True)
+class CrossSection:
+    """A lens cut along its axis. Outlines are (N, 2) arrays of (z, y), paths (N, 3) of (x, y, z); mm, lens frame."""
+
+    lens: Lens
+    elements: tuple[Element, ...]
+    faces: tuple[Face, ...]
+    blockers: tuple[Blocker, ...]
+    crossings: tuple[Crossing, ...]
+    marks: tuple[Mark, ...]
+    focus_group: FocusGroup | None
+    film_z_mm: float
+    film_semi_diagonal_mm: float
+    fields: tuple[Field, ...]
+    bundles: tuple[RayBundle, ...]  #: by wavelength, then by field
+
+    @property
+    def wavelengths_nm(self) -> tuple[float, ...]:
+        """In the order in which they were asked for."""
+        return tuple(dict.fromkeys(bundle.wavelength_nm for bundle in self.bundles))
+
+
+def cross_section(
+    lens: Lens,
+    *,
+    rays: int = 7,
+    rays_from: str = "object",
+    fields: Sequence[float] = (0.0, 0.7, 1.0),
+    fields_deg: Sequence[float] | None = None,
+    wavelengths_nm: Sequence[float] | None = None,
+    object_distance_m: float | None = None,
+) -> CrossSection:
+    """The section of a lens in the plane x = 0, with its rays.
+
+    rays: how many of each bundle; 0 for none.
+    rays_from: "object", bundles of an object point each, so that the lens's aberrations show at the film; or "film",
+      the rays that film points send through the lens, as the camera samples them.
+    fields: shares of the height of the film's corner, or, if the film is larger than the image, of the
+      last height that a quarter as many rays reach as the middle.
+    fields_deg: field angles instead, as Lens.spot takes them; only from the object.
+    wavelengths_nm: None is the design wavelength alone.
+    object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
+    Raises InputError where no light passes the lens, or what is asked makes no sense.
+    """
+    if rays_from not in ("object", "film"):
+        raise InputError(f'rays_from is "{rays_from}"; object or film is wanted')
+    if rays < 0:
+        raise InputError("the number of rays must be 0 or more")
+    if rays_from == "film" and fields_deg is not None:
+        raise InputError("field angles are of rays from the object; rays from the film take shares of its corner")
+    wavelengths = [lens.wavelength_nm] if wavelengths_nm is None else list(dict.fromkeys(wavelengths_nm))
+    places: tuple[Field, ...] = ()
+    bundles: tuple[RayBundle, ...] = ()
+    if rays > 0:
+        span = lens.film_position_mm - min(lens.vertices_mm)
+        if fields_deg is not None:
+            places = fields_of_angles(lens, fields_deg, object_distance_m)
+        else:
+            places = fields_at(lens, fields, object_distance_m)
+        if rays_from == "object":
+            bundles = bundles_from_object(lens, places, wavelengths, rays, 0.25 * span, object_distance_m)
+        else:
+            bundles = bundles_from_film(lens, places, wavelengths, rays, 0.25 * span)
+    return CrossSection(
+        lens,
+        elements_of(lens),
+        faces_of(lens),
+        blockers_of(lens),
+        crossings_of(lens),
+        marks_of(lens),
+        focus_group_of(lens),
+        lens.film_position_mm,
+        0.5 * math.hypot(*lens.film_mm),
+        places,
+        bundles,
+    )

@@ -1,0 +1,37 @@
+"""How sections are drawn, and what their colours mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .ray_paths import RayBundle
+from .section import CrossSection
+from .themes import LIGHT, Theme, colours_of_wavelengths
+
+
+@dataclass(frozen=True)
+class Style:
+    """How a section is drawn."""
+
+    theme: Theme = LIGHT
+    radius_colours: bool = False  #: faces by the sign of their radius: positive blue, negative red
+    marks: bool = False  #: pupils, principal planes, focal points
+    font_pt: float = 9.0
+
+
+def ray_colour(section: CrossSection, bundle: RayBundle, theme: Theme) -> str:
+    """By wavelength where there are several, else by field."""
+    wavelengths = section.wavelengths_nm
+    if len(wavelengths) > 1:
+        return colours_of_wavelengths(wavelengths, theme)[wavelengths.index(bundle.wavelength_nm)]
+    return theme.rays[section.fields.index(bundle.field) % len(theme.rays)]
+
+
+def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple[str, str]]:
+    """Text and colour for each wavelength, where there are several."""
+    wavelengths = section.wavelengths_nm
+    if len(wavelengths) < 2:
+        return ()
+    colours = colours_of_wavelengths(wavelengths, theme)
+    return [(f"{wavelength:.4g} nm", colour) for wavelength, colour in zip(wavelengths, colours, strict=True)]

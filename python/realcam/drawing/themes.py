@@ -1,0 +1,69 @@
+"""Colours of drawings, on light and on dark pages."""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .._core import InputError
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours as matplotlib takes them. None of the rays' is one of those that tell the sign of a radius."""
+
+    page: str
+    text: str
+    faint: str  #: lines that should not catch the eye
+    glass: str
+    edge: str
+    positive: str  #: faces whose centre of curvature lies on the film's side
+    negative: str
+    plane: str
+    error: str
+    rays: tuple[str, ...]
+
+
+LIGHT = Theme(
+    page="#ffffff",
+    text="#1b1f24",
+    faint="#8a929c",
+    glass="#dbe8f3",
+    edge="#33607f",
+    positive="#1757c8",
+    negative="#d0281f",
+    plane="#5c6670",
+    error="#e00000",
+    rays=("#b86e00", "#17804e", "#7b3fb0", "#00798c", "#8c4a2f", "#b0307a", "#5d6b00"),
+)
+DARK = Theme(
+    page="#14181d",
+    text="#e6e9ec",
+    faint="#7f8994",
+    glass="#223a4e",
+    edge="#8db9da",
+    positive="#6ea3ff",
+    negative="#ff7269",
+    plane="#b4bcc4",
+    error="#ff4136",
+    rays=("#ffb14a", "#4fd08e", "#c79bff", "#4cc9dd", "#e09a78", "#ff8ac4", "#c3d24a"),
+)
+THEMES = {"light": LIGHT, "dark": DARK}
+
+
+def theme_named(name: str) -> Theme:
+    """Raises InputError."""
+    if name not in THEMES:
+        raise InputError(f'theme "{name:.40}" is unknown; {" or ".join(THEMES)} is wanted')
+    return THEMES[name]
+
+
+def colours_of_wavelengths(wavelengths_nm: Sequence[float], theme: Theme) -> list[str]:
+    """Near to what the eye sees, violet to red, as long as that tells them apart; else one after another."""
+    bands = (440, 490, 570, 600)  # nm, between violet, cyan, green, orange and pink
+    order = (2, 3, 1, 0, 5)
+    seen = [theme.rays[order[bisect.bisect(bands, wavelength)]] for wavelength in wavelengths_nm]
+    if len(set(seen)) == len(seen):
+        return seen
+    return [theme.rays[i % len(theme.rays)] for i in range(len(wavelengths_nm))]

@@ -1,0 +1,103 @@
+"""Places in the field of a lens: by their height on the film, or by the angle of their light."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ._core import InputError, Lens, RayStatus, Spot
+from .roots import root_between
+
+_LARGEST_STEP_DEG = 5.0
+_PROBES = np.column_stack([np.zeros(21), np.linspace(-1, 1, 21)])  # rays of the meridional plane, over the stop
+
+
+@dataclass(frozen=True)
+class Field:
+    """A place in the field."""
+
+    angle_deg: float  #: of the light before the lens, as Lens.spot takes it
+    film_height_mm: float  #: where the chief ray of the design wavelength meets the film
+    share: float | None  #: of the largest height that gets light, where it was chosen so
+
+
+def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | None = None) -> tuple[Field, ...]:
+    """Places by their height on the film: shares of that of its corner, or of the last one that gets light.
+
+    object_distance_m: object plane to front vertex; None: the plane in focus.
+    Raises InputError where no light passes the lens, or a share does not lie between -1 and 1.
+    """
+    if not all(-1 <= share <= 1 for share in shares):
+        raise InputError("fields are shares of the film's corner: numbers from -1 to 1 are wanted")
+    corner = 0.5 * math.hypot(*lens.film_mm)
+    edge = angle_of_height(lens, corner, object_distance_m)
+    fields = []
+    for share in shares:
+        if abs(share) == 1:
+            angle, height = edge
+        elif share == 0:
+            angle, height = 0.0, 0.0
+        else:
+            angle, height = angle_of_height(lens, abs(share) * edge[1], object_distance_m)
+        fields.append(Field(math.copysign(angle, share), math.copysign(height, share), share))
+    return tuple(fields)
+
+
+def fields_of_angles(lens: Lens, angles_deg: Sequence[float], object_distance_m: float | None) -> tuple[Field, ...]:
+    """Places by the angle of their light before the lens. Raises InputError where none of it passes."""
+    return tuple(
+        Field(angle, _meridional_spot(lens, angle, object_distance_m, lens.wavelength_nm).chief_ray_mm[1], None)
+        for angle in angles_deg
+    )
+
+
+def angle_of_height(
+    lens: Lens, height_mm: float, object_distance_m: float | None = None, wavelength_nm: float | None = None
+) -> tuple[float, float]:
+    """The field angle, degrees, whose chief ray meets the film at a height, mm, and that height.
+
+    Where the light ends before that height: the largest angle from which a quarter as many rays pass as on the axis,
+    and its height. Raises InputError where no light passes the lens.
+    """
+    wavelength = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
+    least = 1
+
+    def missing(angle: float) -> float:
+        try:
+            spot = _meridional_spot(lens, angle, object_distance_m, wavelength)
+        except InputError:  # beyond the edge of the lens's field
+            return math.nan
+        return abs(spot.chief_ray_mm[1]) - height_mm if _passing(spot) >= least else math.nan
+
+    at_low = missing(0.0)
+    if math.isnan(at_low):
+        raise InputError(f'no light passes lens "{lens.name}"')
+    least = max(1, _passing(_meridional_spot(lens, 0.0, object_distance_m, wavelength)) // 4)
+    focal_length = lens.first_order(wavelength).effective_focal_length_mm
+    guess = math.degrees(math.atan(height_mm / abs(focal_length)))
+    low, step, growth = 0.0, min(max(guess, 1e-3), _LARGEST_STEP_DEG), 2.0
+    while at_low < 0:
+        high = low + step
+        at_high = missing(high)
+        if at_high >= 0:
+            low = root_between(missing, low, high, at_low, at_high, 1e-10)
+            break
+        if math.isnan(at_high):
+            step, growth = 0.5 * step, 1.0
+            if step < 1e-6:
+                break
+        else:
+            low, at_low = high, at_high
+            step = min(growth * step, _LARGEST_STEP_DEG)
+    return low, abs(_meridional_spot(lens, low, object_distance_m, wavelength).chief_ray_mm[1])
+
+
+def _meridional_spot(lens: Lens, angle_deg: float, object_distance_m: float | None, wavelength_nm: float) -> Spot:
+    return lens.spot(angle_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm, pupil=_PROBES)
+
+
+def _passing(spot: Spot) -> int:
+    return int(np.count_nonzero(spot.status == RayStatus.OK))

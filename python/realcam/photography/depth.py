@@ -1,0 +1,158 @@
+"""Depth of field and hyperfocal distance: by the rays of the real lens, and by the textbooks' formulas."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._core import InputError, Lens
+from ..roots import root_between
+from .formulas import ThinLens
+
+# Rays of the meridional plane that stand for equal areas of the stop; a lens on its axis is the same in every plane.
+_RADII = np.sqrt((np.arange(200) + 0.5) / 200)
+_PUPIL = np.column_stack([np.zeros(400), np.concatenate([-_RADII[::-1], _RADII])])
+_TOLERANCE = 1e-7  # of a distance's inverse, relative to the depth of field
+
+
+@dataclass(frozen=True)
+class SharpRange:
+    """Object planes that are sharp, from the film. Both nan where none is; far_m is inf where infinity is sharp."""
+
+    near_m: float
+    far_m: float
+
+    @property
+    def depth_m(self) -> float:
+        return self.far_m - self.near_m
+
+
+@dataclass(frozen=True)
+class DepthOfField:
+    """What a lens shows sharply at its focus and stop. Distances are from the film."""
+
+    circle_of_confusion_mm: float
+    focus_distance_m: float
+    blur_in_focus_mm: float  #: blur diameter of the plane in focus by real rays: aberrations alone
+    real: SharpRange  #: where the blur diameter by real rays is at most the circle of confusion
+    formula: SharpRange  #: of a thin lens with the same focal length and f-number at its front principal plane
+    real_hyperfocal_m: float  #: nearest focus at which infinity is sharp; nan where it never is
+    formula_hyperfocal_m: float  #: f^2 / (N c) + f from the principal plane
+    approximate_depth_m: float  #: 2 N c (m + 1) / m^2, equation 8 of Liu and Hsu (2013); inf at infinity
+
+
+def blur_diameter_mm(lens: Lens, object_distance_m: float | None = None) -> float:
+    """Diameter of the even disc that has the second moment of the axial spot on the film: sqrt(8) times its RMS radius.
+
+    Of a defocused lens without aberrations that is the disc itself. The diaphragm counts as round, of the same area.
+    object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus. Raises InputError where no
+    ray passes.
+    """
+    spot = _round(lens).spot(0.0, object_distance_m=object_distance_m, pupil=_PUPIL)
+    return math.sqrt(8) * spot.rms_radius_mm
+
+
+def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> DepthOfField:
+    """Depth of field and hyperfocal distance of a lens as it is focused and stopped down, on its axis.
+
+    circle_of_confusion_mm: the largest blur that counts as sharp; None is the film's diagonal / 1500. Real rays are
+    measured by blur_diameter_mm. Raises InputError where the lens has no focal length, or no light passes it.
+    """
+    circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm
+    if not (circle > 0 and math.isfinite(circle)):
+        raise InputError("the circle of confusion must be a positive length")
+    thin = ThinLens.of(lens)
+    near, far = thin.sharp_range_mm(circle)
+    return DepthOfField(
+        circle_of_confusion_mm=circle,
+        focus_distance_m=lens.focus_distance_m,
+        blur_in_focus_mm=blur_diameter_mm(lens),
+        real=_real_range(lens, thin, circle),
+        formula=SharpRange(
+            (near + thin.film_from_principal_plane_mm) / 1000, (far + thin.film_from_principal_plane_mm) / 1000
+        ),
+        real_hyperfocal_m=_real_hyperfocal(lens, thin, circle),
+        formula_hyperfocal_m=(thin.hyperfocal_mm(circle) + thin.film_from_principal_plane_mm) / 1000,
+        approximate_depth_m=thin.approximate_depth_mm(circle) / 1000,
+    )
+
+
+def _round(lens: Lens) -> Lens:
+    return lens.with_iris(0) if lens.iris_blades else lens
+
+
+def _real_range(lens: Lens, thin: ThinLens, circle: float) -> SharpRange:
+    """Blur is looked for over the inverse distance to the front vertex, in which it is nearly even on both sides."""
+    film = lens.film_position_mm / 1000
+    none = SharpRange(math.nan, math.nan)
+
+    def excess(inverse_m: float) -> float:
+        try:
+            return blur_diameter_mm(lens, math.inf if inverse_m == 0 else 1 / inverse_m) - circle
+        except InputError:  # so near that no ray passes
+            return math.nan
+
+    in_focus = lens.focus_distance_m - film
+    centre = 0.0 if math.isinf(in_focus) else 1 / in_focus
+    step = 0.25 * thin.vergence_of_blur_per_mm(circle) * 1000
+    sharpest = _sharpest(excess, centre, step)
+    if sharpest is None:
+        return none
+    near = _edge(excess, sharpest, step)
+    far = 0.0 if excess(0.0) <= 0 else _edge(excess, sharpest, -step)
+    return SharpRange(film + (1 / near if near > 0 else 0.0), film + (math.inf if far == 0 else 1 / far))
+
+
+def _sharpest(excess: Callable[[float], float], centre: float, step: float) -> float | None:
+    """A place whose blur is small enough, if there is one near the plane in focus.
+
+    A stopped-down lens is sharpest elsewhere than it was focused, as focus is set with the stop open.
+    """
+    places = [max(centre + k * step, 0.0) for k in (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6, 8, -8)]
+    blur = {place: excess(place) for place in places}
+    found = {place: value for place, value in blur.items() if value <= 0}
+    return min(found, key=lambda place: found[place]) if found else None
+
+
+def _edge(excess: Callable[[float], float], sharp: float, step: float) -> float:
+    """Where the blur becomes too large, going from a sharp place in steps."""
+    low, at_low = sharp, excess(sharp)
+    for _ in range(200):
+        high = max(low + step, 0.0)
+        at_high = excess(high)
+        if at_high > 0 or math.isnan(at_high):
+            return root_between(excess, low, high, at_low, at_high, _TOLERANCE * abs(step))
+        if high == 0.0:
+            break
+        low, at_low = high, at_high
+        step *= 1.3
+    return low
+
+
+def _real_hyperfocal(lens: Lens, thin: ThinLens, circle: float) -> float:
+    """Infinity's blur on the film as the lens is focused nearer and nearer."""
+
+    def excess(inverse_m: float) -> float:
+        try:
+            focused = lens.focused(math.inf if inverse_m == 0 else 1 / inverse_m)
+            return blur_diameter_mm(focused, math.inf) - circle
+        except InputError:  # nearer than the lens can
+            return math.nan
+
+    at_infinity = excess(0.0)
+    if not at_infinity <= 0:
+        return math.nan
+    guess = 1000 / (thin.hyperfocal_mm(circle) + thin.film_from_principal_plane_mm)
+    low, at_low, high = 0.0, at_infinity, guess
+    for _ in range(20):
+        at_high = excess(high)
+        if at_high > 0:
+            inverse = root_between(excess, low, high, at_low, at_high, 1e-7 * guess)
+            return 1 / inverse if inverse > 0 else math.inf
+        if math.isnan(at_high):
+            return math.nan
+        low, at_low, high = high, at_high, 1.5 * high
+    return math.nan

@@ -1,0 +1,156 @@
+"""What photographers ask of a lens: angle of view, breathing, speed, exposure."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._core import Camera, FieldOfView, InputError, Lens, RayStatus
+from .depth import DepthOfField, depth_of_field
+from .formulas import at_infinity
+
+_RADII = np.sqrt(np.linspace(0, 1, 2001))  # so that the edge of the light is met within 0.025%
+
+
+@dataclass(frozen=True)
+class Breathing:
+    """How the angle of view changes with focus."""
+
+    nearest_focus_m: float
+    is_assumed: bool  #: the lens file names no nearest focus: a magnification of 1/10 is taken
+    at_infinity_deg: FieldOfView
+    at_nearest_deg: FieldOfView
+
+    @property
+    def change_percent(self) -> float:
+        """Of the diagonal angle, from infinity to the nearest focus; negative: the picture gets narrower."""
+        return 100 * (self.at_nearest_deg.diagonal / self.at_infinity_deg.diagonal - 1)
+
+
+@dataclass(frozen=True)
+class ExposureValue:
+    """Exposure as photographers count it, in stops."""
+
+    exposure_time_s: float
+    iso: float
+    ev: float  #: log2(N^2 / t) with the engraved f-number
+    ev100: float  #: log2(N^2 / t * 100 / ISO): the light for which these settings are right, by the f-number
+    ev100_at_film: float  #: the same by the T-stop and the working f-number: with the lens's losses and its extension
+
+
+@dataclass(frozen=True)
+class PhotographicFigures:
+    """Figures of a lens as it is focused and stopped down."""
+
+    name: str
+    focal_length_mm: float  #: of this state
+    focal_length_at_infinity_mm: float
+    f_number: float  #: engraved: of the lens focused at infinity
+    t_stop: float
+    working_f_number: float  #: 1 / (2 sin u') of the outermost axial ray at the film
+    working_f_number_by_formula: float  #: N (1 + m / p), p the pupil magnification
+    focus_distance_m: float
+    magnification: float  #: image over object, positive; 0 at infinity
+    angle_of_view_deg: FieldOfView  #: by real rays from the film's edges
+    angle_of_view_by_formula_deg: FieldOfView  #: 2 atan(size / (2 f (1 + m)))
+    breathing: Breathing | None  #: None where the lens does not focus at infinity
+    depth_of_field: DepthOfField
+    exposure: ExposureValue | None
+
+
+def angle_of_view_deg(lens: Lens) -> FieldOfView:
+    """Full angles over width, height and diagonal of the lens's film, by real rays from its edges, degrees.
+
+    Where the image is smaller than the film, the angle of what is lit.
+    """
+    return Camera(lens).field_of_view_deg
+
+
+def breathing(lens: Lens, nearest_focus_m: float | None = None) -> Breathing:
+    """The angles of view at infinity and at the nearest focus: of the lens file, or where the magnification is 1/10.
+
+    Raises InputError where the lens cannot be focused at one of them.
+    """
+    far = lens.focused(math.inf)
+    nearest = lens.nearest_focus_m if nearest_focus_m is None else nearest_focus_m
+    assumed = not nearest > 0
+    if assumed:
+        data = far.first_order()
+        # Newton's equation: f / m from the front focal point to the object, m f from the rear one to the film.
+        f, m = data.effective_focal_length_mm, 0.1
+        nearest = (f / m - data.front_focal_distance_mm + far.film_position_mm + m * f) / 1000
+    return Breathing(nearest, assumed, angle_of_view_deg(far), angle_of_view_deg(lens.focused(nearest)))
+
+
+def exposure_value(lens: Lens, exposure_time_s: float, iso: float = 100.0) -> ExposureValue:
+    """Exposure values of a lens with these settings. Raises InputError."""
+    if not (exposure_time_s > 0 and math.isfinite(exposure_time_s)):
+        raise InputError("the exposure time must be a positive number of seconds")
+    if not (iso > 0 and math.isfinite(iso)):
+        raise InputError("the ISO must be a positive number")
+    f_number = at_infinity(lens).first_order().f_number
+    ev = math.log2(f_number**2 / exposure_time_s)
+    film_side = lens.t_stop * working_f_number(lens) / working_f_number(at_infinity(lens))
+    by_iso = math.log2(100 / iso)
+    return ExposureValue(exposure_time_s, iso, ev, ev + by_iso, math.log2(film_side**2 / exposure_time_s) + by_iso)
+
+
+def working_f_number(lens: Lens) -> float:
+    """1 / (2 sin u') with the outermost ray from the plane in focus that passes the lens, on the axis."""
+    rays = lens.aim(np.column_stack([np.zeros_like(_RADII), _RADII]), 0.0)
+    passing = rays.status == RayStatus.OK
+    if not np.any(passing):
+        raise InputError(f'no light passes lens "{lens.name}"')
+    out = lens.trace(rays.origins_mm[passing], rays.directions[passing], start="scene")
+    steepest = float(np.max(np.abs(out.directions[:, 1])))
+    return 0.5 / steepest if steepest > 0 else math.inf
+
+
+def magnification(lens: Lens) -> float:
+    """Image over object of the plane in focus, paraxial, as a positive number; 0 at infinity."""
+    data = lens.first_order()
+    object_mm = 1000 * lens.focus_distance_m - lens.film_position_mm
+    return abs(data.effective_focal_length_mm / (object_mm + data.front_focal_distance_mm))
+
+
+def photographic_figures(
+    lens: Lens,
+    *,
+    circle_of_confusion_mm: float | None = None,
+    exposure_time_s: float | None = None,
+    iso: float = 100.0,
+) -> PhotographicFigures:
+    """All of them. Arguments as depth_of_field and exposure_value take them. Raises InputError."""
+    far, data = at_infinity(lens), lens.first_order()
+    at_far = far.first_order()
+    m = magnification(lens)
+    pupils = data.exit_pupil_diameter_mm / data.entrance_pupil_diameter_mm
+    width, height = lens.film_mm
+    by_formula = FieldOfView(
+        *(
+            math.degrees(2 * math.atan(size / (2 * at_far.effective_focal_length_mm * (1 + m))))
+            for size in (width, height, math.hypot(width, height))
+        )
+    )
+    try:
+        breath = breathing(lens)
+    except InputError:  # macro and relay lenses
+        breath = None
+    return PhotographicFigures(
+        name=lens.name,
+        focal_length_mm=data.effective_focal_length_mm,
+        focal_length_at_infinity_mm=at_far.effective_focal_length_mm,
+        f_number=at_far.f_number,
+        t_stop=lens.t_stop,
+        working_f_number=working_f_number(lens),
+        working_f_number_by_formula=at_far.f_number * (1 + m / pupils),
+        focus_distance_m=lens.focus_distance_m,
+        magnification=m,
+        angle_of_view_deg=angle_of_view_deg(lens),
+        angle_of_view_by_formula_deg=by_formula,
+        breathing=breath,
+        depth_of_field=depth_of_field(lens, circle_of_confusion_mm),
+        exposure=None if exposure_time_s is None else exposure_value(lens, exposure_time_s, iso),
+    )
