@@ -9,7 +9,7 @@ import typer
 
 from .. import __version__
 from .._core import RealcamError, one_line
-from . import bench, cost, demo, lens, sensor
+from . import bench, cost, demo, lens, paper, sensor
 from .options import add_command_of_the_executable
 
 # click's, which newer versions of typer bring along under a private name.
@@ -30,6 +30,7 @@ app.command("expose")(sensor.expose)
 app.command("demo")(demo.demo)
 app.command("bench")(bench.bench)
 app.command("cost")(cost.cost)
+app.command("paper")(paper.paper)
 
 
 def _print_version(wanted: bool) -> None:

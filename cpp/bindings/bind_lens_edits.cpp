@@ -1,0 +1,48 @@
+#include <pybind11/stl.h>
+
+#include "../optics/lens_edits.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+void bind_lens_edits(py::module_& m) {
+    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+        .def("with_film", &with_film, "width_mm"_a, "height_mm"_a,
+             "The lens for another film, at its place. Raises LensFileError for sizes that are none.")
+        .def(
+            "scaled", &scaled, "factor"_a,
+            "The lens with all lengths times factor: film, focus distance and zoom positions with it; coatings keep\n"
+            "their thickness. Raises InputError for a factor that is not positive and finite, and LensFileError where\n"
+            "the lens cannot be built.")
+        .def("reversed", &reversed, "film_distance_mm"_a = py::none(),
+             "The lens turned round, its last surface towards the scene, focused at infinity.\n"
+             "film_distance_mm: last vertex to film; None: where infinity is sharpest. Focus group and zoom positions\n"
+             "are kept. Raises LensFileError where infinity has no real image and no distance is given.")
+        .def(
+            "inserted",
+            [](const LensSystem& lens, int index, const std::vector<Surface>& surfaces, std::optional<double> gap) {
+                return inserted(lens, index, surfaces, gap);
+            },
+            "index"_a, "surfaces"_a, py::kw_only(), "gap_mm"_a = py::none(),
+            "The lens with surfaces put in front of the one of this index, from 0; behind the last one if the index "
+            "is\n"
+            "their number.\n"
+            "gap_mm: from the surface before them to the first; None: as it is. Wanted behind the last surface.\n"
+            "The film keeps its distance from the last surface, and its place where surfaces are put behind that.\n"
+            "Focus group and zoom positions are kept. Raises InputError, and LensFileError where the lens cannot be\n"
+            "built.")
+        .def(
+            "removed",
+            [](const LensSystem& lens, int first, std::optional<int> last) {
+                return removed(lens, first, last.value_or(first));
+            },
+            "first"_a, "last"_a = py::none(),
+            "The lens without the surfaces of index first to last, from 0; None: first alone. What is left stays in "
+            "its\n"
+            "place, film, focus group and zoom positions too. Raises InputError, and LensFileError where the lens\n"
+            "cannot be built.");
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,282 @@
+"""Least squares over the numbers of a lens: sharper spots, a focal length, within bounds.
+
+For a tinkerer, not for a designer: a local search from the lens as it is, with numbers that change continuously.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import InputError, Lens, LensFileError, Surface
+
+Progress = Callable[[int, float], bool | None]
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One number of a lens that may change.
+
+    quantity: "curvature" (1/mm), "thickness" (mm), "conic", or "aspheric" (the coefficient of r^power, mm^(1-power)).
+    surface: its index, from 0. lower, upper: bounds, in the same unit.
+    """
+
+    quantity: str
+    surface: int
+    power: int = 0
+    lower: float = -math.inf
+    upper: float = math.inf
+
+    @staticmethod
+    def radius(surface: int, least_radius_mm: float = 0.0) -> Variable:
+        """The radius of curvature, of either sign and through the plane, but never smaller than this."""
+        most = 1 / least_radius_mm if least_radius_mm > 0 else math.inf
+        return Variable("curvature", surface, lower=-most, upper=most)
+
+    @staticmethod
+    def thickness(surface: int, lower_mm: float = 0.1, upper_mm: float = math.inf) -> Variable:
+        """From this surface to the next."""
+        return Variable("thickness", surface, lower=lower_mm, upper=upper_mm)
+
+    @staticmethod
+    def conic(surface: int, lower: float = -math.inf, upper: float = math.inf) -> Variable:
+        return Variable("conic", surface, lower=lower, upper=upper)
+
+    @staticmethod
+    def aspheric(surface: int, power: int, lower: float = -math.inf, upper: float = math.inf) -> Variable:
+        return Variable("aspheric", surface, power, lower, upper)
+
+    def of(self, surface: Surface) -> float:
+        if self.quantity == "curvature":
+            return surface.curvature_per_mm
+        if self.quantity == "thickness":
+            return surface.thickness_mm
+        if self.quantity == "conic":
+            return surface.conic
+        return surface.aspheric_coefficients.get(self.power, 0.0)
+
+    def set(self, surface: Surface, value: float) -> Surface:
+        if self.quantity == "curvature":
+            return surface.replace(radius_of_curvature_mm=math.inf if value == 0 else 1 / value)
+        if self.quantity == "thickness":
+            return surface.replace(thickness_mm=value)
+        if self.quantity == "conic":
+            return surface.replace(conic=value)
+        return surface.replace(aspheric_coefficients={**surface.aspheric_coefficients, self.power: value})
+
+    def step(self, surface: Surface) -> float:
+        """A change that moves rays by some micrometres: what the search counts in."""
+        rim = surface.clear_semi_diameter_mm
+        sag = 1e-3  # mm at the rim
+        if self.quantity == "curvature":
+            return 2 * sag / rim**2
+        if self.quantity == "thickness":
+            return 10 * sag
+        if self.quantity == "conic":
+            return 8 * sag / max(abs(surface.curvature_per_mm) ** 3 * rim**4, 1e-12)
+        return sag / float(rim) ** self.power
+
+
+@dataclass(frozen=True)
+class Targets:
+    """What a lens is to become.
+
+    fields_deg, field_weights: angles in the scene whose spots are to be small, and how much they count.
+    wavelengths_nm: all colours count alike, about one centroid: lateral colour counts, too. None: the design wavelength.
+    object_distance_m: from the front vertex; None: the plane in focus. focal_length_mm: None: whatever comes.
+    focal_length_weight: an error of the focal length counts as so many times that radius of all spots.
+    refocuses: the film is where it is sharpest on the axis; else it stays.
+    """
+
+    fields_deg: Sequence[float] = (0.0,)
+    field_weights: Sequence[float] | None = None
+    wavelengths_nm: Sequence[float] | None = None
+    object_distance_m: float | None = None
+    focal_length_mm: float | None = None
+    focal_length_weight: float = 1.0
+    refocuses: bool = True
+
+
+@dataclass(frozen=True)
+class Optimisation:
+    """What came of it. rms_spot_mm: weighted over all fields and colours; message: why it ended."""
+
+    lens: Lens
+    rms_spot_before_mm: float
+    rms_spot_mm: float
+    evaluations: int
+    message: str
+
+
+def optimised(
+    lens: Lens,
+    variables: Sequence[Variable],
+    targets: Targets | None = None,
+    *,
+    most_steps: int = 50,
+    samples: int = 6,
+    progress: Progress | None = None,
+) -> Optimisation:
+    """Changes some numbers of a lens so that its spots become small (scipy's least_squares, trust region reflective).
+
+    most_steps: each step looks at the lens once for every variable. samples: rings of rays in the pupil.
+    progress: called after each look with its number and the RMS spot in mm; the search ends where it returns False.
+    A lens that cannot be built (faces that cross, rims beyond their surface) is never stepped to. Raises InputError for
+    variables and targets that are none, and where the lens as it is cannot be judged.
+    """
+    from scipy.optimize import least_squares  # slow to load, and no other part of the package needs it
+
+    search = _Search(lens, list(variables), targets or Targets(), samples, progress)
+    start = np.zeros(len(search.variables))
+    before = search.rms_of(search.residuals(start))
+    lower, upper = search.bounds()
+    try:
+        found = least_squares(
+            search.residuals, start, jac=search.jacobian, bounds=(lower, upper), max_nfev=most_steps, x_scale=1.0
+        )
+        message = str(found.message)
+    except _Ended:
+        message = "stopped by the progress function"
+    return Optimisation(search.best, before, search.best_rms, search.evaluations, message)
+
+
+class _Ended(Exception):  # noqa: N818
+    pass
+
+
+class _Search:
+    def __init__(
+        self, lens: Lens, variables: list[Variable], targets: Targets, samples: int, progress: Progress | None
+    ) -> None:
+        _check(lens, variables, targets)
+        self.lens, self.variables, self.targets = lens, variables, targets
+        self.samples, self.progress = samples, progress
+        self.start = np.array([v.of(lens.surfaces[v.surface]) for v in variables])
+        self.steps = np.array([v.step(lens.surfaces[v.surface]) for v in variables])
+        self.evaluations = 0
+        self.best, self.best_rms, self.best_merit = lens, math.inf, math.inf
+        self.spot_count = 0
+        self.of_start = self._judge(lens)
+        if not np.isfinite(self.of_start).all():
+            raise InputError(f'no light passes lens "{lens.name}" from one of the fields')
+
+    def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        lower, upper = (np.array([getattr(v, name) for v in self.variables]) for name in ("lower", "upper"))
+        return (lower - self.start) / self.steps, (upper - self.start) / self.steps
+
+    def lens_at(self, x: NDArray[np.float64]) -> Lens:
+        surfaces = {v.surface: self.lens.surfaces[v.surface] for v in self.variables}
+        for variable, value in zip(self.variables, self.start + x * self.steps, strict=True):
+            surfaces[variable.surface] = variable.set(surfaces[variable.surface], float(value))
+        lens = self.lens.with_surfaces(surfaces)
+        return lens.focused(lens.focus_distance_m) if self.targets.refocuses else lens
+
+    def residuals(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        self.evaluations += 1
+        try:
+            lens = self.lens_at(x)
+            residuals = self._judge(lens)
+        except (InputError, LensFileError):
+            residuals = np.full_like(self.of_start, np.nan)
+        if not np.isfinite(residuals).all():
+            # So bad that the step is taken back, and halved.
+            return np.full_like(self.of_start, 1e3 * (1 + np.abs(self.of_start).max()))
+        merit = float(residuals @ residuals)
+        if merit < self.best_merit:
+            self.best, self.best_merit, self.best_rms = lens, merit, self.rms_of(residuals)
+        if self.progress is not None and self.progress(self.evaluations, self.best_rms) is False:
+            raise _Ended
+        return residuals
+
+    def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """One-sided differences, to the other side where one cannot be built."""
+        here = self.residuals(x)
+        failed = 1e3 * (1 + np.abs(self.of_start).max())
+        columns = []
+        for i in range(len(x)):
+            column = np.zeros_like(here)
+            for side in (0.05, -0.05):
+                moved = x.copy()
+                moved[i] += side
+                there = self.residuals(moved)
+                if there[0] != failed:
+                    column = (there - here) / side
+                    break
+            columns.append(column)
+        return np.array(columns).T
+
+    def rms_of(self, residuals: NDArray[np.float64]) -> float:
+        return float(np.sqrt(np.sum(residuals[: self.spot_count] ** 2)))
+
+    def _judge(self, lens: Lens) -> NDArray[np.float64]:
+        """Ray errors in mm whose squares sum to the mean square spot radius, and the focal length's; nan: dark."""
+        targets = self.targets
+        weights = np.array(targets.field_weights or [1.0] * len(targets.fields_deg), float)
+        weights /= weights.sum()
+        parts = []
+        for field, weight in zip(targets.fields_deg, weights, strict=True):
+            parts.append(math.sqrt(weight) * self._ray_errors(lens, field))
+        spots = np.concatenate(parts)
+        self.spot_count = len(spots)
+        if targets.focal_length_mm is None:
+            return spots
+        error = lens.first_order().effective_focal_length_mm - targets.focal_length_mm
+        return np.append(spots, targets.focal_length_weight * error)
+
+    def _ray_errors(self, lens: Lens, field_deg: float) -> NDArray[np.float64]:
+        wavelengths = self.targets.wavelengths_nm or [lens.wavelength_nm]
+        points, weights = [], []
+        for wavelength in wavelengths:
+            try:
+                spot = lens.spot(
+                    field_deg,
+                    object_distance_m=self.targets.object_distance_m,
+                    wavelength_nm=wavelength,
+                    samples=self.samples,
+                )
+            except InputError:
+                return np.full(1, np.nan)
+            points.append(spot.points_mm)
+            weights.append(spot.weights / len(wavelengths))
+        at, share = np.concatenate(points), np.concatenate(weights)
+        passes = np.isfinite(at[:, 0])
+        share = np.where(passes, share, 0.0)
+        share = share / share.sum()
+        middle = share @ np.where(passes[:, None], at, 0.0)
+        # Rays that are blocked count as those that pass do on average: a lens does not become sharp by being dark.
+        errors = np.where(passes[:, None], at - middle, 0.0) * np.sqrt(share)[:, None]
+        return np.asarray(errors.ravel() / math.sqrt(max(passes.mean(), 1e-9)))
+
+
+def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
+    if not variables:
+        raise InputError("there is nothing to change: at least one Variable is wanted")
+    for variable in variables:
+        if variable.quantity not in ("curvature", "thickness", "conic", "aspheric"):
+            raise InputError(
+                f'unknown quantity "{variable.quantity}"; curvature, thickness, conic or aspheric is wanted'
+            )
+        if not 0 <= variable.surface < len(lens.surfaces):
+            raise InputError(f"there is no surface {variable.surface}; the lens has {len(lens.surfaces)}, from 0")
+        if variable.quantity == "thickness" and variable.surface == len(lens.surfaces) - 1:
+            raise InputError("the last surface has no thickness; the film follows it")
+        surface = lens.surfaces[variable.surface]
+        if variable.quantity != "thickness" and surface.type in ("stop", "aperture"):
+            raise InputError(f"surface {variable.surface} is a {surface.type}, a plane, and has no {variable.quantity}")
+        value = variable.of(surface)
+        if not variable.lower < value < variable.upper:
+            raise InputError(
+                f"the {variable.quantity} of surface {variable.surface} is {value:.6g} and does not lie between its "
+                f"bounds, {variable.lower:.6g} and {variable.upper:.6g}"
+            )
+    if len({(v.quantity, v.surface, v.power) for v in variables}) < len(variables):
+        raise InputError("a variable is named twice")
+    weights = targets.field_weights
+    if not targets.fields_deg or (weights is not None and len(weights) != len(targets.fields_deg)):
+        raise InputError("fields_deg must name at least one field, and field_weights as many")
+    if weights is not None and not all(w > 0 and math.isfinite(w) for w in weights):
+        raise InputError("field_weights must be positive numbers")

@@ -1,0 +1,55 @@
+"""Figure 6: distortion, and a fisheye's barrel and dark corners."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .._core import Camera, Film, Lens
+from ..analysis import distortion
+from ..render import render
+from .experiment import Experiment, Row, photographed
+from .scenes import grid_board, room
+
+
+def experiment(device: str) -> Experiment:
+    wide = Lens.load("wide-22mm").focused(math.inf)
+    film = Film(30, 20, (480, 320))
+    distance = 20.0
+    across = film.width_mm / wide.first_order().effective_focal_length_mm * distance
+    board = grid_board((0, 0, -distance), 1.3 * across, 26)
+    camera = Camera(wide, film=film).metered(board, device="cpu")
+    straight = render(board, camera.replace(model="thin"), spp=32, device=device, effects=())
+    curved = render(board, camera, spp=32, device=device, effects=())
+    corner = math.degrees(
+        math.atan(math.hypot(film.width_mm, film.height_mm) / 2 / wide.first_order().effective_focal_length_mm)
+    )
+    percent = distortion(wide, fields_deg=[corner]).distortion_percent
+    fisheye = Lens.load("fisheye-6mm-220deg").focused(math.inf)
+    inside = room(5.0, 10)
+    round_film = Film(24, 24, (360, 360))
+    round_camera = Camera(fisheye, film=round_film, position=(0, 0, 0), look_at=(0, 0, -1)).metered(
+        inside, device="cpu"
+    )
+    barrel = render(inside, round_camera, spp=32, device=device, effects=())
+    dark = float((barrel.pixels.mean(axis=2) == 0).mean())
+    circle_mm = 24 * math.sqrt((1 - dark) * 4 / math.pi)
+    return Experiment(
+        "Figure 6: distortion",
+        (
+            "The same board through an ideal thin lens, which keeps straight lines straight, and through the wide angle of "
+            "the same focal length. Below the inside of a squared room through a fisheye of 220 degrees: straight lines "
+            "become curves, and the corners of the film stay dark, because no light reaches them.",
+        ),
+        (
+            photographed("thin lens", straight),
+            photographed("wide-22mm, every surface", curved),
+            photographed("fisheye-6mm-220deg in a squared room", barrel),
+        ),
+        (
+            Row(f"distortion at {corner:.1f} degrees", "", f"{float(np.ravel(percent)[-1]):.2f}%"),
+            Row("the fisheye's image circle, from the lit pixels", "", f"{circle_mm:.2f} mm (20.9 mm by the patent)"),
+            Row("dark share of a square film of 24 mm", "", f"{100 * dark:.0f}%"),
+        ),
+    )

@@ -1,0 +1,71 @@
+"""What an experiment brings to the page."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from dataclasses import dataclass
+
+import matplotlib
+import matplotlib.figure
+import numpy as np
+
+from .._core import develop
+from ..image import Image
+
+
+@dataclass(frozen=True)
+class Row:
+    """A number beside a number; paper: empty where the paper has none."""
+
+    quantity: str
+    paper: str
+    here: str
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A piece of HTML: an SVG drawing or a picture; caption in plain text."""
+
+    caption: str
+    markup: str
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """title: with the number of the paper's figure or equation. text: paragraphs in plain text."""
+
+    title: str
+    text: tuple[str, ...]
+    figures: tuple[Figure, ...] = ()
+    rows: tuple[Row, ...] = ()
+
+
+def drawn(caption: str, figure: matplotlib.figure.Figure) -> Figure:
+    text = io.StringIO()
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "realcam"}):
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    svg = text.getvalue()
+    return Figure(caption, svg[svg.index("<svg") :])
+
+
+def photographed(caption: str, image: Image, *, scale: int = 1, iso: float | None = None) -> Figure:
+    """A developed picture; scale: times enlarged, each pixel a square. iso: the camera's, if not given."""
+    codes = develop(image.pixels, image.camera.iso if iso is None else iso, "linear")
+    return pixels(caption, codes, scale=scale)
+
+
+def pixels(caption: str, codes: np.ndarray, *, scale: int = 1) -> Figure:
+    """(H, W, 3) 8-bit codes as a picture."""
+    import matplotlib.image
+
+    data = io.BytesIO()
+    matplotlib.image.imsave(data, codes, format="png")
+    text = base64.b64encode(data.getvalue()).decode("ascii")
+    height, width = (scale * length for length in codes.shape[:2])
+    return Figure(
+        caption,
+        f'<img width="{width}" height="{height}" style="image-rendering: pixelated" alt="{html.escape(caption)}" '
+        f'src="data:image/png;base64,{text}">',
+    )
