@@ -9,7 +9,7 @@ from typing import Annotated, Optional
 import typer
 
 from .._core import InputError
-from . import options
+from . import lens_plots, options
 
 app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
 
@@ -22,6 +22,7 @@ Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to f
 
 options.add_command_of_the_executable(app, "list", "List the bundled lenses.")
 options.add_command_of_the_executable(app, "info", "Print a lens's table of surfaces and its first-order data.")
+lens_plots.register(app)
 
 
 @app.command("draw")
