@@ -8,6 +8,8 @@ scene = rc.Scene.load("scene.glb").with_environment(2000)
 rc.render(scene, camera, spp=64).save("photograph.png")
 """
 
+from typing import TYPE_CHECKING, Any
+
 from ._core import (
     PSF,
     AimedRays,
@@ -35,6 +37,7 @@ from ._core import (
     NothingToPlan,
     Plan,
     PlanDecision,
+    RayBundle,
     RayChunks,
     RayStatus,
     RealcamError,
@@ -62,6 +65,9 @@ from .raw_image import RawImage
 from .render import render
 from .session import ReachedNoise, Session
 from .shot import Shot
+
+if TYPE_CHECKING:
+    from . import analysis
 
 __all__ = [
     "PSF",
@@ -94,6 +100,7 @@ __all__ = [
     "Plan",
     "PlanDecision",
     "RawImage",
+    "RayBundle",
     "RayChunks",
     "RayStatus",
     "ReachedNoise",
@@ -112,6 +119,7 @@ __all__ = [
     "Wavefront",
     "__version__",
     "accuracy_cost",
+    "analysis",
     "devices",
     "effects",
     "lens_names",
@@ -120,3 +128,12 @@ __all__ = [
     "render",
     "sensor_names",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """rc.analysis is loaded when it is first used: it brings matplotlib, which takes longer than all the rest."""
+    if name == "analysis":
+        from importlib import import_module
+
+        return import_module(".analysis", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
-from .fields import Bundles, Doubles, field_angles_deg, fields_of, wavelengths_of
+from .fields import Bundles, Doubles, three_fields, wavelengths_of
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def bokeh(
     """
     distance = _out_of_focus_m(lens) if object_distance_m is None else object_distance_m
     source = Bundles(lens, distance)
-    fields = field_angles_deg(lens, [0, 0.7, 1], source) if fields_deg is None else fields_of(lens, fields_deg, 3, source)
+    fields = three_fields(lens, fields_deg, source)
     colours = wavelengths_of(lens, wavelengths_nm)
     spokes = max(8, round(2 * math.sqrt(rays)))
     light = [[source.at(float(f), float(c), spokes, max(4, spokes // 8)) for c in colours] for f in fields]

@@ -47,12 +47,14 @@ def distortion(
     *,
     wavelength_nm: float | None = None,
     projection: str | None = None,
+    film_distance_mm: float | None = None,
     samples: int = 15,
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Distortion:
-    """Of real chief rays, at the film as it stands, against paraxial chief rays at the same plane.
+    """Of real chief rays against paraxial chief rays at the same plane: the film as it stands, or another one.
 
+    film_distance_mm: last vertex to that plane; first_order().back_focal_distance_mm is the paraxial focus of infinity.
     projection: None is "tangent" up to 60 degrees, and beyond "angle", because tangents end at 90. None of the others:
     `samples` fields up to the corner of the film; the design wavelength; the plane in focus. Raises InputError for
     "tangent" from 90 degrees on.
@@ -65,19 +67,34 @@ def distortion(
         raise InputError(f'unknown projection "{way}"; tangent or angle is wanted')
     if way == "tangent" and float(np.abs(fields).max()) >= 90:
         raise InputError('the projection "tangent" has no picture at 90 deg and beyond; "angle" is wanted')
-    real = np.array([source.chief(float(field), nm).chief_ray_mm[1] for field in fields])
+    plane = lens.film_distance_mm if film_distance_mm is None else film_distance_mm
+    real = np.array([_height_at(source, float(field), nm, plane) for field in fields])
     angle = np.radians(fields)
-    paraxial = paraxial_height_mm(source, nm) * (np.tan(angle) if way == "tangent" else angle)
+    paraxial = paraxial_height_mm(source, nm, plane) * (np.tan(angle) if way == "tangent" else angle)
     with np.errstate(invalid="ignore", divide="ignore"):
         percent = np.where(fields == 0, 0.0, 100 * (real - paraxial) / paraxial)
     return Distortion(fields, real, paraxial, percent, way)
 
 
-def paraxial_height_mm(source: Bundles, wavelength_nm: float) -> float:
-    """Of the paraxial chief ray on the film, for a field of tangent 1."""
+def _height_at(source: Bundles, field_deg: float, wavelength_nm: float, film_distance_mm: float) -> float:
+    if film_distance_mm == source.lens.film_distance_mm:
+        return source.chief(field_deg, wavelength_nm).chief_ray_mm[1]
+    bundle = source.lens.bundle(
+        field_deg,
+        wavelength_nm=wavelength_nm,
+        object_distance_m=source.object_distance_m,
+        film_distance_mm=film_distance_mm,
+        spokes=4,
+        nodes=1,
+    )
+    return bundle.chief_ray_mm[1]
+
+
+def paraxial_height_mm(source: Bundles, wavelength_nm: float, film_distance_mm: float) -> float:
+    """Of the paraxial chief ray in that plane, for a field of tangent 1."""
     lens = source.lens
     sums = lens.seidel(45.0, wavelength_nm=wavelength_nm, object_distance_m=source.object_distance_m)
-    return float(sums.chief_height_mm[-1] + lens.film_distance_mm * sums.chief_slope[-1])
+    return float(sums.chief_height_mm[-1] + film_distance_mm * sums.chief_slope[-1])
 
 
 def distortion_grid(
@@ -93,11 +110,11 @@ def distortion_grid(
     Raises InputError where the film's corner is at 80 degrees or more: no plane grid fills its picture.
     """
     source = bundles_of(lens, object_distance_m, bundles)
-    curve = distortion(lens, wavelength_nm=wavelength_nm, samples=15, object_distance_m=object_distance_m, bundles=source)
+    curve = distortion(lens, wavelength_nm=wavelength_nm, bundles=source)
     if curve.fields_deg.max() >= 80:
         raise InputError("no plane grid fills the picture of a lens that sees 80 deg and more from the axis")
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
-    scale = paraxial_height_mm(source, nm)
+    scale = paraxial_height_mm(source, nm, lens.film_distance_mm)
     paraxial = np.abs(scale) * np.tan(np.radians(curve.fields_deg))
     half = 0.5 * np.array(lens.film_mm)
     y, x = np.meshgrid(half[1] * np.linspace(-1, 1, lines), half[0] * np.linspace(-1, 1, lines), indexing="ij")
@@ -106,7 +123,7 @@ def distortion_grid(
     ratio = np.ones(len(paraxial))
     ratio[1:] = np.abs(curve.real_mm[1:]) / paraxial[1:]
     top = paraxial[-1] ** 2
-    fit = np.polynomial.chebyshev.Chebyshev.fit(paraxial[1:] ** 2, ratio[1:], min(6, len(paraxial) - 2), domain=(0, top))
+    fit = np.polynomial.Chebyshev.fit(paraxial[1:] ** 2, ratio[1:], min(6, len(paraxial) - 2), domain=(0, top))
     stretched = np.where(radius**2 <= 1.002 * top, fit(np.minimum(radius**2, top)), np.nan)
     ideal = np.stack([x, y], axis=-1)
     return DistortionGrid(ideal, ideal * stretched[..., None])

@@ -76,10 +76,16 @@ def fields_of(lens: Lens, fields_deg: ArrayLike | None, count: int, bundles: Bun
     return field_angles_deg(lens, np.linspace(0, 1, count), bundles)
 
 
+def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> Doubles:
+    """(F,): as given, or the axis, 0.7 and all of the image height."""
+    return field_angles_deg(lens, [0, 0.7, 1], bundles) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
+
+
 def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = None) -> Doubles:
     """(F,): angles at which the chief ray lands at shares of the largest image height.
 
-    That is half the diagonal of the film, or where the lens's light ends, if that is nearer to the axis.
+    That is half the diagonal of the film, or a hundredth of the angle short of where the lens's light ends, if that is
+    nearer to the axis: at the very end it is a sliver that few rays find.
     """
     source = bundles or Bundles(lens)
     largest = _largest_field_deg(lens, source)
@@ -101,7 +107,7 @@ def _height_mm(bundles: Bundles, field_deg: float) -> float:
 
 
 def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
-    """Within a thousandth of the corner's image height, or a thousandth of the angle at which the light ends."""
+    """Within a thousandth of the corner's image height, or a hundredth short of the angle at which the light ends."""
     corner = 0.5 * math.hypot(*lens.film_mm)
     if math.isnan(_height_mm(bundles, 0.0)):
         raise InputError(f'no light of the axis passes lens "{lens.name}"')
@@ -126,7 +132,7 @@ def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
         else:
             share = (corner - low_height) / (high_height - low_height)
             guess = low + min(max(share, 0.02), 0.98) * (high - low)
-    return low
+    return 0.99 * low
 
 
 def default_frequencies_per_mm(lens: Lens) -> Doubles:

@@ -67,7 +67,8 @@ def film_pupils(
         origins = np.column_stack([0 * radius, heights[point], np.full(len(radius), lens.film_position_mm)])
         # Backwards: the light that comes with these cosines.
         out = lens.trace(origins, -np.column_stack([cosine, np.maximum(way_z, 1e-9)]), wavelength_nm=nm, start="film")
-        return (out.status == RayStatus.OK) & (square < 1)
+        passed: np.ndarray = (out.status == RayStatus.OK) & (square < 1)
+        return passed
 
     point, spoke, step = (a.ravel() for a in np.indices((len(light), SPOKES, STEPS)))
     open_ = passes(point, spoke, steps[step]).reshape(len(light), SPOKES, STEPS)
@@ -92,8 +93,10 @@ def film_pupils(
 def _outline(edge: Doubles, begins: np.ndarray, spoke: np.ndarray, middle: Doubles, ways: Doubles) -> Doubles:
     """Pieces between the edges of neighbouring spokes that follow each other on them in the same way; where the light
     ends between two spokes, along the lit one."""
-    by_spoke = [[(float(r), bool(b)) for r, b in zip(edge[spoke == s], begins[spoke == s], strict=True)]
-                for s in range(len(ways))]
+    by_spoke = [
+        [(float(r), bool(b)) for r, b in zip(edge[spoke == s], begins[spoke == s], strict=True)]
+        for s in range(len(ways))
+    ]
     stretches = []
     for edges in by_spoke:
         ends = edges if not edges or edges[0][1] else [(0.0, True), *edges]

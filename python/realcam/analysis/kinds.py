@@ -201,9 +201,7 @@ KINDS: dict[str, Kind] = {
         ),
         **_single(plot_point_spread),
     ),
-    "mtf": Kind(
-        "contrast over frequency", lambda a: _mtf(a, mtf_over_frequency), **_single(plot_mtf_over_frequency)
-    ),
+    "mtf": Kind("contrast over frequency", lambda a: _mtf(a, mtf_over_frequency), **_single(plot_mtf_over_frequency)),
     "mtf-field": Kind("contrast over the field", lambda a: _mtf(a, mtf_over_field), **_single(plot_mtf_over_field)),
     "mtf-focus": Kind(
         "contrast through focus", lambda a: _mtf(a, mtf_through_focus), **_single(plot_mtf_through_focus)
@@ -257,5 +255,3 @@ def plot_figure(
         if title:
             figure.suptitle(title, fontsize=font, parse_math=False)
     return figure
-
-

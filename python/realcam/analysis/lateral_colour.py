@@ -50,8 +50,14 @@ def plot_lateral_colour(data: LateralColour, axes: Axes) -> None:
     for curve, colour, label in zip(data.shift_mm, colours, texts_of(data.wavelengths_nm, "nm"), strict=True):
         axes.plot(1e3 * curve, data.fields_deg, color=colour, label=label)
     for side in (-1, 1):
-        axes.plot(side * 1e3 * data.airy_radius_mm, data.fields_deg, ":", color=style.GREY, linewidth=0.8,
-                  label="Airy radius" if side > 0 else "_nolegend_")
+        axes.plot(
+            side * 1e3 * data.airy_radius_mm,
+            data.fields_deg,
+            ":",
+            color=style.GREY,
+            linewidth=0.8,
+            label="Airy radius" if side > 0 else "_nolegend_",
+        )
     style.zero_lines(axes, y=False)
     axes.set_xlabel("chief ray's shift on the film / µm")
     axes.set_ylabel("field / °")

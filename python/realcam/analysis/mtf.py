@@ -15,10 +15,10 @@ from .fields import (
     Doubles,
     bundles_of,
     default_frequencies_per_mm,
-    field_angles_deg,
     fields_of,
     numbers_of,
     texts_of,
+    three_fields,
     wavelengths_of,
 )
 from .pupil_function import pupil_function, transfer
@@ -71,7 +71,7 @@ def mtf(
     if method not in METHODS:
         raise InputError(f'unknown method "{method}"; diffraction or geometric is wanted')
     source = bundles_of(lens, object_distance_m, bundles)
-    fields = field_angles_deg(lens, [0, 0.7, 1], source) if fields_deg is None else fields_of(lens, fields_deg, 3, source)
+    fields = three_fields(lens, fields_deg, source)
     frequencies = (
         default_frequencies_per_mm(lens)
         if frequencies_per_mm is None
@@ -106,7 +106,13 @@ def _shares(weights: ArrayLike | None, count: int) -> Doubles:
 
 
 def _by_waves(
-    source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles, tangential: bool, middle: Doubles
+    source: Bundles,
+    field: float,
+    colour: float,
+    frequencies: Doubles,
+    planes: Doubles,
+    tangential: bool,
+    middle: Doubles,
 ) -> tuple[np.ndarray, Doubles]:
     pupil = pupil_function(source, field, colour)
     otf = transfer(pupil, frequencies, tangential=tangential, defocus_mm=planes)
@@ -116,7 +122,13 @@ def _by_waves(
 
 
 def _by_rays(
-    source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles, tangential: bool, middle: Doubles
+    source: Bundles,
+    field: float,
+    colour: float,
+    frequencies: Doubles,
+    planes: Doubles,
+    tangential: bool,
+    middle: Doubles,
 ) -> tuple[np.ndarray, Doubles]:
     bundle = source.at(field, colour, 64, 12)
     along = 1 if tangential else 0
@@ -127,32 +139,65 @@ def _by_rays(
 
 
 def mtf_over_frequency(
-    lens: Lens, fields_deg: ArrayLike | None = None, *, highest_per_mm: float | None = None, samples: int = 25,
-    wavelengths_nm: ArrayLike | None = None, method: str = "diffraction", object_distance_m: float | None = None,
+    lens: Lens,
+    fields_deg: ArrayLike | None = None,
+    *,
+    highest_per_mm: float | None = None,
+    samples: int = 25,
+    wavelengths_nm: ArrayLike | None = None,
+    method: str = "diffraction",
+    object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Mtf:
     """highest_per_mm: None is two and a half times the highest of the default frequencies."""
     top = 2.5 * float(default_frequencies_per_mm(lens)[-1]) if highest_per_mm is None else highest_per_mm
-    return mtf(lens, fields_deg, np.linspace(0, top, samples), wavelengths_nm=wavelengths_nm, method=method,
-               object_distance_m=object_distance_m, bundles=bundles)
+    return mtf(
+        lens,
+        fields_deg,
+        np.linspace(0, top, samples),
+        wavelengths_nm=wavelengths_nm,
+        method=method,
+        object_distance_m=object_distance_m,
+        bundles=bundles,
+    )
 
 
 def mtf_over_field(
-    lens: Lens, frequencies_per_mm: ArrayLike | None = None, *, fields_deg: ArrayLike | None = None, samples: int = 11,
-    wavelengths_nm: ArrayLike | None = None, method: str = "diffraction", object_distance_m: float | None = None,
+    lens: Lens,
+    frequencies_per_mm: ArrayLike | None = None,
+    *,
+    fields_deg: ArrayLike | None = None,
+    samples: int = 11,
+    wavelengths_nm: ArrayLike | None = None,
+    method: str = "diffraction",
+    object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Mtf:
     """At `samples` fields from the axis to the corner of the film."""
     source = bundles_of(lens, object_distance_m, bundles)
     fields = fields_of(lens, fields_deg, samples, source)
-    return mtf(lens, fields, frequencies_per_mm, wavelengths_nm=wavelengths_nm, method=method,
-               object_distance_m=object_distance_m, bundles=source)
+    return mtf(
+        lens,
+        fields,
+        frequencies_per_mm,
+        wavelengths_nm=wavelengths_nm,
+        method=method,
+        object_distance_m=object_distance_m,
+        bundles=source,
+    )
 
 
 def mtf_through_focus(
-    lens: Lens, frequency_per_mm: float | None = None, *, fields_deg: ArrayLike | None = None,
-    defocus_mm: ArrayLike | None = None, samples: int = 21, wavelengths_nm: ArrayLike | None = None,
-    method: str = "diffraction", object_distance_m: float | None = None, bundles: Bundles | None = None,
+    lens: Lens,
+    frequency_per_mm: float | None = None,
+    *,
+    fields_deg: ArrayLike | None = None,
+    defocus_mm: ArrayLike | None = None,
+    samples: int = 21,
+    wavelengths_nm: ArrayLike | None = None,
+    method: str = "diffraction",
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
 ) -> Mtf:
     """frequency_per_mm: None is the middle one of the default frequencies. defocus_mm: None is as far as the contrast
     on the axis of a perfect lens is lost: f-number over the frequency to either side."""
@@ -162,8 +207,16 @@ def mtf_through_focus(
         if defocus_mm is None
         else numbers_of(defocus_mm, "defocus_mm")
     )
-    return mtf(lens, fields_deg, [at], defocus_mm=planes, wavelengths_nm=wavelengths_nm, method=method,
-               object_distance_m=object_distance_m, bundles=bundles)
+    return mtf(
+        lens,
+        fields_deg,
+        [at],
+        defocus_mm=planes,
+        wavelengths_nm=wavelengths_nm,
+        method=method,
+        object_distance_m=object_distance_m,
+        bundles=bundles,
+    )
 
 
 def _finish(axes: Axes, title: str) -> None:
@@ -193,8 +246,14 @@ def plot_mtf_over_field(data: Mtf, axes: Axes) -> None:
         axes.plot(data.fields_deg, data.tangential[0, :, k], color=style.field_colour(k), label=label)
         axes.plot(data.fields_deg, data.sagittal[0, :, k], "--", color=style.field_colour(k))
         if data.method == "diffraction":
-            axes.plot(data.fields_deg, data.limit_tangential[:, k], ":", color=style.field_colour(k), linewidth=0.8,
-                      label="limit" if k == 0 else "_nolegend_")
+            axes.plot(
+                data.fields_deg,
+                data.limit_tangential[:, k],
+                ":",
+                color=style.field_colour(k),
+                linewidth=0.8,
+                label="limit" if k == 0 else "_nolegend_",
+            )
     axes.set_xlim(0, max(float(data.fields_deg.max()), 1e-9))
     axes.set_xlabel("field / °")
     _finish(axes, "MTF over the field")

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import PSF, Lens
+from . import style
 from .fields import Doubles, numbers_of
 
 
@@ -48,9 +49,7 @@ def point_spread(
         object_distance_m=object_distance_m,
         centre="centroid",
     )
-    return PointSpread(
-        field_deg, method, psf.x_um, psf.y_um, psf.values, psf.centre_mm, psf.strehl, psf.energy
-    )
+    return PointSpread(field_deg, method, psf.x_um, psf.y_um, psf.values, psf.centre_mm, psf.strehl, psf.energy)
 
 
 def plot_point_spread(data: PointSpread, axes: Axes) -> None:
@@ -72,6 +71,4 @@ def plot_point_spread(data: PointSpread, axes: Axes) -> None:
     axes.set_ylabel("y / µm")
     strehl = "" if np.isnan(data.strehl) else f", Strehl {data.strehl:.2g}"
     axes.set_title(f"{data.field_deg:.3g}°, {data.method}{strehl}")
-    bar = axes.get_figure().colorbar(picture, ax=axes, shrink=0.8)  # type: ignore[union-attr]
-    bar.set_label("decades of the peak")
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    style.colour_bar(axes, picture, "decades of the peak")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._core import Lens
 from . import style
 from .exit_rays import exit_rays
-from .fields import Bundles, Doubles, bundles_of, fields_of, texts_of, wavelengths_of
+from .fields import Bundles, Doubles, bundles_of, texts_of, three_fields, wavelengths_of
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def ray_fan(
 ) -> RayFan:
     """Fans of real rays. None: the axis, 0.7 and all of the image height; F line, design wavelength, C line."""
     source = bundles_of(lens, object_distance_m, bundles)
-    fields = _three(lens, fields_deg, source)
+    fields = three_fields(lens, fields_deg, source)
     colours = wavelengths_of(lens, wavelengths_nm)
     pupil = np.linspace(-1, 1, samples)
     zero = np.zeros(samples)
@@ -54,14 +54,6 @@ def ray_fan(
             points = exit_rays(lens, places, float(field), float(colour), source.object_distance_m).points_mm
             fans[f, w] = points[:samples, 1] - middle[1], points[samples:, 0] - middle[0]
     return RayFan(fields, colours, pupil, fans[:, :, 0], fans[:, :, 1])
-
-
-def _three(lens: Lens, fields_deg: ArrayLike | None, source: Bundles) -> Doubles:
-    if fields_deg is not None:
-        return fields_of(lens, fields_deg, 3, source)
-    from .fields import field_angles_deg
-
-    return field_angles_deg(lens, [0, 0.7, 1], source)
 
 
 def plot_ray_fan(fan: RayFan, axes: Axes, field: int = 0, *, sagittal: bool = False) -> None:

@@ -7,6 +7,7 @@ import io
 import math
 import os
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from . import style
 from .bokeh import bokeh, plot_bokeh
 from .distortion import distortion, distortion_grid, plot_distortion, plot_distortion_grid
 from .field_curves import field_curves, plot_field_curves
-from .fields import Bundles, Doubles, bundles_of, field_angles_deg, numbers_of, wavelengths_of
+from .fields import Bundles, Doubles, bundles_of, field_angles_deg, three_fields, wavelengths_of
 from .film_pupil import film_pupils, plot_pupil_shapes, plot_relative_illumination
 from .lateral_colour import lateral_colour, plot_lateral_colour
 from .mtf import (
@@ -67,7 +68,7 @@ def save_report(
         raise ImageFileError(f"{target}: unknown suffix; .pdf or .html is wanted")
     files.check_target(target)
     source = bundles_of(lens, object_distance_m, None)
-    fields = field_angles_deg(lens, [0, 0.7, 1], source) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
+    fields = three_fields(lens, fields_deg, source)
     if len(fields) != 3:
         raise InputError(f"a report shows three fields; {len(fields)} are given")
     with style.themed(theme, 7.0):
@@ -76,9 +77,7 @@ def save_report(
     files.write_whole(target, content)
 
 
-def report_pages(
-    source: Bundles, fields: Doubles, colours: Doubles
-) -> tuple[list[matplotlib.figure.Figure], _Report]:
+def report_pages(source: Bundles, fields: Doubles, colours: Doubles) -> tuple[list[matplotlib.figure.Figure], _Report]:
     """The pages, in the theme in force."""
     report = _Report(source, fields, colours)
     # Titles keep their place: matplotlib would look for it around all ticks, which takes a sixth of the time.
@@ -86,8 +85,9 @@ def report_pages(
         pages = [report.rays(), report.contrast(), report.light()]
     for axes in (axes for page in pages for axes in page.axes):
         for axis in (axes.xaxis, axes.yaxis):
-            if isinstance(axis.get_major_locator(), matplotlib.ticker.MaxNLocator):
-                axis.get_major_locator().set_params(nbins=5)
+            locator = axis.get_major_locator()
+            if isinstance(locator, matplotlib.ticker.MaxNLocator):
+                locator.set_params(nbins=5)
     return pages, report
 
 
@@ -109,7 +109,7 @@ class _Report:
     def rays(self) -> matplotlib.figure.Figure:
         figure = self._page("Rays")
         grid = figure.add_gridspec(4, 3, top=0.885, bottom=0.05, hspace=0.42, wspace=0.34, **SIDE)
-        fans = ray_fan(self.lens, samples=31, **self.three)
+        fans = ray_fan(self.lens, samples=45, **self.three)
         spots = spot_diagram(self.lens, rings=7, **self.three)
         for f in range(3):
             plot_ray_fan(fans, figure.add_subplot(grid[0, f]), f)
@@ -124,7 +124,7 @@ class _Report:
 
     def contrast(self) -> matplotlib.figure.Figure:
         figure = self._page("Contrast and colour")
-        grid = figure.add_gridspec(3, 2, top=0.9, bottom=0.095, hspace=0.3, wspace=0.5, left=0.085, right=0.86)
+        grid = figure.add_gridspec(3, 2, top=0.885, bottom=0.095, hspace=0.3, wspace=0.5, left=0.085, right=0.86)
         over = {**self.over_field, "wavelengths_nm": self.colours}
         for place, compute, plot in (
             (grid[0, 0], lambda: mtf_over_frequency(self.lens, **self.three), plot_mtf_over_frequency),
@@ -138,16 +138,16 @@ class _Report:
 
     def light(self) -> matplotlib.figure.Figure:
         figure = self._page("Waves and light")
-        grid = figure.add_gridspec(4, 3, top=0.9, bottom=0.05, hspace=0.4, wspace=0.42, **SIDE)
+        grid = figure.add_gridspec(4, 3, top=0.895, bottom=0.05, hspace=0.4, wspace=0.5, left=0.085, right=0.95)
         distance = self.source.object_distance_m
         for f, field in enumerate(self.fields):
             self._try(
                 figure,
                 grid[0, f],
-                lambda field=field: wavefront_map(self.lens, float(field), samples=32, object_distance_m=distance),
+                partial(wavefront_map, self.lens, float(field), samples=32, object_distance_m=distance),
                 plot_wavefront_map,
             )
-            self._try(figure, grid[1, f], lambda field=field: self._psf(float(field)), plot_point_spread)
+            self._try(figure, grid[1, f], partial(self._psf, float(field)), plot_point_spread)
         self._try(figure, grid[2, :2], lambda: film_pupils(self.lens, self.scan[::2], **self.common), plot_pupil_shapes)
         self._try(
             figure, grid[2, 2], lambda: film_pupils(self.lens, self.scan, **self.common), plot_relative_illumination
@@ -160,7 +160,10 @@ class _Report:
         )
         self._try(figure, grid[3, 1], lambda: distortion_grid(self.lens, **self.common), plot_distortion_grid)
         self._try(
-            figure, grid[3, 2], lambda: bokeh(self.lens, self.fields[1:2], self.colours, rays=12000, size=72), plot_bokeh
+            figure,
+            grid[3, 2],
+            lambda: bokeh(self.lens, self.fields[1:2], self.colours, rays=12000, size=72),
+            plot_bokeh,
         )
         return figure
 
@@ -172,7 +175,10 @@ class _Report:
             ("focal length", f"{first.effective_focal_length_mm:.5g} mm"),
             ("f-number", f"f/{first.f_number:.3g}"),
             ("in focus", "infinity" if math.isinf(focus) else f"{focus:.4g} m from the film"),
-            ("film", f"{lens.film_mm[0]:.4g} x {lens.film_mm[1]:.4g} mm, {lens.film_distance_mm:.5g} mm behind the last vertex"),
+            (
+                "film",
+                f"{lens.film_mm[0]:.4g} x {lens.film_mm[1]:.4g} mm, {lens.film_distance_mm:.5g} mm behind the lens",
+            ),
             ("fields", ", ".join(f"{field:.3g}°" for field in self.fields)),
             ("wavelengths", ", ".join(f"{nm:.5g}" for nm in self.colours) + " nm"),
         ]
@@ -186,8 +192,9 @@ class _Report:
         figure = matplotlib.figure.Figure(figsize=PAGE_IN)
         figure.text(0.04, 0.968, self.title, fontsize=13, weight="bold", parse_math=False)
         figure.text(0.04, 0.95, subject, fontsize=10)
-        words = ["   ".join(f"{name}: {value}" for name, value in part) for part in
-                 (self.heading()[:4], self.heading()[4:])]
+        words = [
+            "   ".join(f"{name}: {value}" for name, value in part) for part in (self.heading()[:4], self.heading()[4:])
+        ]
         figure.text(0.04, 0.934, words[0], fontsize=7, parse_math=False)
         figure.text(0.04, 0.922, words[1], fontsize=7, parse_math=False)
         return figure
@@ -245,14 +252,14 @@ def _html(report: _Report, pages: list[matplotlib.figure.Figure], theme: str) ->
         pictures.append(text[text.index("<svg") :])
     title = html.escape(report.title)
     rows = "\n".join(f"<tr><th>{html.escape(a)}</th><td>{html.escape(b)}</td></tr>" for a, b in report.heading())
-    page, ink = ("white", "#202020") if theme == "light" else ("#16191d", "#d8dadd")
+    paper, ink = style.PAGES[theme]
     drawn = "\n".join(pictures)
     return f"""<!doctype html>
 <html lang="en">
 <meta charset="utf-8">
 <title>{title}</title>
 <style>
-body {{ font: 14px sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; background: {page}; color: {ink}; }}
+body {{ font: 14px sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; background: {paper}; color: {ink}; }}
 svg {{ width: 100%; height: auto; }}
 th {{ text-align: left; padding-right: 1em; font-weight: normal; opacity: 0.7; }}
 </style>

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._core import InputError, Lens
 from . import style
 from .exit_rays import exit_rays, hexapolar
-from .fields import Bundles, Doubles, bundles_of, field_angles_deg, fields_of, numbers_of, texts_of, wavelengths_of
+from .fields import Bundles, Doubles, bundles_of, numbers_of, texts_of, three_fields, wavelengths_of
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def spot_diagram(
     design wavelength, C line. Raises InputError where no light passes.
     """
     source = bundles_of(lens, object_distance_m, bundles)
-    fields = field_angles_deg(lens, [0, 0.7, 1], source) if fields_deg is None else fields_of(lens, fields_deg, 3, source)
+    fields = three_fields(lens, fields_deg, source)
     colours = wavelengths_of(lens, wavelengths_nm)
     planes = numbers_of(defocus_mm, "defocus_mm")
     places = hexapolar(rings)

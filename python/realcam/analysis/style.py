@@ -13,12 +13,13 @@ import matplotlib
 import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
 from .. import files
 from .._core import ImageFileError, InputError
 
-THEMES = ("light", "dark")
+PAGES = {"light": ("white", "#202020"), "dark": ("#16191d", "#d8dadd")}  # paper and ink
 FORMATS = (".svg", ".png", ".pdf")
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}
 # Colours that stand out from a white and from a dark page alike (a contrast of 3 and more to either).
@@ -45,11 +46,11 @@ def field_colour(number: int) -> str:
 @contextmanager
 def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
     """Figures that are made within have the theme's page, text and lines. Raises InputError for an unknown theme."""
-    if theme not in THEMES:
+    if theme not in PAGES:
         raise InputError(f'unknown theme "{theme}"; light or dark is wanted')
-    page, text = ("white", "#202020") if theme == "light" else ("#16191d", "#d8dadd")
+    page, text = PAGES[theme]
     grid = "#d5d5d5" if theme == "light" else "#3c4148"
-    settings: dict[str, Any] = {
+    settings: Any = {
         "figure.facecolor": page,
         "savefig.facecolor": page,
         "axes.facecolor": page,
@@ -127,3 +128,11 @@ def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:
 def legend_beside(axes: Axes, **options: Any) -> None:
     """Where it covers no line."""
     axes.legend(**{"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), **options})
+
+
+def colour_bar(axes: Axes, picture: AxesImage, label: str) -> None:
+    figure = axes.get_figure()
+    assert figure is not None
+    bar = figure.colorbar(picture, ax=axes, shrink=0.8)
+    bar.set_label(label)
+    bar.outline.set_visible(False)

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._core import Lens
+from . import style
 from .fields import Doubles
 
 
@@ -64,6 +65,4 @@ def plot_wavefront_map(data: WavefrontMap, axes: Axes) -> None:
     axes.set_xlabel("x in the stop / its radius")
     axes.set_ylabel("y in the stop / its radius")
     axes.set_title(f"{data.field_deg:.3g}°, RMS {data.rms_waves:.3g} waves")
-    bar = axes.get_figure().colorbar(picture, ax=axes, shrink=0.8)  # type: ignore[union-attr]
-    bar.set_label("waves")
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    style.colour_bar(axes, picture, "waves")

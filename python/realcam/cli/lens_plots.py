@@ -6,7 +6,9 @@ import os
 from pathlib import Path
 from typing import Annotated, Optional
 
+import numpy as np
 import typer
+from numpy.typing import NDArray
 
 from .._core import InputError
 from . import options
@@ -38,7 +40,7 @@ def register(app: typer.Typer) -> None:
 
 
 def plot(
-    kind: Annotated[str, typer.Argument(help="What to plot; --list names all kinds.", metavar="KIND")],
+    kind: Annotated[str, typer.Argument(help="What to plot: one of those below.", metavar="KIND")],
     name: Annotated[
         Optional[str],  # noqa: UP045
         typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS"),
@@ -129,8 +131,8 @@ def report(
     _say_written(target)
 
 
-def _numbers(text: str | None, what: str) -> list[float] | None:
-    return None if text is None else [options.number(part.strip(), what) for part in text.split(",")]
+def _numbers(text: str | None, what: str) -> NDArray[np.float64] | None:
+    return None if text is None else np.array([options.number(part.strip(), what) for part in text.split(",")])
 
 
 def _distance(text: str | None) -> float | None:
