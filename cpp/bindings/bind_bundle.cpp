@@ -67,29 +67,29 @@ RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<do
     const auto number_of = [&](auto&& f) { return array_of(rays.size(), [&](auto i) { return f(rays[i]); }); };
     const auto component = [](Vec3d v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; };
     const Vec2<double> chief = bundle.chief;
-    return {pair_of([](const BundleRay& ray) { return Vec2<double>{ray.entry.x, ray.entry.y}; }),
-            number_of([](const BundleRay& ray) { return ray.energy; }),
-            pair_of([&](const BundleRay& ray) { return Vec2<double>{ray.at.x + chief.x, ray.at.y + chief.y}; }),
-            table_of(rays.size(), 3, [&](auto i, auto k) { return component(rays[i].direction, k); }),
-            pair_of([](const BundleRay& ray) { return ray.wave.slope; }),
-            number_of([](const BundleRay& ray) { return ray.wave.path; }),
-            number_of([](const BundleRay& ray) { return ray.amplitude; }),
-            edge_array(traced.edge,
-                       [](const EdgePiece& piece, std::size_t end) {
-                           return Vec2<double>{piece.entry[end].x, piece.entry[end].y};
-                       }),
-            edge_array(traced.edge, [](const EdgePiece& piece, std::size_t end) { return piece.slope[end]; }),
-            {{chief.x, chief.y}, traced.tangential_focus, traced.sagittal_focus},
-            distance,
-            wavelength,
-            bundle.index,
-            bundle.mirrored};
+    return {
+        pair_of([](const BundleRay& ray) { return Vec2<double>{ray.entry.x, ray.entry.y}; }),
+        number_of([](const BundleRay& ray) { return ray.energy; }),
+        pair_of([&](const BundleRay& ray) { return Vec2<double>{ray.at.x + chief.x, ray.at.y + chief.y}; }),
+        table_of(rays.size(), 3, [&](auto i, auto k) { return component(rays[i].direction, k); }),
+        pair_of([](const BundleRay& ray) { return ray.wave.slope; }),
+        number_of([](const BundleRay& ray) { return ray.wave.path; }),
+        number_of([](const BundleRay& ray) { return ray.amplitude; }),
+        edge_array(traced.edge, [](const EdgePiece& piece,
+                                   std::size_t end) { return Vec2<double>{piece.entry[end].x, piece.entry[end].y}; }),
+        edge_array(traced.edge, [](const EdgePiece& piece, std::size_t end) { return piece.slope[end]; }),
+        {{chief.x, chief.y}, traced.tangential_focus, traced.sagittal_focus},
+        distance,
+        wavelength,
+        bundle.index,
+        bundle.mirrored};
 }
 
 /// (M, 2) float32: the rays of `count` that pass.
 py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_t count,
                            std::optional<double> object_distance_m, std::optional<double> wavelength_nm,
-                           std::optional<double> film_distance_mm, const std::string& pattern, const py::object& dtype) {
+                           std::optional<double> film_distance_mm, const std::string& pattern,
+                           const py::object& dtype) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     if (film_distance_mm && !std::isfinite(*film_distance_mm))
         throw InputError("film_distance_mm must be a finite length, or None for the film");
@@ -138,12 +138,16 @@ void bind_bundle(py::module_& m) {
         .def_readonly("edge_entry_mm", &RayBundle::edge_entry_mm,
                       "(M, 2, 2): pieces of the edge of what passes, from (x, y) to (x, y), as entry_mm.")
         .def_readonly("edge_slopes", &RayBundle::edge_slopes, "(M, 2, 2): the same, as slopes.")
-        .def_property_readonly("chief_ray_mm", [](const RayBundle& b) { return std::pair(b.chief_ray.at_mm[0], b.chief_ray.at_mm[1]); },
-                      "(x, y) on the film, of the ray through the middle of the stop, even where the lens blocks it.")
-        .def_property_readonly("tangential_focus_mm", [](const RayBundle& b) { return b.chief_ray.tangential_focus_mm; },
-                      "Along the axis from the film to where rays close to the chief ray cross that differ from it in "
-                      "the plane of\nthe axis; positive: behind the film. nan where the lens has none.")
-        .def_property_readonly("sagittal_focus_mm", [](const RayBundle& b) { return b.chief_ray.sagittal_focus_mm; }, "The same, of rays beside that plane.")
+        .def_property_readonly(
+            "chief_ray_mm", [](const RayBundle& b) { return std::pair(b.chief_ray.at_mm[0], b.chief_ray.at_mm[1]); },
+            "(x, y) on the film, of the ray through the middle of the stop, even where the lens blocks it.")
+        .def_property_readonly(
+            "tangential_focus_mm", [](const RayBundle& b) { return b.chief_ray.tangential_focus_mm; },
+            "Along the axis from the film to where rays close to the chief ray cross that differ from it in "
+            "the plane of\nthe axis; positive: behind the film. nan where the lens has none.")
+        .def_property_readonly(
+            "sagittal_focus_mm", [](const RayBundle& b) { return b.chief_ray.sagittal_focus_mm; },
+            "The same, of rays beside that plane.")
         .def_readonly("film_distance_mm", &RayBundle::film_distance_mm, "Last vertex to the film, or to another plane.")
         .def_readonly("wavelength_nm", &RayBundle::wavelength_nm)
         .def_readonly("index", &RayBundle::index, "Behind the lens.")
@@ -155,15 +159,15 @@ void bind_bundle(py::module_& m) {
                    digits(b.wavelength_nm) + " nm>";
         });
     static const std::string text =
-        std::string("Rays of one object point that fill what the lens lets pass, in double precision.\n") +
-        kFieldText +
+        std::string("Rays of one object point that fill what the lens lets pass, in double precision.\n") + kFieldText +
         R"(film_distance_mm: last vertex to the plane that points_mm lie in; None: the film.
 spokes, nodes: lines from the middle of the light to its edge, which real rays find, and rays on each.
 Returns a RayBundle. Raises InputError where no light passes, or a glass is not known at the wavelength.)";
     static const std::string points_text =
-        std::string("Where very many rays of one object point land, for spots, histograms and bokeh: 50 million a "
-                    "second and more.\nThey fill a rectangle in front of the lens that holds all light that passes, "
-                    "evenly, and are not aimed at the stop.\n") +
+        std::string(
+            "Where very many rays of one object point land, for spots, histograms and bokeh: 50 million a "
+            "second and more.\nThey fill a rectangle in front of the lens that holds all light that passes, "
+            "evenly, and are not aimed at the stop.\n") +
         kFieldText +
         R"(count: rays to trace; up to a third of them are blocked.
 film_distance_mm: last vertex to the plane of the points; None: the film.

@@ -286,6 +286,9 @@ void trace_block(const void* lens_view, void* rays) {
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile,  realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
-    realcam::splat_ghosts_of,  realcam::generate_all, realcam::trace_block,        realcam::trace_all<double>,
-    realcam::trace_all<float>, realcam::expose_sensor,    realcam::film_points<float>, realcam::film_points<double>};
+    REALCAM_TEXT(REALCAM_ISA),   realcam::render_tile,
+    realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
+    realcam::splat_ghosts_of,    realcam::generate_all,
+    realcam::trace_block,        realcam::trace_all<double>,
+    realcam::trace_all<float>,   realcam::expose_sensor,
+    realcam::film_points<float>, realcam::film_points<double>};

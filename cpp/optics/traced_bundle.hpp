@@ -96,10 +96,10 @@ inline std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vect
                 const int parts = i < smooth ? kEdgeParts : 1;
                 EdgePlace from = here[i][side];
                 for (int k = 1; k <= parts; ++k) {
-                    const EdgePlace to =
-                        k == parts ? next[i][side]
-                                   : between({before[i][side], here[i][side], next[i][side], beyond[i][side]},
-                                             static_cast<double>(k) / parts);
+                    const EdgePlace to = k == parts
+                                             ? next[i][side]
+                                             : between({before[i][side], here[i][side], next[i][side], beyond[i][side]},
+                                                       static_cast<double>(k) / parts);
                     add(from, to);
                     from = to;
                 }
@@ -115,9 +115,8 @@ inline std::vector<EdgePiece> edge_of(const PointBundle& bundle, const std::vect
 inline double close_focus(const PointBundle& bundle, bool tangential) {
     const double step = 1e-3 * std::max(bundle.reach.x, bundle.reach.y);
     const PointBundle::Entry chief = bundle.chief_entry;
-    const PointBundle::Entry entries[2] = {
-        {chief.x + (tangential ? 0 : step), chief.y + (tangential ? step : 0)},
-        {chief.x - (tangential ? 0 : step), chief.y - (tangential ? step : 0)}};
+    const PointBundle::Entry entries[2] = {{chief.x + (tangential ? 0 : step), chief.y + (tangential ? step : 0)},
+                                           {chief.x - (tangential ? 0 : step), chief.y - (tangential ? step : 0)}};
     FilmRay rays[2];
     bundle.trace(entries, rays);
     if (!rays[0].passes || !rays[1].passes) return std::numeric_limits<double>::quiet_NaN();

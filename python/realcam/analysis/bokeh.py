@@ -34,7 +34,7 @@ def bokeh(
     *,
     object_distance_m: float | None = None,
     size: int = 96,
-    rays: int = 20000,
+    rays: int = 200000,
 ) -> Bokeh:
     """Of rays alone, with the brightness that they bring.
 
@@ -46,22 +46,20 @@ def bokeh(
     source = Bundles(lens, distance)
     fields = three_fields(lens, fields_deg, source)
     colours = wavelengths_of(lens, wavelengths_nm)
-    spokes = max(8, round(2 * math.sqrt(rays)))
-    light = [[source.at(float(f), float(c), spokes, max(4, spokes // 8)) for c in colours] for f in fields]
     design = [source.at(float(f), lens.wavelength_nm) for f in fields]
     boxes = [(b.points_mm.min(axis=0), b.points_mm.max(axis=0)) for b in design]
     side = 1.15 * max(float((high - low).max()) for low, high in boxes)
     if not side > 0:
         raise InputError(f"an object at {distance:.6g} m is in focus: its light makes no disc")
     values = np.empty((len(fields), len(colours), size, size))
-    for f, row in enumerate(light):
-        middle = 0.5 * (boxes[f][0] + boxes[f][1])
-        edges = [np.linspace(-0.5, 0.5, size + 1) * side + m for m in middle]
-        for c, bundle in enumerate(row):
-            sums, _, _ = np.histogram2d(
-                bundle.points_mm[:, 1], bundle.points_mm[:, 0], bins=(edges[1], edges[0]), weights=bundle.energy
-            )
-            values[f, c] = sums * (size / side) ** 2
+    for f, field in enumerate(fields):
+        corner = 0.5 * (boxes[f][0] + boxes[f][1]) - 0.5 * side
+        for c, colour in enumerate(colours):
+            points = lens.film_points(float(field), rays, wavelength_nm=float(colour), object_distance_m=distance)
+            column, row = np.floor((points - corner) * (size / side)).astype(int).T
+            inside = (column >= 0) & (column < size) & (row >= 0) & (row < size)
+            sums = np.bincount(row[inside] * size + column[inside], minlength=size * size).reshape(size, size)
+            values[f, c] = sums / len(points) * (size / side) ** 2
     return Bokeh(fields, colours, distance, values, side / size)
 
 

@@ -243,7 +243,7 @@ def plot_figure(
     rows, columns = KINDS[kind].shape(data)
     if rows * columns > 1:  # each of several plots as large as it can be read at
         width = max(width, (1.4 if size == "small" else 2.5) * columns + 0.8)
-        each = width / columns if KINDS[kind].square else 0.8 * width / columns
+        each = (0.9 if KINDS[kind].square else 0.8) * width / columns
         height = each * rows + (0.4 if title else 0)
     font = 8.0 if size == "small" else 10.0
     if rows * columns > 1:

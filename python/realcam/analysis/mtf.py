@@ -21,7 +21,7 @@ from .fields import (
     three_fields,
     wavelengths_of,
 )
-from .pupil_function import pupil_function, transfer
+from .pupil_function import lines_of, pupil_function, transfer, transfer_limit
 
 METHODS = ("diffraction", "geometric")
 
@@ -86,15 +86,22 @@ def mtf(
     limit = np.zeros((2, len(fields), len(frequencies)))
     of_colour = _by_waves if method == "diffraction" else _by_rays
     for f, field in enumerate(fields):
-        middle = np.array(source.chief(float(field), float(colours[0])).chief_ray_mm)
-        for way in (0, 1):
-            sums = np.zeros((len(planes), len(frequencies)), dtype=complex)
-            for weight, colour in zip(share, colours, strict=True):
-                otf, best = of_colour(source, float(field), float(colour), frequencies, planes, way == 0, middle)
-                sums += weight * otf
-                limit[way, f] += weight * best
-            result[way, :, f] = np.abs(sums)
+        light = [of_colour(source, float(field), float(colour), frequencies, planes) for colour in colours]
+        # Colours add about one place: lateral colour shows.
+        beside = np.array([one.chief_ray_mm - light[0].chief_ray_mm for one in light])[:, ::-1]
+        turn = np.exp(-2j * np.pi * beside[:, :, None] * frequencies)
+        result[:, :, f] = np.abs(sum(w * one.otf * t[:, None] for w, one, t in zip(share, light, turn, strict=True)))
+        limit[:, f] = sum(w * one.limit for w, one in zip(share, light, strict=True))
     return Mtf(fields, frequencies, planes, colours, share, result[0], result[1], limit[0], limit[1], method)
+
+
+@dataclass(frozen=True)
+class _Transfer:
+    """otf: (2, D, K), complex, tangential and sagittal, about the chief ray; limit: (2, K)."""
+
+    otf: np.ndarray
+    limit: Doubles
+    chief_ray_mm: Doubles
 
 
 def _shares(weights: ArrayLike | None, count: int) -> Doubles:
@@ -105,37 +112,23 @@ def _shares(weights: ArrayLike | None, count: int) -> Doubles:
     return shares
 
 
-def _by_waves(
-    source: Bundles,
-    field: float,
-    colour: float,
-    frequencies: Doubles,
-    planes: Doubles,
-    tangential: bool,
-    middle: Doubles,
-) -> tuple[np.ndarray, Doubles]:
+def _by_waves(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> _Transfer:
     pupil = pupil_function(source, field, colour)
-    otf = transfer(pupil, frequencies, tangential=tangential, defocus_mm=planes)
-    beside = (pupil.chief_ray_mm - middle)[1 if tangential else 0]
-    limit = transfer(pupil, frequencies, tangential=tangential, ideal=True)[0].real
-    return otf * np.exp(-2j * np.pi * frequencies * beside), limit
+    ways = [lines_of(pupil, tangential=tangential) for tangential in (True, False)]
+    return _Transfer(
+        np.stack([transfer(pupil, lines, frequencies, planes) for lines in ways]),
+        np.stack([transfer_limit(pupil, lines, frequencies) for lines in ways]),
+        pupil.chief_ray_mm,
+    )
 
 
-def _by_rays(
-    source: Bundles,
-    field: float,
-    colour: float,
-    frequencies: Doubles,
-    planes: Doubles,
-    tangential: bool,
-    middle: Doubles,
-) -> tuple[np.ndarray, Doubles]:
+def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> _Transfer:
     bundle = source.at(field, colour, 64, 12)
-    along = 1 if tangential else 0
-    slopes = bundle.directions[:, along] / bundle.directions[:, 2]
-    places = bundle.points_mm[:, along] - middle[along] + planes[:, None] * slopes
-    otf = np.exp(-2j * np.pi * frequencies[:, None] * places[:, None, :]) @ bundle.energy
-    return otf, np.ones(len(frequencies))
+    chief = np.array(bundle.chief_ray_mm)
+    slopes = bundle.directions[:, :2] / bundle.directions[:, 2:]
+    places = bundle.points_mm - chief + planes[:, None, None] * slopes  # (D, N, 2)
+    turns = np.exp(-2j * np.pi * frequencies[:, None] * places.transpose(2, 0, 1)[:, :, None, :])
+    return _Transfer((turns @ bundle.energy)[::-1], np.ones((2, len(frequencies))), chief)
 
 
 def mtf_over_frequency(

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -90,91 +92,118 @@ def fit_pupil(bundle: RayBundle, degree: int) -> PupilFunction:
     )
 
 
-def transfer(
-    pupil: PupilFunction,
-    frequencies_per_mm: Doubles,
-    *,
-    tangential: bool,
-    defocus_mm: Doubles | None = None,
-    ideal: bool = False,
-) -> np.ndarray:
-    """(D, F), complex: the optical transfer function along y (tangential) or x, relative to the chief ray's film point.
+@dataclass(frozen=True)
+class Lines:
+    """Lines along one direction across a pupil, at the nodes of Chebyshev's second kind, where a round edge makes their
+    lengths smooth.
 
-    The pupil's autocorrelation (H. H. Hopkins, Proc. Roy. Soc. A 231, 91, 1955): the mean of A(p + s/2) A(p - s/2)
-    exp(i (phase(p + s/2) - phase(p - s/2))) over the p at which both lie in the pupil, s = frequency x wavelength, over
-    that of A^2. Lines along s cross the pupil at the nodes of Chebyshev's second kind, where a round edge makes their
-    lengths smooth; on each line stand Gauss's nodes between the ends of the overlap. ideal: without aberrations, with
-    an even amplitude.
+    places: (L,), where they cross the other direction; weight: (L,), of each in an integral across them.
+    ends: (L, stretch, 2), between which places each lies in the pupil; nan where it does not.
     """
-    planes = np.zeros(1) if defocus_mm is None else defocus_mm
+
+    along: int
+    places: Doubles
+    weight: Doubles
+    ends: Doubles
+
+    def overlaps(self, shifts: Doubles) -> Iterator[tuple[Doubles, Doubles]]:
+        """Middles and lengths, (F, L) each, of where the pupil overlaps itself shifted, for each pair of stretches."""
+        half = 0.5 * shifts[:, None]
+        count = self.ends.shape[1]
+        for a in range(count):
+            for b in range(count):
+                low = np.maximum(self.ends[:, a, 0] + half, self.ends[:, b, 0] - half)
+                high = np.minimum(self.ends[:, a, 1] + half, self.ends[:, b, 1] - half)
+                there = high > low
+                if there.any():
+                    yield np.where(there, 0.5 * (low + high), 0.0), np.where(there, high - low, 0.0)
+
+
+def lines_of(pupil: PupilFunction, *, tangential: bool) -> Lines:
     along = 1 if tangential else 0
-    shifts = frequencies_per_mm / pupil.waves_per_cosine / pupil.half[along]
-    for lines in (LINES, LINES_WITH_HOLE):
-        turn = np.pi * (np.arange(lines) + 0.5) / lines
+    for count in (LINES, LINES_WITH_HOLE):
+        turn = np.pi * (np.arange(count) + 0.5) / count
         ends = _ends(pupil.edge, np.cos(turn), along)
         if ends.shape[1] < 2:
             break
-    line_weight = np.sin(turn) * np.pi / lines
+    return Lines(along, np.cos(turn), np.sin(turn) * np.pi / count, ends)
+
+
+def transfer_limit(pupil: PupilFunction, lines: Lines, frequencies_per_mm: Doubles) -> Doubles:
+    """(F,): the transfer function without aberrations and with an even amplitude: the share of the pupil on which it
+    overlaps itself, shifted by frequency x wavelength."""
+    shifts = frequencies_per_mm / pupil.waves_per_cosine / pupil.half[lines.along]
+    areas = [np.zeros(len(shifts)), np.zeros(1)]
+    for area, by in zip(areas, (shifts, np.zeros(1)), strict=True):
+        for _, length in lines.overlaps(by):
+            area += length @ lines.weight
+    share: Doubles = areas[0] / areas[1]
+    return share
+
+
+def transfer(
+    pupil: PupilFunction, lines: Lines, frequencies_per_mm: Doubles, defocus_mm: Doubles | None = None
+) -> np.ndarray:
+    """(D, F), complex: the optical transfer function along the lines, relative to the chief ray's film point.
+
+    The pupil's autocorrelation (H. H. Hopkins, Proc. Roy. Soc. A 231, 91, 1955): the mean of A(p + s/2) A(p - s/2)
+    exp(i (phase(p + s/2) - phase(p - s/2))) over the p at which both lie in the pupil, s = frequency x wavelength, over
+    that of A^2. On each line stand Gauss's nodes between the ends of the overlap.
+    """
+    planes = np.zeros(1) if defocus_mm is None else defocus_mm
+    shifts = frequencies_per_mm / pupil.waves_per_cosine / pupil.half[lines.along]
     # Polynomials along each line, (3, power, line).
-    tables = np.stack([pupil.phase, pupil.tilt, pupil.amplitude])
-    if not tangential:
+    tables = np.stack([pupil.phase, pupil.amplitude, pupil.tilt])
+    if not planes.any():
+        tables = tables[:2]  # no plane asks for the change by defocus
+    if lines.along == 0:
         tables = tables.swapaxes(1, 2)
-    on_line = np.einsum("tij,li->tjl", tables, chebyshev.chebvander(np.cos(turn), tables.shape[1] - 1))
-    if ideal:
-        on_line[:] = 0
-        on_line[2, 0] = 1
-    whole = _overlap(on_line, ends, line_weight, np.zeros(1), planes[:1], 16)[0, 0].real
-    sums = _overlap(on_line, ends, line_weight, shifts, planes, _nodes(on_line, shifts, planes))
-    otf: np.ndarray = sums / whole
+    on_line = np.einsum("tij,li->tjl", tables, chebyshev.chebvander(lines.places, tables.shape[1] - 1))
+    whole = _overlap(on_line, lines, np.zeros(1), np.zeros(1), 16)[0, 0].real
+    otf: np.ndarray = _overlap(on_line, lines, shifts, planes, _nodes(on_line, shifts, planes)) / whole
     return otf
 
 
 def _nodes(on_line: Doubles, shifts: Doubles, planes: Doubles) -> int:
     """Gauss's rule follows a phase of z radians from its middle to either end with some z / 2 + 10 nodes."""
-    v = np.linspace(-1, 1, 41)
+    v = np.linspace(-1, 1, 33)
     most = 0.0
-    for plane in (planes.min(), planes.max()):
-        slope = np.gradient(chebyshev.chebval(v, on_line[0] + plane * on_line[1]), v, axis=-1)
-        typical = float(np.percentile(np.abs(slope - np.median(slope)), 97))
-        most = max(most, typical)
-    z = most * float(shifts.max(initial=0.0))
-    return int(min(16 + 0.6 * z, 160))
+    for plane in {planes.min(), planes.max()}:
+        phase = on_line[0] + plane * on_line[2] if plane else on_line[0]
+        rise = np.diff(chebyshev.chebval(v, phase), axis=-1) / (v[1] - v[0])
+        most = max(most, float(rise.std()))
+    # Three standard deviations of the slope: what is steeper is little of the pupil.
+    wanted = 16 + 1.5 * most * float(shifts.max(initial=0.0))
+    return next((count for count in (16, 20, 24, 32, 48, 72, 108) if count >= wanted), 160)
 
 
-def _overlap(
-    on_line: Doubles, ends: Doubles, line_weight: Doubles, shifts: Doubles, planes: Doubles, nodes: int
-) -> np.ndarray:
+@cache
+def _gauss(nodes: int) -> tuple[Doubles, Doubles]:
+    return np.polynomial.legendre.leggauss(nodes)
+
+
+def _overlap(on_line: Doubles, lines: Lines, shifts: Doubles, planes: Doubles, nodes: int) -> np.ndarray:
     """(D, F), complex: integrals over the overlap of the pupil with itself, shifted."""
-    node, weight = np.polynomial.legendre.leggauss(nodes)
+    node, weight = _gauss(nodes)
     total = np.zeros((len(planes), len(shifts)), dtype=complex)
-    half_shift = 0.5 * shifts[:, None]
-    stretches = ends.shape[1]
-    for a in range(stretches):
-        for b in range(stretches):
-            low = np.maximum(ends[:, a, 0] + half_shift, ends[:, b, 0] - half_shift)  # (F, line)
-            high = np.minimum(ends[:, a, 1] + half_shift, ends[:, b, 1] - half_shift)
-            length = np.where(high > low, high - low, 0.0)
-            if not length.any():
-                continue
-            middle = np.where(length > 0, 0.5 * (low + high), 0.0)
-            place = middle[..., None] + 0.5 * length[..., None] * node  # (F, line, node)
-            front = _values(on_line, place - half_shift[..., None])
-            back = _values(on_line, place + half_shift[..., None])
-            amplitude = front[2] * back[2] * weight * (0.5 * length * line_weight)[..., None]
-            phase, tilt = back[0] - front[0], back[1] - front[1]
-            for d, plane in enumerate(planes):
-                turn = phase + plane * tilt if plane else phase
-                total[d] += np.sum(amplitude * np.exp(1j * turn), axis=(1, 2))
+    half_shift = 0.5 * shifts[:, None, None]
+    for middle, length in lines.overlaps(shifts):
+        place = middle[..., None] + 0.5 * length[..., None] * node  # (F, line, node)
+        front = _values(on_line, place - half_shift)
+        back = _values(on_line, place + half_shift)
+        amplitude = front[1] * back[1] * weight * (0.5 * length * lines.weight)[..., None]
+        phase = back[0] - front[0]
+        for d, plane in enumerate(planes):
+            turn = phase + plane * (back[2] - front[2]) if plane else phase
+            total[d] += np.sum(amplitude * np.exp(1j * turn), axis=(1, 2))
     return total
 
 
 def _values(on_line: Doubles, place: Doubles) -> Doubles:
-    """(3, F, line, node): polynomials of each line at places on it, by Clenshaw's recurrence."""
+    """(table, F, line, node): polynomials of each line at places on it, by Clenshaw's recurrence."""
     count = on_line.shape[1]
-    if not on_line[:, 1:].any():
-        return np.broadcast_to(on_line[:, 0, None, :, None], (3, *place.shape))
     coefficient = on_line[:, :, None, :, None]
-    ahead, here = np.zeros((3, *place.shape)), np.zeros((3, *place.shape))
+    ahead, here = np.zeros((2, len(on_line), *place.shape))
     double = 2 * place
     for k in range(count - 1, 0, -1):
         ahead, here = here, coefficient[:, k] + double * here - ahead

@@ -162,7 +162,7 @@ class _Report:
         self._try(
             figure,
             grid[3, 2],
-            lambda: bokeh(self.lens, self.fields[1:2], self.colours, rays=12000, size=72),
+            lambda: bokeh(self.lens, self.fields[1:2], self.colours, rays=100000, size=72),
             plot_bokeh,
         )
         return figure
