@@ -33,6 +33,7 @@ void bind_seidel(py::module_& m);
 void bind_ghosts(py::module_& m);
 void bind_analysis(py::module_& m);
 void bind_psf(py::module_& m);
+void bind_bundle(py::module_& m);
 void bind_transmission(py::module_& m);
 void bind_camera(py::module_& m);
 void bind_camera_rays(py::module_& m);

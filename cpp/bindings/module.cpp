@@ -15,6 +15,7 @@ PYBIND11_MODULE(_core, m) {
     bind_ghosts(m);
     bind_analysis(m);
     bind_psf(m);
+    bind_bundle(m);
     bind_transmission(m);
     bind_camera(m);
     bind_camera_rays(m);

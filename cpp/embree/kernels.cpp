@@ -7,6 +7,7 @@
 
 #include "../camera/ray_request.hpp"
 #include "../camera/sensor_request.hpp"
+#include "../optics/film_points_request.hpp"
 #include "../optics/trace_request.hpp"
 #include "../render/gather_ghosts.hpp"
 #include "../render/ghost_film.hpp"
@@ -262,6 +263,15 @@ void expose_sensor(const void* request) {
     expose_rows<kLanes>(*static_cast<const SensorRequest*>(request));
 }
 
+template <class T>
+void film_points(void* request) {
+    auto& points = *static_cast<FilmPointsRequest<T>*>(request);
+    if (points.lens.kind == LensKind::plain)
+        find_film_points<LensKind::plain, kLanes>(points);
+    else
+        find_film_points<LensKind::any, kLanes>(points);
+}
+
 void trace_block(const void* lens_view, void* rays) {
     trace_lens(*static_cast<const LensView<float>*>(lens_view), *static_cast<LensRays<float, kLanes>*>(rays));
 }
@@ -276,6 +286,9 @@ void trace_block(const void* lens_view, void* rays) {
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA), realcam::render_tile,  realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
-    realcam::splat_ghosts_of,  realcam::generate_all, realcam::trace_block,        realcam::trace_all<double>,
-    realcam::trace_all<float>, realcam::expose_sensor};
+    REALCAM_TEXT(REALCAM_ISA),   realcam::render_tile,
+    realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
+    realcam::splat_ghosts_of,    realcam::generate_all,
+    realcam::trace_block,        realcam::trace_all<double>,
+    realcam::trace_all<float>,   realcam::expose_sensor,
+    realcam::film_points<float>, realcam::film_points<double>};

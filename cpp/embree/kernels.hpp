@@ -49,6 +49,8 @@ struct realcam_kernels {
     void (*trace_f64)(const void* request);                  // TraceRequest<double>
     void (*trace_f32)(const void* request);                  // TraceRequest<float>
     void (*expose_sensor)(const void* request);              // SensorRequest
+    void (*film_points_f32)(void* request);                  // FilmPointsRequest<float>
+    void (*film_points_f64)(void* request);                  // FilmPointsRequest<double>
 };
 }
 

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -41,7 +42,47 @@ void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const K
     }
 }
 
+template <class T>
+std::int64_t film_points_with(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
+                              EntryPattern pattern, std::int64_t count, double film_distance, float* at,
+                              void (*kernel)(void*), const KeepGoing& keep_going) {
+    const LensPath<T> path(lens, LightDirection::to_film, wavelength_nm);
+    const auto two = [](Vec2<double> v) { return Vec2<T>{static_cast<T>(v.x), static_cast<T>(v.y)}; };
+    FilmPointsRequest<T> request{path.view(),
+                                 static_cast<Vec3<T>>(bundle.object.centre - Vec3d{0, 0, path.entry_position}),
+                                 static_cast<Vec3<T>>(bundle.object.towards),
+                                 two({bundle.middle.x, bundle.middle.y}),
+                                 two({bundle.reach.x, bundle.reach.y}),
+                                 static_cast<T>(bundle.object.inverse_distance),
+                                 static_cast<T>(path.entry_index),
+                                 static_cast<T>(film_distance),
+                                 pattern,
+                                 static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(count)))),
+                                 0,
+                                 0,
+                                 at,
+                                 0};
+    constexpr std::int64_t kBlock = 1 << 20;
+    for (request.first = 0; request.first < count; request.first += kBlock) {
+        if (keep_going && !keep_going()) throw Cancelled();
+        request.count = std::min(kBlock, count - request.first);
+        request.points = at + 2 * request.passed;
+        kernel(&request);
+    }
+    return request.passed;
+}
+
 }  // namespace
+
+std::int64_t find_film_points(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
+                              EntryPattern pattern, Precision precision, std::int64_t count, double film_distance,
+                              float* at, const KeepGoing& keep_going) {
+    if (precision == Precision::float64)
+        return film_points_with<double>(lens, wavelength_nm, bundle, pattern, count, film_distance, at,
+                                        kernels().film_points_f64, keep_going);
+    return film_points_with<float>(lens, wavelength_nm, bundle, pattern, count, film_distance, at,
+                                   kernels().film_points_f32, keep_going);
+}
 
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                 int surface_count, std::int64_t count, const double* origins, const double* directions,

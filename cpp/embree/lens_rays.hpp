@@ -3,6 +3,8 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/ray_request.hpp"
+#include "../optics/film_points_request.hpp"
+#include "../optics/point_bundle.hpp"
 #include "../optics/ray_loop.hpp"
 #include "../optics/trace_path.hpp"
 #include "kernels.hpp"
@@ -17,6 +19,13 @@ namespace realcam {
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                 int surface_count, std::int64_t count, const double* origins, const double* directions,
                 const TracedRays& out, const realcam_kernels* on = nullptr, const KeepGoing& keep_going = {});
+
+/// Where rays of one object point land that fill the light before the lens: x and y, mm from the axis, of those of
+/// `count` rays that pass. `at` has room for 2 x count numbers; returns how many points there are. On the calling
+/// thread. `index`: of the object's space. Throws Cancelled.
+std::int64_t find_film_points(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
+                              EntryPattern pattern, Precision precision, std::int64_t count, double film_distance,
+                              float* at, const KeepGoing& keep_going = {});
 
 /// A loop over rays on all cores.
 RayLoop parallel_ray_loop(KeepGoing keep_going);

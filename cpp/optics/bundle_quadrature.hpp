@@ -15,11 +15,12 @@ struct EntryPart {
     double area;  ///< mm^2
 };
 
-namespace bundle_quadrature_detail {
-
+/// A part of a spoke on which light passes, by its distances from the spokes' middle in units of the bundle's reach.
 struct Stretch {
     double from, to;
 };
+
+namespace bundle_quadrature_detail {
 
 /// One line from the middle of the light outwards, in units of the bundle's reach, and where the lens lets light pass
 /// on it.
@@ -75,32 +76,53 @@ private:
 
 }  // namespace bundle_quadrature_detail
 
-/// Rays for integrals over what passes the lens: on each spoke Gauss's nodes between the edges of the light, wherever
-/// rims, blades and obstructions put them. So nothing is lost at edges, and smooth functions need few rays. Of a bundle
-/// that is its own mirror image only the half of x > 0 is taken, with twice the area.
-inline std::vector<EntryPart> entry_parts(const PointBundle& bundle, BundleSampling sampling,
-                                          const RayLoop& loop = {}) {
+/// A spoke over the light, and where on it light passes.
+struct LitSpoke {
+    double cos, sin;
+    std::vector<Stretch> stretches;
+
+    PointBundle::Entry at(const PointBundle& bundle, double r) const {
+        return {bundle.middle.x + r * cos * bundle.reach.x, bundle.middle.y + r * sin * bundle.reach.y};
+    }
+};
+
+/// Spokes at even angles over the light, in the order of their angles from -90 degrees on. Of a bundle that is its own
+/// mirror image only the half of x > 0 is taken; `count` is that of the whole.
+inline std::vector<LitSpoke> lit_spokes(const PointBundle& bundle, int count, const RayLoop& loop = {}) {
     using namespace bundle_quadrature_detail;
-    std::vector<GaussNode> rule;
-    for (int i = 0; i < sampling.nodes; ++i) rule.push_back(gauss_node(sampling.nodes, i));
-    const std::size_t half = static_cast<std::size_t>(sampling.spokes + 1) / 2,
-                      spokes = bundle.mirrored ? half : 2 * half;
+    const std::size_t half = static_cast<std::size_t>(count + 1) / 2, spokes = bundle.mirrored ? half : 2 * half;
     const double between = std::numbers::pi / static_cast<double>(half);
-    const double area = bundle.reach.x * bundle.reach.y * between * (bundle.mirrored ? 2 : 1);
-    std::vector<std::vector<EntryPart>> of_spoke(spokes);
+    std::vector<LitSpoke> lit(spokes);
     loop.for_all(spokes, [&](std::size_t first, std::size_t last) {
         for (std::size_t s = first; s < last; ++s) {
-            const Spoke spoke(bundle, between * (static_cast<double>(s) + 0.5) - 0.5 * std::numbers::pi);
-            for (const Stretch& stretch : spoke.stretches())
-                for (const GaussNode& node : rule) {
-                    const double span = stretch.to - stretch.from, r = stretch.from + span * node.node;
-                    of_spoke[s].push_back({spoke.at(r), area * r * span * node.weight});
-                }
+            const double angle = between * (static_cast<double>(s) + 0.5) - 0.5 * std::numbers::pi;
+            lit[s] = {std::cos(angle), std::sin(angle), Spoke(bundle, angle).stretches()};
         }
     });
+    return lit;
+}
+
+/// Rays for integrals over what passes the lens: on each spoke Gauss's nodes between the edges of the light, wherever
+/// rims, blades and obstructions put them. So nothing is lost at edges, and smooth functions need few rays. Rays of a
+/// half bundle stand for twice their area.
+inline std::vector<EntryPart> entry_parts(const PointBundle& bundle, const std::vector<LitSpoke>& spokes, int nodes) {
+    std::vector<GaussNode> rule;
+    for (int i = 0; i < nodes; ++i) rule.push_back(gauss_node(nodes, i));
+    const double circle = bundle.reach.x * bundle.reach.y * 2 * std::numbers::pi;
+    const double area = circle / static_cast<double>(spokes.size());
     std::vector<EntryPart> parts;
-    for (const std::vector<EntryPart>& more : of_spoke) parts.insert(parts.end(), more.begin(), more.end());
+    for (const LitSpoke& spoke : spokes)
+        for (const Stretch& stretch : spoke.stretches)
+            for (const GaussNode& node : rule) {
+                const double span = stretch.to - stretch.from, r = stretch.from + span * node.node;
+                parts.push_back({spoke.at(bundle, r), area * r * span * node.weight});
+            }
     return parts;
+}
+
+inline std::vector<EntryPart> entry_parts(const PointBundle& bundle, BundleSampling sampling,
+                                          const RayLoop& loop = {}) {
+    return entry_parts(bundle, lit_spokes(bundle, sampling.spokes, loop), sampling.nodes);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -30,10 +30,14 @@ REALCAM_HD inline LensEntry enter_lens(Vec3d origin, Vec3d direction, double ind
     const bool good = scale > 0 && scale <= std::numeric_limits<double>::max() && largest(origin) <= kFarthestOrigin &&
                       !std::isnan(direction.x + direction.y + direction.z) && !std::isnan(dot(origin, {1, 1, 1}));
     if (!good) return bad;
-    // First to the order of 1, by a power of two, which rounds nothing: squares of the longest and of the shortest
-    // vectors leave the range of double.
-    const int order = -std::ilogb(scale);
-    const Vec3d d = {std::scalbn(direction.x, order), std::scalbn(direction.y, order), std::scalbn(direction.z, order)};
+    // Squares of the longest and of the shortest vectors leave the range of double: these are first brought to the
+    // order of 1, by a power of two, which rounds nothing. Others are spared the calls, half of the time that a ray
+    // takes to enter and leave.
+    Vec3d d = direction;
+    if (!(scale > 0x1p-400 && scale < 0x1p400)) {
+        const int order = -std::ilogb(scale);
+        d = {std::scalbn(direction.x, order), std::scalbn(direction.y, order), std::scalbn(direction.z, order)};
+    }
     const double size = length(d);
     if (!(dot(origin, origin) > near * near)) return {origin, (index / size) * d, 0, RayStatus::ok};
     const double t = -dot(origin, d) / dot(d, d);

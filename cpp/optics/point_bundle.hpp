@@ -26,6 +26,7 @@ public:
 
     bool mirrored;  ///< whether x and -x are alike, as all is round; blades need not be
     ObjectPoint object;
+    Entry chief_entry;  ///< of the chief ray
     Vec2<double> chief;  ///< where the chief ray meets the film, mm from the axis
     double index;  ///< behind the lens
     double wave_number;  ///< 2 pi index / wavelength, 1/mm
@@ -34,9 +35,13 @@ public:
     Vec2<double> spot;  ///< half the sides of the rectangle about the chief ray that holds the spot, mm
     Vec2<double> slope_low, slope_high;  ///< of the rays that pass
 
-    /// Throws InputError for a field point or wavelength that makes no sense, and where no light reaches the film.
+    static constexpr int kLook = 40;
+
+    /// `look`: rays across the stop by which the bundle is found, of which those that pass are to be enough to say
+    /// where the light is. Throws InputError for a field point or wavelength that makes no sense, and where no light
+    /// reaches the film.
     PointBundle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double film_distance,
-                const RayLoop& loop = {})
+                const RayLoop& loop = {}, int look = kLook)
         : mirrored(lens.iris.blades == 0 || lens.is_wide_open()),
           object(in_known_glass(lens, wavelength_nm), wavelength_nm, field),
           path_(lens, LightDirection::to_film, wavelength_nm),
@@ -45,7 +50,8 @@ public:
           film_distance_(film_distance) {
         index = lens.indices(wavelength_nm).back();
         wave_number = 2e6 * std::numbers::pi * index / wavelength_nm;
-        const FieldRays rays = look(lens, wavelength_nm, field, loop);
+        const FieldRays rays = look_for(lens, wavelength_nm, field, look, loop);
+        chief_entry = rays.chief.entry;
         const FilmRay at_chief = on_film(rays.chief.origin, rays.chief.direction, rays.chief.path);
         chief = {mirrored ? 0 : at_chief.at.x, at_chief.at.y};
         chief_path_ = at_chief.path;
@@ -53,7 +59,7 @@ public:
         curvature_ = wavefront_detail::reference_curvature(lens, wavelength_nm, rays, film_distance, ExitPupil::real);
         if (!std::isfinite(curvature_))
             throw InputError("psf: the exit pupil of lens \"" + lens.name + "\" lies in the film plane");
-        measure(rays);
+        measure(rays, look);
     }
 
     /// Whether the lens lets these rays pass.
@@ -98,7 +104,10 @@ public:
     }
 
 private:
-    static constexpr int kLook = 40, kCloseLook = 200, kFew = 60;
+    static constexpr int kCloseLook = 200;
+
+    /// A twentieth of the rays over the whole stop, and not so few that they do not tell where the light is.
+    static std::size_t few(int look) { return static_cast<std::size_t>(std::max(3 * look * look / 80, 20)); }
 
     static const LensSystem& in_known_glass(const LensSystem& lens, double wavelength_nm) {
         check_wavelength_in_glasses(lens, wavelength_nm, "psf");
@@ -106,19 +115,20 @@ private:
     }
 
     /// Rays over the whole stop; more of them where the lens lets few pass.
-    static FieldRays look(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, const RayLoop& loop) {
+    static FieldRays look_for(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, int look,
+                              const RayLoop& loop) {
         try {
-            FieldRays rays = field_rays(lens, wavelength_nm, field, square_grid(kLook, loop), loop);
+            FieldRays rays = field_rays(lens, wavelength_nm, field, square_grid(look, loop), loop);
             std::size_t passing = 0;
             for (std::size_t i = 0; i < rays.rays.size(); ++i) passing += rays.passes(i);
-            if (passing >= kFew) return rays;
+            if (passing >= few(look)) return rays;
         } catch (const InputError&) {
             // Also thrown where it makes no sense to look closer; then it is thrown again.
         }
         return field_rays(lens, wavelength_nm, field, square_grid(kCloseLook, loop), loop);
     }
 
-    void measure(const FieldRays& rays) {
+    void measure(const FieldRays& rays, int look) {
         Entry low = {kInfinity, kInfinity}, high = {-kInfinity, -kInfinity};
         slope_low = low, slope_high = high;
         spot = centroid = {0, 0};
@@ -140,7 +150,7 @@ private:
         centroid = {centroid.x / weight, centroid.y / weight};
         middle = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
         // What lies beyond the outermost rays: half a cell on either side, and a hair where all are in one line.
-        const double beyond = 1 + 2.0 / kLook, hair = 1e-3 * std::hypot(high.x - low.x, high.y - low.y);
+        const double beyond = 1 + 2.0 / look, hair = 1e-3 * std::hypot(high.x - low.x, high.y - low.y);
         if (mirrored) middle.x = centroid.x = 0;
         reach = {beyond * 0.5 * (high.x - low.x) + hair, beyond * 0.5 * (high.y - low.y) + hair};
     }

@@ -8,6 +8,8 @@ scene = rc.Scene.load("scene.glb").with_environment(2000)
 rc.render(scene, camera, spp=64).save("photograph.png")
 """
 
+from typing import TYPE_CHECKING, Any
+
 from ._core import (
     PSF,
     AimedRays,
@@ -35,6 +37,7 @@ from ._core import (
     NothingToPlan,
     Plan,
     PlanDecision,
+    RayBundle,
     RayChunks,
     RayStatus,
     RealcamError,
@@ -64,6 +67,9 @@ from .raw_image import RawImage
 from .render import render
 from .session import ReachedNoise, Session
 from .shot import Shot
+
+if TYPE_CHECKING:
+    from . import analysis
 
 __all__ = [
     "PSF",
@@ -99,6 +105,7 @@ __all__ = [
     "Plan",
     "PlanDecision",
     "RawImage",
+    "RayBundle",
     "RayChunks",
     "RayStatus",
     "ReachedNoise",
@@ -117,8 +124,12 @@ __all__ = [
     "Wavefront",
     "__version__",
     "accuracy_cost",
+<<<<<<< HEAD
     "cross_section",
     "depth_of_field",
+=======
+    "analysis",
+>>>>>>> 8ed15474c753ca9af28b43834226405aa33cb8bc
     "devices",
     "effects",
     "lens_names",
@@ -128,3 +139,12 @@ __all__ = [
     "render",
     "sensor_names",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """rc.analysis is loaded when it is first used: it brings matplotlib, which takes longer than all the rest."""
+    if name == "analysis":
+        from importlib import import_module
+
+        return import_module(".analysis", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -122,6 +122,7 @@ HOST_ONLY = {
     "optics/ray_loop.hpp",
     "optics/seidel.hpp",
     "optics/spot.hpp",
+    "optics/traced_bundle.hpp",
     "optics/surface.hpp",
     "optics/thin_film.hpp",
     "optics/trace_path.hpp",

@@ -9,7 +9,7 @@ from typing import Annotated, Optional
 import typer
 
 from .._core import InputError
-from . import lens_figures, lens_options, options
+from . import lens_figures, lens_options, lens_plots, options
 
 app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
 
@@ -27,6 +27,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infini
 
 options.add_command_of_the_executable(app, "list", "List the bundled lenses.")
 options.add_command_of_the_executable(app, "info", "Print a lens's table of surfaces and its first-order data.")
+lens_plots.register(app)
 
 
 @app.command("draw")

@@ -38,3 +38,10 @@ def lens(name: str, focus: str | None, f_number: float | None) -> Lens:
     if focus is not None:
         result = result.focused(number(focus, "--focus"))
     return result
+
+
+def title_of(lens: Lens) -> str:
+    """A line over a plot: the lens, its focal length and its f-number."""
+    data = lens.first_order()
+    text = f"{lens.title or lens.name}   f = {data.effective_focal_length_mm:.4g} mm, f/{data.f_number:.3g}"
+    return "".join(c for c in text if c.isprintable())  # titles come from files, and may hold any characters

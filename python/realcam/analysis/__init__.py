@@ -1,0 +1,110 @@
+"""How a lens images: each aberration as arrays with units, and as a plot.
+
+import realcam as rc
+from matplotlib.figure import Figure
+
+lens = rc.Lens.load("double-gauss-50mm").stopped_down(4)
+fans = rc.analysis.ray_fan(lens)  # arrays, of the axis, 0.7 and all of the image height
+rc.analysis.plot_ray_fan(fans, Figure().add_subplot(), field=1)
+
+Of each subject there is a function that computes and one that plots on axes of matplotlib. Where the caller names none,
+fields go from the axis to the corner of the film, colours are the F line, the design wavelength and the C line, and the
+object is in the plane in focus of the lens as it stands.
+"""
+
+from .bokeh import Bokeh, bokeh, plot_bokeh
+from .distortion import (
+    Distortion,
+    DistortionGrid,
+    distortion,
+    distortion_grid,
+    plot_distortion,
+    plot_distortion_grid,
+)
+from .field_curves import FieldCurves, field_curves, plot_field_curves
+from .fields import Bundles, default_frequencies_per_mm, field_angles_deg
+from .film_pupil import FilmPupils, film_pupils, plot_pupil_shapes, plot_relative_illumination
+from .kinds import KINDS, plot_figure
+from .lateral_colour import LateralColour, lateral_colour, plot_lateral_colour
+from .mtf import (
+    Mtf,
+    mtf,
+    mtf_over_field,
+    mtf_over_frequency,
+    mtf_through_focus,
+    plot_mtf_over_field,
+    plot_mtf_over_frequency,
+    plot_mtf_through_focus,
+)
+from .numbers import as_json, save_numbers
+from .point_spread import PointSpread, plot_point_spread, point_spread
+from .ray_fan import RayFan, plot_ray_fan, ray_fan
+from .report import save_report
+from .seidel_bars import SeidelBars, plot_seidel_bars, seidel_bars
+from .spherical_aberration import LongitudinalAberration, longitudinal_aberration, plot_longitudinal_aberration
+from .spot_diagram import SpotDiagram, plot_spot_diagram, spot_diagram
+from .style import save_plot, themed
+from .wavefront_map import WavefrontMap, plot_wavefront_map, wavefront_map
+from .zernike import ZernikeFit, fit_zernike, plot_zernike_fit, zernike_fit
+
+__all__ = [
+    "KINDS",
+    "Bokeh",
+    "Bundles",
+    "Distortion",
+    "DistortionGrid",
+    "FieldCurves",
+    "FilmPupils",
+    "LateralColour",
+    "LongitudinalAberration",
+    "Mtf",
+    "PointSpread",
+    "RayFan",
+    "SeidelBars",
+    "SpotDiagram",
+    "WavefrontMap",
+    "ZernikeFit",
+    "as_json",
+    "bokeh",
+    "default_frequencies_per_mm",
+    "distortion",
+    "distortion_grid",
+    "field_angles_deg",
+    "field_curves",
+    "film_pupils",
+    "fit_zernike",
+    "lateral_colour",
+    "longitudinal_aberration",
+    "mtf",
+    "mtf_over_field",
+    "mtf_over_frequency",
+    "mtf_through_focus",
+    "plot_bokeh",
+    "plot_distortion",
+    "plot_distortion_grid",
+    "plot_field_curves",
+    "plot_figure",
+    "plot_lateral_colour",
+    "plot_longitudinal_aberration",
+    "plot_mtf_over_field",
+    "plot_mtf_over_frequency",
+    "plot_mtf_through_focus",
+    "plot_point_spread",
+    "plot_pupil_shapes",
+    "plot_ray_fan",
+    "plot_relative_illumination",
+    "plot_seidel_bars",
+    "plot_spot_diagram",
+    "plot_wavefront_map",
+    "plot_zernike_fit",
+    "point_spread",
+    "ray_fan",
+    "save_numbers",
+    "save_plot",
+    "save_report",
+    "seidel_bars",
+    "spot_diagram",
+    "themed",
+    "wavefront_map",
+    "zernike_fit",
+]

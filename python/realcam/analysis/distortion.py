@@ -1,0 +1,155 @@
+"""Distortion: the chief ray's place on the film against the paraxial one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from .._core import InputError, Lens
+from . import style
+from .fields import Bundles, Doubles, bundles_of, fields_of
+
+PROJECTIONS = ("tangent", "angle")
+
+
+@dataclass(frozen=True)
+class Distortion:
+    """fields_deg: (F,); real_mm, paraxial_mm: (F,), heights of the chief ray on the film.
+    percent: (F,), 100 (real / paraxial - 1); on the axis its limit, 0.
+    projection: what the paraxial height is proportional to: "tangent" or "angle" (f-theta).
+    """
+
+    fields_deg: Doubles
+    real_mm: Doubles
+    paraxial_mm: Doubles
+    percent: Doubles
+    projection: str
+
+
+@dataclass(frozen=True)
+class DistortionGrid:
+    """A plane grid of even squares across the axis, as it appears on the film.
+
+    ideal_mm, real_mm: (N, N, 2), crossings of the grid's lines by the paraxial and by the real lens; real ones are nan
+    where the lens has no light.
+    """
+
+    ideal_mm: Doubles
+    real_mm: Doubles
+
+
+def distortion(
+    lens: Lens,
+    fields_deg: ArrayLike | None = None,
+    *,
+    wavelength_nm: float | None = None,
+    projection: str | None = None,
+    film_distance_mm: float | None = None,
+    samples: int = 15,
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
+) -> Distortion:
+    """Of real chief rays against paraxial chief rays at the same plane: the film as it stands, or another one.
+
+    film_distance_mm: last vertex to that plane; first_order().back_focal_distance_mm is the paraxial focus of infinity.
+    projection: None is "tangent" up to 60 degrees, and beyond "angle", because tangents end at 90. None of the others:
+    `samples` fields up to the corner of the film; the design wavelength; the plane in focus. Raises InputError for
+    "tangent" from 90 degrees on.
+    """
+    source = bundles_of(lens, object_distance_m, bundles)
+    fields = fields_of(lens, fields_deg, samples, source)
+    nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
+    way = projection or ("tangent" if float(np.abs(fields).max()) <= 60 else "angle")
+    if way not in PROJECTIONS:
+        raise InputError(f'unknown projection "{way}"; tangent or angle is wanted')
+    if way == "tangent" and float(np.abs(fields).max()) >= 90:
+        raise InputError('the projection "tangent" has no picture at 90 deg and beyond; "angle" is wanted')
+    plane = lens.film_distance_mm if film_distance_mm is None else film_distance_mm
+    real = np.array([_height_at(source, float(field), nm, plane) for field in fields])
+    angle = np.radians(fields)
+    paraxial = paraxial_height_mm(source, nm, plane) * (np.tan(angle) if way == "tangent" else angle)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        percent = np.where(fields == 0, 0.0, 100 * (real - paraxial) / paraxial)
+    return Distortion(fields, real, paraxial, percent, way)
+
+
+def _height_at(source: Bundles, field_deg: float, wavelength_nm: float, film_distance_mm: float) -> float:
+    if film_distance_mm == source.lens.film_distance_mm:
+        return source.chief(field_deg, wavelength_nm).chief_ray_mm[1]
+    bundle = source.lens.bundle(
+        field_deg,
+        wavelength_nm=wavelength_nm,
+        object_distance_m=source.object_distance_m,
+        film_distance_mm=film_distance_mm,
+        spokes=4,
+        nodes=1,
+    )
+    return bundle.chief_ray_mm[1]
+
+
+def paraxial_height_mm(source: Bundles, wavelength_nm: float, film_distance_mm: float) -> float:
+    """Of the paraxial chief ray in that plane, for a field of tangent 1."""
+    lens = source.lens
+    sums = lens.seidel(45.0, wavelength_nm=wavelength_nm, object_distance_m=source.object_distance_m)
+    return float(sums.chief_height_mm[-1] + film_distance_mm * sums.chief_slope[-1])
+
+
+def distortion_grid(
+    lens: Lens,
+    *,
+    lines: int = 11,
+    wavelength_nm: float | None = None,
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
+) -> DistortionGrid:
+    """Lines that the paraxial lens would lay over the whole film, and where real chief rays bring them.
+
+    Raises InputError where the film's corner is at 80 degrees or more: no plane grid fills its picture.
+    """
+    source = bundles_of(lens, object_distance_m, bundles)
+    curve = distortion(lens, wavelength_nm=wavelength_nm, bundles=source)
+    if curve.fields_deg.max() >= 80:
+        raise InputError("no plane grid fills the picture of a lens that sees 80 deg and more from the axis")
+    nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
+    scale = paraxial_height_mm(source, nm, lens.film_distance_mm)
+    paraxial = np.abs(scale) * np.tan(np.radians(curve.fields_deg))
+    half = 0.5 * np.array(lens.film_mm)
+    y, x = np.meshgrid(half[1] * np.linspace(-1, 1, lines), half[0] * np.linspace(-1, 1, lines), indexing="ij")
+    radius = np.hypot(x, y)
+    # The ratio of heights is a smooth even function: a polynomial in the squared height through the curve's points.
+    ratio = np.ones(len(paraxial))
+    ratio[1:] = np.abs(curve.real_mm[1:]) / paraxial[1:]
+    top = paraxial[-1] ** 2
+    fit = np.polynomial.Chebyshev.fit(paraxial[1:] ** 2, ratio[1:], min(6, len(paraxial) - 2), domain=(0, top))
+    stretched = np.where(radius**2 <= 1.002 * top, fit(np.minimum(radius**2, top)), np.nan)
+    ideal = np.stack([x, y], axis=-1)
+    return DistortionGrid(ideal, ideal * stretched[..., None])
+
+
+def plot_distortion(data: Distortion, axes: Axes) -> None:
+    axes.plot(data.percent, data.fields_deg, color=style.GREEN)
+    style.zero_lines(axes, y=False)
+    against = "f tan θ" if data.projection == "tangent" else "f θ"
+    axes.set_xlabel(f"distortion against {against} / %")
+    axes.set_ylabel("field / °")
+    axes.set_title("Distortion")
+    axes.set_ylim(0, max(float(data.fields_deg.max()), 1e-9))
+    largest = float(np.nanmax(np.abs(data.percent)))
+    axes.set_xlim(-1.15 * largest - 1e-3, 1.15 * largest + 1e-3)
+
+
+def plot_distortion_grid(grid: DistortionGrid, axes: Axes) -> None:
+    for lines, colour, label in ((grid.ideal_mm, style.GREY, "paraxial"), (grid.real_mm, style.RED, "real")):
+        for way in (lines, lines.swapaxes(0, 1)):
+            for line in way:
+                axes.plot(line[:, 0], line[:, 1], color=colour, linewidth=0.7, label=label)
+                label = "_nolegend_"
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    axes.set_xlabel("x on the film / mm")
+    axes.set_ylabel("y on the film / mm")
+    axes.set_title("Distortion of a grid")
+    style.legend_beside(axes)

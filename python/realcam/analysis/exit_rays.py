@@ -1,0 +1,60 @@
+"""Rays of one object point behind the lens, from where any plane is a straight line away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .._core import Lens, RayStatus
+from .fields import Doubles
+
+
+@dataclass(frozen=True)
+class ExitRays:
+    """points_mm: (N, 2), on the film, from the axis; nan where no ray passes.
+    slopes: (N, 2), dx/dz and dy/dz behind the lens.
+    cosines: (N, 2), direction cosines x and y.
+    """
+
+    points_mm: Doubles
+    slopes: Doubles
+    cosines: Doubles
+
+    def at(self, defocus_mm: float) -> Doubles:
+        """(N, 2): on the plane that lies defocus_mm behind the film."""
+        moved: Doubles = self.points_mm + defocus_mm * self.slopes
+        return moved
+
+
+def exit_rays(
+    lens: Lens,
+    pupil: ArrayLike,
+    field_deg: float,
+    wavelength_nm: float,
+    object_distance_m: float | None = None,
+) -> ExitRays:
+    """Rays through places of the stop, (N, 2) as shares of its radius, aimed at them through the real lens."""
+    aimed = lens.aim(pupil, field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m)
+    lost = np.isnan(aimed.directions[:, :1])  # where no ray meets the place: Lens.trace takes finite numbers only
+    out = lens.trace(
+        np.where(lost, 0.0, aimed.origins_mm),
+        np.where(lost, (0.0, 0.0, 1.0), aimed.directions),
+        wavelength_nm=wavelength_nm,
+        start="scene",
+    )
+    passes = (out.status == RayStatus.OK)[:, None] & ~lost
+    directions = np.where(passes, out.directions, np.nan)
+    slopes = directions[:, :2] / directions[:, 2:]
+    points = out.origins_mm[:, :2] + (lens.film_position_mm - out.origins_mm[:, 2:]) * slopes
+    return ExitRays(points, slopes, directions[:, :2])
+
+
+def hexapolar(rings: int) -> Doubles:
+    """(N, 2): a middle place and rings of 6, 12, 18 ... out to the edge, all of one share of the stop's area."""
+    places = [np.zeros((1, 2))]
+    for ring in range(1, rings + 1):
+        angle = 2 * np.pi * np.arange(6 * ring) / (6 * ring)
+        places.append(ring / rings * np.column_stack([np.cos(angle), np.sin(angle)]))
+    return np.concatenate(places)

@@ -1,0 +1,84 @@
+"""Astigmatic field curves: where close rays beside each chief ray come to a focus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from .._core import InputError, Lens
+from . import style
+from .fields import Bundles, Doubles, bundles_of, fields_of, texts_of, wavelengths_of
+
+
+@dataclass(frozen=True)
+class FieldCurves:
+    """fields_deg: (F,); wavelengths_nm: (W,).
+    tangential_mm, sagittal_mm: (W, F), foci of real rays close to the chief ray, along the axis, behind the film.
+    petzval_mm: (F,), Petzval's surface of the design wavelength, to third order; nan for an afocal lens, and from 90
+      degrees on.
+    """
+
+    fields_deg: Doubles
+    wavelengths_nm: Doubles
+    tangential_mm: Doubles
+    sagittal_mm: Doubles
+    petzval_mm: Doubles
+
+
+def field_curves(
+    lens: Lens,
+    fields_deg: ArrayLike | None = None,
+    wavelengths_nm: ArrayLike | None = None,
+    *,
+    samples: int = 15,
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
+) -> FieldCurves:
+    """None: `samples` fields up to the corner of the film; the design wavelength; the plane in focus."""
+    source = bundles_of(lens, object_distance_m, bundles)
+    fields = fields_of(lens, fields_deg, samples, source)
+    colours = wavelengths_of(lens, lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm)
+    light = [[source.chief(float(field), float(colour)) for field in fields] for colour in colours]
+    return FieldCurves(
+        fields,
+        colours,
+        np.array([[b.tangential_focus_mm for b in row] for row in light]),
+        np.array([[b.sagittal_focus_mm for b in row] for row in light]),
+        np.array([_petzval_mm(source, float(field)) for field in fields]),
+    )
+
+
+def _petzval_mm(source: Bundles, field_deg: float) -> float:
+    """The sag of Petzval's surface at the paraxial chief ray's height, from the paraxial focus."""
+    lens = source.lens
+    try:
+        sums = lens.seidel(field_deg, object_distance_m=source.object_distance_m)
+    except InputError:
+        return float("nan")
+    focus = -sums.marginal_height_mm[-1] / sums.marginal_slope[-1]  # behind the last vertex
+    height = sums.chief_height_mm[-1] + focus * sums.chief_slope[-1]
+    curvature = sums.petzval_curvature_per_mm.sum()
+    return float(focus - lens.film_distance_mm + 0.5 * curvature * height**2)
+
+
+def plot_field_curves(curves: FieldCurves, axes: Axes) -> None:
+    colours = style.wavelength_colours(curves.wavelengths_nm)
+    labels = texts_of(curves.wavelengths_nm, "nm") if len(curves.wavelengths_nm) > 1 else [""]
+    for w, (colour, label) in enumerate(zip(colours, labels, strict=True)):
+        beside = f", {label}" if label else ""
+        axes.plot(curves.tangential_mm[w], curves.fields_deg, color=colour, label=f"tangential{beside}")
+        axes.plot(curves.sagittal_mm[w], curves.fields_deg, "--", color=colour, label=f"sagittal{beside}")
+    axes.plot(curves.petzval_mm, curves.fields_deg, ":", color=style.GREY, label="Petzval")
+    style.zero_lines(axes, y=False)
+    shown = np.concatenate([curves.tangential_mm.ravel(), curves.sagittal_mm.ravel()])
+    low, high = min(np.nanmin(shown), 0.0), max(np.nanmax(shown), 0.0)
+    margin = 0.15 * (high - low) or 1.0
+    axes.set_xlim(low - margin, high + margin)  # Petzval's surface may leave it
+    axes.set_ylim(0, max(float(curves.fields_deg.max()), 1e-9))
+    axes.set_xlabel("focus behind the film / mm")
+    axes.set_ylabel("field / °")
+    axes.set_title("Field curves")
+    axes.legend(loc="best")

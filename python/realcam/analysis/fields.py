@@ -1,0 +1,152 @@
+"""Which fields, colours and frequencies a lens is looked at where the caller names none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import InputError, Lens, RayBundle
+
+Doubles = NDArray[np.float64]
+LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725
+
+
+class Bundles:
+    """The light of object points as rays, each traced once however many plots want it.
+
+    object_distance_m: object plane to front vertex; None is the plane in focus of the lens as it stands.
+    """
+
+    def __init__(self, lens: Lens, object_distance_m: float | None = None) -> None:
+        self.lens = lens
+        self.object_distance_m = object_distance_m
+        self._kept: dict[tuple[float, float, int, int], RayBundle] = {}
+
+    def at(self, field_deg: float, wavelength_nm: float, spokes: int = 32, nodes: int = 6) -> RayBundle:
+        """Raises InputError where no light passes."""
+        key = (float(field_deg), float(wavelength_nm), spokes, nodes)
+        if key not in self._kept:
+            self._kept[key] = self.lens.bundle(
+                key[0],
+                wavelength_nm=key[1],
+                object_distance_m=self.object_distance_m,
+                spokes=spokes,
+                nodes=nodes,
+            )
+        return self._kept[key]
+
+    def chief(self, field_deg: float, wavelength_nm: float) -> RayBundle:
+        """Few rays: enough for what is asked of the chief ray alone."""
+        return self.at(field_deg, wavelength_nm, 8, 2)
+
+
+def bundles_of(lens: Lens, object_distance_m: float | None, bundles: Bundles | None) -> Bundles:
+    """The caller's, or new ones. Raises InputError where the caller's are another lens's or another object's."""
+    if bundles is None:
+        return Bundles(lens, object_distance_m)
+    if bundles.lens != lens or (object_distance_m is not None and bundles.object_distance_m != object_distance_m):
+        raise InputError("bundles are of another lens, or of another object distance")
+    return bundles
+
+
+def wavelengths_of(lens: Lens, wavelengths_nm: ArrayLike | None) -> Doubles:
+    """(W,): as given, or the F line, the design wavelength and the C line; the design wavelength alone for a lens that
+    is not made for visible light."""
+    if wavelengths_nm is not None:
+        return numbers_of(wavelengths_nm, "wavelengths_nm")
+    design = lens.wavelength_nm
+    return np.array([LINE_F_NM, design, LINE_C_NM] if LINE_F_NM < design < LINE_C_NM else [design])
+
+
+def numbers_of(values: ArrayLike, what: str) -> Doubles:
+    """A one-dimensional array of finite numbers, at least one. Raises InputError."""
+    array = np.atleast_1d(np.asarray(values, dtype=float))
+    if array.ndim != 1 or array.size == 0 or not np.isfinite(array).all():
+        raise InputError(f"{what} must be finite numbers, at least one")
+    return array
+
+
+def fields_of(lens: Lens, fields_deg: ArrayLike | None, count: int, bundles: Bundles) -> Doubles:
+    """(F,): as given, or `count` angles from the axis to the corner of the film, at even steps of image height."""
+    if fields_deg is not None:
+        return numbers_of(fields_deg, "fields_deg")
+    return field_angles_deg(lens, np.linspace(0, 1, count), bundles)
+
+
+def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> Doubles:
+    """(F,): as given, or the axis, 0.7 and all of the image height."""
+    return field_angles_deg(lens, [0, 0.7, 1], bundles) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
+
+
+def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = None) -> Doubles:
+    """(F,): angles at which the chief ray lands at shares of the largest image height.
+
+    That is half the diagonal of the film, or a hundredth of the angle short of where the lens's light ends, if that is
+    nearer to the axis: at the very end it is a sliver that few rays find.
+    """
+    source = bundles or Bundles(lens)
+    largest = _largest_field_deg(lens, source)
+    top = _height_mm(source, largest)
+    shares_array = numbers_of(shares, "shares")
+    # The chief ray's height is a smooth function of the angle: a few of its values tell the rest.
+    angles = largest * np.linspace(0, 1, 9)
+    heights = np.array([0.0 if a == 0 else _height_mm(source, a) for a in angles])
+    found: Doubles = np.interp(shares_array * top, heights, angles)
+    return found
+
+
+def _height_mm(bundles: Bundles, field_deg: float) -> float:
+    """Of the chief ray on the film; nan where no light comes."""
+    try:
+        return math.hypot(*bundles.chief(field_deg, bundles.lens.wavelength_nm).chief_ray_mm)
+    except InputError:
+        return math.nan
+
+
+def _largest_field_deg(lens: Lens, bundles: Bundles) -> float:
+    """Within a thousandth of the corner's image height, or a hundredth short of the angle at which the light ends."""
+    corner = 0.5 * math.hypot(*lens.film_mm)
+    if math.isnan(_height_mm(bundles, 0.0)):
+        raise InputError(f'no light of the axis passes lens "{lens.name}"')
+    focal = abs(lens.first_order().effective_focal_length_mm)
+    low, low_height = 0.0, 0.0
+    high, high_height = 180.0, math.nan
+    guess = math.degrees(math.atan2(corner, focal)) if math.isfinite(focal) and focal > 0 else 10.0
+    for _ in range(24):
+        height = _height_mm(bundles, guess)
+        if abs(height - corner) < 1e-3 * corner:
+            return guess
+        if height < corner:
+            low, low_height = guess, height
+        else:
+            high, high_height = guess, height
+        if high - low < 1e-3 * high:
+            break
+        if math.isnan(high_height):
+            # Nothing is known beyond yet: on along the line from the axis, or half way to where it is dark.
+            ahead = low * corner / low_height * 1.001 if low_height > 0 else math.inf
+            guess = ahead if low < ahead < high else 0.5 * (low + high)
+        else:
+            share = (corner - low_height) / (high_height - low_height)
+            guess = low + min(max(share, 0.02), 0.98) * (high - low)
+    return 0.99 * low
+
+
+def default_frequencies_per_mm(lens: Lens) -> Doubles:
+    """(3,): 10, 20 and 40 periods per mm on a film with a diagonal of 43 mm, and as fine in proportion on others, in
+    round numbers."""
+    scale = 43.27 / math.hypot(*lens.film_mm)
+    return np.array([_round_number(f * scale) for f in (10.0, 20.0, 40.0)])
+
+
+def _round_number(value: float) -> float:
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(min((1, 2, 4, 5, 10), key=lambda step: abs(math.log(step * power / value)))) * power
+
+
+def texts_of(values: Sequence[float] | Doubles, unit: str) -> list[str]:
+    """Short words for legends."""
+    return [f"{value:.4g}{'' if unit == '°' else ' '}{unit}" for value in values]

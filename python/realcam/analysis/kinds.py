@@ -1,0 +1,257 @@
+"""All plots by the names that the command line has for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib.figure
+import numpy as np
+from matplotlib.axes import Axes
+
+from .._core import InputError, Lens
+from . import style
+from .bokeh import bokeh, plot_bokeh
+from .distortion import distortion, distortion_grid, plot_distortion, plot_distortion_grid
+from .field_curves import field_curves, plot_field_curves
+from .fields import Bundles, Doubles, field_angles_deg
+from .film_pupil import film_pupils, plot_pupil_shapes, plot_relative_illumination
+from .lateral_colour import lateral_colour, plot_lateral_colour
+from .mtf import (
+    mtf_over_field,
+    mtf_over_frequency,
+    mtf_through_focus,
+    plot_mtf_over_field,
+    plot_mtf_over_frequency,
+    plot_mtf_through_focus,
+)
+from .point_spread import plot_point_spread, point_spread
+from .ray_fan import plot_ray_fan, ray_fan
+from .seidel_bars import plot_seidel_bars, seidel_bars
+from .spherical_aberration import longitudinal_aberration, plot_longitudinal_aberration
+from .spot_diagram import half_side_mm, plot_spot_diagram, spot_diagram
+from .wavefront_map import plot_wavefront_map, wavefront_map
+from .zernike import plot_zernike_fit, zernike_fit
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a plot is asked for; None is the plot's own choice."""
+
+    lens: Lens
+    bundles: Bundles
+    fields_deg: Doubles | None = None
+    wavelengths_nm: Doubles | None = None
+    frequencies_per_mm: Doubles | None = None
+
+    def one_field(self, share: float) -> float:
+        if self.fields_deg is None:
+            return float(field_angles_deg(self.lens, share, self.bundles)[0])
+        if len(self.fields_deg) != 1:
+            raise InputError(f"this plot is of one field; {len(self.fields_deg)} are given")
+        return float(self.fields_deg[0])
+
+    def one_wavelength(self) -> float | None:
+        if self.wavelengths_nm is None:
+            return None
+        if len(self.wavelengths_nm) != 1:
+            raise InputError(f"this plot is of one wavelength; {len(self.wavelengths_nm)} are given")
+        return float(self.wavelengths_nm[0])
+
+    @property
+    def curves(self) -> dict[str, Any]:
+        """What most functions have as arguments."""
+        return {
+            "fields_deg": self.fields_deg,
+            "wavelengths_nm": self.wavelengths_nm,
+            "object_distance_m": self.bundles.object_distance_m,
+            "bundles": self.bundles,
+        }
+
+    @property
+    def one(self) -> dict[str, Any]:
+        return {"wavelength_nm": self.one_wavelength(), "object_distance_m": self.bundles.object_distance_m}
+
+
+@dataclass(frozen=True)
+class Kind:
+    """help: one line. compute: the data. axes: rows and columns of axes that the data wants. plot: on all of them."""
+
+    help: str
+    compute: Callable[[Asked], Any]
+    shape: Callable[[Any], tuple[int, int]]
+    plot: Callable[[Any, np.ndarray], None]
+    square: bool = False
+
+
+def _single(plot: Callable[[Any, Axes], None]) -> dict[str, Any]:
+    return {"shape": lambda _: (1, 1), "plot": lambda data, axes: plot(data, axes[0, 0])}
+
+
+def _plot_fans(data: Any, axes: np.ndarray) -> None:
+    for f in range(axes.shape[1]):
+        plot_ray_fan(data, axes[0, f], f)
+        plot_ray_fan(data, axes[1, f], f, sagittal=True)
+    style.legend_beside(axes[0, -1])
+
+
+def _plot_spots(data: Any, axes: np.ndarray) -> None:
+    half = half_side_mm(data) if len(data.defocus_mm) > 1 else 0.0
+    for d in range(axes.shape[0]):
+        for f in range(axes.shape[1]):
+            plot_spot_diagram(data, axes[d, f], f, d, half)
+            if d + 1 < axes.shape[0]:
+                axes[d, f].set_xlabel("")
+    style.legend_beside(axes[0, -1], markerscale=3)
+
+
+def _plot_bokeh(data: Any, axes: np.ndarray) -> None:
+    for f in range(axes.shape[1]):
+        plot_bokeh(data, axes[0, f], f)
+
+
+def _through_focus(asked: Asked) -> Any:
+    step = 2 * asked.lens.wavelength_nm * 1e-6 * asked.lens.first_order().f_number ** 2  # the depth of focus
+    spread = spot_diagram(asked.lens, [0.0], rings=4, object_distance_m=asked.bundles.object_distance_m)
+    step = max(step, float(spread.rms_radius_mm[0, 0]) * 2 * asked.lens.first_order().f_number)
+    return spot_diagram(asked.lens, defocus_mm=step * np.array([-2, -1, 0, 1, 2]), **asked.curves)
+
+
+def _spots_shape(data: Any) -> tuple[int, int]:
+    return len(data.defocus_mm), len(data.fields_deg)
+
+
+def _mtf(asked: Asked, compute: Callable[..., Any]) -> Any:
+    if compute is mtf_over_field:
+        return compute(asked.lens, asked.frequencies_per_mm, **asked.curves)
+    if compute is mtf_through_focus:
+        frequencies = asked.frequencies_per_mm
+        if frequencies is not None and len(frequencies) != 1:
+            raise InputError(f"this plot is of one frequency; {len(frequencies)} are given")
+        return compute(asked.lens, None if frequencies is None else float(frequencies[0]), **asked.curves)
+    highest = None if asked.frequencies_per_mm is None else float(asked.frequencies_per_mm.max())
+    return compute(asked.lens, highest_per_mm=highest, **asked.curves)
+
+
+def _design_only(asked: Asked) -> dict[str, Any]:
+    return {
+        "wavelength_nm": asked.one_wavelength(),
+        "object_distance_m": asked.bundles.object_distance_m,
+        "bundles": asked.bundles,
+    }
+
+
+KINDS: dict[str, Kind] = {
+    "ray-fan": Kind(
+        "where rays land, by where they cross the stop",
+        lambda a: ray_fan(a.lens, **a.curves),
+        lambda data: (2, len(data.fields_deg)),
+        _plot_fans,
+    ),
+    "spot": Kind("where rays land", lambda a: spot_diagram(a.lens, **a.curves), _spots_shape, _plot_spots, True),
+    "spot-through-focus": Kind("spots on planes beside the film", _through_focus, _spots_shape, _plot_spots, True),
+    "longitudinal": Kind(
+        "where rays from the axis come back to it, by colour",
+        lambda a: longitudinal_aberration(a.lens, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
+        **_single(plot_longitudinal_aberration),
+    ),
+    "field-curves": Kind(
+        "tangential and sagittal focus over the field",
+        lambda a: field_curves(a.lens, **a.curves),
+        **_single(plot_field_curves),
+    ),
+    "distortion": Kind(
+        "the chief ray against the paraxial one",
+        lambda a: distortion(a.lens, a.fields_deg, **_design_only(a)),
+        **_single(plot_distortion),
+    ),
+    "distortion-grid": Kind(
+        "a grid of squares as it appears on the film",
+        lambda a: distortion_grid(a.lens, **_design_only(a)),
+        **_single(plot_distortion_grid),
+    ),
+    "lateral-colour": Kind(
+        "the image's size by colour", lambda a: lateral_colour(a.lens, **a.curves), **_single(plot_lateral_colour)
+    ),
+    "seidel": Kind(
+        "third-order aberrations by surface",
+        lambda a: seidel_bars(
+            a.lens,
+            None if a.fields_deg is None else a.one_field(1),
+            object_distance_m=a.bundles.object_distance_m,
+            bundles=a.bundles,
+        ),
+        **_single(plot_seidel_bars),
+    ),
+    "wavefront": Kind(
+        "optical path differences over the stop",
+        lambda a: wavefront_map(a.lens, a.one_field(0), **a.one),
+        **_single(plot_wavefront_map),
+    ),
+    "zernike": Kind(
+        "the wavefront as Zernike polynomials, in Noll's order",
+        lambda a: zernike_fit(a.lens, a.one_field(0), **a.one),
+        **_single(plot_zernike_fit),
+    ),
+    "psf": Kind(
+        "the light of a point on the film, with diffraction",
+        lambda a: point_spread(
+            a.lens, a.one_field(0), a.wavelengths_nm, size=128, object_distance_m=a.bundles.object_distance_m
+        ),
+        **_single(plot_point_spread),
+    ),
+    "mtf": Kind("contrast over frequency", lambda a: _mtf(a, mtf_over_frequency), **_single(plot_mtf_over_frequency)),
+    "mtf-field": Kind("contrast over the field", lambda a: _mtf(a, mtf_over_field), **_single(plot_mtf_over_field)),
+    "mtf-focus": Kind(
+        "contrast through focus", lambda a: _mtf(a, mtf_through_focus), **_single(plot_mtf_through_focus)
+    ),
+    "relative-illumination": Kind(
+        "the light of an even field on the film",
+        lambda a: film_pupils(a.lens, a.fields_deg, **_design_only(a)),
+        **_single(plot_relative_illumination),
+    ),
+    "pupil": Kind(
+        "the pupil's outline over the field: cat's eyes",
+        lambda a: film_pupils(a.lens, a.fields_deg, samples=5, **_design_only(a)),
+        **_single(plot_pupil_shapes),
+    ),
+    "bokeh": Kind(
+        "points out of focus",
+        lambda a: bokeh(a.lens, a.fields_deg, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
+        lambda data: (1, len(data.fields_deg)),
+        _plot_bokeh,
+        True,
+    ),
+}
+
+
+def compute(kind: str, asked: Asked) -> Any:
+    """The data of a plot. Raises InputError for an unknown kind."""
+    if kind not in KINDS:
+        raise InputError(f'unknown plot "{kind}"; one of {", ".join(KINDS)} is wanted')
+    return KINDS[kind].compute(asked)
+
+
+def plot_figure(
+    kind: str, data: Any, *, theme: str = "light", size: str = "large", title: str = ""
+) -> matplotlib.figure.Figure:
+    """A figure of the data. size: "small" or "large", by the inches of `style.SIZES_IN`."""
+    if size not in style.SIZES_IN:
+        raise InputError(f'unknown size "{size}"; small or large is wanted')
+    width, height = style.SIZES_IN[size]
+    rows, columns = KINDS[kind].shape(data)
+    if rows * columns > 1:  # each of several plots as large as it can be read at
+        width = max(width, (1.4 if size == "small" else 2.5) * columns + 0.8)
+        each = (0.9 if KINDS[kind].square else 0.8) * width / columns
+        height = each * rows + (0.4 if title else 0)
+    font = 8.0 if size == "small" else 10.0
+    if rows * columns > 1:
+        font *= 0.8
+    with style.themed(theme, font):
+        figure = style.new_figure(width, height)
+        axes = np.array(figure.subplots(rows, columns, squeeze=False))
+        KINDS[kind].plot(data, axes)
+        if title:
+            figure.suptitle(title, fontsize=font, parse_math=False)
+    return figure

@@ -1,0 +1,75 @@
+"""The numbers of an analysis as JSON or CSV."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import io
+import json
+import math
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import files
+from .._core import ImageFileError, InputError
+
+
+def as_json(data: Any) -> str:
+    """All fields of a result by their names, arrays as lists; what is nan becomes null, and what is infinite a text,
+    because JSON has neither."""
+    return json.dumps({f.name: _plain(getattr(data, f.name)) for f in dataclasses.fields(data)}, indent=1)
+
+
+def as_csv(data: Any) -> str:
+    """A table of one number a line: the name of the field, its place in the array along each axis, and the value."""
+    fields = {f.name: getattr(data, f.name) for f in dataclasses.fields(data)}
+    numbers = {name: np.asarray(v) for name, v in fields.items() if _is_numeric(v)}
+    depth = max((array.ndim for array in numbers.values()), default=0)
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(["name", *(f"index_{k}" for k in range(depth)), "value"])
+    for name, array in numbers.items():
+        for place, value in np.ndenumerate(array):
+            table.writerow([name, *place, *[""] * (depth - array.ndim), repr(value.item())])
+    return text.getvalue()
+
+
+def save_numbers(data: Any, path: str | os.PathLike[str]) -> None:
+    """Writes .json or .csv, as a whole or not at all. Raises ImageFileError."""
+    target = check_numbers_target(path)
+    text = as_json(data) + "\n" if target.suffix.lower() == ".json" else as_csv(data)
+    files.write_whole(target, text.encode())
+
+
+def check_numbers_target(path: str | os.PathLike[str]) -> Path:
+    """Raises ImageFileError where no such file can be written."""
+    target = Path(path)
+    if target.suffix.lower() not in (".json", ".csv"):
+        raise ImageFileError(f"{target}: unknown suffix; .json or .csv is wanted")
+    files.check_target(target)
+    return target
+
+
+def _is_numeric(value: Any) -> bool:
+    try:
+        return np.asarray(value).dtype.kind in "fiu"
+    except ValueError:  # arrays of different lengths
+        return False
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, (np.floating, float)):
+        number = float(value)
+        return None if math.isnan(number) else number if math.isfinite(number) else str(number)
+    if isinstance(value, (np.integer, int)):
+        return int(value)
+    if isinstance(value, str):
+        return value
+    raise InputError(f"{type(value).__name__} cannot be written as JSON")

@@ -1,0 +1,74 @@
+"""Point spread functions side by side: rays alone, Fourier transform, direct sum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from .._core import PSF, Lens
+from . import style
+from .fields import Doubles, numbers_of
+
+
+@dataclass(frozen=True)
+class PointSpread:
+    """values: (size, size), share of the light per um^2, rows from the lowest y. centre_mm: of x_um = y_um = 0 on the
+    film. strehl: nan for the method "geometric"."""
+
+    field_deg: float
+    method: str
+    x_um: Doubles
+    y_um: Doubles
+    values: Doubles
+    centre_mm: tuple[float, float]
+    strehl: float
+    energy: float
+
+
+def point_spread(
+    lens: Lens,
+    field_deg: float = 0.0,
+    wavelengths_nm: ArrayLike | None = None,
+    *,
+    method: str = "direct",
+    size: int = 64,
+    pitch_um: float | None = None,
+    object_distance_m: float | None = None,
+) -> PointSpread:
+    """By Lens.psf, about the centroid of the light. None: the design wavelength; the plane in focus."""
+    colours = None if wavelengths_nm is None else list(numbers_of(wavelengths_nm, "wavelengths_nm"))
+    psf: PSF = lens.psf(
+        field_deg,
+        colours,
+        method=method,
+        size=size,
+        pitch_um=pitch_um,
+        object_distance_m=object_distance_m,
+        centre="centroid",
+    )
+    return PointSpread(field_deg, method, psf.x_um, psf.y_um, psf.values, psf.centre_mm, psf.strehl, psf.energy)
+
+
+def plot_point_spread(data: PointSpread, axes: Axes) -> None:
+    """In decades of the largest value."""
+    half = 0.5 * (data.x_um[1] - data.x_um[0])
+    with np.errstate(divide="ignore"):
+        decades = np.log10(data.values / data.values.max())
+    picture = axes.imshow(
+        np.maximum(decades, -4),
+        origin="lower",
+        extent=(data.x_um[0] - half, data.x_um[-1] + half, data.y_um[0] - half, data.y_um[-1] + half),
+        cmap="inferno",
+        vmin=-4,
+        vmax=0,
+        interpolation="nearest",
+    )
+    axes.grid(visible=False)
+    axes.set_xlabel("x / µm")
+    axes.set_ylabel("y / µm")
+    strehl = "" if np.isnan(data.strehl) else f", Strehl {data.strehl:.2g}"
+    axes.set_title(f"{data.field_deg:.3g}°, {data.method}{strehl}")
+    style.colour_bar(axes, picture, "decades of the peak")

@@ -1,0 +1,70 @@
+"""Ray fans: where rays land, by where they cross the stop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from .._core import Lens
+from . import style
+from .exit_rays import exit_rays
+from .fields import Bundles, Doubles, bundles_of, texts_of, three_fields, wavelengths_of
+
+
+@dataclass(frozen=True)
+class RayFan:
+    """Transverse ray aberrations on the film, from where the chief ray of the design wavelength lands.
+
+    fields_deg: (F,); wavelengths_nm: (W,); pupil: (P,), shares of the stop's radius.
+    tangential_mm: (F, W, P), along y, of rays through (0, pupil) of the stop.
+    sagittal_mm: (F, W, P), along x, of rays through (pupil, 0).
+    nan where the lens lets no ray pass.
+    """
+
+    fields_deg: Doubles
+    wavelengths_nm: Doubles
+    pupil: Doubles
+    tangential_mm: Doubles
+    sagittal_mm: Doubles
+
+
+def ray_fan(
+    lens: Lens,
+    fields_deg: ArrayLike | None = None,
+    wavelengths_nm: ArrayLike | None = None,
+    *,
+    samples: int = 41,
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
+) -> RayFan:
+    """Fans of real rays. None: the axis, 0.7 and all of the image height; F line, design wavelength, C line."""
+    source = bundles_of(lens, object_distance_m, bundles)
+    fields = three_fields(lens, fields_deg, source)
+    colours = wavelengths_of(lens, wavelengths_nm)
+    pupil = np.linspace(-1, 1, samples)
+    zero = np.zeros(samples)
+    places = np.concatenate([np.column_stack([zero, pupil]), np.column_stack([pupil, zero])])
+    fans = np.empty((len(fields), len(colours), 2, samples))
+    for f, field in enumerate(fields):
+        middle = source.chief(field, lens.wavelength_nm).chief_ray_mm
+        for w, colour in enumerate(colours):
+            points = exit_rays(lens, places, float(field), float(colour), source.object_distance_m).points_mm
+            fans[f, w] = points[:samples, 1] - middle[1], points[samples:, 0] - middle[0]
+    return RayFan(fields, colours, pupil, fans[:, :, 0], fans[:, :, 1])
+
+
+def plot_ray_fan(fan: RayFan, axes: Axes, field: int = 0, *, sagittal: bool = False) -> None:
+    """Draws the fan of one field, the number of its row, on the axes."""
+    curves = 1e3 * (fan.sagittal_mm if sagittal else fan.tangential_mm)[field]
+    colours = style.wavelength_colours(fan.wavelengths_nm)
+    for curve, colour, label in zip(curves, colours, texts_of(fan.wavelengths_nm, "nm"), strict=True):
+        axes.plot(fan.pupil, curve, color=colour, label=label)
+    style.zero_lines(axes)
+    across = "x" if sagittal else "y"
+    axes.set_xlabel(f"{across} in the stop / its radius")
+    axes.set_ylabel(f"{across} on the film / µm")
+    axes.set_title(f"{fan.fields_deg[field]:.3g}°, {'sagittal' if sagittal else 'tangential'}")
+    axes.set_xlim(-1, 1)

@@ -1,0 +1,63 @@
+"""Third-order aberrations surface by surface, as bars."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from .._core import Lens
+from . import style
+from .fields import Bundles, Doubles, bundles_of, field_angles_deg
+
+NAMES = ("spherical", "coma", "astigmatism", "Petzval", "distortion", "axial colour", "lateral colour")
+
+
+@dataclass(frozen=True)
+class SeidelBars:
+    """names: of the 7 aberrations. surfaces: (S,), their numbers, from 0.
+    sums_mm: (S, 7), Seidel's sums S_I to S_V and of colour C_I and C_II.
+    waves: (S, 7), coefficients of the wavefront at the edge of pupil and field: S_I / 8, S_II / 2, S_III / 2,
+      S_IV / 4, S_V / 2, C_I / 2, C_II over the wavelength.
+    """
+
+    field_deg: float
+    names: tuple[str, ...]
+    surfaces: np.ndarray
+    sums_mm: Doubles
+    waves: Doubles
+
+
+def seidel_bars(
+    lens: Lens,
+    field_deg: float | None = None,
+    *,
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
+) -> SeidelBars:
+    """None: the corner of the film, or 60 degrees where that is beyond; the plane in focus."""
+    source = bundles_of(lens, object_distance_m, bundles)
+    field = min(float(field_angles_deg(lens, 1.0, source)[0]), 60.0) if field_deg is None else field_deg
+    table = lens.seidel(field, object_distance_m=source.object_distance_m)
+    sums = np.column_stack([table.seidel_mm, table.colour_mm])
+    shares = np.array([1 / 8, 1 / 2, 1 / 2, 1 / 4, 1 / 2, 1 / 2, 1])
+    return SeidelBars(field, NAMES, np.arange(len(sums)), sums, 1e6 / table.wavelength_nm * shares * sums)
+
+
+def plot_seidel_bars(data: SeidelBars, axes: Axes) -> None:
+    """Groups of bars by surface, numbered from 0 as in lens tables, and their sum."""
+    width = 0.8 / len(data.names)
+    places = np.arange(len(data.surfaces) + 1)
+    values = np.concatenate([data.waves, data.waves.sum(axis=0)[None]])
+    for k, name in enumerate(data.names):
+        offset = (k - 0.5 * (len(data.names) - 1)) * width
+        axes.bar(places + offset, values[:, k], width, color=style.field_colour(k), label=name, linewidth=0)
+    style.zero_lines(axes, x=False)
+    axes.axvline(len(data.surfaces) - 0.5, color=style.GREY, linewidth=0.6)
+    axes.set_xticks(places, [*map(str, data.surfaces), "sum"])
+    axes.set_xlabel("surface")
+    axes.set_ylabel("wavefront / waves")
+    axes.set_title(f"Third order at {data.field_deg:.3g}°")
+    axes.grid(visible=False, axis="x")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=4, columnspacing=1.0)

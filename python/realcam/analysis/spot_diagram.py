@@ -1,0 +1,135 @@
+"""Spot diagrams: where the rays of an object point land, by field, colour and focus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from .._core import InputError, Lens
+from . import style
+from .exit_rays import exit_rays, hexapolar
+from .fields import Bundles, Doubles, bundles_of, numbers_of, texts_of, three_fields, wavelengths_of
+
+
+@dataclass(frozen=True)
+class SpotDiagram:
+    """Spots of F fields, W colours and D planes.
+
+    defocus_mm: (D,), of the planes, behind the film.
+    points_mm: (D, F, W, N, 2), x and y from where the chief ray of the design wavelength meets that plane; nan where no
+      ray passes.
+    centroid_mm: (D, F, 2), of all colours.
+    rms_radius_mm: (D, F), of all colours, about their centroid.
+    airy_radii_mm: (F, 2), along x and y: 1.22 times the design wavelength times the f-number that the light of the
+      field has in that direction.
+    """
+
+    fields_deg: Doubles
+    wavelengths_nm: Doubles
+    defocus_mm: Doubles
+    points_mm: Doubles
+    centroid_mm: Doubles
+    rms_radius_mm: Doubles
+    airy_radii_mm: Doubles
+
+
+def spot_diagram(
+    lens: Lens,
+    fields_deg: ArrayLike | None = None,
+    wavelengths_nm: ArrayLike | None = None,
+    *,
+    defocus_mm: ArrayLike = 0.0,
+    rings: int = 10,
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
+) -> SpotDiagram:
+    """Spots of rays in `rings` rings over the stop, on the film and on planes beside it.
+
+    defocus_mm: (D,), of the planes, positive behind the film. None: the axis, 0.7 and all of the image height; F line,
+    design wavelength, C line. Raises InputError where no light passes.
+    """
+    source = bundles_of(lens, object_distance_m, bundles)
+    fields = three_fields(lens, fields_deg, source)
+    colours = wavelengths_of(lens, wavelengths_nm)
+    planes = numbers_of(defocus_mm, "defocus_mm")
+    places = hexapolar(rings)
+    points = np.empty((len(planes), len(fields), len(colours), len(places), 2))
+    airy = np.empty((len(fields), 2))
+    for f, field in enumerate(fields):
+        middle = _chief_line(source, float(field))
+        for w, colour in enumerate(colours):
+            rays = exit_rays(lens, places, float(field), float(colour), source.object_distance_m)
+            if np.isnan(rays.points_mm).all():
+                raise InputError(f'none of {len(places)} rays at {field:.6g} deg passes lens "{lens.name}"')
+            for d, plane in enumerate(planes):
+                points[d, f, w] = rays.at(float(plane)) - (middle[0] + plane * middle[1])
+        bundle = source.at(float(field), lens.wavelength_nm)
+        across = np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0)
+        airy[f] = 1.22e-6 * bundle.wavelength_nm / bundle.index / across
+    all_colours = points.reshape(len(planes), len(fields), -1, 2)
+    centroid = np.nanmean(all_colours, axis=2)
+    square = ((all_colours - centroid[:, :, None]) ** 2).sum(axis=-1)
+    return SpotDiagram(fields, colours, planes, points, centroid, np.sqrt(np.nanmean(square, axis=2)), airy)
+
+
+def _chief_line(source: Bundles, field: float) -> tuple[Doubles, Doubles]:
+    """Point on the film and dx/dz, dy/dz of the chief ray of the design wavelength, even where the lens blocks it."""
+    lens = source.lens
+    step = 1e-3 * max(abs(lens.film_distance_mm), 1.0)
+    here = np.array(source.chief(field, lens.wavelength_nm).chief_ray_mm)
+    there = lens.bundle(
+        field,
+        wavelength_nm=lens.wavelength_nm,
+        object_distance_m=source.object_distance_m,
+        film_distance_mm=lens.film_distance_mm + step,
+        spokes=4,
+        nodes=1,
+    ).chief_ray_mm
+    return here, (np.array(there) - here) / step
+
+
+def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int = 0, half_mm: float = 0.0) -> None:
+    """Draws one spot: all colours, and the Airy disc's first dark ring. half_mm: half the side of the square shown;
+    0: as large as the spot."""
+    colours = style.wavelength_colours(spots.wavelengths_nm)
+    marks = ("o", "s", "^")
+    for w, label in enumerate(texts_of(spots.wavelengths_nm, "nm")):
+        at = 1e3 * spots.points_mm[plane, field, w]
+        axes.plot(
+            at[:, 0],
+            at[:, 1],
+            marks[w % len(marks)],
+            color=colours[w],
+            markersize=1.6,
+            markeredgewidth=0,
+            alpha=0.8,
+            label=label,
+            rasterized=True,
+        )
+    angle = np.linspace(0, 2 * np.pi, 73)
+    middle, radii = 1e3 * spots.centroid_mm[plane, field], 1e3 * spots.airy_radii_mm[field]
+    axes.plot(
+        middle[0] + radii[0] * np.cos(angle),
+        middle[1] + radii[1] * np.sin(angle),
+        color=style.text_colour(),
+        linewidth=0.7,
+        label="Airy",
+    )
+    half = 1e3 * (half_mm or half_side_mm(spots, field))
+    axes.set_xlim(middle[0] - half, middle[0] + half)
+    axes.set_ylim(middle[1] - half, middle[1] + half)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x / µm")
+    axes.set_ylabel("y / µm")
+    beside = f", {1e3 * spots.defocus_mm[plane]:+.3g} µm" if len(spots.defocus_mm) > 1 else ""
+    axes.set_title(f"{spots.fields_deg[field]:.3g}°{beside}, RMS {1e3 * spots.rms_radius_mm[plane, field]:.3g} µm")
+
+
+def half_side_mm(spots: SpotDiagram, field: int | None = None) -> float:
+    """Half the side of a square about the centroid that holds the spots in all planes: of one field, or of all."""
+    chosen = slice(None) if field is None else slice(field, field + 1)
+    away = spots.points_mm[:, chosen] - spots.centroid_mm[:, chosen, None, None]
+    return 1.08 * max(float(np.nanmax(np.abs(away))), 1.3 * float(spots.airy_radii_mm[chosen].max()))

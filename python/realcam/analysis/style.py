@@ -1,0 +1,138 @@
+"""How plots look: themes, colours of wavelengths and fields, and files."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import matplotlib.figure
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
+from numpy.typing import NDArray
+
+from .. import files
+from .._core import ImageFileError, InputError
+
+PAGES = {"light": ("white", "#202020"), "dark": ("#16191d", "#d8dadd")}  # paper and ink
+FORMATS = (".svg", ".png", ".pdf")
+SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}
+# Colours that stand out from a white and from a dark page alike (a contrast of 3 and more to either).
+BLUE, GREEN, RED = "#4a78d6", "#2f9a58", "#d9493c"
+FIELD_COLOURS = ("#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a")
+GREY = "#808080"
+
+
+def wavelength_colours(wavelengths_nm: NDArray[np.float64]) -> list[str]:
+    """From blue for the shortest to red for the longest; green between them, and for one alone."""
+    count = len(wavelengths_nm)
+    order = np.argsort(np.argsort(wavelengths_nm))
+    if count == 1:
+        return [GREEN]
+    if count <= 3:
+        return [(BLUE, GREEN, RED)[int(rank) if count == 3 else 2 * int(rank)] for rank in order]
+    return [matplotlib.colors.to_hex(matplotlib.colormaps["turbo"](0.1 + 0.8 * rank / (count - 1))) for rank in order]
+
+
+def field_colour(number: int) -> str:
+    return FIELD_COLOURS[number % len(FIELD_COLOURS)]
+
+
+@contextmanager
+def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
+    """Figures that are made within have the theme's page, text and lines. Raises InputError for an unknown theme."""
+    if theme not in PAGES:
+        raise InputError(f'unknown theme "{theme}"; light or dark is wanted')
+    page, text = PAGES[theme]
+    grid = "#d5d5d5" if theme == "light" else "#3c4148"
+    settings: Any = {
+        "figure.facecolor": page,
+        "savefig.facecolor": page,
+        "axes.facecolor": page,
+        "axes.edgecolor": text,
+        "axes.labelcolor": text,
+        "text.color": text,
+        "xtick.color": text,
+        "ytick.color": text,
+        "grid.color": grid,
+        "grid.linewidth": 0.5,
+        "axes.linewidth": 0.6,
+        "lines.linewidth": 1.1,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "font.size": font_size,
+        "axes.titlesize": font_size,
+        "axes.labelsize": font_size,
+        "xtick.labelsize": 0.9 * font_size,
+        "ytick.labelsize": 0.9 * font_size,
+        "legend.fontsize": 0.85 * font_size,
+        "legend.frameon": False,
+        "legend.handlelength": 1.4,
+        "legend.borderaxespad": 0.2,
+        "axes.formatter.limits": (-4, 5),
+        "svg.fonttype": "none",
+        "svg.hashsalt": "realcam",
+        "pdf.compression": 6,
+    }
+    with matplotlib.rc_context(settings):
+        yield
+
+
+def text_colour() -> str:
+    """Of the theme in force: for lines that are of no colour."""
+    return str(matplotlib.rcParams["text.color"])
+
+
+def new_figure(width_in: float, height_in: float) -> matplotlib.figure.Figure:
+    return matplotlib.figure.Figure(figsize=(width_in, height_in), layout="constrained")
+
+
+def check_plot_target(path: str | os.PathLike[str]) -> Path:
+    """Raises ImageFileError where no plot can be written to this name."""
+    target = Path(path)
+    if target.suffix.lower() not in FORMATS:
+        raise ImageFileError(f"{target}: unknown suffix; .svg, .png or .pdf is wanted")
+    files.check_target(target)
+    return target
+
+
+def content_of(figure: matplotlib.figure.Figure, suffix: str, dpi: float = 160) -> bytes:
+    """The bytes of a file. They have no date in them: the same plot has the same bytes."""
+    drawing = io.BytesIO()
+    dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
+    figure.savefig(drawing, format=suffix.lower()[1:], dpi=dpi, metadata=dates[suffix.lower()])
+    return drawing.getvalue()
+
+
+def save_plot(figure: matplotlib.figure.Figure, path: str | os.PathLike[str], dpi: float = 160) -> None:
+    """Writes .svg, .png or .pdf, as a whole or not at all. Raises ImageFileError."""
+    target = check_plot_target(path)
+    files.write_whole(target, content_of(figure, target.suffix, dpi))
+
+
+def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:
+    """Thin lines through the origin."""
+    if y:
+        axes.axhline(0, color=GREY, linewidth=0.6, zorder=1)
+    if x:
+        axes.axvline(0, color=GREY, linewidth=0.6, zorder=1)
+
+
+def legend_beside(axes: Axes, **options: Any) -> None:
+    """Where it covers no line."""
+    axes.legend(**{"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), **options})
+
+
+def colour_bar(axes: Axes, picture: AxesImage, label: str) -> None:
+    figure = axes.get_figure()
+    assert figure is not None
+    bar = figure.colorbar(picture, ax=axes, shrink=0.8)
+    bar.set_label(label)
+    bar.outline.set_visible(False)

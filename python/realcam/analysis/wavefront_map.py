@@ -1,0 +1,68 @@
+"""The wavefront over the pupil as a map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from .._core import Lens
+from . import style
+from .fields import Doubles
+
+
+@dataclass(frozen=True)
+class WavefrontMap:
+    """map_waves: (N, N), rows from the lowest y of the stop, columns from the lowest x, over the square about the stop;
+    nan where no ray passes. Positive where the wavefront is ahead of the sphere about the chief ray's film point.
+    """
+
+    field_deg: float
+    wavelength_nm: float
+    map_waves: Doubles
+    rms_waves: float
+    peak_to_valley_waves: float
+    strehl: float
+
+
+def wavefront_map(
+    lens: Lens,
+    field_deg: float = 0.0,
+    *,
+    wavelength_nm: float | None = None,
+    samples: int = 48,
+    remove: str | None = None,
+    object_distance_m: float | None = None,
+) -> WavefrontMap:
+    """remove: as for Lens.wavefront. None of the others: the design wavelength; the plane in focus."""
+    front = lens.wavefront(
+        field_deg, wavelength_nm=wavelength_nm, samples=samples, remove=remove, object_distance_m=object_distance_m
+    )
+    return WavefrontMap(
+        field_deg,
+        front.wavelength_nm,
+        front.map_waves(),
+        front.rms_waves,
+        front.peak_to_valley_waves,
+        front.strehl,
+    )
+
+
+def plot_wavefront_map(data: WavefrontMap, axes: Axes) -> None:
+    middle = float(np.nanmean(data.map_waves))
+    span = float(np.nanmax(np.abs(data.map_waves - middle))) or 1.0
+    picture = axes.imshow(
+        data.map_waves,
+        origin="lower",
+        extent=(-1, 1, -1, 1),
+        cmap="RdBu_r",
+        vmin=middle - span,
+        vmax=middle + span,
+        interpolation="nearest",
+    )
+    axes.grid(visible=False)
+    axes.set_xlabel("x in the stop / its radius")
+    axes.set_ylabel("y in the stop / its radius")
+    axes.set_title(f"{data.field_deg:.3g}°, RMS {data.rms_waves:.3g} waves")
+    style.colour_bar(axes, picture, "waves")

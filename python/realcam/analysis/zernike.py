@@ -1,0 +1,148 @@
+"""Zernike polynomials, orthonormal on the unit circle, in Noll's or the fringe order; and fits of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from .._core import InputError, Lens
+from . import style
+from .fields import Doubles
+
+ORDERS = ("noll", "fringe")
+NAMES = {
+    (0, 0): "piston",
+    (1, 1): "tilt x",
+    (1, -1): "tilt y",
+    (2, 0): "defocus",
+    (2, 2): "astigmatism 0°",
+    (2, -2): "astigmatism 45°",
+    (3, 1): "coma x",
+    (3, -1): "coma y",
+    (3, 3): "trefoil x",
+    (3, -3): "trefoil y",
+    (4, 0): "spherical",
+    (4, 2): "secondary astigmatism 0°",
+    (4, -2): "secondary astigmatism 45°",
+    (6, 0): "secondary spherical",
+}
+
+
+def noll(j: int) -> tuple[int, int]:
+    """(n, m) of Noll's j from 1 on; m < 0: sine (R. J. Noll, J. Opt. Soc. Am. 66, 207, 1976)."""
+    n = (math.isqrt(8 * j - 7) - 1) // 2
+    place = j - n * (n + 1) // 2 - 1  # among the n + 1 of this n
+    m = 1 + 2 * (place // 2) if n % 2 else 2 * ((place + 1) // 2)
+    return n, m if j % 2 == 0 else -m
+
+
+def fringe(j: int) -> tuple[int, int]:
+    """(n, m) of the fringe order's j from 1 on: by (n + |m|) / 2, then from large m to small, cosine before sine."""
+    group = math.isqrt(j - 1)
+    place = j - 1 - group**2
+    m = group - place // 2
+    return 2 * group - m, -m if place % 2 else m
+
+
+def term(n: int, m: int, x: Doubles, y: Doubles) -> Doubles:
+    """The polynomial at places of the unit circle, with a mean square of 1 over it. Angles are from x towards y."""
+    radius2 = x * x + y * y
+    k = (n - abs(m)) // 2
+    radial = np.zeros_like(x)
+    for s in range(k + 1):  # R_n^m / r^|m|, highest power first
+        factor = (-1) ** s * math.comb(n - s, s) * math.comb(n - 2 * s, k - s)
+        radial = radial + factor * radius2 ** (k - s)
+    turned = (x + 1j * y) ** abs(m)
+    angular = turned.imag if m < 0 else turned.real
+    result: Doubles = math.sqrt((2 if m else 1) * (n + 1)) * radial * angular
+    return result
+
+
+@dataclass(frozen=True)
+class ZernikeFit:
+    """order: "noll" or "fringe"; indices: (K,), its j; nm: K pairs (n, m), m < 0 for sine; names: K words.
+    coefficients_waves: (K,), of polynomials that are orthonormal on the unit circle: over a pupil that fills the circle
+      the square of each is its share of the mean square. Fringe coefficients of programs whose polynomials are 1 at the
+      edge are larger by the root of (n + 1) (m = 0) or 2 (n + 1).
+    residual_waves: root mean square of what is left.
+    pupil: (N, 2); residuals_waves: (N,), nan where no ray passes.
+    """
+
+    order: str
+    indices: np.ndarray
+    nm: tuple[tuple[int, int], ...]
+    names: tuple[str, ...]
+    coefficients_waves: Doubles
+    residual_waves: float
+    pupil: Doubles
+    residuals_waves: Doubles
+
+    def at(self, pupil: ArrayLike) -> Doubles:
+        """(N,): the sum at places (N, 2)."""
+        places = np.asarray(pupil, dtype=float)
+        basis = [term(n, m, places[:, 0], places[:, 1]) for n, m in self.nm]
+        value: Doubles = np.column_stack(basis) @ self.coefficients_waves
+        return value
+
+
+def fit_zernike(
+    pupil: ArrayLike, opd_waves: ArrayLike, *, weights: ArrayLike | None = None, order: str = "noll", terms: int = 37
+) -> ZernikeFit:
+    """Least squares over the places that have a value: over the real pupil, however much of the circle that is.
+
+    pupil: (N, 2), x and y; opd_waves: (N,), nan where there is none; weights: (N,), shares of the area.
+    Raises InputError for an unknown order, and where there are fewer places than terms.
+    """
+    if order not in ORDERS:
+        raise InputError(f'unknown order "{order}"; noll or fringe is wanted')
+    if not 1 <= terms <= 231:
+        raise InputError("terms must lie between 1 and 231")
+    places, values = np.asarray(pupil, dtype=float), np.asarray(opd_waves, dtype=float)
+    share = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=float)
+    if places.shape != (len(values), 2) or share.shape != values.shape:
+        raise InputError("pupil must be of shape (N, 2), opd_waves and weights of shape (N,)")
+    nm = tuple((noll if order == "noll" else fringe)(j) for j in range(1, terms + 1))
+    there = np.isfinite(values)
+    if there.sum() < terms:
+        raise InputError(f"{terms} terms are to be fitted to {there.sum()} rays; more rays, or fewer terms, are wanted")
+    x, y = places[there].T
+    basis = np.column_stack([term(n, m, x, y) for n, m in nm])
+    root = np.sqrt(share[there])
+    coefficients, _, rank, _ = np.linalg.lstsq(root[:, None] * basis, root * values[there], rcond=None)
+    if rank < terms:
+        raise InputError(f"{terms} terms cannot be told apart on this pupil; fewer are wanted")
+    residuals = np.full(len(values), np.nan)
+    residuals[there] = values[there] - basis @ coefficients
+    left = float(np.sqrt(np.sum(share[there] * residuals[there] ** 2) / np.sum(share[there])))
+    names = tuple(NAMES.get(pair, f"{pair[0]}, {pair[1]:+d}") for pair in nm)
+    return ZernikeFit(order, np.arange(1, terms + 1), nm, names, coefficients, left, places, residuals)
+
+
+def zernike_fit(
+    lens: Lens,
+    field_deg: float = 0.0,
+    *,
+    wavelength_nm: float | None = None,
+    order: str = "noll",
+    terms: int = 37,
+    samples: int = 48,
+    object_distance_m: float | None = None,
+) -> ZernikeFit:
+    """Of a lens's wavefront over its real stop, whose radius is 1."""
+    front = lens.wavefront(field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, samples=samples)
+    return fit_zernike(front.pupil, front.opd_waves, weights=front.weights, order=order, terms=terms)
+
+
+def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
+    """Bars of the coefficients, without piston."""
+    shown = slice(1, None)
+    axes.bar(fit.indices[shown], fit.coefficients_waves[shown], color=style.BLUE, linewidth=0)
+    style.zero_lines(axes, x=False)
+    axes.set_xlabel(f"{'Noll' if fit.order == 'noll' else 'fringe'} index")
+    axes.set_ylabel("coefficient / waves RMS")
+    axes.set_title(f"Zernike polynomials, {fit.residual_waves:.2g} waves left")
+    axes.grid(visible=False, axis="x")

@@ -1,0 +1,143 @@
+"""realcam lens plot and realcam lens report: what a lens does to light."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Optional
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from .._core import InputError
+from . import options
+
+LensName = Annotated[
+    str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")
+]
+FNumber = Annotated[Optional[float], typer.Option("--f-number", help="Close the diaphragm to this f-number.")]  # noqa: UP045
+Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to film in metres, or inf.")]  # noqa: UP045
+ObjectDistance = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option("--object-distance", help="Object plane to front vertex in metres, or inf [the plane in focus]."),
+]
+Fields = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option("--fields", help="Field angles in degrees, with commas between [up to the film's corner]."),
+]
+Wavelengths = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option("--wavelengths", help="In nm, with commas between [F line, the design wavelength, C line]."),
+]
+Theme = Annotated[str, typer.Option("--theme", help="light or dark.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the commands to those of lenses."""
+    app.command("plot")(plot)
+    app.command("report")(report)
+
+
+def plot(
+    kind: Annotated[str, typer.Argument(help="What to plot: one of those below.", metavar="KIND")],
+    name: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS"),
+    ] = None,
+    output: Annotated[
+        Optional[list[Path]],  # noqa: UP045
+        typer.Option("--output", "-o", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated."),
+    ] = None,
+    f_number: FNumber = None,
+    focus: Focus = None,
+    fields: Fields = None,
+    wavelengths: Wavelengths = None,
+    frequencies: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--frequencies", help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest."),
+    ] = None,
+    object_distance: ObjectDistance = None,
+    theme: Theme = "light",
+    size: Annotated[str, typer.Option("--size", help="small or large.")] = "large",
+    as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON.")] = False,
+) -> None:
+    """Plot one thing about a lens, or write its numbers.
+
+    KIND: ray-fan, spot, spot-through-focus, longitudinal, field-curves, distortion, distortion-grid, lateral-colour,
+    seidel, wavefront, zernike, psf, mtf, mtf-field, mtf-focus, relative-illumination, pupil, bokeh.
+    """
+    from .. import analysis  # brings matplotlib, which other commands need not load
+    from ..analysis import kinds, numbers, style
+
+    if kind not in kinds.KINDS:
+        raise InputError(f'unknown plot "{kind}"; one of {", ".join(kinds.KINDS)} is wanted')
+    if name is None:
+        raise InputError(f"realcam lens plot {kind}: the name of a lens is missing")
+    targets = output or ([] if as_json else [Path(f"{kind}.svg")])
+    for target in targets:
+        if target.suffix.lower() in (".json", ".csv"):
+            numbers.check_numbers_target(target)
+        else:
+            style.check_plot_target(target)
+    lens = options.lens(name, focus, f_number)
+    bundles = analysis.Bundles(lens, _distance(object_distance))
+    asked = kinds.Asked(
+        lens,
+        bundles,
+        _numbers(fields, "--fields"),
+        _numbers(wavelengths, "--wavelengths"),
+        _numbers(frequencies, "--frequencies"),
+    )
+    data = kinds.compute(kind, asked)
+    for target in targets:
+        if target.suffix.lower() in (".json", ".csv"):
+            numbers.save_numbers(data, target)
+        else:
+            figure = kinds.plot_figure(kind, data, theme=theme, size=size, title=options.title_of(lens))
+            style.save_plot(figure, target)
+        if not as_json:
+            _say_written(target)
+    if as_json:
+        typer.echo(numbers.as_json(data))
+
+
+def report(
+    name: LensName,
+    output: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--output", "-o", help="A .pdf or .html file [LENS.pdf, here]."),
+    ] = None,
+    f_number: FNumber = None,
+    focus: Focus = None,
+    fields: Fields = None,
+    wavelengths: Wavelengths = None,
+    object_distance: ObjectDistance = None,
+    theme: Theme = "light",
+) -> None:
+    """Write all about a lens on three pages: rays, contrast and colour, waves and light."""
+    from ..analysis import save_report
+
+    lens = options.lens(name, focus, f_number)
+    target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.pdf")
+    save_report(
+        lens,
+        target,
+        fields_deg=_numbers(fields, "--fields"),
+        wavelengths_nm=_numbers(wavelengths, "--wavelengths"),
+        object_distance_m=_distance(object_distance),
+        theme=theme,
+    )
+    _say_written(target)
+
+
+def _numbers(text: str | None, what: str) -> NDArray[np.float64] | None:
+    return None if text is None else np.array([options.number(part.strip(), what) for part in text.split(",")])
+
+
+def _distance(text: str | None) -> float | None:
+    return None if text is None else options.number(text, "--object-distance")
+
+
+def _say_written(target: Path) -> None:
+    typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")

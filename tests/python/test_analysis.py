@@ -1,0 +1,255 @@
+"""rc.analysis: arrays, plots of these arrays, and the commands."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib.figure
+import numpy as np
+import pytest
+import realcam as rc
+from realcam.analysis import kinds, report, style
+
+analysis = rc.analysis
+LENS = rc.Lens.load("double-gauss-50mm").stopped_down(4)
+SMALL = {"spot-through-focus": {"fields_deg": np.array([0.0, 10.0])}}
+
+
+def asked(lens: rc.Lens = LENS, **given: object) -> kinds.Asked:
+    return kinds.Asked(lens, analysis.Bundles(lens), **given)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def computed() -> dict[str, object]:
+    return {kind: kinds.compute(kind, asked(**SMALL.get(kind, {}))) for kind in kinds.KINDS}
+
+
+@pytest.mark.parametrize("kind", list(kinds.KINDS))
+@pytest.mark.parametrize(("size", "theme"), [("small", "dark"), ("large", "light")])
+def test_every_plot_has_labels_and_units(computed: dict[str, object], kind: str, size: str, theme: str) -> None:
+    figure = analysis.plot_figure(kind, computed[kind], theme=theme, size=size)
+    drawn = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    assert drawn
+    lowest = [axes for axes in drawn if axes.get_subplotspec().is_last_row()]
+    without_unit = {"contrast", "surface", "direction cosine y", "direction cosine x, each about its own middle"}
+    for axes in drawn:
+        for label in (axes.get_ylabel(), *([axes.get_xlabel()] if axes in lowest else [])):
+            assert label, kind
+            assert any(mark in label for mark in (" / ", "per mm", "index")) or label in without_unit, label
+        assert axes.get_title()
+    page = matplotlib.colors.to_rgb(figure.get_facecolor())
+    ink = matplotlib.colors.to_rgb(drawn[0].yaxis.label.get_color())
+    assert abs(sum(page) - sum(ink)) > 1.8, "the text stands out from the page"
+
+
+def lines_of(kind: str, data: object, number: int = 0) -> list[tuple[np.ndarray, np.ndarray]]:
+    axes = analysis.plot_figure(kind, data).axes[number]
+    return [(np.asarray(line.get_xdata()), np.asarray(line.get_ydata())) for line in axes.get_lines()]
+
+
+def test_plots_show_the_arrays(computed: dict[str, object]) -> None:
+    fan = computed["ray-fan"]
+    for w, (x, y) in enumerate(lines_of("ray-fan", fan, 1)[:3]):
+        np.testing.assert_array_equal(x, fan.pupil)
+        np.testing.assert_array_equal(y, 1e3 * fan.tangential_mm[1, w])
+    spots = computed["spot"]
+    x, y = lines_of("spot", spots, 2)[0]
+    np.testing.assert_array_equal(np.column_stack([x, y]), 1e3 * spots.points_mm[0, 2, 0])
+    along = computed["longitudinal"]
+    np.testing.assert_array_equal(lines_of("longitudinal", along)[1][0], along.focus_mm[1])
+    curves = computed["field-curves"]
+    np.testing.assert_array_equal(lines_of("field-curves", curves)[0][0], curves.tangential_mm[0])
+    np.testing.assert_array_equal(lines_of("field-curves", curves)[1][0], curves.sagittal_mm[0])
+    bent = computed["distortion"]
+    np.testing.assert_array_equal(lines_of("distortion", bent)[0][0], bent.percent)
+    colour = computed["lateral-colour"]
+    np.testing.assert_array_equal(lines_of("lateral-colour", colour)[2][0], 1e3 * colour.shift_mm[2])
+    contrast = computed["mtf"]
+    np.testing.assert_array_equal(lines_of("mtf", contrast)[2][1], contrast.tangential[0, 1])
+    np.testing.assert_array_equal(lines_of("mtf", contrast)[3][1], contrast.sagittal[0, 1])
+    over = computed["mtf-field"]
+    np.testing.assert_array_equal(lines_of("mtf-field", over)[0][1], over.tangential[0, :, 0])
+    through = computed["mtf-focus"]
+    np.testing.assert_array_equal(lines_of("mtf-focus", through)[0][1], through.tangential[:, 0, 0])
+    light = computed["relative-illumination"]
+    np.testing.assert_array_equal(lines_of("relative-illumination", light)[0][1], 100 * light.relative_illumination)
+    front = computed["wavefront"]
+    shown = analysis.plot_figure("wavefront", front).axes[0].get_images()[0].get_array()
+    np.testing.assert_array_equal(np.ma.filled(shown, np.nan), front.map_waves)
+    bars = computed["seidel"]
+    heights = [bar.get_height() for bar in analysis.plot_figure("seidel", bars).axes[0].patches]
+    np.testing.assert_array_equal(np.reshape(heights, (7, -1))[:, :-1].T, bars.waves)
+
+
+def test_the_object_is_in_the_plane_in_focus() -> None:
+    near = rc.Lens.load("double-gauss-50mm").focused(1.2).stopped_down(8)
+    front_m = near.focus_distance_m - 1e-3 * near.film_position_mm
+    for by_default, by_name in (
+        (near.spot(10).points_mm, near.spot(10, object_distance_m=front_m).points_mm),
+        (near.wavefront(10).opd_waves, near.wavefront(10, object_distance_m=front_m).opd_waves),
+        (near.seidel(10).seidel_mm, near.seidel(10, object_distance_m=front_m).seidel_mm),
+        (near.bundle(10).points_mm, near.bundle(10, object_distance_m=front_m).points_mm),
+        (near.psf(10, size=16).values, near.psf(10, size=16, object_distance_m=front_m).values),
+        (
+            analysis.ray_fan(near, 10.0).tangential_mm,
+            analysis.ray_fan(near, 10.0, object_distance_m=front_m).tangential_mm,
+        ),
+    ):
+        np.testing.assert_allclose(by_default, by_name, rtol=1e-9, atol=1e-9, equal_nan=True)
+    # In focus the spot is a hundredth of what the same lens makes of infinity.
+    assert near.spot(0).rms_radius_mm < 0.1 * near.spot(0, object_distance_m=float("inf")).rms_radius_mm
+
+
+def test_spots_are_those_of_the_lens() -> None:
+    data = analysis.spot_diagram(LENS, [0.0, 15.0], [587.5618], rings=6)
+    for f, field in enumerate((0.0, 15.0)):
+        spot = LENS.spot(field, wavelength_nm=587.5618, samples=6)
+        np.testing.assert_allclose(data.points_mm[0, f, 0] + spot.chief_ray_mm, spot.points_mm, atol=1e-9)
+        assert data.rms_radius_mm[0, f] == pytest.approx(spot.rms_radius_mm, rel=1e-6)
+    moved = analysis.spot_diagram(LENS, [15.0], [587.5618], rings=6, defocus_mm=[0.2])
+    there = LENS.spot(15.0, wavelength_nm=587.5618, samples=6, film_distance_mm=LENS.film_distance_mm + 0.2)
+    assert moved.rms_radius_mm[0, 0] == pytest.approx(there.rms_radius_mm, rel=1e-6)
+
+
+def test_film_points_are_the_spot_of_very_many_rays() -> None:
+    for lens, field in ((LENS, 15.0), (rc.Lens.load("phone-4mm"), 25.0), (LENS.with_iris(5), 0.0)):
+        bundle = lens.bundle(field, spokes=128, nodes=12)
+        middle = bundle.energy @ bundle.points_mm
+        size = np.sqrt(bundle.energy @ ((bundle.points_mm - middle) ** 2).sum(axis=1))
+        for pattern in ("even", "grid"):
+            for dtype in ("float32", "float64"):
+                points = lens.film_points(field, 200_000, pattern=pattern, dtype=dtype).astype(float)
+                assert 100_000 < len(points) <= 200_000
+                # An edge's grid of 450 cells across is right within a thousandth; float32 within 0.3 um.
+                np.testing.assert_allclose(points.mean(axis=0), middle, atol=2e-3 * size + 3e-4)
+                found = np.sqrt(((points - points.mean(axis=0)) ** 2).sum(axis=1).mean())
+                assert found == pytest.approx(size, rel=5e-3, abs=3e-4)
+    with pytest.raises(rc.InputError, match="even or grid"):
+        LENS.film_points(pattern="random")
+
+
+def test_bundles_carry_all_the_light() -> None:
+    bundle = LENS.bundle(20.0)
+    assert bundle.energy.sum() == pytest.approx(1)
+    half = len(bundle.energy) // 2
+    assert bundle.mirrored
+    np.testing.assert_array_equal(bundle.points_mm[:half] * (-1, 1), bundle.points_mm[half:])
+    start, end = bundle.edge_entry_mm[:, 0], bundle.edge_entry_mm[:, 1]
+    area = 0.5 * abs(np.sum(start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]))
+    edges = [LENS.bundle(20.0, spokes=s).edge_entry_mm for s in (256,)]
+    fine = 0.5 * abs(np.sum(edges[0][:, 0, 0] * edges[0][:, 1, 1] - edges[0][:, 0, 1] * edges[0][:, 1, 0]))
+    assert area == pytest.approx(fine, rel=2e-3)
+
+
+NOLL = [(0, 0), (1, 1), (1, -1), (2, 0), (2, -2), (2, 2), (3, -1), (3, 1), (3, -3), (3, 3), (4, 0), (4, 2), (4, -2),
+        (4, 4), (4, -4)]  # fmt: skip
+FRINGE = [(0, 0), (1, 1), (1, -1), (2, 0), (2, 2), (2, -2), (3, 1), (3, -1), (4, 0), (3, 3), (3, -3), (4, 2), (4, -2),
+          (5, 1), (5, -1), (6, 0)]  # fmt: skip
+
+
+@pytest.mark.parametrize(("order", "table"), [("noll", NOLL), ("fringe", FRINGE)])
+def test_zernike_orders_and_norm(order: str, table: list[tuple[int, int]]) -> None:
+    radius2, angle = np.meshgrid((np.arange(64) + 0.5) / 64, 2 * np.pi * np.arange(64) / 64)
+    x, y = (np.sqrt(radius2) * f(angle) for f in (np.cos, np.sin))
+    places = np.column_stack([x.ravel(), y.ravel()])
+    wanted = np.linspace(-1, 1, 16)
+    fit = analysis.fit_zernike(places, np.zeros(len(places)), order=order, terms=16)
+    assert list(fit.nm)[: len(table)] == table
+    value = dataclasses.replace(fit, coefficients_waves=wanted).at(places)
+    again = analysis.fit_zernike(places, value, order=order, terms=16)
+    np.testing.assert_allclose(again.coefficients_waves, wanted, atol=1e-12)
+    assert again.residual_waves < 1e-12
+    # Orthonormal: the mean square is the sum of squares, within the midpoint rule's error for 64 rings.
+    assert np.mean(value**2) == pytest.approx(np.sum(wanted**2), rel=2e-3)
+    with pytest.raises(rc.InputError, match="noll or fringe"):
+        analysis.fit_zernike(places, value, order="ansi")
+
+
+def test_lateral_and_axial_colour_are_the_lens_s_own() -> None:
+    data = analysis.lateral_colour(LENS, [20.0])
+    for shift, nm in zip(data.shift_mm[:, 0], data.wavelengths_nm, strict=True):
+        difference = LENS.spot(20, wavelength_nm=nm).chief_ray_mm[1] - LENS.spot(20).chief_ray_mm[1]
+        assert shift == pytest.approx(difference, abs=1e-9)
+    along = analysis.longitudinal_aberration(LENS)
+    first = [LENS.first_order(nm).back_focal_distance_mm - LENS.film_distance_mm for nm in along.wavelengths_nm]
+    np.testing.assert_allclose(along.focus_mm[:, 0], first, atol=1e-5)
+
+
+def test_cats_eyes_close_towards_the_corner() -> None:
+    data = analysis.film_pupils(rc.Lens.load("double-gauss-50mm"), [0.0, 20.0])
+    tall = [np.ptp(outline[..., 1]) for outline in data.outlines]
+    wide = [np.ptp(outline[..., 0]) for outline in data.outlines]
+    assert tall[0] == pytest.approx(wide[0], rel=1e-3)
+    assert tall[1] < 0.75 * wide[1]
+    ring = analysis.film_pupils(rc.Lens.load("mirror-telephoto-500mm"), [0.0])
+    outer = np.ptp(ring.outlines[0][..., 0])
+    assert ring.solid_angle_sr[0] < 0.9 * np.pi / 4 * outer**2, "the obstruction is left out"
+
+
+def test_numbers_are_written(tmp_path: Path) -> None:
+    data = analysis.distortion(LENS, [0.0, 10.0])
+    assert json.loads(analysis.as_json(data))["percent"] == data.percent.tolist()
+    analysis.save_numbers(data, tmp_path / "d.csv")
+    lines = (tmp_path / "d.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "name,index_0,value"
+    assert f"percent,1,{data.percent[1].item()!r}" in lines
+    with pytest.raises(rc.ImageFileError, match=r"\.json or \.csv"):
+        analysis.save_numbers(data, tmp_path / "d.txt")
+
+
+@pytest.mark.parametrize("name", ["fisheye-6mm-220deg", "mirror-telephoto-500mm", "singlet-100mm"])
+def test_reports_of_unlike_lenses(name: str, tmp_path: Path) -> None:
+    lens = rc.Lens.load(name)
+    analysis.save_report(lens, tmp_path / "r.html", theme="dark")
+    text = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert text.count("<svg") == 3
+    assert "http://" not in text.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
+        "http://creativecommons.org", ""
+    ), "all that it shows is in it"
+    source = analysis.Bundles(lens)
+    with style.themed():
+        pages, _ = report.report_pages(source, analysis.field_angles_deg(lens, [0, 0.7, 1]), np.array([546.0]))
+    assert [len(page.axes) > 4 for page in pages] == [True] * 3
+
+
+def realcam(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "realcam", "lens", *arguments], cwd=cwd, capture_output=True, text=True, check=False
+    )
+
+
+def test_commands(tmp_path: Path) -> None:
+    done = realcam("report", "tessar-50mm", "--focus", "2", "--f-number", "5.6", "-o", "r.pdf", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "r.pdf").read_bytes().startswith(b"%PDF")
+    done = realcam("plot", "distortion", "tessar-50mm", "-o", "d.svg", "-o", "d.csv", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "percent" in json.loads(done.stdout)
+    assert (tmp_path / "d.svg").is_file()
+    assert (tmp_path / "d.csv").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["plot", "mft", "tessar-50mm"], 'unknown plot "mft"'),
+        (["plot", "mtf"], "the name of a lens is missing"),
+        (["plot", "mtf", "tessar-50mm", "-o", "x.bmp"], ".svg, .png or .pdf is wanted"),
+        (["plot", "wavefront", "tessar-50mm", "--fields", "0,5"], "of one field; 2 are given"),
+        (["plot", "mtf", "tessar-50mm", "--fields", "1,a"], '"a" is not a number'),
+        (["plot", "mtf", "tessar-50mm", "--theme", "blue"], "light or dark is wanted"),
+        (["report", "tessar-50mm", "-o", "x.svg"], ".pdf or .html is wanted"),
+        (["report", "tessar-50mm", "--fields", "1,2", "-o", "x.pdf"], "three fields; 2 are given"),
+        (["report", "tessar-50mm", "--fields", "0,10,70", "-o", "x.pdf"], "70"),
+    ],
+)
+def test_mistakes_end_in_one_line(arguments: list[str], message: str, tmp_path: Path) -> None:
+    done = realcam(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert not list(tmp_path.iterdir()), "nothing half-written"
