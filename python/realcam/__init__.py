@@ -35,6 +35,7 @@ from ._core import (
     NothingToPlan,
     Plan,
     PlanDecision,
+    ProjectionStatus,
     RayChunks,
     RayStatus,
     RealcamError,
@@ -62,6 +63,7 @@ from .raw_image import RawImage
 from .render import render
 from .session import ReachedNoise, Session
 from .shot import Shot
+from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_json, save_colmap
 
 __all__ = [
     "PSF",
@@ -69,6 +71,7 @@ __all__ = [
     "AimedRays",
     "ArgumentError",
     "Camera",
+    "CameraModelFit",
     "CameraRays",
     "Cancelled",
     "Coating",
@@ -93,6 +96,7 @@ __all__ = [
     "NothingToPlan",
     "Plan",
     "PlanDecision",
+    "ProjectionStatus",
     "RawImage",
     "RayChunks",
     "RayStatus",
@@ -112,11 +116,15 @@ __all__ = [
     "Wavefront",
     "__version__",
     "accuracy_cost",
+    "camera_json",
     "devices",
     "effects",
+    "fit_camera_model",
     "lens_names",
     "plan",
     "read_environment",
     "render",
+    "save_camera_json",
+    "save_colmap",
     "sensor_names",
 ]
