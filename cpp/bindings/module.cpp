@@ -19,6 +19,7 @@ PYBIND11_MODULE(_core, m) {
     bind_transmission(m);
     bind_camera(m);
     bind_camera_rays(m);
+    bind_projection(m);
     bind_material(m);
     bind_scene(m);
     bind_render(m);

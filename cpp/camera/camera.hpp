@@ -204,26 +204,35 @@ inline std::vector<Affine<double>> exposure_keys(const Camera& camera) {
     return steps == 0 ? std::vector<Affine<double>>() : uniform_keys(motion, exposure, steps);
 }
 
+/// ThinLens in double precision.
+struct IdealLens {
+    double image_distance, inverse_object_distance, pupil_radius;
+};
+
 /// Pupil and magnification of the real lens, as an ideal lens in the entrance pupil. The film plane is paraxially
 /// conjugate to the object plane at focus_distance.
-inline ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data) {
-    ThinLens thin{};
-    thin.pupil_radius = static_cast<float>(0.5 * data.entrance_pupil_diameter);
-    thin.image_distance = static_cast<float>(std::fabs(data.effective_focal_length));
+inline IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data) {
+    IdealLens ideal{std::fabs(data.effective_focal_length), 0, 0.5 * data.entrance_pupil_diameter};
     if (data.is_afocal()) {
         // The film is where it is; the ray through the middle of the pupil says how large the picture is there.
         const ParaxialRay chief = trace_paraxial(lens, lens.wavelength_nm, {-data.entrance_pupil_position, 1}, 0,
                                                  static_cast<int>(lens.surfaces.size()));
-        thin.image_distance = static_cast<float>(std::fabs(chief.height + lens.film_distance * chief.slope));
+        ideal.image_distance = std::fabs(chief.height + lens.film_distance * chief.slope);
     } else if (std::isfinite(lens.focus_distance)) {
         const double object = lens.focus_distance - lens.film_position();  // in front of the first vertex
         const double to_pupil = object + data.entrance_pupil_position;
         const ParaxialRay end =
             trace_paraxial(lens, lens.wavelength_nm, {object, 1}, 0, static_cast<int>(lens.surfaces.size()));
-        thin.image_distance = static_cast<float>(std::fabs(to_pupil / end.slope));
-        thin.inverse_object_distance = static_cast<float>(1 / to_pupil);
+        ideal.image_distance = std::fabs(to_pupil / end.slope);
+        ideal.inverse_object_distance = 1 / to_pupil;
     }
-    return thin;
+    return ideal;
+}
+
+inline ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data) {
+    const IdealLens ideal = ideal_lens_of(lens, data);
+    return {static_cast<float>(ideal.image_distance), static_cast<float>(ideal.inverse_object_distance),
+            static_cast<float>(ideal.pupil_radius)};
 }
 
 inline ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {

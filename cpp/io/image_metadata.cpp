@@ -1,6 +1,7 @@
 #include "image_metadata.hpp"
 
 #include <cstdio>
+#include <initializer_list>
 #include <numbers>
 
 #include "../render/effect_names.hpp"
@@ -12,6 +13,17 @@ std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.9g", value);
     return text;
+}
+
+/// With all digits that a place far from the scene's origin needs.
+std::string numbers(std::initializer_list<double> values) {
+    std::string list;
+    for (const double value : values) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.15g", value + 0.0);  // no -0
+        list += (list.empty() ? "" : " ") + std::string(text);
+    }
+    return list;
 }
 
 }  // namespace
@@ -44,6 +56,9 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.focus_distance_m = camera.lens.focus_distance / 1000;
     metadata.film_width_mm = camera.film.width_mm;
     metadata.film_height_mm = camera.film.height_mm;
+    metadata.pixel_width_um = 1000 * camera.film.width_mm / camera.film.width;
+    metadata.pixel_height_um = 1000 * camera.film.height_mm / camera.film.height;
+    metadata.pinhole = pinhole_camera(camera, middle_pose(camera));
     metadata.exposure_time_s = camera.exposure_time_s;
     metadata.shutter_opens_s = camera.shutter.opens_s;
     metadata.readout_time_s = camera.shutter.readout_time_s;
@@ -68,10 +83,20 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
         {"realcam:f_number", number(f_number)},
         {"realcam:focus_distance_m", number(focus_distance_m)},
         {"realcam:film_mm", number(film_width_mm) + "x" + number(film_height_mm)},
+        {"realcam:pixel_pitch_um", number(pixel_width_um) + "x" + number(pixel_height_um)},
         {"realcam:exposure_time_s", number(exposure_time_s)},
         {"realcam:iso", number(iso)},
         {"realcam:seed", std::to_string(seed)},
         {"realcam:spp", std::to_string(spp)}};
+    if (pinhole) {
+        const PinholeCamera& p = *pinhole;
+        entries.emplace_back("realcam:camera_matrix",
+                             numbers({p.focal_x, 0, p.centre_x, 0, p.focal_y, p.centre_y, 0, 0, 1}));
+        const Vec3d t = p.translation_m;
+        entries.emplace_back("realcam:world_to_camera",
+                             numbers({p.right.x, p.right.y, p.right.z, t.x, p.down.x, p.down.y, p.down.z, t.y,
+                                      p.forward.x, p.forward.y, p.forward.z, t.z}));
+    }
     // What is not said of a picture is that nothing was left out, that the diaphragm is round, and that the shutter
     // opened at once at time 0.
     if (iris.blades > 0) {

@@ -1,10 +1,11 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "../camera/camera.hpp"
+#include "../camera/pinhole_camera.hpp"
 #include "../render/render_settings.hpp"
 
 namespace realcam::io {
@@ -18,6 +19,8 @@ struct ImageMetadata {
     IrisShape iris;
     double focus_distance_m = 0;  ///< object plane to film; may be infinite
     double film_width_mm = 0, film_height_mm = 0;
+    double pixel_width_um = 0, pixel_height_um = 0;
+    std::optional<PinholeCamera> pinhole;  ///< to first order, in the middle of the exposure
     double exposure_time_s = 0;
     double shutter_opens_s = 0, readout_time_s = 0;
     double iso = 100;

@@ -1,6 +1,12 @@
 #pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
 #include "../math/gauss_legendre.hpp"
-#include "point_bundle.hpp"
+#include "../math/vec3.hpp"
+#include "ray_loop.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -9,10 +15,10 @@ struct BundleSampling {
     int spokes, nodes;
 };
 
-/// A ray of an integral over the light, by where it crosses the entry plane.
+/// A ray of an integral over the light, by its place in the plane in which the bundle is even.
 struct EntryPart {
-    PointBundle::Entry entry;
-    double area;  ///< mm^2
+    Vec2<double> entry;
+    double area;  ///< in the units of the entry, squared
 };
 
 /// A part of a spoke on which light passes, by its distances from the spokes' middle in units of the bundle's reach.
@@ -24,17 +30,18 @@ namespace bundle_quadrature_detail {
 
 /// One line from the middle of the light outwards, in units of the bundle's reach, and where the lens lets light pass
 /// on it.
+template <class Bundle>
 class Spoke {
 public:
-    Spoke(const PointBundle& bundle, double angle) : bundle_(bundle), cos_(std::cos(angle)), sin_(std::sin(angle)) {}
+    Spoke(const Bundle& bundle, double angle) : bundle_(bundle), cos_(std::cos(angle)), sin_(std::sin(angle)) {}
 
-    PointBundle::Entry at(double r) const {
+    Vec2<double> at(double r) const {
         return {bundle_.middle.x + r * cos_ * bundle_.reach.x, bundle_.middle.y + r * sin_ * bundle_.reach.y};
     }
 
     /// Looks at steps of a twentieth of the reach; edges are found within 1e-9 of it.
     std::vector<Stretch> stretches() const {
-        PointBundle::Entry entries[kSteps];
+        Vec2<double> entries[kSteps];
         bool passes[kSteps];
         for (int i = 0; i < kSteps; ++i) entries[i] = at(i * kStep);
         bundle_.pass(entries, passes);
@@ -59,7 +66,7 @@ private:
     /// By quarters, between a place that is like the step before it and one that is like the step beyond.
     double edge(double low, double high, bool beyond) const {
         while (high - low > 1e-9) {
-            PointBundle::Entry entries[3];
+            Vec2<double> entries[3];
             bool passes[3];
             const double part = 0.25 * (high - low);
             for (int i = 0; i < 3; ++i) entries[i] = at(low + (i + 1) * part);
@@ -70,7 +77,7 @@ private:
         return 0.5 * (low + high);
     }
 
-    const PointBundle& bundle_;
+    const Bundle& bundle_;
     double cos_, sin_;
 };
 
@@ -81,14 +88,16 @@ struct LitSpoke {
     double cos, sin;
     std::vector<Stretch> stretches;
 
-    PointBundle::Entry at(const PointBundle& bundle, double r) const {
+    template <class Bundle>
+    Vec2<double> at(const Bundle& bundle, double r) const {
         return {bundle.middle.x + r * cos * bundle.reach.x, bundle.middle.y + r * sin * bundle.reach.y};
     }
 };
 
 /// Spokes at even angles over the light, in the order of their angles from -90 degrees on. Of a bundle that is its own
 /// mirror image only the half of x > 0 is taken; `count` is that of the whole.
-inline std::vector<LitSpoke> lit_spokes(const PointBundle& bundle, int count, const RayLoop& loop = {}) {
+template <class Bundle>
+std::vector<LitSpoke> lit_spokes(const Bundle& bundle, int count, const RayLoop& loop = {}) {
     using namespace bundle_quadrature_detail;
     const std::size_t half = static_cast<std::size_t>(count + 1) / 2, spokes = bundle.mirrored ? half : 2 * half;
     const double between = std::numbers::pi / static_cast<double>(half);
@@ -105,7 +114,8 @@ inline std::vector<LitSpoke> lit_spokes(const PointBundle& bundle, int count, co
 /// Rays for integrals over what passes the lens: on each spoke Gauss's nodes between the edges of the light, wherever
 /// rims, blades and obstructions put them. So nothing is lost at edges, and smooth functions need few rays. Rays of a
 /// half bundle stand for twice their area.
-inline std::vector<EntryPart> entry_parts(const PointBundle& bundle, const std::vector<LitSpoke>& spokes, int nodes) {
+template <class Bundle>
+std::vector<EntryPart> entry_parts(const Bundle& bundle, const std::vector<LitSpoke>& spokes, int nodes) {
     std::vector<GaussNode> rule;
     for (int i = 0; i < nodes; ++i) rule.push_back(gauss_node(nodes, i));
     const double circle = bundle.reach.x * bundle.reach.y * 2 * std::numbers::pi;
@@ -120,8 +130,8 @@ inline std::vector<EntryPart> entry_parts(const PointBundle& bundle, const std::
     return parts;
 }
 
-inline std::vector<EntryPart> entry_parts(const PointBundle& bundle, BundleSampling sampling,
-                                          const RayLoop& loop = {}) {
+template <class Bundle>
+std::vector<EntryPart> entry_parts(const Bundle& bundle, BundleSampling sampling, const RayLoop& loop = {}) {
     return entry_parts(bundle, lit_spokes(bundle, sampling.spokes, loop), sampling.nodes);
 }
 

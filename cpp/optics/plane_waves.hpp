@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "bundle_quadrature.hpp"
+#include "point_bundle.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -37,6 +37,7 @@ from ._core import (
     NothingToPlan,
     Plan,
     PlanDecision,
+    ProjectionStatus,
     RayBundle,
     RayChunks,
     RayStatus,
@@ -67,6 +68,7 @@ from .raw_image import RawImage
 from .render import render
 from .session import ReachedNoise, Session
 from .shot import Shot
+from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_json, save_colmap
 
 if TYPE_CHECKING:
     from . import analysis
@@ -77,6 +79,7 @@ __all__ = [
     "AimedRays",
     "ArgumentError",
     "Camera",
+    "CameraModelFit",
     "CameraRays",
     "Cancelled",
     "Coating",
@@ -104,6 +107,7 @@ __all__ = [
     "PhotographicFigures",
     "Plan",
     "PlanDecision",
+    "ProjectionStatus",
     "RawImage",
     "RayBundle",
     "RayChunks",
@@ -124,19 +128,20 @@ __all__ = [
     "Wavefront",
     "__version__",
     "accuracy_cost",
-<<<<<<< HEAD
+    "analysis",
+    "camera_json",
     "cross_section",
     "depth_of_field",
-=======
-    "analysis",
->>>>>>> 8ed15474c753ca9af28b43834226405aa33cb8bc
     "devices",
     "effects",
+    "fit_camera_model",
     "lens_names",
     "photographic_figures",
     "plan",
     "read_environment",
     "render",
+    "save_camera_json",
+    "save_colmap",
     "sensor_names",
 ]
 

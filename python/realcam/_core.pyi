@@ -70,6 +70,13 @@ class RayStatus(IntEnum):
     NO_CONVERGENCE = 4
     BAD_INPUT = 5
 
+class ProjectionStatus(IntEnum):
+    OK = 0
+    OUTSIDE_PICTURE = 1
+    BLOCKED = 2
+    BEHIND = 3
+    BAD_INPUT = 4
+
 @final
 class Glass(_Value):
     @staticmethod
@@ -838,6 +845,26 @@ class Camera(_Value):
     def ray_chunks(
         self, *, spp: int = 1, seed: int = 0, device: str = "cpu", max_rays: int = 4194304
     ) -> RayChunks[Any, Any, Any]: ...
+    @overload
+    def project(
+        self, points_m: ArrayLike, *, through: str = "light", return_status: Literal[False] = False
+    ) -> NDArray[np.float64]: ...
+    @overload
+    def project(
+        self, points_m: ArrayLike, *, through: str = "light", return_status: Literal[True]
+    ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
+    @overload
+    def ray(
+        self, pixels: ArrayLike, *, through: str = "light", return_light: Literal[False] = False
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    @overload
+    def ray(
+        self, pixels: ArrayLike, *, through: str = "light", return_light: Literal[True]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    @property
+    def camera_matrix(self) -> NDArray[np.float64]: ...
+    @property
+    def world_to_camera(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     @property
     def lens(self) -> Lens: ...
     @property

@@ -1,0 +1,186 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <mutex>
+
+#include "../camera/last_setup.hpp"
+#include "../camera/pinhole_camera.hpp"
+#include "../camera/projection.hpp"
+#include "../embree/fast_pupil_tracer.hpp"
+#include "../embree/lens_rays.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+using Array = InputArray<double>;
+
+SightRay sight_ray_from(const std::string& name) {
+    if (name == "light") return SightRay::light;
+    if (name == "chief") return SightRay::chief;
+    throw InputError("unknown ray \"" + name + "\"; light or chief is wanted");
+}
+
+/// Keeps the last lines, because most programs ask again with the same lens and film. To be called without the
+/// interpreter's lock.
+std::shared_ptr<const SightLines> lines_of(const Camera& camera, SightRay ray) {
+    struct Last {
+        LensSystem lens;
+        double width_mm, height_mm;
+        CameraModel model;
+        SightRay ray;
+        bool operator==(const Last&) const = default;
+    };
+    static std::mutex mutex;
+    static std::optional<Last> last;
+    static std::shared_ptr<const SightLines> lines;
+    static LastSetup setups;
+    validate(camera);
+    Last wanted = {camera.lens, camera.film.width_mm, camera.film.height_mm, camera.model, ray};
+    {
+        const std::lock_guard lock(mutex);
+        if (last == wanted) return lines;
+    }
+    Camera still = camera;  // only lens and film count, and no motion of it is too fast
+    still.motion.clear();
+    // What lies a little beside the film shows where its corners' light goes.
+    constexpr double kMargin = 1.05;
+    if (has_real_pupil(camera.model)) {
+        still.film.width_mm *= kMargin;
+        still.film.height_mm *= kMargin;
+    }
+    auto made = std::make_shared<const SightLines>(*setups.make(still, fast_pupil_tracer()), ray,
+                                                   parallel_ray_loop(heed_signals));
+    const std::lock_guard lock(mutex);
+    last = std::move(wanted);
+    return lines = std::move(made);
+}
+
+std::int64_t row_count(const Array& array, int columns, const char* what) {
+    if (array.ndim() != 2 || array.shape(1) != columns)
+        throw InputError(std::string(what) + " must be an array of shape (N, " + std::to_string(columns) + ")");
+    return array.shape(0);
+}
+
+py::object project(const Camera& camera, const Array& points, const std::string& through, bool return_status) {
+    const SightRay ray = sight_ray_from(through);
+    const std::int64_t count = row_count(points, 3, "points_m");
+    py::array_t<double> pixels({count, std::int64_t{2}});
+    py::array_t<int> status(count);
+    const double* from = points.data();
+    double* to = pixels.mutable_data();
+    int* states = status.mutable_data();
+    {
+        const Unlocked unlocked;
+        const Projection projection(camera, lines_of(camera, ray));
+        parallel_ray_loop(heed_signals).for_all(static_cast<std::size_t>(count), [&](std::size_t i, std::size_t end) {
+            for (; i < end; ++i) {
+                const ProjectedPoint at = projection.pixel_of({from[3 * i], from[3 * i + 1], from[3 * i + 2]});
+                to[2 * i] = at.pixel.x;
+                to[2 * i + 1] = at.pixel.y;
+                states[i] = static_cast<int>(at.status);
+            }
+        });
+    }
+    if (!return_status) return pixels;
+    return py::make_tuple(pixels, status);
+}
+
+py::tuple rays_of(const Camera& camera, const Array& pixels, const std::string& through, bool return_light) {
+    const SightRay which = sight_ray_from(through);
+    const std::int64_t count = row_count(pixels, 2, "pixels");
+    py::array_t<double> origins({count, std::int64_t{3}}), directions({count, std::int64_t{3}}), light(count);
+    const double* from = pixels.data();
+    double *at = origins.mutable_data(), *along = directions.mutable_data(), *shares = light.mutable_data();
+    {
+        const Unlocked unlocked;
+        const Projection projection(camera, lines_of(camera, which));
+        parallel_ray_loop(heed_signals).for_all(static_cast<std::size_t>(count), [&](std::size_t i, std::size_t end) {
+            for (; i < end; ++i) {
+                const PixelRay ray = projection.ray_of({from[2 * i], from[2 * i + 1]});
+                const double numbers[] = {ray.origin_m.x,  ray.origin_m.y,  ray.origin_m.z,
+                                          ray.direction.x, ray.direction.y, ray.direction.z};
+                std::copy(numbers, numbers + 3, at + 3 * i);
+                std::copy(numbers + 3, numbers + 6, along + 3 * i);
+                shares[i] = ray.light;
+            }
+        });
+    }
+    if (return_light) return py::make_tuple(origins, directions, light);
+    return py::make_tuple(origins, directions);
+}
+
+PinholeCamera pinhole_of(const Camera& camera) {
+    const std::optional<PinholeCamera> pinhole = pinhole_camera(camera, middle_pose(camera));
+    if (!pinhole)
+        throw InputError("lens \"" + camera.lens.name +
+                         "\" has no centre of projection: its entrance pupil lies at infinity");
+    return *pinhole;
+}
+
+py::array_t<double> camera_matrix(const Camera& camera) {
+    const PinholeCamera pinhole = pinhole_of(camera);
+    return copy_of<double>({pinhole.focal_x, 0, pinhole.centre_x, 0, pinhole.focal_y, pinhole.centre_y, 0, 0, 1},
+                           {3, 3});
+}
+
+py::tuple world_to_camera(const Camera& camera) {
+    const PinholeCamera p = pinhole_of(camera);
+    const Vec3d t = p.translation_m;
+    return py::make_tuple(copy_of<double>({p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z, p.forward.x,
+                                           p.forward.y, p.forward.z},
+                                          {3, 3}),
+                          copy_of<double>({t.x, t.y, t.z}, {3}));
+}
+
+}  // namespace
+
+void bind_projection(py::module_& m) {
+    py::dict values;
+    const std::pair<const char*, ProjectionStatus> statuses[] = {
+        {"OK", ProjectionStatus::ok},
+        {"OUTSIDE_PICTURE", ProjectionStatus::outside_picture},
+        {"BLOCKED", ProjectionStatus::blocked},
+        {"BEHIND", ProjectionStatus::behind},
+        {"BAD_INPUT", ProjectionStatus::bad_input},
+    };
+    for (const auto& [name, status] : statuses) values[name] = static_cast<int>(status);
+    m.attr("ProjectionStatus") =
+        py::module_::import("enum").attr("IntEnum")("ProjectionStatus", values, "module"_a = "realcam");
+    py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
+        .def("project", &project, "points_m"_a, py::kw_only(), "through"_a = "light", "return_status"_a = false,
+             "Where points of the scene, (N, 3) in metres, are in the picture: (N, 2) float64, column and row in\n"
+             "pixels, counted right and down from the picture's upper left corner, so that the middle of the first\n"
+             "pixel is (0.5, 0.5). By real rays at the lens's design wavelength, through lens, focus and stop as they\n"
+             "are, or by the camera's model. Whether something in the scene hides a point is not asked.\n"
+             "through: \"light\": the middle of the light of a point, as pictures show it, by the mean ray of each\n"
+             "film point; \"chief\": where the ray through the middle of the stop lands.\n"
+             "NaN where the lens images no such point. return_status: return (pixels, status), with a\n"
+             "ProjectionStatus for each point. Raises InputError.")
+        .def("ray", &rays_of, "pixels"_a, py::kw_only(), "through"_a = "light", "return_light"_a = false,
+             "The lines along which places of the picture, (N, 2) column and row as from project, look into the\n"
+             "scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second\n"
+             "unit. project takes each of their points back to the pixel.\n"
+             "through: \"light\": the mean of the rays that a film point gets; \"chief\": that through the middle of\n"
+             "the stop, even where a rim blocks it. NaN for a pixel without light, and at the edge of the image where\n"
+             "the lines turn back inwards. return_light: return (origins_m, directions, light), with the irradiance\n"
+             "of each pixel in an even field, over that in the middle of the film. Raises InputError.")
+        .def_property_readonly(
+            "camera_matrix", &camera_matrix,
+            "(3, 3): K of the pinhole that the lens is to first order, in pixels as project counts them. OpenCV, "
+            "whose\n"
+            "first pixel has its middle at (0, 0), wants 0.5 less in the last column. Raises InputError where the\n"
+            "entrance pupil lies at infinity.")
+        .def_property_readonly(
+            "world_to_camera", &world_to_camera,
+            "(R, t), (3, 3) and (3,) in metres: R @ point + t is the point from the middle of the entrance pupil, "
+            "with\n"
+            "x right, y down and z forward, as OpenCV and COLMAP have it. Of a camera that moves: in the middle of\n"
+            "the exposure. Raises InputError where the entrance pupil lies at infinity.");
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,75 @@
+"""Pose and intrinsics of a camera as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Iterable
+from typing import Any
+
+from .._core import Camera, __version__
+from ..files import write_whole
+from . import conventions
+from .fit import CameraModelFit
+from .models import distortion_coefficients, model_named
+
+
+def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str, Any]:
+    """Pose and intrinsics as json.dump takes them; docs/vision.md says what each entry means. Infinity is None.
+
+    fits: of this camera, from fit_camera_model. Raises InputError where the entrance pupil lies at infinity.
+    """
+    lens, film = camera.lens, camera.film
+    rotation, translation = camera.world_to_camera
+    matrix = camera.camera_matrix
+    data = lens.first_order()
+    return {
+        "realcam": __version__,
+        "width": film.resolution[0],
+        "height": film.resolution[1],
+        "film_mm": [film.width_mm, film.height_mm],
+        "lens": {
+            "name": lens.name,
+            "focal_length_mm": _finite(data.effective_focal_length_mm),
+            "f_number": _finite(data.f_number),
+            "focus_distance_m": _finite(lens.focus_distance_m),
+        },
+        "model": camera.model,
+        "exposure_time_s": camera.exposure_time_s,
+        "iso": camera.iso,
+        "pose": {
+            "film_centre_m": list(camera.position),
+            "entrance_pupil_m": list(camera.entrance_pupil_position_m or ()),
+            "world_to_camera": {"rotation": rotation.tolist(), "translation_m": translation.tolist()},
+            "camera_to_world_opengl": conventions.opengl_pose(rotation, translation).tolist(),
+        },
+        "camera_matrix": matrix.tolist(),
+        "opencv_camera_matrix": conventions.opencv_matrix(matrix).tolist(),
+        "fits": [_fit_json(fit) for fit in fits],
+    }
+
+
+def save_camera_json(path: str | os.PathLike[str], camera: Camera, fits: Iterable[CameraModelFit] = ()) -> None:
+    """Writes camera_json into a file. Raises InputError, ImageFileError."""
+    write_whole(path, (json.dumps(camera_json(camera, fits), indent=1) + "\n").encode())
+
+
+def _fit_json(fit: CameraModelFit) -> dict[str, Any]:
+    entry = {
+        "model": fit.model,
+        "camera_matrix": fit.camera_matrix.tolist(),
+        "coefficients": fit.coefficients.tolist(),
+        "rms_px": fit.rms_px,
+        "max_px": fit.max_px,
+        "distance_m": _finite(fit.distance_m),
+        "largest_angle_deg": fit.largest_angle_deg,
+    }
+    if fit.model != "f_theta":
+        entry["opencv_camera_matrix"] = conventions.opencv_matrix(fit.camera_matrix).tolist()
+        entry["opencv_coefficients"] = distortion_coefficients(model_named(fit.model), fit.coefficients)
+    return entry
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

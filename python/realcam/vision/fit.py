@@ -1,0 +1,243 @@
+"""Camera models of computer vision, fitted to the rays of a real lens."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import Camera, InputError
+from . import conventions
+from .models import RadialModel, distortion_coefficients, model_named
+from .scipy_extra import scipy_or_error
+
+Array = NDArray[np.float64]
+
+GRID = 49  # places across the longer side of the film, its edges included
+LEAST_LIGHT = (
+    0.1  # of that in the middle; where there is less, no pattern is recognised, and rims alone say what is seen
+)
+
+
+@dataclass(frozen=True, eq=False)
+class CameraModelFit:
+    """A camera model that stands for a camera.
+
+    model: its name. camera: to which it was fitted. camera_matrix: (3, 3), K for pixels as Camera.project counts them.
+    coefficients: k1, k2, ... of the model (realcam.vision.models). distance_m: of the points to which it was fitted,
+    from the middle of the entrance pupil. through: as Camera.project has it. pixels: (N, 2), places of the film;
+    residuals: (N, 2), by how much the model shows elsewhere what the lens shows there, in pixels. largest_angle_deg: to
+    the axis, up to which the model's radius grows, and the model can be inverted.
+    """
+
+    model: str
+    camera: Camera
+    camera_matrix: Array
+    coefficients: Array
+    distance_m: float
+    through: str
+    pixels: Array
+    residuals: Array
+    largest_angle_deg: float
+
+    @property
+    def rms_px(self) -> float:
+        """The root mean square of the residuals' lengths."""
+        return float(np.sqrt(np.mean(np.sum(self.residuals**2, axis=1))))
+
+    @property
+    def max_px(self) -> float:
+        """The largest length of a residual."""
+        return float(np.linalg.norm(self.residuals, axis=1).max())
+
+    @property
+    def covers_film(self) -> bool:
+        """Whether the model can be inverted for all that the film sees."""
+        return not np.isnan(self.unproject(self.pixels)).any()
+
+    @property
+    def largest_radius_px(self) -> float:
+        """Distance from the middle of the picture that belongs to largest_angle_deg, in columns."""
+        return float(self.camera_matrix[0, 0] * self._largest_radius())
+
+    def project(self, points_m: ArrayLike) -> Array:
+        """(N, 3) points of the scene -> (N, 2) pixels as from Camera.project; NaN beyond largest_angle_deg."""
+        rotation, translation = self.camera.world_to_camera
+        seen = np.asarray(points_m, dtype=float) @ rotation.T + translation
+        return projected(model_named(self.model), self.camera_matrix, self.coefficients, seen)
+
+    def unproject(self, pixels: ArrayLike) -> Array:
+        """(N, 2) pixels -> (N, 3) unit directions in the scene, from Camera.entrance_pupil_position_m.
+
+        NaN beyond largest_radius_px.
+        """
+        model = model_named(self.model)
+        K = self.camera_matrix
+        plane = (np.asarray(pixels, dtype=float) - K[:2, 2]) / np.diag(K)[:2]
+        radius = np.hypot(plane[:, 0], plane[:, 1])
+        # Bisection: 60 halvings leave no more than a rounding error of an angle.
+        low, high = np.zeros_like(radius), np.full_like(radius, np.radians(self.largest_angle_deg))
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            below = model.radius(model.argument(middle), self.coefficients) < radius
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        angle = np.where(radius <= self._largest_radius(), 0.5 * (low + high), np.nan)
+        across = np.sin(angle) / np.where(radius > 0, radius, 1)
+        seen = np.stack([across * plane[:, 0], across * plane[:, 1], np.cos(angle)], axis=1)
+        directions: Array = seen @ self.camera.world_to_camera[0]
+        return directions
+
+    def residuals_at(self, distance_m: float) -> Array:
+        """(N, 2): the residuals for points at another distance.
+
+        A real lens has no one centre of projection: its entrance pupil moves with the angle, which shows near the lens.
+        """
+        seen, pixels = calibration_points(self.camera, distance_m, self.through)
+        return projected(model_named(self.model), self.camera_matrix, self.coefficients, seen) - pixels
+
+    def opencv(self) -> tuple[Array, Array]:
+        """(K, coefficients) as OpenCV takes them: pixels count from the middle of the first.
+
+        Of the model fisheye for the functions of cv2.fisheye. Raises InputError for f_theta.
+        """
+        coefficients = distortion_coefficients(model_named(self.model), self.coefficients)
+        return conventions.opencv_matrix(self.camera_matrix), np.array(coefficients)
+
+    def _largest_radius(self) -> float:
+        limit = np.array(np.radians(self.largest_angle_deg) * (1 - 1e-9))  # short of a pole
+        model = model_named(self.model)
+        with np.errstate(invalid="ignore"):
+            radius = float(model.radius(model.argument(limit), self.coefficients))
+        return radius if np.isfinite(radius) else np.inf
+
+
+def fit_camera_model(
+    camera: Camera, model: str = "opencv5", *, distance_m: float | None = None, through: str = "light"
+) -> CameraModelFit:
+    """Fits a camera model to the rays of the camera, by least squares of the distances on the film, in pixels.
+
+    model: "pinhole", "opencv4", "opencv5", "opencv8" (OpenCV's with 2, 3 and 6 radial coefficients; the two of
+    tangential distortion are 0 for a lens, which is round), "fisheye" (Kannala and Brandt, cv2.fisheye), "f_theta" (a
+    polynomial of the angle). Its centre of projection is the middle of the paraxial entrance pupil, and its axis that
+    of the lens. distance_m: of the points that are matched, from there, infinity allowed; None: of the plane in focus.
+    through: as Camera.project has it. Where the film gets less than a tenth of the light in its middle does not count.
+
+    Wants scipy (pip install realcam[vision]). Raises InputError; for models by the tangent of the angle also where the
+    film sees 90 degrees to the side.
+    """
+    from_model = model_named(model)
+    optimize = scipy_or_error().optimize
+    if distance_m is None:
+        distance_m = _focus_from_pupil_m(camera)
+    seen, pixels = calibration_points(camera, distance_m, through)
+    start = camera.camera_matrix
+    s = from_model.argument(_angles(seen))
+    if np.isnan(s).any():
+        raise InputError(
+            f'the camera model {model} has no place for lens "{camera.lens.name}": its film sees 90 degrees to the '
+            "side and more; fisheye, f_theta or a smaller film is wanted"
+        )
+    r = np.hypot(*((pixels - start[:2, 2]) / np.diag(start)[:2]).T)
+
+    def matrix(parameters: Array) -> Array:
+        scaled: Array = start.copy()
+        scaled[[0, 1], [0, 1]] *= parameters[0]
+        return scaled
+
+    def residuals(parameters: Array) -> Array:
+        return _shown(from_model, matrix(parameters), parameters[1:], seen) - pixels
+
+    # To the last digit: the sum of squares is flat near its minimum, where coefficients trade for each other.
+    tolerances = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
+    guesses = _first_guesses(from_model, s, r)
+    found = [
+        optimize.least_squares(lambda p: residuals(p).ravel(), guess, method="lm", x_scale="jac", **tolerances).x
+        for guess in guesses
+    ]
+    # A numerator and a denominator may have a root each side by side within the picture, a pole between the points. The
+    # guess without a denominator has none.
+    candidates = [*found, *guesses]
+    widest = _angles(seen).max()
+    sound = [p for p in candidates if from_model.largest_angle(p[1:]) >= widest] or candidates
+    best = min(sound, key=lambda p: np.sum(residuals(p) ** 2))
+    return CameraModelFit(
+        model=model,
+        camera=camera,
+        camera_matrix=matrix(best),
+        coefficients=best[1:],
+        distance_m=distance_m,
+        through=through,
+        pixels=pixels,
+        residuals=residuals(best),
+        largest_angle_deg=float(np.degrees(from_model.largest_angle(best[1:]))),
+    )
+
+
+def _first_guesses(model: RadialModel, s: Array, r: Array) -> list[Array]:
+    """(f, coefficients) that solve r (1 + ...) = f s (1 + ...), linear in its unknowns; and without a denominator."""
+    above = 1 + len(model.numerator)
+    columns = model.linear_terms(s, r)
+    guesses = []
+    for count in {above, columns.shape[1]}:
+        found, *_ = np.linalg.lstsq(columns[:, :count], r, rcond=None)
+        found = np.append(found, np.zeros(columns.shape[1] - count))
+        guesses.append(np.concatenate([found[:1], found[1:above] / found[0], found[above:]]))
+    return guesses
+
+
+def calibration_points(camera: Camera, distance_m: float, through: str = "light") -> tuple[Array, Array]:
+    """(seen, pixels): places all over the film that have a tenth of the light in its middle or more, (N, 2), and what
+    they show at a distance from the middle of the entrance pupil, (N, 3) in the axes of world_to_camera; at infinity
+    unit directions. Raises InputError.
+    """
+    if not distance_m > 0:
+        raise InputError("distance_m must be a positive number of metres, or inf")
+    if camera.motion:
+        raise InputError("a camera model is fitted to a camera that stands still; replace(motion=[]) gives one")
+    columns, rows = camera.film.resolution
+    width, height = camera.film.width_mm, camera.film.height_mm
+    places = [max(3, round(GRID * side / max(width, height))) for side in (width, height)]
+    grid = np.meshgrid(np.linspace(0, columns, places[0]), np.linspace(0, rows, places[1]))
+    pixels = np.stack(grid, axis=-1).reshape(-1, 2)
+    origins, directions, light = camera.ray(pixels, through=through, return_light=True)
+    lit = ~np.isnan(directions[:, 0]) & (light >= LEAST_LIGHT)
+    pixels, origins, directions = pixels[lit], origins[lit], directions[lit]
+    rotation, translation = camera.world_to_camera
+    directions = directions @ rotation.T
+    if np.isinf(distance_m):
+        return directions, pixels
+    # Where each line leaves the sphere about the middle of the pupil.
+    apart = origins @ rotation.T + translation
+    along = np.sum(apart * directions, axis=1)
+    rest = along**2 - np.sum(apart**2, axis=1) + distance_m**2
+    if (rest < 0).any() or (np.sqrt(rest) < along).any():
+        raise InputError(f"distance_m is {distance_m}, which lies inside the lens; a larger one is wanted")
+    return apart + (np.sqrt(rest) - along)[:, None] * directions, pixels
+
+
+def projected(model: RadialModel, camera_matrix: Array, coefficients: Array, seen: Array) -> Array:
+    """(N, 3) points in the axes of the camera -> (N, 2) pixels; NaN where the model has none or turns back."""
+    pixels = _shown(model, camera_matrix, coefficients, seen)
+    pixels[_angles(seen) > model.largest_angle(coefficients)] = np.nan
+    return pixels
+
+
+def _shown(model: RadialModel, camera_matrix: Array, coefficients: Array, seen: Array) -> Array:
+    radius = model.radius(model.argument(_angles(seen)), coefficients)
+    across = np.hypot(seen[:, 0], seen[:, 1])
+    share = radius / np.where(across > 0, across, 1)
+    pixels: Array = share[:, None] * seen[:, :2] * np.diag(camera_matrix)[:2] + camera_matrix[:2, 2]
+    return pixels
+
+
+def _angles(seen: Array) -> Array:
+    angles: Array = np.arctan2(np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2])
+    return angles
+
+
+def _focus_from_pupil_m(camera: Camera) -> float:
+    if np.isinf(camera.lens.focus_distance_m) or camera.entrance_pupil_position_m is None:
+        return np.inf
+    pupil = np.linalg.norm(np.subtract(camera.entrance_pupil_position_m, camera.position))
+    return float(camera.lens.focus_distance_m - pupil)

@@ -1,0 +1,108 @@
+"""The camera models of computer vision, as functions of the angle to the axis.
+
+Lenses are round, so that a model says how far from the middle of the picture a direction shows, r(s), in units of the
+focal length; s is the angle theta itself, or its tangent. Tangential terms are 0. Sources: OpenCV's documentation of
+calib3d and fisheye (J. Kannala and S. Brandt, IEEE PAMI 28 (2006) 1335, with the odd powers up to the ninth); f_theta
+is the polynomial of simulators and data sets of automobiles, of all powers from the first to the fifth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import InputError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RadialModel:
+    """r(s) = s (1 + sum k_i s^numerator_i) / (1 + sum k_j s^denominator_j)."""
+
+    name: str
+    numerator: tuple[int, ...] = ()
+    denominator: tuple[int, ...] = ()
+    by_tangent: bool = True
+
+    @property
+    def terms(self) -> int:
+        """The number of coefficients."""
+        return len(self.numerator) + len(self.denominator)
+
+    def argument(self, angle: Array) -> Array:
+        """s of angles in radians; NaN where the model has none."""
+        if not self.by_tangent:
+            return angle
+        with np.errstate(invalid="ignore"):
+            return np.where(angle < np.pi / 2, np.tan(angle), np.nan)
+
+    def radius(self, s: Array, coefficients: Array) -> Array:
+        """r(s)."""
+        top, bottom = self._polynomials(coefficients)
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            values: Array = s * top(s) / bottom(s)
+        return values
+
+    def linear_terms(self, s: Array, r: Array) -> Array:
+        """Columns whose multiples by f, f k_i and k_j add up to r: the model as a linear equation in these."""
+        top = [s ** (power + 1) for power in (0, *self.numerator)]
+        return np.stack([*top, *(-r * s**power for power in self.denominator)], axis=-1)
+
+    def largest_angle(self, coefficients: Array) -> float:
+        """Up to where r grows with the angle, in radians."""
+        top, bottom = self._polynomials(coefficients)
+        identity = np.polynomial.Polynomial([0, 1])
+        slope = (identity * top).deriv() * bottom - identity * top * bottom.deriv()
+        # Squares of rounding errors may leave a root of two a little beside the real axis.
+        turns = [
+            root.real
+            for root in [*slope.roots(), *bottom.roots()]
+            if root.real > 0 and abs(root.imag) < 1e-9 * abs(root)
+        ]
+        if self.by_tangent:
+            return float(np.arctan(min(turns))) if turns else np.pi / 2
+        return float(min([*turns, np.pi]))
+
+    def _polynomials(self, coefficients: Array) -> tuple[np.polynomial.Polynomial, np.polynomial.Polynomial]:
+        above = dict(zip(self.numerator, coefficients, strict=False))
+        below = dict(zip(self.denominator, coefficients[len(self.numerator) :], strict=True))
+        return tuple(  # type: ignore[return-value]
+            np.polynomial.Polynomial([1.0, *(powers.get(k, 0.0) for k in range(1, max(powers, default=0) + 1))])
+            for powers in (above, below)
+        )
+
+
+MODELS = {
+    model.name: model
+    for model in (
+        RadialModel("pinhole"),
+        RadialModel("opencv4", (2, 4)),
+        RadialModel("opencv5", (2, 4, 6)),
+        RadialModel("opencv8", (2, 4, 6), (2, 4, 6)),
+        RadialModel("fisheye", (2, 4, 6, 8), by_tangent=False),
+        RadialModel("f_theta", (1, 2, 3, 4), by_tangent=False),
+    )
+}
+
+
+def model_named(name: str) -> RadialModel:
+    """Raises InputError."""
+    if name not in MODELS:
+        raise InputError(f'unknown camera model "{name}"; one of {", ".join(MODELS)} is wanted')
+    return MODELS[name]
+
+
+def distortion_coefficients(model: RadialModel, coefficients: Array) -> list[float]:
+    """As the functions of OpenCV take them: k1, k2, p1, p2, k3, ..., k6; of cv2.fisheye k1 to k4.
+
+    Raises InputError for f_theta, which OpenCV does not have.
+    """
+    k = [float(value) for value in coefficients]
+    if model.name == "f_theta":
+        raise InputError("OpenCV and COLMAP have no model f_theta; fisheye is the nearest that they have")
+    if model.name == "fisheye" or not k:
+        return k
+    return [*k[:2], 0.0, 0.0, *k[2:]]
