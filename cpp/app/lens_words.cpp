@@ -8,7 +8,9 @@
 namespace realcam::app {
 
 void add_lens_options(CLI::App& command, LensWords& words) {
-    command.add_option("--zoom", words.zoom, "Zoom position, by its name in `realcam lens info` [as the lens's file gives it]")
+    command
+        .add_option("--zoom", words.zoom,
+                    "Zoom position, by its name in `realcam lens info` [as the lens's file gives it]")
         ->type_name("NAME");
     command
         .add_option("--glass", words.glasses,
@@ -19,8 +21,9 @@ void add_lens_options(CLI::App& command, LensWords& words) {
     command.add_flag("--force", words.force,
                      "Leave out what the lens's file has that there is no model of, and name it");
     command
-        .add_option("--pbrt-thickness", words.pbrt_thickness,
-                    "Where a thickness in a .dat file stands: after or before the surface of its row [by the first row]")
+        .add_option(
+            "--pbrt-thickness", words.pbrt_thickness,
+            "Where a thickness in a .dat file stands: after or before the surface of its row [by the first row]")
         ->type_name("WHERE");
 }
 

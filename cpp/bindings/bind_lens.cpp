@@ -358,17 +358,18 @@ void bind_lens(py::module_& m) {
              "focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.\n"
              "allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.\n"
              "Raises LensFileError, naming the surface (from 1), where the lens cannot be built.")
-        .def_static("load", &load_lens, "name_or_path"_a, py::kw_only(), "glass"_a = py::none(), "force"_a = false,
-                    "pbrt_thickness"_a = py::none(),
-                    "A bundled lens by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), "
-                    ".seq\n"
-                    "(CODE V), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.\n"
-                    "glass: {name in the file: (n_d, V_d), \"schott:F4\", or what else Surface() takes}, for glasses that "
-                    "no\n"
-                    "catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.\n"
-                    "pbrt_thickness: \"after\" or \"before\" the surface of its row; None: the first row tells.\n"
-                    "Raises LensFileError with file, line and surface, and InputError where glass names one that the\n"
-                    "file does not have. What a file leaves out and is computed or assumed is a UserWarning.")
+        .def_static(
+            "load", &load_lens, "name_or_path"_a, py::kw_only(), "glass"_a = py::none(), "force"_a = false,
+            "pbrt_thickness"_a = py::none(),
+            "A bundled lens by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), "
+            ".seq\n"
+            "(CODE V), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.\n"
+            "glass: {name in the file: (n_d, V_d), \"schott:F4\", or what else Surface() takes}, for glasses that "
+            "no\n"
+            "catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.\n"
+            "pbrt_thickness: \"after\" or \"before\" the surface of its row; None: the first row tells.\n"
+            "Raises LensFileError with file, line and surface, and InputError where glass names one that the\n"
+            "file does not have. What a file leaves out and is computed or assumed is a UserWarning.")
         .def("save", &save_lens, "path"_a,
              "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx or .seq, with a\n"
              "UserWarning for all that these cannot say. Raises InputError, and ImageFileError where no file can be "

@@ -56,8 +56,7 @@ Glass qualified_glass(const std::string& name) {
 std::string bare_glass_name(std::string_view name) {
     std::string out;
     for (const char c : name)
-        if (c != '-' && c != '_' && c != ' ')
-            out += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+        if (c != '-' && c != '_' && c != ' ') out += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
     return out;
 }
 

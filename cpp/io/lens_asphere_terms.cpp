@@ -35,11 +35,11 @@ std::vector<double> polynomial_through(const Function& f) {
     return c;
 }
 
-/// c r^2 / (1 + S) + a2 r^2 with S = sqrt(1 - q), q = (1 + k) c^2 r^2, has the vertex curvature c' = c + 2 a2. A conic of
-/// that curvature whose (1 + k') c'^2 is (1 + k) c^2 has the same S, so that what is left is
+/// c r^2 / (1 + S) + a2 r^2 with S = sqrt(1 - q), q = (1 + k) c^2 r^2, has the vertex curvature c' = c + 2 a2. A conic
+/// of that curvature whose (1 + k') c'^2 is (1 + k) c^2 has the same S, so that what is left is
 ///     a2 r^2 (S - 1) / (S + 1) = -a2 r^2 q / (1 + S)^2,
-/// without a term of r^2. It is exact for a plane and for a paraboloid, where q is 0; else 1 / (1 + S)^2 is replaced by a
-/// polynomial in q that holds out to the rim.
+/// without a term of r^2. It is exact for a plane and for a paraboloid, where q is 0; else 1 / (1 + S)^2 is replaced by
+/// a polynomial in q that holds out to the rim.
 std::string fold_square_term(double a2, double height, Surface& surface) {
     const double c = surface.curvature, square = (1 + surface.conic) * c * c;
     const double folded = c + 2 * a2, q_rim = square * height * height;
@@ -63,7 +63,8 @@ std::string fold_square_term(double a2, double height, Surface& surface) {
         const double share = static_cast<double>(i) / kSamples;  // of the squared height
         double kept = 0;
         for (std::size_t j = terms.size(); j-- > 0;) kept = kept * share + terms[j];
-        difference = std::max(difference, std::fabs(a2 * q_rim * height * height * share * share * (kept - exact(share))));
+        difference =
+            std::max(difference, std::fabs(a2 * q_rim * height * height * share * share * (kept - exact(share))));
     }
     if (difference <= kLargestDifference) return {};
     return "a term of r^2 on a conic so steep that no terms up to r^" + std::to_string(kLargestPower) + " replace it";

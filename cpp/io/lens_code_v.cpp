@@ -18,11 +18,10 @@ using Words = std::vector<LensWord>;
 /// Commands that say nothing about where light goes: names, solves and their control codes, weights, display.
 bool is_harmless(const std::string& word) {
     static const std::set<std::string> words{
-        "LEN", "INI", "WTW", "WTF", "TEM", "PRE", "CA",  "DER", "GO",  "SLB", "POL", "COM", "UID", "CCY", "THC",
-        "GLC", "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "CUC", "CCX", "CWL", "WTX",
-        "WTY", "INC", "MFL", "DEL", "VER", "OUT", "SAV", "RES", "FRZ", "TOL", "UNI", "DLF", "DLN", "DLR", "DLT",
-        "DLA", "DLB", "DLG", "DLV", "DLX", "DLY", "CMP", "ABF", "CBF", "SPC", "END", "EXI", "WID", "PUI", "PUX",
-        "PUY", "PUD", "CRF", "SSI"};
+        "LEN", "INI", "WTW", "WTF", "TEM", "PRE", "CA",  "DER", "GO",  "SLB", "POL", "COM", "UID", "CCY", "THC", "GLC",
+        "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "CUC", "CCX", "CWL", "WTX", "WTY", "INC",
+        "MFL", "DEL", "VER", "OUT", "SAV", "RES", "FRZ", "TOL", "UNI", "DLF", "DLN", "DLR", "DLT", "DLA", "DLB", "DLG",
+        "DLV", "DLX", "DLY", "CMP", "ABF", "CBF", "SPC", "END", "EXI", "WID", "PUI", "PUX", "PUY", "PUD", "CRF", "SSI"};
     return words.contains(word);
 }
 
@@ -44,7 +43,8 @@ std::optional<AbbePair> fictitious(const std::string& name) {
 
 class Reader {
 public:
-    Reader(std::string_view text, const std::string& file, LensGlasses& glasses) : lines_(text, file), glasses_(glasses) {
+    Reader(std::string_view text, const std::string& file, LensGlasses& glasses)
+        : lines_(text, file), glasses_(glasses) {
         p_.file = file;
         p_.format = "CODE V";
     }
@@ -133,14 +133,13 @@ private:
         } else {
             const std::vector<double> indices = numbers(words, 1, "the private glass " + in_quotes(words[0].text));
             if (indices.size() != private_nm_.size())
-                lines_.fail("the private glass " + in_quotes(words[0].text) + " has " +
-                            std::to_string(indices.size()) + " indices for " + std::to_string(private_nm_.size()) +
-                            " wavelengths (PWL)");
+                lines_.fail("the private glass " + in_quotes(words[0].text) + " has " + std::to_string(indices.size()) +
+                            " indices for " + std::to_string(private_nm_.size()) + " wavelengths (PWL)");
             std::vector<Glass::TablePoint> points;
             for (std::size_t i = 0; i < indices.size(); ++i) points.push_back({private_nm_[i], indices[i]});
             try {
-                const bool same = std::all_of(indices.begin(), indices.end(),
-                                              [&](double index) { return index == indices.front(); });
+                const bool same =
+                    std::all_of(indices.begin(), indices.end(), [&](double index) { return index == indices.front(); });
                 Glass glass = same ? Glass::constant(indices.front()) : Glass::table(std::move(points));
                 glass.label = std::string(words[0].text);
                 glasses_.define(word, std::move(glass));
@@ -152,14 +151,14 @@ private:
     }
 
     bool read_specification(const std::string& word, const Words& words) {
-        static const std::map<std::string, ApertureKind> apertures{
-            {"EPD", ApertureKind::entrance_pupil_diameter},
-            {"FNO", ApertureKind::working_f_number},
-            {"NA", ApertureKind::image_aperture},
-            {"NAO", ApertureKind::object_aperture}};
-        static const std::map<std::string, FieldKind> fields{
-            {"AN", FieldKind::angle_deg}, {"OB", FieldKind::object_height}, {"IM", FieldKind::image_height},
-            {"RI", FieldKind::image_height}};
+        static const std::map<std::string, ApertureKind> apertures{{"EPD", ApertureKind::entrance_pupil_diameter},
+                                                                   {"FNO", ApertureKind::working_f_number},
+                                                                   {"NA", ApertureKind::image_aperture},
+                                                                   {"NAO", ApertureKind::object_aperture}};
+        static const std::map<std::string, FieldKind> fields{{"AN", FieldKind::angle_deg},
+                                                             {"OB", FieldKind::object_height},
+                                                             {"IM", FieldKind::image_height},
+                                                             {"RI", FieldKind::image_height}};
         if (const auto aperture = apertures.find(word); aperture != apertures.end()) {
             p_.aperture_kind = aperture->second;
             p_.aperture = number(words, 1, word);
@@ -191,8 +190,10 @@ private:
 
     void add_surface(const std::string& command, const Words& words) {
         const bool is_object = command == "SO" || command == "S0", is_image = command == "SI";
-        if (!radius_mode_) lines_.fail("neither RDM (radii) nor RDM N (curvatures) stands in front of the first surface");
-        if (is_object != rows_.empty()) lines_.fail(is_object ? "a second object surface (SO)" : "SO, the object, is wanted first");
+        if (!radius_mode_)
+            lines_.fail("neither RDM (radii) nor RDM N (curvatures) stands in front of the first surface");
+        if (is_object != rows_.empty())
+            lines_.fail(is_object ? "a second object surface (SO)" : "SO, the object, is wanted first");
         if (has_image_) lines_.fail("a surface follows the image (SI)");
         if (rows_.size() >= kMostFileSurfaces)
             lines_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
@@ -248,7 +249,7 @@ private:
             } else {
                 const std::size_t bar = name.rfind('_');
                 row.material = glasses_.find(name.substr(0, bar), bar == name.npos ? std::vector<std::string>{}
-                                                                  : std::vector{name.substr(bar + 1)});
+                                                                                   : std::vector{name.substr(bar + 1)});
             }
         } catch (const InputError& error) {
             lines_.fail(error.what());
@@ -262,11 +263,12 @@ private:
             const std::string word = upper_case(words[1].text);
             if (word.size() > 1 && word[0] == 'S') {
                 const std::string which = word.substr(1);
-                if (which.find("..") != which.npos || which == "A" )
+                if (which.find("..") != which.npos || which == "A")
                     lines_.fail("a range of surfaces (" + in_quotes(word) + "); one surface is wanted");
                 if (which == "O" || which == "I" || is_number(which)) {
-                    select(which == "O" ? 0 : which == "I" ? static_cast<int>(rows_.size()) - 1
-                                       : lines_.whole_number_of(which, "the number of the surface", 0, 1 << 20));
+                    select(which == "O"   ? 0
+                           : which == "I" ? static_cast<int>(rows_.size()) - 1
+                                          : lines_.whole_number_of(which, "the number of the surface", 0, 1 << 20));
                     words.erase(words.begin() + 1);
                 }
             }
@@ -278,10 +280,11 @@ private:
         static const std::set<std::string> shapes{"CYL", "XTO", "YTO", "AAS", "SPS", "DIF", "GRT", "DOE", "HOE", "HWL",
                                                   "HOR", "HCT", "HCO", "GRO", "GRS", "TOR", "ANA", "UD1", "SCO", "THM",
                                                   "LNS", "MOD", "NSS", "INT", "ARR", "GRI", "CUX", "RDX", "KX",  "AR"};
-        static const std::set<std::string> tilts{"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE", "XOD", "YOD", "ZOD",
-                                                 "ADX", "ADY", "ARO", "GLB", "XGR", "YGR", "ZGR", "AGR", "BGR", "CGR"};
+        static const std::set<std::string> tilts{"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE", "XOD", "YOD", "ZOD", "ADX",
+                                                 "ADY", "ARO", "GLB", "XGR", "YGR", "ZGR", "AGR", "BGR", "CGR"};
         static const std::set<std::string> returns{"DAR", "BEN", "RET", "REV"};
-        static const std::set<std::string> rectangles{"REX", "REY", "ELX", "ELY", "REC", "ELL", "POL", "CIG", "REG", "ELG"};
+        static const std::set<std::string> rectangles{"REX", "REY", "ELX", "ELY", "REC",
+                                                      "ELL", "POL", "CIG", "REG", "ELG"};
         if (word == "STO") {
             row_of(words).is_stop = true;
         } else if (word == "ASP" || word == "SPH" || word == "CON") {
@@ -355,8 +358,8 @@ private:
             return;
         }
         const std::string word = upper_case(words[1].text).substr(0, 3);
-        static const std::set<std::string> left_out{"VUX", "VLX", "VUY", "VLY", "XAN", "YAN", "XIM", "YIM", "XRI",
-                                                    "YRI", "XOB", "YOB", "WTF", "THC", "WTW", "CCY"};
+        static const std::set<std::string> left_out{"VUX", "VLX", "VUY", "VLY", "XAN", "YAN", "XIM", "YIM",
+                                                    "XRI", "YRI", "XOB", "YOB", "WTF", "THC", "WTW", "CCY"};
         const auto count = static_cast<std::size_t>(positions_);
         if (positions_ < 1) lines_.fail("ZOO and the number of positions have to stand in front of what changes");
         if (word == "TIT") {
@@ -410,7 +413,8 @@ private:
         if (wavelengths_.empty()) {
             p_.remarks.push_back("it states no wavelength: that of the d line is taken");
         } else {
-            const std::size_t number = reference_ > 0 ? static_cast<std::size_t>(reference_) : wavelengths_.size() / 2 + 1;
+            const std::size_t number =
+                reference_ > 0 ? static_cast<std::size_t>(reference_) : wavelengths_.size() / 2 + 1;
             if (number > wavelengths_.size())
                 fail_file("the reference wavelength (REF) is number " + std::to_string(number) + " of " +
                           std::to_string(wavelengths_.size()));
@@ -440,8 +444,8 @@ private:
         };
         const double scale = p_.field_kind == FieldKind::angle_deg ? 1 : unit_;
         for (std::size_t i = 0; i < count; ++i)
-            p_.fields.push_back({scale * at(x_, i), scale * at(y_, i), cut("VUX", i), cut("VLX", i), cut("VUY", i),
-                                 cut("VLY", i)});
+            p_.fields.push_back(
+                {scale * at(x_, i), scale * at(y_, i), cut("VUX", i), cut("VLX", i), cut("VUY", i), cut("VLY", i)});
     }
 
     LensLines lines_;

@@ -77,7 +77,8 @@ private:
     /// Glasses of no catalogue, by their indices at lines of the spectrum, among them the lens's own wavelength.
     std::string private_glasses() const {
         if (private_.empty()) return {};
-        std::vector<double> lines{365.0146, 404.6561, 435.8343, kLineF_nm, 546.0740, kLineD_nm, kLineC_nm, 706.5188, 852.11};
+        std::vector<double> lines{365.0146,  404.6561,  435.8343, kLineF_nm, 546.0740,
+                                  kLineD_nm, kLineC_nm, 706.5188, 852.11};
         bool has_design = false;
         for (const double nm : lines) has_design |= nm == lens_.wavelength_nm;
         if (!has_design) lines.push_back(lens_.wavelength_nm);

@@ -78,7 +78,8 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     if (table.find("material")) surface.material = read_material(table, glasses);
     surface.coating = coatings.of(table);
     const auto thickness = table.number("thickness_mm");
-    if (!thickness && !is_last && !is_zoomed) table.fail("\"thickness_mm\" is missing: the axial distance to the next surface");
+    if (!thickness && !is_last && !is_zoomed)
+        table.fail("\"thickness_mm\" is missing: the axial distance to the next surface");
     if (thickness && is_last)
         table.fail("the last surface has no \"thickness_mm\"; the film follows it (film_distance_mm, or focus)",
                    table.find("thickness_mm"));
@@ -194,7 +195,8 @@ void set_rings(const TomlTable& file, LensSystem& lens) {
         lens.focus_distance = infinite ? kInfinity : *file.number("focus_distance_mm");
     }
     if (!(lens.focus_distance > 0))
-        file.fail("\"focus_distance_mm\" must be positive: the object plane to the film", file.find("focus_distance_mm"));
+        file.fail("\"focus_distance_mm\" must be positive: the object plane to the film",
+                  file.find("focus_distance_mm"));
     const double rim = lens.stop().clear_semi_diameter;
     lens.stop_semi_diameter = file.number("stop_semi_diameter_mm").value_or(rim);
     if (!(lens.stop_semi_diameter > 0) || lens.stop_semi_diameter > rim)
@@ -309,12 +311,11 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
         return lens;
     }
     const std::string text = decoded_lens_text(bytes, file);
-    const Prescription prescription = format == LensFormat::zemax    ? read_zemax(text, file, glasses)
-                                      : format == LensFormat::code_v ? read_code_v(text, file, glasses)
-                                      : format == LensFormat::pbrt   ? read_pbrt(text, file, options.pbrt_thickness)
-                                      : format == LensFormat::optiland
-                                          ? read_optiland(text, file, glasses)
-                                          : read_ray_optics(text, file, glasses);
+    const Prescription prescription = format == LensFormat::zemax      ? read_zemax(text, file, glasses)
+                                      : format == LensFormat::code_v   ? read_code_v(text, file, glasses)
+                                      : format == LensFormat::pbrt     ? read_pbrt(text, file, options.pbrt_thickness)
+                                      : format == LensFormat::optiland ? read_optiland(text, file, glasses)
+                                                                       : read_ray_optics(text, file, glasses);
     glasses.check_all_used();
     return lens_from(prescription, options);
 }

@@ -48,7 +48,8 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
 /// Throws InputError where the name is unknown (with the nearest names) or stands for several glasses.
 Glass catalogue_glass(const std::string& name);
 
-/// A glass as the command line names it, "NAME=n_d,V_d" or "NAME=schott:F4": the name, and the glass. Throws InputError.
+/// A glass as the command line names it, "NAME=n_d,V_d" or "NAME=schott:F4": the name, and the glass. Throws
+/// InputError.
 std::pair<std::string, Glass> named_glass(const std::string& text);
 
 /// What a file of another program cannot say of a lens is in `warnings`.

@@ -75,13 +75,15 @@ private:
     const PrescriptionSurface& row_of(std::size_t surface) const { return p_.surfaces[kept_[surface].row]; }
 
     void check_table() const {
-        const auto bends = [](const Kept& k) { return k.type == SurfaceType::refracting || k.type == SurfaceType::mirror; };
+        const auto bends = [](const Kept& k) {
+            return k.type == SurfaceType::refracting || k.type == SurfaceType::mirror;
+        };
         if (std::none_of(kept_.begin(), kept_.end(), bends)) fail("no surface bends light; a lens is wanted");
         if (kept_.size() > static_cast<std::size_t>(kMaxSurfaces))
-            fail("the lens has " + std::to_string(kept_.size()) + " surfaces; at most " +
-                 std::to_string(kMaxSurfaces) + " are supported");
-        const auto stops = std::count_if(kept_.begin(), kept_.end(),
-                                         [](const Kept& k) { return k.type == SurfaceType::stop; });
+            fail("the lens has " + std::to_string(kept_.size()) + " surfaces; at most " + std::to_string(kMaxSurfaces) +
+                 " are supported");
+        const auto stops =
+            std::count_if(kept_.begin(), kept_.end(), [](const Kept& k) { return k.type == SurfaceType::stop; });
         if (stops != 1)
             fail(stops == 0 ? "no surface is the aperture stop; one has to be"
                             : "several surfaces are aperture stops; one has to be");
@@ -132,9 +134,9 @@ private:
                     (place(foreign_[i]).empty() ? "" : " at " + place(foreign_[i]));
         if (foreign_.size() > kMostNamed) also += ", and " + std::to_string(foreign_.size() - kMostNamed) + " more";
         const ForeignFeature& first = foreign_.front();
-        throw LensFileError("has " + first.what + also +
-                                ", of which realcam has no model; --force (force=True) leaves it out",
-                            p_.file, first.line, first.surface);
+        throw LensFileError(
+            "has " + first.what + also + ", of which realcam has no model; --force (force=True) leaves it out", p_.file,
+            first.line, first.surface);
     }
 
     /// A rim that is not known yet is guessed from the entrance pupil's diameter, until rays tell.
@@ -207,9 +209,10 @@ private:
                 break;
         }
         if (!(radius > 0) || !std::isfinite(radius))
-            fail("the size of the aperture stop follows from nothing that the file says; "
-                 "an entrance pupil diameter, an f-number or the stop's semi-diameter is wanted",
-                 &row_of(static_cast<std::size_t>(stop)));
+            fail(
+                "the size of the aperture stop follows from nothing that the file says; "
+                "an entrance pupil diameter, an f-number or the stop's semi-diameter is wanted",
+                &row_of(static_cast<std::size_t>(stop)));
         surface.clear_semi_diameter = radius;
         lens.stop_semi_diameter = radius;
     }
@@ -287,7 +290,10 @@ private:
         const bool stop_changes = differs([](const LensSystem& s) { return s.stop_semi_diameter; });
         for (std::size_t k = 0; k < states_.size(); ++k) {
             const LensSystem& state = states_[k];
-            ZoomPosition position{printable(names[k]), {}, state.film_distance, state.focus_distance,
+            ZoomPosition position{printable(names[k]),
+                                  {},
+                                  state.film_distance,
+                                  state.focus_distance,
                                   stop_changes ? state.stop_semi_diameter : 0.0};
             for (const int i : lens_.zoom.surfaces)
                 position.thicknesses.push_back(state.surfaces[static_cast<std::size_t>(i)].thickness);

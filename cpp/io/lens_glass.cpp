@@ -58,9 +58,8 @@ Glass LensGlasses::find(const std::string& name, const std::vector<std::string>&
     if (bare_glass_name(name).empty()) throw InputError("a glass has no name");
     std::vector<CatalogueName> all = catalogue_names_like(name), found;
     for (const CatalogueName& one : all) {
-        const bool allowed = catalogues.empty() || std::any_of(catalogues.begin(), catalogues.end(), [&](const auto& c) {
-                                 return maker_of(c) == one.maker;
-                             });
+        const bool allowed = catalogues.empty() || std::any_of(catalogues.begin(), catalogues.end(),
+                                                               [&](const auto& c) { return maker_of(c) == one.maker; });
         if (allowed) found.push_back(one);
     }
     const auto names_of = [](const std::vector<CatalogueName>& list) {
@@ -92,8 +91,7 @@ void LensGlasses::check_all_used() const {
     for (const auto& [given, glass] : options_.glasses)
         if (!used_.contains(given))
             throw InputError("the lens file has no glass " + in_quotes(given) + "; " +
-                             (asked_.empty() ? "it names none"
-                                             : "it names " + listed({asked_.begin(), asked_.end()})));
+                             (asked_.empty() ? "it names none" : "it names " + listed({asked_.begin(), asked_.end()})));
 }
 
 std::optional<CatalogueName> catalogue_name_of(const Glass& glass) {
@@ -103,7 +101,8 @@ std::optional<CatalogueName> catalogue_name_of(const Glass& glass) {
         return std::nullopt;
     }
     const std::size_t colon = glass.label.find(':');
-    for (const CatalogueName& one : catalogue_names_like(glass.label.substr(colon == std::string::npos ? 0 : colon + 1)))
+    for (const CatalogueName& one :
+         catalogue_names_like(glass.label.substr(colon == std::string::npos ? 0 : colon + 1)))
         if (colon == std::string::npos || one.full() == glass.label) return one;
     return std::nullopt;
 }

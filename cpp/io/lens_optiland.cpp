@@ -15,7 +15,8 @@ namespace {
 
 class Reader {
 public:
-    Reader(std::string_view text, const std::string& file, LensGlasses& glasses) : json_(text, file), glasses_(glasses) {
+    Reader(std::string_view text, const std::string& file, LensGlasses& glasses)
+        : json_(text, file), glasses_(glasses) {
         p_.file = file;
         p_.format = "Optiland";
     }
@@ -40,7 +41,8 @@ public:
         read_fields(root["fields"]);
         read_wavelengths(root["wavelengths"]["wavelengths"]);
         for (const char* part : {"pickups"})
-            if (root[part].size() > 0) p_.remarks.push_back("the values in the file are taken for those of its pickups");
+            if (root[part].size() > 0)
+                p_.remarks.push_back("the values in the file are taken for those of its pickups");
         if (root["solves"]["solves"].size() > 0)
             p_.remarks.push_back("the values in the file are taken for those of its solves");
         return std::move(p_);
@@ -88,7 +90,8 @@ private:
         row.is_mirror = interaction["is_reflective"].is_true() || surface["is_reflective"].is_true();
         if (!type.empty() && type != "RefractiveReflectiveModel")
             foreign("a surface of the interaction model " + printable(type).substr(0, 40));
-        if (!interaction["coating"].is_null()) p_.remarks.push_back("the coating of surface " + std::to_string(surface_) + " is left out");
+        if (!interaction["coating"].is_null())
+            p_.remarks.push_back("the coating of surface " + std::to_string(surface_) + " is left out");
         if (!row.is_mirror) row.material = material_of(surface["material_post"]);
         read_rim(surface["aperture"], row);
         p_.surfaces.push_back(std::move(row));
@@ -130,7 +133,8 @@ private:
                 const Json &index = material["index"], &abbe = material["abbe"];
                 const auto first = [](const Json& v) -> const Json& { return v.size() > 0 ? v[std::size_t{0}] : v; };
                 if (type == "AbbeMaterialE") foreign("a glass by its Abbe number at the e line");
-                return glass_of_pair(json_.number(first(index), "the index"), json_.number(first(abbe), "the Abbe number"));
+                return glass_of_pair(json_.number(first(index), "the index"),
+                                     json_.number(first(abbe), "the Abbe number"));
             }
             if (type == "Material") {
                 // The file of the glass lies in the folder of its maker.
@@ -139,9 +143,11 @@ private:
                 const std::size_t slash = path.find_last_of("/\\");
                 if (slash != path.npos && slash > 0) {
                     const std::size_t folder = path.find_last_of("/\\", slash - 1);
-                    maker = path.substr(folder == path.npos ? 0 : folder + 1, slash - (folder == path.npos ? 0 : folder + 1));
+                    maker = path.substr(folder == path.npos ? 0 : folder + 1,
+                                        slash - (folder == path.npos ? 0 : folder + 1));
                 }
-                return glasses_.find(material["name"].text(), maker.empty() ? std::vector<std::string>{} : std::vector{maker});
+                return glasses_.find(material["name"].text(),
+                                     maker.empty() ? std::vector<std::string>{} : std::vector{maker});
             }
         } catch (const InputError& error) {
             json_.fail(error.what());
@@ -153,7 +159,8 @@ private:
     void read_rim(const Json& aperture, PrescriptionSurface& row) {
         if (aperture.is_null()) return;
         const std::string type = aperture["type"].text();
-        if (type != "RadialAperture") return foreign("an aperture that is no circle (" + printable(type).substr(0, 40) + ")");
+        if (type != "RadialAperture")
+            return foreign("an aperture that is no circle (" + printable(type).substr(0, 40) + ")");
         const Json& outer = aperture["r_max"];
         if (!(outer.is_number() && std::isinf(outer.number(0)))) row.clear_semi_diameter = json_.number(outer, "r_max");
         row.inner_semi_diameter = json_.number_or(aperture["r_min"], "r_min", 0);
@@ -161,12 +168,11 @@ private:
     }
 
     void read_aperture(const Json& aperture) {
-        static const std::map<std::string, ApertureKind> kinds{
-            {"EPD", ApertureKind::entrance_pupil_diameter},
-            {"imageFNO", ApertureKind::f_number},
-            {"paraxialImageFNO", ApertureKind::working_f_number},
-            {"objectNA", ApertureKind::object_aperture},
-            {"float_by_stop_size", ApertureKind::stop_size}};
+        static const std::map<std::string, ApertureKind> kinds{{"EPD", ApertureKind::entrance_pupil_diameter},
+                                                               {"imageFNO", ApertureKind::f_number},
+                                                               {"paraxialImageFNO", ApertureKind::working_f_number},
+                                                               {"objectNA", ApertureKind::object_aperture},
+                                                               {"float_by_stop_size", ApertureKind::stop_size}};
         const std::string type = aperture["type"].text();
         const auto found = kinds.find(type);
         if (found == kinds.end()) json_.fail("the aperture is of the type " + in_quotes(type) + ", which is not known");

@@ -68,11 +68,9 @@ Prescription read_pbrt(std::string_view text, const std::string& file, PbrtThick
     // The stop is a plane in the medium that is there.
     for (std::size_t i = 1; i < p.surfaces.size(); ++i)
         if (p.surfaces[i].is_stop) p.surfaces[i].material = p.surfaces[i - 1].material;
-    p.remarks.push_back(std::string("thicknesses are taken for those ") + (before ? "in front of" : "behind") +
-                        " their surfaces" +
-                        (thickness == PbrtThickness::by_first_row
-                             ? std::string(", as the first is ") + (before ? "0" : "not 0")
-                             : ""));
+    p.remarks.push_back(
+        std::string("thicknesses are taken for those ") + (before ? "in front of" : "behind") + " their surfaces" +
+        (thickness == PbrtThickness::by_first_row ? std::string(", as the first is ") + (before ? "0" : "not 0") : ""));
     return p;
 }
 

@@ -24,11 +24,11 @@ struct PrescriptionSurface {
 
 /// How a file says how wide the light's cone is.
 enum class ApertureKind {
-    stop_size,                ///< the clear semi-diameter of the stop
+    stop_size,  ///< the clear semi-diameter of the stop
     entrance_pupil_diameter,  ///< mm
-    f_number,          ///< of the lens at infinity: focal length over entrance pupil diameter
+    f_number,  ///< of the lens at infinity: focal length over entrance pupil diameter
     working_f_number,  ///< 1 / (2 slope of the marginal ray behind the lens)
-    object_aperture,   ///< numerical, of the object's side
+    object_aperture,  ///< numerical, of the object's side
     image_aperture,
 };
 
@@ -48,14 +48,14 @@ struct ForeignFeature {
 
 /// A lens as another program's file states it, before anything is made of it.
 struct Prescription {
-    std::string file;    ///< what messages call it
+    std::string file;  ///< what messages call it
     std::string format;  ///< "Zemax", ...
     std::string title;
     std::vector<PrescriptionSurface> surfaces;  ///< between object and image
     double object_distance = kInfinity;  ///< object to the first row, mm
-    double defocus = 0;                  ///< added to the last thickness, mm
-    bool has_film_distance = true;       ///< else the film lies where the axial spot is smallest
-    bool paraxial_image = false;         ///< the last thickness is that to the paraxial image where it is 0
+    double defocus = 0;  ///< added to the last thickness, mm
+    bool has_film_distance = true;  ///< else the film lies where the axial spot is smallest
+    bool paraxial_image = false;  ///< the last thickness is that to the paraxial image where it is 0
     ApertureKind aperture_kind = ApertureKind::stop_size;
     double aperture = 0;  ///< in the unit of its kind
     FieldKind field_kind = FieldKind::angle_deg;

@@ -24,7 +24,8 @@ const std::string& class_of(const Json& object) {
 
 class Reader {
 public:
-    Reader(std::string_view text, const std::string& file, LensGlasses& glasses) : json_(text, file), glasses_(glasses) {
+    Reader(std::string_view text, const std::string& file, LensGlasses& glasses)
+        : json_(text, file), glasses_(glasses) {
         p_.file = file;
         p_.format = "ray-optics";
     }
@@ -34,7 +35,8 @@ public:
         const Json& sequence = attributes(model["seq_model"]);
         const Json &interfaces = sequence["ifcs"], &gaps = sequence["gaps"];
         if (interfaces.size() < 3 || gaps.size() + 1 < interfaces.size())
-            json_.fail("is no lens of ray-optics: optical_model.seq_model with an object, a lens and an image is wanted");
+            json_.fail(
+                "is no lens of ray-optics: optical_model.seq_model with an object, a lens and an image is wanted");
         if (interfaces.size() > kMostFileSurfaces)
             json_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
         const Json& system = attributes(model["system_spec"]);
@@ -63,11 +65,16 @@ private:
         std::string unit = system["_dimensions"].text();
         if (unit.empty()) unit = system["dimensions"].text();
         unit = upper_case(unit);
-        if (unit.empty() || unit == "MM") unit_ = 1;
-        else if (unit == "CM") unit_ = 10;
-        else if (unit == "M" || unit == "METERS") unit_ = 1000;
-        else if (unit == "INCHES" || unit == "IN") unit_ = 25.4;
-        else json_.fail("the unit is " + in_quotes(unit) + "; mm, cm, meters or inches is wanted");
+        if (unit.empty() || unit == "MM")
+            unit_ = 1;
+        else if (unit == "CM")
+            unit_ = 10;
+        else if (unit == "M" || unit == "METERS")
+            unit_ = 1000;
+        else if (unit == "INCHES" || unit == "IN")
+            unit_ = 25.4;
+        else
+            json_.fail("the unit is " + in_quotes(unit) + "; mm, cm, meters or inches is wanted");
     }
 
     void read_surface(const Json& interface, const Json& gap, std::size_t number, bool is_stop) {
@@ -95,7 +102,8 @@ private:
         const std::string type = class_of(profile);
         const Json& shape = attributes(profile);
         row.curvature = json_.number_or(shape["cv"], "the curvature", 0) / unit_;
-        row.conic = !shape["ec"].is_null() ? json_.number(shape["ec"], "ec") - 1 : json_.number_or(shape["cc"], "cc", 0);
+        row.conic =
+            !shape["ec"].is_null() ? json_.number(shape["ec"], "ec") - 1 : json_.number_or(shape["cc"], "cc", 0);
         if (profile.is_null() || type == "Spherical" || type == "Conic") return;
         const bool even = type == "EvenPolynomial";
         if (!even && type != "RadialPolynomial") return foreign("a surface of type " + printable(type).substr(0, 40));
@@ -112,14 +120,12 @@ private:
         const Json& a = attributes(medium);
         try {
             if (type == "Air") return Glass::air();
-            if (type == "ConstantIndex" || type == "Medium")
-                return glass_of_pair(json_.number(a["n"], "the index"), 0);
+            if (type == "ConstantIndex" || type == "Medium") return glass_of_pair(json_.number(a["n"], "the index"), 0);
             if (type == "ModelGlass") return glass_of_pair(json_.number(a["n"], "n"), json_.number(a["v"], "v"));
             if (type == "InterpolatedMedium" || type == "InterpolatedGlass") return table_of(a);
             if (module.starts_with("opticalglass.") && !a["gname"].text().empty())
                 return glasses_.find(a["gname"].text(), {module.substr(module.find('.') + 1)});
-            if (type == "Glass" && !a["label"].text().empty())
-                return glasses_.find(a["label"].text(), {});
+            if (type == "Glass" && !a["label"].text().empty()) return glasses_.find(a["label"].text(), {});
         } catch (const InputError& error) {
             json_.fail(error.what());
         }
@@ -203,7 +209,7 @@ private:
             p_.remarks.push_back("its fields are of a kind that is not known");
             return;
         }
-        p_.field_kind = angle               ? FieldKind::angle_deg
+        p_.field_kind = angle              ? FieldKind::angle_deg
                         : side == "object" ? FieldKind::object_height
                                            : FieldKind::image_height;
         const double scale = (angle ? 1 : unit_) *
@@ -213,7 +219,8 @@ private:
             const Json& field = attributes(list[i]);
             const auto value = [&](const char* key) { return json_.number_or(field[key], "a field", 0); };
             const auto cut = [&](const char* key) { return std::clamp(value(key), 0.0, 0.999); };
-            p_.fields.push_back({scale * value("x"), scale * value("y"), cut("vux"), cut("vlx"), cut("vuy"), cut("vly")});
+            p_.fields.push_back(
+                {scale * value("x"), scale * value("y"), cut("vux"), cut("vlx"), cut("vuy"), cut("vly")});
         }
     }
 

@@ -26,8 +26,8 @@ double angle_of(const LensSystem& lens, double object_distance, FieldKind kind, 
     if (kind == FieldKind::object_height) return std::atan(size / to_pupil);
     if (std::isinf(object_distance)) return std::atan(size / std::fabs(data.effective_focal_length));
     // The magnification of the object plane: slope of the marginal ray in front of the lens over that behind it.
-    const ParaxialRay end = trace_paraxial(lens, lens.wavelength_nm, {object_distance, 1}, 0,
-                                           static_cast<int>(lens.surfaces.size()));
+    const ParaxialRay end =
+        trace_paraxial(lens, lens.wavelength_nm, {object_distance, 1}, 0, static_cast<int>(lens.surfaces.size()));
     return std::atan(std::fabs(size * end.slope / to_pupil));
 }
 
@@ -41,8 +41,8 @@ LensSystem with_wide_rims(LensSystem lens, double largest_angle) {
         Surface& s = lens.surfaces[static_cast<std::size_t>(i)];
         if (s.type == SurfaceType::stop) continue;
         const double marginal = trace_paraxial(lens, lens.wavelength_nm, {pupil, 0}, 0, i + 1).height;
-        const double chief = trace_paraxial(lens, lens.wavelength_nm,
-                                            {-slope * data.entrance_pupil_position, slope}, 0, i + 1).height;
+        const double chief =
+            trace_paraxial(lens, lens.wavelength_nm, {-slope * data.entrance_pupil_position, slope}, 0, i + 1).height;
         double rim = 2 * (std::fabs(marginal) + std::fabs(chief)) + 1e-3 * pupil;
         if (!std::isfinite(rim) || !s.is_asphere()) rim = std::max(rim, 1e3 * (pupil + lens.last_vertex()));
         if (!std::isfinite(rim)) rim = 1e6;

@@ -33,9 +33,7 @@ public:
 
     /// The surface that complaints name; 0: none.
     void set_surface(int surface) { surface_ = surface; }
-    [[noreturn]] void fail(const std::string& message) const {
-        throw LensFileError(message, file_, number_, surface_);
-    }
+    [[noreturn]] void fail(const std::string& message) const { throw LensFileError(message, file_, number_, surface_); }
     /// The words between blanks. Throws LensFileError for a quote that does not end.
     std::vector<LensWord> words(std::string_view line) const;
     /// A finite number, as a whole word. `what` begins the message.

@@ -75,8 +75,8 @@ private:
             rest = current.focus_distance;
         }
         if (lens_.focus_distance != rest)
-            rings += key("focus_distance_mm",
-                         std::isinf(lens_.focus_distance) ? "inf" : toml_number(lens_.focus_distance));
+            rings +=
+                key("focus_distance_mm", std::isinf(lens_.focus_distance) ? "inf" : toml_number(lens_.focus_distance));
         if (lens_.stop_semi_diameter != lens_.stop().clear_semi_diameter)
             rings += number("stop_semi_diameter_mm", lens_.stop_semi_diameter);
         return rings;
@@ -159,8 +159,8 @@ private:
         glasses_ += "\n[glass." + text(name) + "]\n";
         if (name != glass.label) glasses_ += key("label", text(glass.label));
         if (parts.formula == Glass::Formula::sellmeier) {
-            glasses_ += key("sellmeier", "{ B = " + listed(parts.coefficients, 0, 2) + ", C = " +
-                                             listed(parts.coefficients, 1, 2) + " }");
+            glasses_ += key("sellmeier", "{ B = " + listed(parts.coefficients, 0, 2) +
+                                             ", C = " + listed(parts.coefficients, 1, 2) + " }");
         } else if (parts.formula == Glass::Formula::cauchy) {
             glasses_ += key("cauchy", listed(parts.coefficients, 0, 1));
         } else {
@@ -231,13 +231,13 @@ private:
         if (rule == FocusingRule()) return;
         body_ += "\n[focus]\n";
         if (rule.nearest_mm > 0) {
-            const auto metres = before_rounding(rule.nearest_mm / 1000, rule.nearest_mm,
-                                                [](double m) { return 1000 * m; });
+            const auto metres =
+                before_rounding(rule.nearest_mm / 1000, rule.nearest_mm, [](double m) { return 1000 * m; });
             body_ += metres ? number("nearest_m", *metres) : number("nearest_mm", rule.nearest_mm);
         }
         if (rule.moves_group())
-            body_ += key("group", '[' + std::to_string(rule.group_first + 1) + ", " +
-                                      std::to_string(rule.group_last + 1) + ']');
+            body_ += key("group",
+                         '[' + std::to_string(rule.group_first + 1) + ", " + std::to_string(rule.group_last + 1) + ']');
     }
 
     void write_zoom() {

@@ -16,12 +16,12 @@ namespace {
 /// Keywords that say nothing about where light goes, or repeat what others say: names, solves, tolerances, drawing.
 bool is_harmless(const std::string& word, bool in_surface) {
     static const std::set<std::string> of_surface{
-        "HIDE", "MIRR", "SLAB", "POPS", "MEMA", "COMM", "FIMP", "VDSZ", "PPAR", "VPAR", "PZUP", "PKUP", "MAZH", "BRDF",
-        "EDGE", "VCON", "VCUR", "DMFS", "SCAT", "RLIN", "GOPT", "LSEL", "TCED", "TRAC", "TOLE", "CRIX", "WCBK", "HDEN",
-        "COFN", "VGLA", "CUPD", "ISNA", "PCUR", "MACH", "PTHI"};
+        "HIDE", "MIRR", "SLAB", "POPS", "MEMA", "COMM", "FIMP", "VDSZ", "PPAR", "VPAR", "PZUP", "PKUP",
+        "MAZH", "BRDF", "EDGE", "VCON", "VCUR", "DMFS", "SCAT", "RLIN", "GOPT", "LSEL", "TCED", "TRAC",
+        "TOLE", "CRIX", "WCBK", "HDEN", "COFN", "VGLA", "CUPD", "ISNA", "PCUR", "MACH", "PTHI"};
     static const std::set<std::string> of_system{
         "VERS", "PFIL", "LANG", "ENVD", "GFAC", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "PICB", "HYPR", "FWGN", "FWGT",
-        "WWGT", "WWGN", "ZVAN", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "NOTE", "BLNK", "TOL", "MOFF", "DBDT", "OPDX",
+        "WWGT", "WWGN", "ZVAN", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "NOTE", "BLNK", "TOL",  "MOFF", "DBDT", "OPDX",
         "CONF", "PUPD", "EFFL", "MNCA", "MNEA", "MNCG", "MNEG", "MXCA", "MXCG", "RGLA", "TCMM", "TOTR", "XDFL", "CHCO",
         "FCHR", "TCNT", "ANGC", "COMN", "WFNO", "PMAG", "DMFS", "ANON", "MCOM", "VANN", "VDXN", "VCXN", "UDFL", "LOCK"};
     return (in_surface ? of_surface : of_system).contains(word);
@@ -41,7 +41,8 @@ struct RawSurface {
 
 class Reader {
 public:
-    Reader(std::string_view text, const std::string& file, LensGlasses& glasses) : lines_(text, file), glasses_(glasses) {
+    Reader(std::string_view text, const std::string& file, LensGlasses& glasses)
+        : lines_(text, file), glasses_(glasses) {
         p_.file = file;
         p_.format = "Zemax";
     }
@@ -150,8 +151,7 @@ private:
             if (length(words, 0, "the inner radius") != 0)
                 foreign("an obscuration with a hole");
             else
-                s.row.inner_semi_diameter =
-                    std::max(s.row.inner_semi_diameter, length(words, 1, "the outer radius"));
+                s.row.inner_semi_diameter = std::max(s.row.inner_semi_diameter, length(words, 1, "the outer radius"));
         } else if (word == "OBDC") {
             if (number(words, 0, "the decentre") != 0 || number(words, 1, "the decentre") != 0)
                 foreign("a decentred aperture");
@@ -197,9 +197,9 @@ private:
     /// False where the keyword is not known.
     bool read_system_line(const std::string& word, std::string_view rest) {
         if (is_harmless(word, false)) return true;
-        static const std::set<std::string> ours{"MODE", "UNIT", "ENPD", "FNUM", "OBNA", "FLOA", "GCAT", "FTYP", "XFLN",
-                                                "YFLN", "XFLD", "YFLD", "VDYN", "VCYN", "WAVM", "WAVL", "PWAV", "MNUM",
-                                                "AFOC"};
+        static const std::set<std::string> ours{"MODE", "UNIT", "ENPD", "FNUM", "OBNA", "FLOA", "GCAT",
+                                                "FTYP", "XFLN", "YFLN", "XFLD", "YFLD", "VDYN", "VCYN",
+                                                "WAVM", "WAVL", "PWAV", "MNUM", "AFOC"};
         if (!ours.contains(word)) return read_zoom_line(word, rest);
         const Words words = lines_.words(rest);
         const auto list = [&](std::vector<double>& values) {
@@ -218,8 +218,10 @@ private:
             set_aperture(working ? ApertureKind::working_f_number : ApertureKind::f_number,
                          number(words, 0, "the f-number"));
         } else if (word == "OBNA") {
-            if (number_or(words, 1, "the kind of aperture", 0) != 0) lines_.fail("the aperture is a cone angle; "
-                "an entrance pupil diameter, an f-number or a numerical aperture is wanted");
+            if (number_or(words, 1, "the kind of aperture", 0) != 0)
+                lines_.fail(
+                    "the aperture is a cone angle; "
+                    "an entrance pupil diameter, an f-number or a numerical aperture is wanted");
             set_aperture(ApertureKind::object_aperture, number(words, 0, "the numerical aperture"));
         } else if (word == "FLOA") {
             p_.aperture_kind = ApertureKind::stop_size;
@@ -247,7 +249,8 @@ private:
             p_.remarks.push_back("its image is afocal, which is left out");
         } else {
             positions_ = whole(words, "the number of configurations", 1, 1000);
-            current_ = words.size() > 1 ? lines_.whole_number_of(words[1].text, "the current configuration", 1, 1000) : 1;
+            current_ =
+                words.size() > 1 ? lines_.whole_number_of(words[1].text, "the current configuration", 1, 1000) : 1;
         }
         return true;
     }
@@ -255,11 +258,16 @@ private:
     void set_unit(const Words& words) {
         const std::string unit = words.empty() ? "MM" : upper_case(words[0].text);
         if (!surfaces_.empty()) lines_.fail("UNIT has to stand in front of the surfaces");
-        if (unit == "MM") unit_ = 1;
-        else if (unit == "CM") unit_ = 10;
-        else if (unit == "IN" || unit == "INCH") unit_ = 25.4;
-        else if (unit == "METER" || unit == "M") unit_ = 1000;
-        else lines_.fail("the unit is " + in_quotes(unit) + "; MM, CM, IN or METER is wanted");
+        if (unit == "MM")
+            unit_ = 1;
+        else if (unit == "CM")
+            unit_ = 10;
+        else if (unit == "IN" || unit == "INCH")
+            unit_ = 25.4;
+        else if (unit == "METER" || unit == "M")
+            unit_ = 1000;
+        else
+            lines_.fail("the unit is " + in_quotes(unit) + "; MM, CM, IN or METER is wanted");
     }
 
     void set_aperture(ApertureKind kind, double value) {
@@ -271,8 +279,8 @@ private:
     /// An operand of the multi-configuration editor: NAME what configuration value.
     bool read_zoom_line(const std::string& word, std::string_view rest) {
         if (positions_ <= 1) return false;
-        static const std::set<std::string> left_out{"FVCX", "FVCY", "FVDX", "FVDY", "FVAN", "YFIE", "XFIE", "FLWT",
-                                                    "WLWT", "FLTP", "MCOM", "LTTL", "HOLD", "RAIM"};
+        static const std::set<std::string> left_out{"FVCX", "FVCY", "FVDX", "FVDY", "FVAN", "YFIE", "XFIE",
+                                                    "FLWT", "WLWT", "FLTP", "MCOM", "LTTL", "HOLD", "RAIM"};
         static const std::set<std::string> others{"CRVT", "CONN", "PRAM", "PAR1", "PAR2", "PAR3", "PAR4", "GLSS",
                                                   "STPS", "SDIA", "CSP1", "IGNR", "IGNM", "WAVE", "PRWV", "TEMP",
                                                   "PRES", "MIND", "MABB", "MDPG", "NPAR", "NPOS", "CATN", "APDX",
@@ -307,7 +315,7 @@ private:
         const RawSurface& image = surfaces_.back();
         if (!image.has_thickness || image.row.thickness != 0 || !image.glass.empty())
             throw LensFileError("the file ends with a surface that is no image: it " +
-                                    std::string(!image.glass.empty()   ? "has a glass"
+                                    std::string(!image.glass.empty()  ? "has a glass"
                                                 : image.has_thickness ? "has a thickness"
                                                                       : "has no thickness (DISZ)"),
                                 p_.file, image.row.line, image.row.number);
@@ -340,9 +348,8 @@ private:
     template <class Foreign>
     void convert_shape(RawSurface& s, const Foreign& add_foreign) {
         const auto any_parameter = [&](int first, int last) {
-            return std::any_of(s.parameters.begin(), s.parameters.end(), [&](const auto& p) {
-                return p.first >= first && p.first <= last && p.second != 0;
-            });
+            return std::any_of(s.parameters.begin(), s.parameters.end(),
+                               [&](const auto& p) { return p.first >= first && p.first <= last && p.second != 0; });
         };
         const auto term = [&](int power, double value) {
             if (value != 0) s.row.aspheric[power] = value * std::pow(unit_, 1 - power);
@@ -465,9 +472,9 @@ private:
             p_.zoom_thicknesses[surface - 1] = filled(list, otherwise);
             for (const double value : p_.zoom_thicknesses[surface - 1])
                 if (surface > 0 && !std::isfinite(value))
-                    throw LensFileError("a configuration makes the thickness of surface " + std::to_string(surface) +
-                                            " infinite",
-                                        p_.file);
+                    throw LensFileError(
+                        "a configuration makes the thickness of surface " + std::to_string(surface) + " infinite",
+                        p_.file);
         }
         if (!zoom_apertures_.empty()) {
             const bool is_length = p_.aperture_kind == ApertureKind::entrance_pupil_diameter;

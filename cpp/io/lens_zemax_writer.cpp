@@ -18,8 +18,7 @@ public:
         for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_surface(i);
         write_zoom();
         std::string head = "VERS 180000 0 0\nMODE SEQ\nNAME " +
-                           printable(lens_.title.empty() ? lens_.name : lens_.title) +
-                           "\nUNIT MM X W X CM MR CPMM\n";
+                           printable(lens_.title.empty() ? lens_.name : lens_.title) + "\nUNIT MM X W X CM MR CPMM\n";
         const FirstOrder data = first_order(lens_, lens_.wavelength_nm);
         if (std::isfinite(data.entrance_pupil_diameter))
             head += "ENPD " + exact_number(data.entrance_pupil_diameter) + '\n';
@@ -98,7 +97,8 @@ private:
         }
         const AbbePair pair = abbe_pair(glass);
         Glass model = glass_of_pair(pair.n_d, pair.v_d);
-        if (told_.insert(glass.label).second && std::fabs(model.index(lens_.wavelength_nm) - glass.index(lens_.wavelength_nm)) > 1e-9)
+        if (told_.insert(glass.label).second &&
+            std::fabs(model.index(lens_.wavelength_nm) - glass.index(lens_.wavelength_nm)) > 1e-9)
             result_.warnings.push_back("the glass " + in_quotes(glass.label) +
                                        " is written by n_d and V_d, which at other wavelengths is not exact");
         return "___BLANK 1 0 " + exact_number(pair.n_d) + ' ' + exact_number(pair.v_d) + " 0 0 0 0 0 0";
@@ -110,7 +110,8 @@ private:
         zoom_ = "MNUM " + std::to_string(zoom.positions.size()) + ' ' + std::to_string(zoom.current + 1) + '\n';
         const auto add = [&](const std::string& name, int surface, std::size_t position, double value) {
             zoom_ += name + ' ' + std::to_string(surface) + ' ' + std::to_string(position + 1) + ' ' +
-                     (std::isfinite(value) ? exact_number(value) : std::string("INFINITY")) + " 0 0 0 1 1 1 0 0 \"\" 0\n";
+                     (std::isfinite(value) ? exact_number(value) : std::string("INFINITY")) +
+                     " 0 0 0 1 1 1 0 0 \"\" 0\n";
         };
         const std::size_t count = zoom.positions.size();
         // The lens as it stands in its own position; the others at rest.
@@ -130,7 +131,8 @@ private:
         for (std::size_t k = 0; k < count; ++k)
             add("APER", 0, k, first_order(state(k), lens_.wavelength_nm).entrance_pupil_diameter);
         std::string names;
-        for (const ZoomPosition& position : zoom.positions) names += (names.empty() ? "" : ", ") + in_quotes(position.name);
+        for (const ZoomPosition& position : zoom.positions)
+            names += (names.empty() ? "" : ", ") + in_quotes(position.name);
         result_.warnings.push_back("the zoom positions " + names + " are numbered");
     }
 
@@ -149,7 +151,8 @@ std::vector<std::string> left_out_of_foreign_files(const LensSystem& lens, const
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
         if (!(lens.surfaces[i].coating == Coating())) coated += (coated.empty() ? "" : ", ") + std::to_string(i + 1);
     if (!coated.empty()) list.push_back("the coatings of surfaces " + coated + none);
-    if (lens.iris.blades != 0) list.push_back("the " + std::to_string(lens.iris.blades) + " blades of the diaphragm" + none);
+    if (lens.iris.blades != 0)
+        list.push_back("the " + std::to_string(lens.iris.blades) + " blades of the diaphragm" + none);
     if (lens.focusing.moves_group() || lens.focusing.nearest_mm > 0) list.push_back("how the lens focuses" + none);
     if (lens.stop_semi_diameter < lens.stop().clear_semi_diameter)
         list.push_back("how far the diaphragm opens: it is written as it is closed");

@@ -82,11 +82,10 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given) const {
         if (!given[index]) {
             lens.surfaces[index].thickness = value;
         } else if (!current_ && lens.surfaces[index].thickness != value) {
-            throw LensFileError("the thickness is not that of the first zoom position, " +
-                                    in_quotes(positions_.front().name) +
-                                    "; leave it out, or say in which \"zoom_position\" the file gives the lens",
-                                file_.file(),
-                                static_cast<int>(positions_.front().table.raw().source().begin.line), surface);
+            throw LensFileError(
+                "the thickness is not that of the first zoom position, " + in_quotes(positions_.front().name) +
+                    "; leave it out, or say in which \"zoom_position\" the file gives the lens",
+                file_.file(), static_cast<int>(positions_.front().table.raw().source().begin.line), surface);
         }
     }
     // Zooming brings the focusing group back to rest: the thicknesses that focusing changes are needed too.
@@ -101,9 +100,8 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given) const {
         for (const int i : zoom.surfaces) {
             const auto found = std::find_if(from.thicknesses.begin(), from.thicknesses.end(),
                                             [&](const auto& entry) { return entry.first == i + 1; });
-            to.thicknesses.push_back(found == from.thicknesses.end()
-                                         ? lens.surfaces[static_cast<std::size_t>(i)].thickness
-                                         : found->second);
+            to.thicknesses.push_back(
+                found == from.thicknesses.end() ? lens.surfaces[static_cast<std::size_t>(i)].thickness : found->second);
         }
         to.film_distance = from.table.number("film_distance_mm").value_or(0);
         to.focus_distance = from.table.number("focus_distance_mm").value_or(kInfinity);
@@ -129,8 +127,9 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given) const {
         }
         position.film_distance = best_focus_distance(there, lens.wavelength_nm, kInfinity);
         if (!(position.film_distance > 0))
-            table.fail("the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is "
-                       "wanted");
+            table.fail(
+                "the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is "
+                "wanted");
     }
 }
 

@@ -9,7 +9,8 @@
 
 namespace realcam::io {
 
-/// The tables [[zoom]] of a lens file and its key "zoom_position". Every complaint is a LensFileError with file and line.
+/// The tables [[zoom]] of a lens file and its key "zoom_position". Every complaint is a LensFileError with file and
+/// line.
 class LensZoom {
 public:
     explicit LensZoom(const TomlTable& file);

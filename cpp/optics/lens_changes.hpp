@@ -31,8 +31,9 @@ void change_zoom_value(ZoomRange& zoom, double change, const Get& value) {
 }  // namespace lens_changes_detail
 
 /// The lens with another surface in place of one, counted from 0. All else stays, the film's place too: focused()
-/// brings the picture into focus again. A thickness that zooming changes, changes in the current position. A diaphragm that is wide open stays so. Throws InputError where there is no
-/// such surface, and LensFileError where the lens cannot be built.
+/// brings the picture into focus again. A thickness that zooming changes, changes in the current position. A diaphragm
+/// that is wide open stays so. Throws InputError where there is no such surface, and LensFileError where the lens
+/// cannot be built.
 inline LensSystem with_surface(LensSystem lens, int index, Surface surface) {
     check_surface_exists(lens, index);
     const bool was_open = lens.is_wide_open();

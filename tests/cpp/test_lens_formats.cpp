@@ -207,10 +207,8 @@ TEST_CASE("a glass that is not known, or several, is an error that names candida
     // F4 is 1.616592 at Schott and 1.620047 at CDGM.
     const Reading several = read(with("F4", "GCAT SCHOTT CDGM"), "a.zmx");
     CHECK(several.says("\"cdgm:F4\", \"schott:F4\""));
-    CHECK(read(with("F4", "GCAT CDGM"), "a.zmx").lens.surfaces[0].material.index(kLineD_nm) ==
-          about(1.620047, 1e-6));
-    CHECK(read(with("F4"), "a.zmx").lens.surfaces[0].material.index(kLineD_nm) ==
-          about(1.616592, 1e-6));
+    CHECK(read(with("F4", "GCAT CDGM"), "a.zmx").lens.surfaces[0].material.index(kLineD_nm) == about(1.620047, 1e-6));
+    CHECK(read(with("F4"), "a.zmx").lens.surfaces[0].material.index(kLineD_nm) == about(1.616592, 1e-6));
     // A catalogue that lacks it does not make it another's.
     const Reading elsewhere = read(with("N-BK7", "GCAT RPO"), "a.zmx");
     CHECK(elsewhere.says("\"RPO\", which other catalogues have: \"schott:N-BK7\""));
@@ -230,9 +228,10 @@ TEST_CASE("a glass that is not known, or several, is an error that names candida
         CHECK(index(r, kLineD_nm) == about(1.517, 1e-12));
         CHECK(0.517 / (index(r, kLineF_nm) - index(r, kLineC_nm)) == about(64.2, 1e-9));
     }
-    const Reading own = read(replaced(replaced(kCodeV, "SO 0.0", "PRV\nPWL 656.3 587.6 486.1\n'MINE' 1.60 1.61 1.62\nEND\nSO 0.0"),
-                                      "NBK7_SCHOTT", "'MINE'"),
-                             "a.seq");
+    const Reading own =
+        read(replaced(replaced(kCodeV, "SO 0.0", "PRV\nPWL 656.3 587.6 486.1\n'MINE' 1.60 1.61 1.62\nEND\nSO 0.0"),
+                      "NBK7_SCHOTT", "'MINE'"),
+             "a.seq");
     REQUIRE(own.error == "");
     CHECK(index(own, 587.6) == about(1.61, 1e-12));
 }
@@ -264,7 +263,8 @@ TEST_CASE("what there is no model of is named with line and surface, and left ou
 }
 
 TEST_CASE("an r^2 term is folded into the curvature, with the same surface") {
-    const std::string even = replaced(kZemax, "SURF 2\n", "SURF 2\n  TYPE EVENASPH\n  CONI 0.4\n  PARM 1 1e-3\n  PARM 2 1e-6\n");
+    const std::string even =
+        replaced(kZemax, "SURF 2\n", "SURF 2\n  TYPE EVENASPH\n  CONI 0.4\n  PARM 1 1e-3\n  PARM 2 1e-6\n");
     const Reading reading = read(even, "a.zmx");
     REQUIRE(reading.error == "");
     const Surface& surface = reading.lens.surfaces[0];
@@ -302,15 +302,16 @@ TEST_CASE("aperture and fields in other words") {
 
 TEST_CASE("pbrt's tables in both conventions") {
     // US 2,673,491 as pbrt's users have it, distances behind their surfaces; and with distances in front of them.
-    const double rows[11][4] = {{29.475, 3.76, 1.67, 25.2},  {84.83, .12, 1, 25.2},     {19.275, 4.025, 1.67, 23},
-                                {40.77, 3.275, 1.699, 23},   {12.75, 5.705, 1, 18},     {0, 4.5, 0, 17.1},
-                                {-14.495, 1.18, 1.603, 17},  {40.77, 6.065, 1.658, 20}, {-20.385, .19, 1, 20},
-                                {437.065, 3.22, 1.717, 20},  {-39.73, 36, 1, 20}};
+    const double rows[11][4] = {{29.475, 3.76, 1.67, 25.2}, {84.83, .12, 1, 25.2},     {19.275, 4.025, 1.67, 23},
+                                {40.77, 3.275, 1.699, 23},  {12.75, 5.705, 1, 18},     {0, 4.5, 0, 17.1},
+                                {-14.495, 1.18, 1.603, 17}, {40.77, 6.065, 1.658, 20}, {-20.385, .19, 1, 20},
+                                {437.065, 3.22, 1.717, 20}, {-39.73, 36, 1, 20}};
     const auto table = [&](bool before) {
         std::string text = "# D-GAUSS\n";
         for (int i = 0; i < 11; ++i)
-            text += std::to_string(rows[i][0]) + ' ' + std::to_string(before ? (i == 0 ? 0 : rows[i - 1][1]) : rows[i][1]) +
-                    ' ' + std::to_string(rows[i][2]) + ' ' + std::to_string(rows[i][3]) + '\n';
+            text += std::to_string(rows[i][0]) + ' ' +
+                    std::to_string(before ? (i == 0 ? 0 : rows[i - 1][1]) : rows[i][1]) + ' ' +
+                    std::to_string(rows[i][2]) + ' ' + std::to_string(rows[i][3]) + '\n';
         return text;
     };
     for (const bool before : {false, true}) {
@@ -343,7 +344,8 @@ TEST_CASE("bundled lenses go through TOML, .zmx and .seq and come back") {
             surface.curvature *= 1 + 1e-7 / 3;  // whose radius no double gives back
             if (surface.type == SurfaceType::refracting) {
                 surface.material = Glass::sellmeier({{1.1, 0.01}, {0.2, 0.02}});
-                surface.coating = layered_coating({{CoatingMaterial::constant({1.4, 0.001}), 100.0 / 3}}, "odd \"one\"");
+                surface.coating =
+                    layered_coating({{CoatingMaterial::constant({1.4, 0.001}), 100.0 / 3}}, "odd \"one\"");
             }
             return surface;
         }());
@@ -367,8 +369,9 @@ TEST_CASE("zoom positions of Zemax, CODE V and TOML") {
                               "THIC 5 2 57 0 0 0 1 1 1 0 0 \"\" 0\n"
                               "APER 0 1 10 0 0 0 1 1 1 0 0 \"\" 0\n"
                               "APER 0 2 8 0 0 0 1 1 1 0 0 \"\" 0\n";
-    const std::string code_v = replaced(kCodeV, "GO\n", "ZOO 2\nZOO TIT 'near' 'far'\nZOO THI S3 6.0 9.0\n"
-                                                        "ZOO THI S5 60.0 57.0\nZOO EPD 10.0 8.0\nGO\n");
+    const std::string code_v = replaced(kCodeV, "GO\n",
+                                        "ZOO 2\nZOO TIT 'near' 'far'\nZOO THI S3 6.0 9.0\n"
+                                        "ZOO THI S5 60.0 57.0\nZOO EPD 10.0 8.0\nGO\n");
     for (const auto& [text, file] : {std::pair(zemax, "a.zmx"), std::pair(code_v, "a.seq")}) {
         CAPTURE(file);
         const Reading reading = read(text, file);
@@ -436,7 +439,8 @@ thickness_mm = { 3 = 9 }
     const LensSystem tele = zoomed(near, "tele");
     CHECK(tele.focus_distance == 3000);
     CHECK(tele == focused(zoomed(lens, "tele"), 3000));
-    CHECK(largest_difference(rays_through(zoomed(focused(zoomed(near, "tele"), kInfinity), "wide")), rays_through(lens)) < 1e-6);
+    CHECK(largest_difference(rays_through(zoomed(focused(zoomed(near, "tele"), kInfinity), "wide")),
+                             rays_through(lens)) < 1e-6);
     CHECK(read(io::lens_text_for(tele, "a.toml").text, "a.toml").lens == tele);
     // A stopped-down lens keeps its f-number.
     const LensSystem closed = zoomed(stopped_down(lens, 16), "tele");

@@ -60,9 +60,7 @@ def draw(
     """Write the cross-section of a lens, with rays from three points of the film."""
     from ..draw import save_cross_section
 
-    lens = options.lens(
-        name, focus, f_number, zoom=zoom, glass=glass or (), force=force, pbrt_thickness=pbrt_thickness
-    )
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass or (), force=force, pbrt_thickness=pbrt_thickness)
     # By what the user called the lens: the name in a file may be any text.
     target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.svg")
     if Path(name).is_file() and target.exists() and target.samefile(name):
