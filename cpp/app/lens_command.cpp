@@ -5,8 +5,9 @@
 
 #include "../io/json_writer.hpp"
 #include "../io/lens_file.hpp"
-#include "../optics/focus.hpp"
+#include "../optics/zoom.hpp"
 #include "lens_report.hpp"
+#include "lens_words.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
@@ -14,11 +15,13 @@ namespace {
 
 struct InfoOptions {
     std::string lens, f_number, focus;
+    LensWords file;
     bool as_json = false;
 };
 
 void run_info(const InfoOptions& options) {
-    LensSystem lens = io::read_lens(options.lens);
+    LensSystem lens = io::read_lens(options.lens, lens_options_of(options.file));
+    if (!options.file.zoom.empty()) lens = zoomed(lens, options.file.zoom);
     if (!options.focus.empty()) lens = focused(lens, 1000 * parse_distance("--focus", options.focus));
     if (!options.f_number.empty()) lens = stopped_down(lens, parse_number("--f-number", options.f_number));
     std::fputs((options.as_json ? lens_as_json(lens) : lens_as_text(lens)).c_str(), stdout);
@@ -46,12 +49,13 @@ void add_lens_command(CLI::App& app) {
 
     CLI::App* info = lens->add_subcommand("info", "Print a lens's table of surfaces and its first-order data");
     const auto options = std::make_shared<InfoOptions>();
-    info->add_option("lens", options->lens, "Name of a bundled lens, or path of a .toml file")
+    info->add_option("lens", options->lens, "A bundled lens, or a lens file: .toml, .zmx, .seq, .dat, .json, .roa")
         ->required()
         ->type_name("NAME");
     info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");
     info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")
         ->type_name("METRES");
+    add_lens_options(*info, options->file);
     info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");
     info->callback([options] { run_info(*options); });
 

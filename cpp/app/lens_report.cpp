@@ -139,6 +139,18 @@ std::string t_stop_text(const LensSystem& lens) {
     return value ? "T/" + short_number(*value) : "unknown: " + why;
 }
 
+/// Each zoom position with its focal length and f-number, at rest.
+std::vector<std::string> zoom_lines(const LensSystem& lens) {
+    std::vector<std::string> lines;
+    for (std::size_t i = 0; i < lens.zoom.positions.size(); ++i) {
+        const LensSystem there = at_zoom_position(lens, static_cast<int>(i));
+        const FirstOrder data = first_order(there, lens.wavelength_nm);
+        lines.push_back(lens.zoom.positions[i].name + ": " + fixed(data.effective_focal_length) + " mm f/" +
+                        short_number(data.f_number) + (static_cast<int>(i) == lens.zoom.current ? ", this one" : ""));
+    }
+    return lines;
+}
+
 std::string iris_text(const IrisShape& iris) {
     if (iris.blades == 0) return "round";
     return std::to_string(iris.blades) + " blades, rounding " + short_number(iris.rounding) + ", rotation " +
@@ -181,6 +193,11 @@ std::string lens_as_text(const LensSystem& lens) {
     line("focusing moves", "     " + (rule.moves_group() ? "surfaces " + std::to_string(rule.group_first + 1) + " to " +
                                                                std::to_string(rule.group_last + 1)
                                                          : std::string("the whole lens")));
+    bool is_first = true;
+    for (const std::string& position : zoom_lines(lens)) {
+        line(is_first ? "zoom positions" : "", "     " + position);
+        is_first = false;
+    }
     line("diaphragm", "     " + iris_text(lens.iris));
     line("film", "     " + short_number(lens.film_width) + " x " + short_number(lens.film_height) + " mm");
     line("field of view", "     " + fixed(view[0], 1) + " x " + fixed(view[1], 1) + " degrees, " + fixed(view[2], 1) +
@@ -211,6 +228,23 @@ std::string lens_as_json(const LensSystem& lens) {
         json.end();
     }
     json.end();
+    if (!lens.zoom.positions.empty()) {
+        json.key("zoom_position").text(lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].name);
+        json.key("zoom_positions").begin_array();
+        for (std::size_t i = 0; i < lens.zoom.positions.size(); ++i) {
+            const LensSystem there = at_zoom_position(lens, static_cast<int>(i));
+            const FirstOrder at_rest = first_order(there, lens.wavelength_nm);
+            json.begin_object().key("name").text(lens.zoom.positions[i].name);
+            json.key("effective_focal_length_mm").number(at_rest.effective_focal_length);
+            json.key("f_number").number(at_rest.f_number);
+            json.key("film_distance_mm").number(there.film_distance);
+            json.key("thickness_mm").begin_object();
+            for (std::size_t k = 0; k < lens.zoom.surfaces.size(); ++k)
+                json.key(std::to_string(lens.zoom.surfaces[k] + 1)).number(lens.zoom.positions[i].thicknesses[k]);
+            json.end().end();
+        }
+        json.end();
+    }
     const auto add = [&](const char* name, double value) { json.key(name).number(value); };
     add("wavelength_nm", lens.wavelength_nm);
     add("effective_focal_length_mm", data.effective_focal_length);

@@ -38,7 +38,12 @@ void read_environment_word(const std::string& word, shot::ShotRequest& request) 
 }
 
 void read_camera_words(const RenderWords& w, shot::ShotRequest& request) {
-    if (!w.lens.empty()) request.lens = w.lens;
+    if (!w.lens.empty()) {
+        request.lens = w.lens;
+        request.zoom.clear();  // a position of the shot file's lens
+    }
+    if (!w.lens_file.zoom.empty()) request.zoom = w.lens_file.zoom;
+    request.lens_options = lens_options_of(w.lens_file);
     if (!w.f_number.empty()) request.f_number = parse_number("--f-number", w.f_number);
     if (!w.blades.empty()) request.blades = parse_whole("--blades", w.blades, kMaxIrisBlades);
     if (!w.blade_rounding.empty()) request.blade_rounding = parse_number("--blade-rounding", w.blade_rounding);
@@ -142,7 +147,11 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
            "SCENE")
         ->required();
     command.option_defaults()->group("Camera");
-    option("--lens", w.lens, "Bundled lens (`realcam lens list`) or .toml file [double-gauss-50mm]", "NAME");
+    option(
+        "--lens", w.lens,
+        "Bundled lens (`realcam lens list`), or a lens file: .toml, .zmx, .seq, .dat, .json, .roa [double-gauss-50mm]",
+        "NAME");
+    add_lens_options(command, w.lens_file);
     option("--film", w.film, "Film in mm [the lens's, in the shape of the resolution]", "WxH");
     option("--resolution", w.resolution, "Pixels [960 along the longer side]", "WxH");
     option("--position", w.position,

@@ -5,6 +5,7 @@
 
 #include "../plan/plan.hpp"
 #include "../shot/shot_request.hpp"
+#include "lens_words.hpp"
 
 namespace realcam::app {
 
@@ -16,6 +17,7 @@ struct RenderWords {
         threshold_px, threshold_codes, illuminant, device = "auto";
     std::vector<std::string> outputs;
     bool verbose = false, explains = false;
+    LensWords lens_file;
 };
 
 /// Those that say what is photographed and how.

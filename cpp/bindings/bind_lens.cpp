@@ -3,8 +3,10 @@
 #include <map>
 #include <tuple>
 
+#include "../io/lens_format.hpp"
 #include "../optics/focus.hpp"
 #include "../optics/lens_changes.hpp"
+#include "../optics/zoom.hpp"
 #include "bindings.hpp"
 #include "coating_from.hpp"
 #include "short_text.hpp"
@@ -204,6 +206,41 @@ std::optional<std::pair<int, int>> focus_group_of(const LensSystem& lens) {
     return std::pair(lens.focusing.group_first, lens.focusing.group_last);
 }
 
+void warn(const std::string& message) {
+    // On the line of the user's call.
+    if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) < 0) throw py::error_already_set();
+}
+
+LensSystem load_lens(const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
+                     const std::optional<std::string>& pbrt_thickness) {
+    io::LensReadOptions options;
+    options.force = force;
+    options.warn = warn;
+    if (glass)
+        for (const auto& [called, material] : *glass) options.glasses.insert_or_assign(called, glass_from(material));
+    if (pbrt_thickness) options.pbrt_thickness = io::pbrt_thickness_named(*pbrt_thickness);
+    return io::read_lens(path_from(name), options);
+}
+
+void save_lens(const LensSystem& lens, const py::object& path) {
+    const py::module_ files = py::module_::import("realcam.files");
+    files.attr("check_target")(path);
+    const io::LensText text = io::lens_text_for(lens, path_from(path));
+    files.attr("write_whole")(path, py::bytes(text.text));
+    for (const std::string& left_out : text.warnings) warn("not in the file: " + left_out);
+}
+
+std::vector<std::string> zoom_position_names(const LensSystem& lens) {
+    std::vector<std::string> names;
+    for (const ZoomPosition& position : lens.zoom.positions) names.push_back(position.name);
+    return names;
+}
+
+std::optional<std::string> zoom_position_of(const LensSystem& lens) {
+    if (lens.zoom.positions.empty()) return std::nullopt;
+    return lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].name;
+}
+
 void bind_glass(py::module_& m) {
     py::class_<Glass> glass(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.");
     def_hashable_value(glass);
@@ -323,8 +360,32 @@ void bind_lens(py::module_& m) {
              "allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.\n"
              "Raises LensFileError, naming the surface (from 1), where the lens cannot be built.")
         .def_static(
-            "load", [](const py::object& name) { return io::read_lens(path_from(name)); }, "name_or_path"_a,
-            "A bundled lens by name, or a lens file (.toml) by path. Raises LensFileError with file, line, surface.")
+            "load", &load_lens, "name_or_path"_a, py::kw_only(), "glass"_a = py::none(), "force"_a = false,
+            "pbrt_thickness"_a = py::none(),
+            "A bundled lens by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), "
+            ".seq\n"
+            "(CODE V), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.\n"
+            "glass: {name in the file: (n_d, V_d), \"schott:F4\", or what else Surface() takes}, for glasses that "
+            "no\n"
+            "catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.\n"
+            "pbrt_thickness: \"after\" or \"before\" the surface of its row; None: the first row tells.\n"
+            "Raises LensFileError with file, line and surface, and InputError where glass names one that the\n"
+            "file does not have. What a file leaves out and is computed or assumed is a UserWarning.")
+        .def("save", &save_lens, "path"_a,
+             "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx or .seq, with a\n"
+             "UserWarning for all that these cannot say. Raises InputError, and ImageFileError where no file can be "
+             "made.")
+        .def_property_readonly("zoom_positions", &zoom_position_names,
+                               "Names of the zoom positions; empty: the focal length is fixed.")
+        .def_property_readonly("zoom_position", &zoom_position_of, "The current one; None: the lens does not zoom.")
+        .def(
+            "zoomed", [](const LensSystem& lens, const std::string& position) { return zoomed(lens, position); },
+            "position"_a,
+            "The lens in another zoom position, by name or index. The plane in focus stays, an open diaphragm stays "
+            "open,\n"
+            "and a closed one keeps its f-number as far as it opens. Raises InputError.")
+        .def(
+            "zoomed", [](const LensSystem& lens, int position) { return zoomed(lens, position); }, "position"_a)
         .def(
             "first_order",
             [](const LensSystem& lens, std::optional<double> nm) {

@@ -15,7 +15,10 @@ namespace {
 
 /// Scene, camera and the settings for render().
 py::tuple read_shot(const py::object& path, const std::string& device, const py::object& progress) {
-    const shot::ShotRequest request = shot::read_shot_file(path_from(path));
+    shot::ShotRequest request = shot::read_shot_file(path_from(path));
+    request.lens_options.warn = [](const std::string& message) {
+        if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) < 0) throw py::error_already_set();
+    };
     Camera camera = shot::camera_of(request);
     shot::Shot shot = shot::set_up(request, std::move(camera), shot::scene_of(request, picture_readers()));
     if (!request.exposure_time_s) {

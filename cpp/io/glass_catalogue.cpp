@@ -3,6 +3,7 @@
 #include "bundled_lenses.hpp"
 #include "glass_table.hpp"
 #include "lens_file.hpp"
+#include "lens_glass.hpp"
 
 namespace realcam::io {
 namespace {
@@ -27,6 +28,17 @@ const std::multimap<std::string, std::string>& names() {
     return map;
 }
 
+/// The same, by bare names.
+const std::multimap<std::string, CatalogueName>& bare_names() {
+    static const std::multimap<std::string, CatalogueName> map = [] {
+        std::multimap<std::string, CatalogueName> all;
+        for (const auto& [plain, full] : names())
+            all.emplace(bare_glass_name(plain), CatalogueName{full.substr(0, full.find(':')), plain});
+        return all;
+    }();
+    return map;
+}
+
 Glass qualified_glass(const std::string& name) {
     const std::size_t colon = name.find(':');
     const toml::table* maker = catalogue()[name.substr(0, colon)].as_table();
@@ -41,8 +53,29 @@ Glass qualified_glass(const std::string& name) {
 
 }  // namespace
 
+std::string bare_glass_name(std::string_view name) {
+    std::string out;
+    for (const char c : name)
+        if (c != '-' && c != '_' && c != ' ') out += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    return out;
+}
+
+std::vector<CatalogueName> catalogue_names_like(std::string_view name) {
+    std::vector<CatalogueName> found;
+    const auto [first, last] = bare_names().equal_range(bare_glass_name(name));
+    for (auto it = first; it != last; ++it) found.push_back(it->second);
+    return found;
+}
+
+std::vector<std::string> catalogue_plain_names() {
+    std::vector<std::string> all;
+    for (const auto& [plain, full] : names())
+        if (all.empty() || all.back() != plain) all.push_back(plain);
+    return all;
+}
+
 Glass glass_from_table(const TomlTable& table) {
-    table.allow({"n_d", "V_d", "sellmeier", "cauchy", "table", "index"});
+    table.allow({"n_d", "V_d", "sellmeier", "cauchy", "table", "index", "label"});
     const auto index = table.number("index"), n_d = table.number("n_d"), v_d = table.number("V_d");
     const auto sellmeier = table.table("sellmeier");
     const std::vector<double> cauchy = table.numbers("cauchy", 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -16,7 +17,8 @@ constexpr std::size_t kMostValues = std::size_t{1} << 23;
 
 class Parser {
 public:
-    Parser(std::string_view text, Checkpoint& checkpoint) : text_(text), checkpoint_(checkpoint) {}
+    Parser(std::string_view text, Checkpoint& checkpoint, JsonNumbers numbers)
+        : text_(text), checkpoint_(checkpoint), numbers_(numbers) {}
 
     Json document() {
         Json value = parse_value(0);
@@ -58,6 +60,11 @@ private:
     }
 
     double parse_number() {
+        if (numbers_ == JsonNumbers::with_infinity) {
+            if (take("Infinity")) return std::numeric_limits<double>::infinity();
+            if (take("-Infinity")) return -std::numeric_limits<double>::infinity();
+            if (take("NaN")) return std::numeric_limits<double>::quiet_NaN();
+        }
         std::string_view rest = text_.substr(at_);
         // JSON has neither "+1" nor "nan", which other formats have.
         const std::size_t first = rest.starts_with('-') ? 1 : 0;
@@ -178,6 +185,7 @@ private:
 
     std::string_view text_;
     Checkpoint& checkpoint_;
+    JsonNumbers numbers_;
     std::size_t at_ = 0, values_ = 0;
 };
 
@@ -186,8 +194,8 @@ const std::string no_text;
 
 }  // namespace
 
-Json Json::parse(std::string_view text, Checkpoint& checkpoint) {
-    return Parser(text, checkpoint).document();
+Json Json::parse(std::string_view text, Checkpoint& checkpoint, JsonNumbers numbers) {
+    return Parser(text, checkpoint, numbers).document();
 }
 
 const Json& Json::operator[](std::string_view name) const {

@@ -1,5 +1,5 @@
 #pragma once
-// As much JSON as a glTF file needs: reading, and asking for what may be absent.
+// As much JSON as files of scenes and lenses need: reading, and asking for what may be absent.
 
 #include <cstddef>
 #include <string>
@@ -11,6 +11,9 @@
 #include "../checkpoint.hpp"
 
 namespace realcam::io {
+
+/// Numbers that JSON has not, and Python writes all the same.
+enum class JsonNumbers { finite, with_infinity };
 
 class Json {
 public:
@@ -27,7 +30,8 @@ public:
 
     /// Throws std::runtime_error, with the line, if the text is no JSON, is nested more than 200 deep, or holds more
     /// than eight million values (some 600 MB). Of members with one name the last counts.
-    static Json parse(std::string_view text, Checkpoint& checkpoint);
+    /// `with_infinity` reads Infinity, -Infinity and NaN too.
+    static Json parse(std::string_view text, Checkpoint& checkpoint, JsonNumbers numbers = JsonNumbers::finite);
 
     /// The member or element, or null (a Json that is_null()) if there is none or this is something else.
     const Json& operator[](std::string_view name) const;
@@ -36,6 +40,7 @@ public:
 
     bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     bool is_number() const { return std::holds_alternative<double>(value_); }
+    bool is_text() const { return std::holds_alternative<std::string>(value_); }
     bool is_true() const { return std::holds_alternative<bool>(value_) && std::get<bool>(value_); }
     /// Elements of an array; 0 for anything else.
     std::size_t size() const;

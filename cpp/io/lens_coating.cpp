@@ -34,8 +34,9 @@ CoatingMaterial read_layer_material(const TomlTable& layer, const std::optional<
 
 CoatingLayer read_layer(const TomlTable& layer, const std::optional<TomlTable>& glasses,
                         std::optional<double> design_wavelength_nm) {
-    layer.allow({"material", "complex_index", "thickness_nm", "thickness_waves"});
+    layer.allow({"material", "complex_index", "thickness_nm", "thickness_waves", "label"});
     CoatingLayer result{read_layer_material(layer, glasses), 0};
+    if (layer.find("label")) result.material.label = layer.text("label");
     const auto nm = layer.number("thickness_nm"), waves = layer.number("thickness_waves");
     if (nm.has_value() == waves.has_value())
         layer.fail("a layer needs exactly one of \"thickness_nm\" and \"thickness_waves\"");
@@ -70,7 +71,7 @@ std::vector<CoatingLayer> read_layers(const TomlTable& table, const std::optiona
 }
 
 Coating read_coating(const TomlTable& table, const std::string& name, const std::optional<TomlTable>& glasses) {
-    table.allow({"layers", "design_wavelength_nm", "metal", "reflectance"});
+    table.allow({"layers", "design_wavelength_nm", "metal", "metal_label", "reflectance", "label"});
     const bool layers = table.find("layers") != nullptr, metal = table.find("metal") != nullptr;
     const auto reflectance = table.number("reflectance");
     if (reflectance ? layers || metal : !(layers || metal))
@@ -80,6 +81,8 @@ Coating read_coating(const TomlTable& table, const std::string& name, const std:
     Coating coating = reflectance ? stated_reflectance(*reflectance, name)
                       : metal     ? metal_mirror(read_metal(table), read_layers(table, glasses), name)
                                   : layered_coating(read_layers(table, glasses), name);
+    if (table.find("label")) coating.name = table.text("label");
+    if (table.find("metal_label")) coating.metal.label = table.text("metal_label");
     try {
         check_coating(coating);
     } catch (const InputError& error) {

@@ -3,7 +3,12 @@
 #include "../optics/focus.hpp"
 #include "bundled_lenses.hpp"
 #include "lens_coating.hpp"
+#include "lens_format.hpp"
+#include "lens_from_prescription.hpp"
 #include "lens_material.hpp"
+#include "lens_readers.hpp"
+#include "lens_text.hpp"
+#include "lens_zoom.hpp"
 #include "regular_file.hpp"
 
 namespace realcam::io {
@@ -42,12 +47,12 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
 }
 
 Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& glasses, const LensCoatings& coatings,
-                     bool is_last) {
+                     bool is_last, bool is_zoomed) {
     Surface surface;
     surface.type = read_type(table);
     if (surface.bends_light()) {
         table.allow({"type", "radius_of_curvature_mm", "thickness_mm", "material", "clear_semi_diameter_mm",
-                     "inner_semi_diameter_mm", "conic", "aspheric_coefficients", "coating"});
+                     "inner_semi_diameter_mm", "conic", "aspheric_coefficients", "coating", "curvature_per_mm"});
     } else {
         table.allow({"type", "thickness_mm", "clear_semi_diameter_mm", "inner_semi_diameter_mm"});
     }
@@ -59,6 +64,12 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
                 table.find("radius_of_curvature_mm"));
         surface.curvature = 1 / *radius;
     }
+    if (const auto curvature = table.number("curvature_per_mm")) {
+        if (table.find("radius_of_curvature_mm"))
+            table.fail("\"radius_of_curvature_mm\" and \"curvature_per_mm\" say the same; one of them is wanted",
+                       table.find("curvature_per_mm"));
+        surface.curvature = *curvature;
+    }
     surface.conic = table.number("conic").value_or(0);
     surface.aspheric = read_aspheric_coefficients(table);
     if (surface.type == SurfaceType::mirror && table.find("material"))
@@ -67,7 +78,8 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     if (table.find("material")) surface.material = read_material(table, glasses);
     surface.coating = coatings.of(table);
     const auto thickness = table.number("thickness_mm");
-    if (!thickness && !is_last) table.fail("\"thickness_mm\" is missing: the axial distance to the next surface");
+    if (!thickness && !is_last && !is_zoomed)
+        table.fail("\"thickness_mm\" is missing: the axial distance to the next surface");
     if (thickness && is_last)
         table.fail("the last surface has no \"thickness_mm\"; the film follows it (film_distance_mm, or focus)",
                    table.find("thickness_mm"));
@@ -82,22 +94,32 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
 void read_iris(const TomlTable& file, LensSystem& lens) {
     const auto iris = file.table("iris");
     if (!iris) return;
-    iris->allow({"blades", "rounding", "rotation_deg"});
+    iris->allow({"blades", "rounding", "rotation_deg", "rotation_rad"});
     const double blades = iris->number("blades").value_or(0);
     if (blades != std::floor(blades) || std::fabs(blades) > 1000)
         iris->fail("\"blades\" must be a whole number", iris->find("blades"));
     lens.iris.blades = static_cast<int>(blades);
     lens.iris.rounding = iris->number("rounding").value_or(0);
     lens.iris.rotation_rad = iris->number("rotation_deg").value_or(0) * std::numbers::pi / 180;
+    if (const auto radians = iris->number("rotation_rad")) {
+        if (iris->find("rotation_deg"))
+            iris->fail("\"rotation_deg\" and \"rotation_rad\" say the same; one of them is wanted",
+                       iris->find("rotation_rad"));
+        lens.iris.rotation_rad = *radians;
+    }
 }
 
 void read_focusing(const TomlTable& file, LensSystem& lens) {
     const auto focus = file.table("focus");
     if (!focus) return;
-    focus->allow({"nearest_m", "group"});
-    const auto nearest = focus->number("nearest_m");
+    focus->allow({"nearest_m", "nearest_mm", "group"});
+    const auto nearest = focus->number("nearest_m"), nearest_mm = focus->number("nearest_mm");
+    if (nearest && nearest_mm)
+        focus->fail("\"nearest_m\" and \"nearest_mm\" say the same; one of them is wanted", focus->find("nearest_mm"));
     if (nearest && !(*nearest > 0)) focus->fail("\"nearest_m\" must be a positive distance", focus->find("nearest_m"));
-    lens.focusing.nearest_mm = 1000 * nearest.value_or(0);
+    if (nearest_mm && !(*nearest_mm > 0))
+        focus->fail("\"nearest_mm\" must be a positive distance", focus->find("nearest_mm"));
+    lens.focusing.nearest_mm = nearest_mm ? *nearest_mm : 1000 * nearest.value_or(0);
     const std::vector<double> group = focus->numbers("group", 2);
     if (group.empty()) return;
     const auto is_number = [](double n) { return n == std::floor(n) && n >= 1 && n < 1e6; };
@@ -150,24 +172,50 @@ void set_film_distance(const TomlTable& file, LensSystem& lens) {
     if (distance && !(*distance > 0))
         file.fail("\"film_distance_mm\" must be positive: the film lies behind the last surface",
                   file.find("film_distance_mm"));
-    const double at_infinity = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
-    if (!distance && !(at_infinity > 0))
-        file.fail("the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is wanted");
-    lens.film_distance = distance.value_or(at_infinity);
+    const bool zooms = !lens.zoom.positions.empty();
+    if (!distance && zooms)
+        lens.film_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].film_distance;
+    if (distance) lens.film_distance = *distance;
+    if (!distance && !zooms) {
+        lens.film_distance = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
+        if (!(lens.film_distance > 0))
+            file.fail(
+                "the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is wanted");
+    }
     if (const std::string why = film_distance_error(lens); !why.empty()) file.fail(why, file.find("film_distance_mm"));
+}
+
+/// How the rings of a lens stand that was saved: on what it is focused, and how far its diaphragm is closed.
+void set_rings(const TomlTable& file, LensSystem& lens) {
+    if (!lens.zoom.positions.empty())
+        lens.focus_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].focus_distance;
+    if (const toml::node* node = file.find("focus_distance_mm")) {
+        // Infinity is what it is without the key; a lens that zooms may be focused nearer at rest.
+        const bool infinite = node->is_floating_point() && node->value_or(0.0) == kInfinity;
+        lens.focus_distance = infinite ? kInfinity : *file.number("focus_distance_mm");
+    }
+    if (!(lens.focus_distance > 0))
+        file.fail("\"focus_distance_mm\" must be positive: the object plane to the film",
+                  file.find("focus_distance_mm"));
+    const double rim = lens.stop().clear_semi_diameter;
+    lens.stop_semi_diameter = file.number("stop_semi_diameter_mm").value_or(rim);
+    if (!(lens.stop_semi_diameter > 0) || lens.stop_semi_diameter > rim)
+        file.fail("\"stop_semi_diameter_mm\" must lie between 0 and the stop's clear semi-diameter",
+                  file.find("stop_semi_diameter_mm"));
 }
 
 LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     const TomlTable top(root, file);
     top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm", "glass", "coating",
-               "default_coating", "surface", "iris", "focus", "allow_crossing"});
+               "default_coating", "surface", "iris", "focus", "allow_crossing", "zoom", "zoom_position",
+               "focus_distance_mm", "stop_semi_diameter_mm"});
     const auto format = top.number("format");
     if (!format) top.fail("\"format = 1\" is missing");
     if (*format != kFormat)
         top.fail("format " + number_label(*format) + " is not known; this program reads format 1", top.find("format"));
     LensSystem lens;
     lens.name = read_line(top, "name");
-    if (lens.name.empty()) top.fail("\"name\" is missing");
+    if (!top.find("name")) top.fail("\"name\" is missing");
     lens.title = read_line(top, "title");
     lens.source = read_line(top, "source");
     lens.allow_crossing = top.flag("allow_crossing");
@@ -183,16 +231,24 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     const toml::array* surfaces = root["surface"].as_array();
     if (!surfaces || !surfaces->is_array_of_tables())
         top.fail("the lens has no surfaces; tables [[surface]] are wanted");
+    const LensZoom zoom(top);
+    std::vector<bool> has_thickness;
     for (std::size_t i = 0; i < surfaces->size(); ++i) {
-        const TomlTable table(*(*surfaces)[i].as_table(), file, static_cast<int>(i) + 1);
-        lens.surfaces.push_back(read_surface(table, glasses, coatings, i + 1 == surfaces->size()));
+        const int number = static_cast<int>(i) + 1;
+        const TomlTable table(*(*surfaces)[i].as_table(), file, number);
+        lens.surfaces.push_back(
+            read_surface(table, glasses, coatings, i + 1 == surfaces->size(), zoom.changes(number)));
+        has_thickness.push_back(table.find("thickness_mm") != nullptr);
     }
     coatings.apply_default(lens, *surfaces);
     read_iris(top, lens);
     read_focusing(top, lens);
+    if (lens.stop_index() >= 0) zoom.apply(lens, has_thickness);
     check_lens(top, *surfaces, lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
     set_film_distance(top, lens);
+    set_rings(top, lens);
+    check_part(top, top.find("zoom") ? *top.find("zoom") : top.raw(), *surfaces, [&] { check_zoom(lens); });
     return lens;
 }
 
@@ -201,7 +257,7 @@ std::string text_of_file(const std::string& path) {
     constexpr std::size_t kLargest = 16 << 20;  // bytes; the bundled lenses have some thousand
     try {
         RegularFile file(path);
-        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; a lens file (.toml) is wanted", path);
+        if (file.size() > kLargest) throw LensFileError("is larger than 16 MiB; a lens file is wanted", path);
         std::string text(file.size(), '\0');
         text.resize(file.read(text.data(), text.size()));
         return text;
@@ -234,10 +290,43 @@ LensSystem parse_lens(std::string_view text, const std::string& file) {
     }
 }
 
-LensSystem read_lens(const std::string& name_or_path) {
-    if (name_or_path.find_first_of("/.") == std::string::npos)
-        return parse_lens(bundled_lens_text(name_or_path), name_or_path);
-    return parse_lens(text_of_file(name_or_path), name_or_path);
+LensFormat lens_format_of(std::string_view path) {
+    const std::string_view name = path.substr(path.find_last_of('/') == path.npos ? 0 : path.find_last_of('/') + 1);
+    const std::size_t point = name.find_last_of('.');
+    const std::string suffix = upper_case(point == name.npos ? std::string_view() : name.substr(point));
+    if (suffix == ".ZMX") return LensFormat::zemax;
+    if (suffix == ".SEQ") return LensFormat::code_v;
+    if (suffix == ".DAT") return LensFormat::pbrt;
+    if (suffix == ".JSON") return LensFormat::optiland;
+    if (suffix == ".ROA") return LensFormat::ray_optics;
+    return LensFormat::toml;
+}
+
+LensSystem parse_lens_file(std::string_view bytes, const std::string& file, const LensReadOptions& options) {
+    const LensFormat format = lens_format_of(file);
+    LensGlasses glasses(options);
+    if (format == LensFormat::toml) {
+        LensSystem lens = parse_lens(bytes, file);
+        glasses.check_all_used();  // which says that this file names its glasses itself
+        return lens;
+    }
+    const std::string text = decoded_lens_text(bytes, file);
+    const Prescription prescription = format == LensFormat::zemax      ? read_zemax(text, file, glasses)
+                                      : format == LensFormat::code_v   ? read_code_v(text, file, glasses)
+                                      : format == LensFormat::pbrt     ? read_pbrt(text, file, options.pbrt_thickness)
+                                      : format == LensFormat::optiland ? read_optiland(text, file, glasses)
+                                                                       : read_ray_optics(text, file, glasses);
+    glasses.check_all_used();
+    return lens_from(prescription, options);
+}
+
+LensSystem read_lens(const std::string& name_or_path, const LensReadOptions& options) {
+    if (name_or_path.find_first_of("/.") == std::string::npos) {
+        LensSystem lens = parse_lens(bundled_lens_text(name_or_path), name_or_path);
+        LensGlasses(options).check_all_used();
+        return lens;
+    }
+    return parse_lens_file(text_of_file(name_or_path), name_or_path, options);
 }
 
 }  // namespace realcam::io

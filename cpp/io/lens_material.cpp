@@ -31,7 +31,7 @@ Glass read_material(const TomlTable& table, const std::optional<TomlTable>& glas
     if (glasses)
         if (const auto own = glasses->table(name)) {
             Glass glass = glass_from_table(*own);
-            glass.label = name;
+            glass.label = own->find("label") ? own->text("label") : name;
             return glass;
         }
     try {

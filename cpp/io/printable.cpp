@@ -55,6 +55,15 @@ std::string printable(std::string_view bytes) {
     return cleaned(bytes, std::string_view::npos);
 }
 
+bool is_utf8(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const std::size_t size = character_size(bytes);
+        if (size == 0) return false;
+        bytes.remove_prefix(size);
+    }
+    return true;
+}
+
 std::string in_quotes(std::string_view bytes) {
     return '"' + cleaned(bytes, kMostQuoted) + '"';
 }

@@ -16,12 +16,38 @@ inline void check_surface_exists(const LensSystem& lens, int index) {
                          ", counted from 0");
 }
 
+namespace lens_changes_detail {
+
+/// Brings a changed value into the zoom positions: into all of them where zooming does not change it.
+template <class Get>
+void change_zoom_value(ZoomRange& zoom, double change, const Get& value) {
+    const double first = value(zoom.positions.front());
+    const bool same = std::all_of(zoom.positions.begin(), zoom.positions.end(),
+                                  [&](ZoomPosition& position) { return value(position) == first; });
+    for (std::size_t i = 0; i < zoom.positions.size(); ++i)
+        if (same || static_cast<int>(i) == zoom.current) value(zoom.positions[i]) += change;
+}
+
+}  // namespace lens_changes_detail
+
 /// The lens with another surface in place of one, counted from 0. All else stays, the film's place too: focused()
-/// brings the picture into focus again. A diaphragm that is wide open stays so. Throws InputError where there is no
-/// such surface, and LensFileError where the lens cannot be built.
+/// brings the picture into focus again. A thickness that zooming changes, changes in the current position. A diaphragm
+/// that is wide open stays so. Throws InputError where there is no such surface, and LensFileError where the lens
+/// cannot be built.
 inline LensSystem with_surface(LensSystem lens, int index, Surface surface) {
     check_surface_exists(lens, index);
     const bool was_open = lens.is_wide_open();
+    const Surface before = lens.surfaces[static_cast<std::size_t>(index)];
+    for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
+        if (lens.zoom.surfaces[i] == index)
+            lens_changes_detail::change_zoom_value(
+                lens.zoom, surface.thickness - before.thickness,
+                [i](ZoomPosition& position) -> double& { return position.thicknesses[i]; });
+    if (!lens.zoom.positions.empty() && lens.zoom.positions.front().stop_semi_diameter > 0 &&
+        before.type == SurfaceType::stop && surface.type == SurfaceType::stop)
+        lens_changes_detail::change_zoom_value(
+            lens.zoom, surface.clear_semi_diameter - before.clear_semi_diameter,
+            [](ZoomPosition& position) -> double& { return position.stop_semi_diameter; });
     lens.surfaces[static_cast<std::size_t>(index)] = std::move(surface);
     lens.surfaces.back().thickness = 0;
     validate(lens);

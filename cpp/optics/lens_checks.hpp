@@ -147,12 +147,44 @@ inline void check_focusing(const LensSystem& lens) {
         throw LensFileError("the focusing group must be [first, last] with 1 <= first <= last <= " + std::to_string(n));
 }
 
+/// That every zoom position is one that can be built.
+inline void check_zoom(const LensSystem& lens) {
+    const ZoomRange& zoom = lens.zoom;
+    if (zoom.positions.empty()) return;
+    const int last = static_cast<int>(lens.surfaces.size()) - 1, count = static_cast<int>(zoom.positions.size());
+    if (zoom.current < 0 || zoom.current >= count) throw LensFileError("the lens is in a zoom position that it lacks");
+    for (std::size_t i = 0; i < zoom.surfaces.size(); ++i)
+        if (zoom.surfaces[i] < 0 || zoom.surfaces[i] >= last || (i > 0 && zoom.surfaces[i] <= zoom.surfaces[i - 1]))
+            throw LensFileError("zooming changes thicknesses of surfaces 1 to " + std::to_string(last) +
+                                "; what is behind the last one is the position's film distance");
+    for (std::size_t i = 0; i < zoom.positions.size(); ++i) {
+        const ZoomPosition& position = zoom.positions[i];
+        const std::string where = "in zoom position \"" + position.name + "\" ";
+        for (std::size_t j = 0; j < i; ++j)
+            if (zoom.positions[j].name == position.name)
+                throw LensFileError("two zoom positions are called \"" + position.name + '"');
+        if (position.name.empty()) throw LensFileError("a zoom position has no name");
+        if (position.thicknesses.size() != zoom.surfaces.size())
+            throw LensFileError(where + "not all thicknesses are given that zooming changes");
+        if (!(position.film_distance > 0) || !(position.film_distance <= kLongest))
+            throw LensFileError(where + "the film must lie behind the last surface, at most 1e9 mm away");
+        if (!(position.stop_semi_diameter >= 0) || !(position.focus_distance > 0))
+            throw LensFileError(where + "the stop's semi-diameter or the focus distance is not positive");
+        try {
+            check_surfaces(at_zoom_position(lens, static_cast<int>(i)));
+        } catch (const LensFileError& error) {
+            throw LensFileError(where + error.detail, {}, 0, error.surface);
+        }
+    }
+}
+
 /// Everything but the place of the film, which may not be known yet. Throws LensFileError.
 inline void validate(const LensSystem& lens) {
     check_surfaces(lens);
     check_iris(lens.iris);
     check_film_size(lens);
     check_focusing(lens);
+    check_zoom(lens);
 }
 
 /// Why the film cannot lie where it does; empty where it can.

@@ -7,6 +7,7 @@
 #include "../error.hpp"
 #include "iris_shape.hpp"
 #include "surface.hpp"
+#include "zoom_range.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -44,6 +45,7 @@ struct LensSystem {
     double stop_semi_diameter = 0;  ///< radius of the circle that has the diaphragm's open area
     IrisShape iris;
     FocusingRule focusing;
+    ZoomRange zoom;
     bool allow_crossing =
         false;  ///< faces may cross inside their rims: for experiments, as nobody can make such a lens
 
@@ -85,5 +87,19 @@ struct LensSystem {
         return n;
     }
 };
+
+/// The lens at rest in a zoom position that it has: wide open, and focused as the position says.
+inline LensSystem at_zoom_position(LensSystem lens, int position) {
+    const ZoomPosition& to = lens.zoom.positions[static_cast<std::size_t>(position)];
+    for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
+        lens.surfaces[static_cast<std::size_t>(lens.zoom.surfaces[i])].thickness = to.thicknesses[i];
+    Surface& stop = lens.surfaces[static_cast<std::size_t>(lens.stop_index())];
+    if (to.stop_semi_diameter > 0) stop.clear_semi_diameter = to.stop_semi_diameter;
+    lens.stop_semi_diameter = stop.clear_semi_diameter;
+    lens.film_distance = to.film_distance;
+    lens.focus_distance = to.focus_distance;
+    lens.zoom.current = position;
+    return lens;
+}
 
 }  // namespace REALCAM_NAMESPACE

@@ -7,6 +7,7 @@
 #include "../error.hpp"
 #include "../io/lens_file.hpp"
 #include "../optics/lens_changes.hpp"
+#include "../optics/zoom.hpp"
 #include "../render/daylight.hpp"
 #include "../render/metering.hpp"
 #include "shot_scene.hpp"
@@ -54,7 +55,8 @@ void settle_noise_goal(ShotRequest& request) {
 
 Camera camera_of(const ShotRequest& request) {
     Camera camera;
-    camera.lens = io::read_lens(request.lens);
+    camera.lens = io::read_lens(request.lens, request.lens_options);
+    if (!request.zoom.empty()) camera.lens = zoomed(camera.lens, request.zoom);
     if (request.blades || request.blade_rounding || request.blade_rotation_deg)
         camera.lens = with_iris(camera.lens, iris_of(request, camera.lens.iris));
     if (request.f_number) camera.lens = stopped_down(camera.lens, *request.f_number);

@@ -35,6 +35,7 @@ public:
                       "environment",
                       "environment_cd_m2",
                       "lens",
+                      "zoom",
                       "f_number",
                       "blades",
                       "blade_rounding",
@@ -96,6 +97,9 @@ private:
     void read_camera(ShotRequest& shot) const {
         if (const std::string lens = table_.name("lens"); !lens.empty())
             shot.lens = lens.find_first_of("/.") == std::string::npos ? lens : table_.path("lens");
+        shot.zoom = table_.text("zoom");
+        if (shot.zoom.empty() && table_.find("zoom"))
+            table_.fail("\"zoom\" is empty; the name of a zoom position of the lens is wanted", table_.find("zoom"));
         shot.f_number = table_.number("f_number");
         if (const auto blades = table_.number("blades")) shot.blades = table_.whole("blades", *blades);
         shot.blade_rounding = table_.number("blade_rounding");

@@ -6,6 +6,7 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
+#include "../io/lens_file.hpp"
 #include "../render/default_view.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
@@ -23,6 +24,8 @@ struct ShotRequest {
     SceneRequest additions;
 
     std::string lens = "double-gauss-50mm";  ///< a bundled one, or a file
+    io::LensReadOptions lens_options;
+    std::string zoom;  ///< a position of the lens; empty: as its file gives it
     std::optional<double> f_number;
     std::optional<int> blades;  ///< of the diaphragm; this and the next two: the lens's where they are left out
     std::optional<double> blade_rounding, blade_rotation_deg;

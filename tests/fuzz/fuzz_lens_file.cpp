@@ -1,5 +1,5 @@
-// Fuzz target: a lens file, mutated from one that can be read, becomes a lens that validate() accepts or a
-// LensFileError whose message is one line; nothing else.
+// Fuzz target: a lens file, realcam's or another program's, mutated from one that can be read, becomes a lens that
+// validate() accepts or a LensFileError whose message is one line; nothing else.
 
 #include <cstring>
 #include <string>
@@ -78,26 +78,101 @@ material = "N-BK7"
 clear_semi_diameter_mm = 15.0
 )";
 
+constexpr const char* kZoom = R"(
+[focus]
+group = [1, 1]
+[[zoom]]
+name = "a"
+thickness_mm = { 4 = 30.0 }
+stop_semi_diameter_mm = 6.0
+[[zoom]]
+name = "b"
+thickness_mm = { 4 = 28.0 }
+film_distance_mm = 61.0
+stop_semi_diameter_mm = 5.0
+)";
+
+/// One lens in the formats that are only read.
+constexpr const char* kPbrt = R"(# probe
+29.475 3.76 1.67 25.2
+84.83 0.12 1 25.2
+0 4.5 0 17.1
+-14.495 1.18 1.603 17
+-39.73 36.0 1 20
+)";
+constexpr const char* kOptiland = R"({"name": "probe", "aperture": {"type": "EPD", "value": 8},
+"fields": {"fields": [{"x": 0, "y": 0, "vx": 0, "vy": 0}, {"x": 0, "y": 10, "vx": 0, "vy": 0.1}],
+  "field_definition": {"field_type": "AngleField"}},
+"wavelengths": {"wavelengths": [{"value": 0.55, "is_primary": true, "unit": "um"}]},
+"surface_group": {"surfaces": [
+{"type": "ObjectSurface", "geometry": {"type": "Plane", "cs": {"z": -Infinity}, "radius": Infinity}},
+{"thickness": 4, "geometry": {"type": "EvenAsphere", "cs": {"z": 0.0}, "radius": 40, "conic": 0.1,
+  "coefficients": [1e-4, 1e-7]}, "material_post": {"type": "Material", "name": "N-BK7", "filename": "/d/schott/N-BK7.yml"},
+  "is_stop": true, "interaction_model": {"type": "RefractiveReflectiveModel", "is_reflective": false}},
+{"thickness": 80, "geometry": {"type": "StandardGeometry", "cs": {"z": 4.0}, "radius": -60, "conic": 0},
+  "material_post": {"type": "IdealMaterial", "index": 1.0}, "aperture": {"type": "RadialAperture", "r_max": 9, "r_min": 0}},
+{"thickness": 0, "geometry": {"type": "Plane", "cs": {"z": 84.0}, "radius": Infinity}}]}})";
+constexpr const char* kRayOptics = R"({"optical_model": {"attributes": {
+"system_spec": {"attributes": {"title": "probe", "_dimensions": "mm"}},
+"profile_dict": {"1": {"__instance_type__": ["m", "Spherical"], "attributes": {"cv": 0.0}},
+  "2": {"__instance_type__": ["m", "EvenPolynomial"], "attributes": {"cv": 0.03, "cc": 0.2, "coefs": [0.0, 1e-6]}}},
+"seq_model": {"attributes": {"stop_surface": 2, "ifcs": [
+{"__instance_type__": ["m", "Surface"], "attributes": {"interact_mode": "dummy", "profile_id": "1"}},
+{"__instance_type__": ["m", "Surface"], "attributes": {"interact_mode": "transmit", "profile_id": "2", "max_aperture": 9}},
+{"__instance_type__": ["m", "Surface"], "attributes": {"interact_mode": "transmit", "profile_id": "1",
+  "clear_apertures": [{"__instance_type__": ["m", "Circular"], "attributes": {"radius": 8}}]}},
+{"__instance_type__": ["m", "Surface"], "attributes": {"interact_mode": "dummy", "profile_id": "1"}}],
+"gaps": [{"attributes": {"thi": 1e10}}, {"attributes": {"thi": 5, "medium": {"__instance_type__":
+  ["opticalglass.schott", "SchottGlass"], "attributes": {"gname": "N-BK7"}}}},
+  {"attributes": {"thi": 60, "medium": {"__instance_type__": ["m", "Air"], "attributes": {}}}}]}},
+"optical_spec": {"attributes": {"spectral_region": {"attributes": {"wavelengths": [587.6], "reference_wvl": 0}},
+  "pupil": {"attributes": {"_key": ["aperture", "image", "f/#"], "value": 8}},
+  "field_of_view": {"attributes": {"key": ["field", "object", "angle"], "value": 5, "is_relative": true, "fields": [
+    {"attributes": {"x": 0, "y": 1}}]}}}}}}})";
+
+/// A lens file of any format, and the name that says which.
+std::string seed(Bytes& in, std::string& name) {
+    const std::span<const io::BundledFile> files = io::bundled_lens_files();
+    const std::string bundled(files[static_cast<std::size_t>(in.byte()) % files.size()].name);
+    switch (in.below(8)) {
+        case 0: return name = "fuzz.dat", kPbrt;
+        case 1: return name = "fuzz.json", kOptiland;
+        case 2: return name = "fuzz.roa", kRayOptics;
+        case 3:
+        case 4: name = "fuzz.zmx"; break;
+        case 5:
+        case 6: name = "fuzz.seq"; break;
+        default: return name = "fuzz.toml", std::string(kEveryKey) + kZoom;
+    }
+    if (in.chance(64)) return io::lens_text_for(io::parse_lens(std::string(kEveryKey) + kZoom, "seed.toml"), name).text;
+    return io::lens_text_for(io::read_lens(bundled), name).text;
+}
+
 }  // namespace
 
 int fuzz_lens_file(const std::uint8_t* data, std::size_t size) {
     Bytes in(data, size);
-    std::string text;
+    std::string text, name = "fuzz.toml";
     const std::span<const io::BundledFile> files = io::bundled_lens_files();
     const auto choice = static_cast<std::size_t>(in.byte());
     if (choice == 255) {
         text.assign(reinterpret_cast<const char*>(data) + (size > 0), size - (size > 0));
+    } else if (choice >= 128) {
+        text = seed(in, name);
+        for (int i = in.below(5); i >= 0; --i) mutate_text(in, text);
     } else {
         text = choice % 2 ? std::string(kEveryKey) : std::string(files[choice / 2 % files.size()].text);
         for (int i = in.below(5); i >= 0; --i) mutate_text(in, text);
     }
     ++findings().files;
     try {
-        const LensSystem lens = io::parse_lens(text, "fuzz.toml");
+        io::LensReadOptions options;
+        options.force = choice % 3 == 0;
+        const LensSystem lens = io::parse_lens_file(text, name, options);
         ++findings().files_read;
         validate(lens);
-        const bool sound = lens.film_distance > 0 && std::isfinite(lens.film_distance) && !lens.name.empty() &&
-                           lens.wavelength_nm >= 100 && lens.stop_semi_diameter > 0 && lens.focusing.nearest_mm >= 0;
+        const bool sound = lens.film_distance > 0 && std::isfinite(lens.film_distance) && lens.wavelength_nm >= 100 &&
+                           lens.stop_semi_diameter > 0 && lens.focusing.nearest_mm >= 0;
         if (!sound) report("a lens file becomes a lens that is none", "%s", start_of(text).c_str());
     } catch (const LensFileError& error) {
         if (std::strchr(error.what(), '\n'))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from typing import Any, NoReturn
 
 import typer
@@ -48,6 +49,8 @@ def _options(
 
 def run() -> None:
     """Runs the command line; the user's mistakes end in one line on stderr and exit code 2, Ctrl-C in 130."""
+    warnings.showwarning = _show_warning
+    warnings.simplefilter("always", UserWarning)
     try:
         sys.exit(app(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
     except _UsageError as error:
@@ -61,6 +64,10 @@ def run() -> None:
     except (KeyboardInterrupt, typer.Abort):
         print("realcam: stopped", file=sys.stderr)
         sys.exit(130)
+
+
+def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    print(f"realcam: warning: {one_line(str(message))}", file=sys.stderr)
 
 
 def _fail(message: str) -> NoReturn:

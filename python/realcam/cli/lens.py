@@ -13,11 +13,6 @@ from . import lens_figures, lens_options, lens_plots, options
 
 app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
 
-LensName = Annotated[
-    str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")
-]
-FNumber = Annotated[Optional[float], typer.Option("--f-number", help="Close the diaphragm to this f-number.")]  # noqa: UP045
-Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to film in metres, or inf.")]  # noqa: UP045
 Circle = Annotated[
     Optional[float],  # noqa: UP045
     typer.Option("--circle-of-confusion", help="Largest blur that is sharp, in mm [the film's diagonal / 1500]."),
@@ -32,12 +27,12 @@ lens_plots.register(app)
 
 @app.command("draw")
 def draw(
-    name: LensName,
+    name: lens_options.LensName,
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="A .svg, .png or .pdf file [LENS.svg, here].")
     ] = None,
-    f_number: FNumber = None,
-    focus: Focus = None,
+    f_number: lens_options.FNumber = None,
+    focus: lens_options.Focus = None,
     rays: lens_options.Rays = 7,
     rays_from: lens_options.RaysFrom = "object",
     fields: lens_options.Fields = "0,0.7,1",
@@ -55,6 +50,10 @@ def draw(
     ] = "one",
     theme: lens_options.ThemeName = "light",
     width: lens_options.Width = 1600,
+    zoom: lens_options.Zoom = None,
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
 ) -> None:
     """Write the cross-section of a lens, with rays from the object in focus."""
     from ..draw import save_cross_section, save_states, states_of
@@ -66,7 +65,7 @@ def draw(
             "--states rows shows focus states or zoom positions, by shares of the film: --focus and "
             "--fields-deg do not go with it"
         )
-    lens = options.lens(name, focus, f_number)
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
     # By what the user called the lens: the name in a file may be any text.
     target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.svg")
     lens_options.check_not_the_lens(target, name)
@@ -112,21 +111,24 @@ def draw(
 
 @app.command("photo")
 def photo(
-    name: LensName,
-    f_number: FNumber = None,
-    focus: Focus = None,
+    name: lens_options.LensName,
+    f_number: lens_options.FNumber = None,
+    focus: lens_options.Focus = None,
     circle: Circle = None,
     exposure_time: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option("--exposure-time", help="In seconds, 1/125 or 0.008: also print exposure values."),
     ] = None,
     iso: Annotated[float, typer.Option("--iso", help="Sensitivity, for exposure values.")] = 100.0,
+    zoom: lens_options.Zoom = None,
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Print photographers' figures: depth of field, angle of view, breathing, T-stop, exposure value."""
     from ..photography import photographic_figures
 
-    lens = options.lens(name, focus, f_number)
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force)
     figures = photographic_figures(
         lens,
         circle_of_confusion_mm=circle,
@@ -141,13 +143,13 @@ def photo(
 
 @app.command("compare")
 def compare(
-    first: LensName,
+    first: lens_options.LensName,
     second: Annotated[str, typer.Argument(help="Another one.", metavar="LENS")],
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="Also draw both at one scale: .svg, .png or .pdf.")
     ] = None,
-    f_number: FNumber = None,
-    focus: Focus = None,
+    f_number: lens_options.FNumber = None,
+    focus: lens_options.Focus = None,
     circle: Circle = None,
     mtf: Annotated[
         Optional[str],  # noqa: UP045
@@ -158,12 +160,14 @@ def compare(
     marks: lens_options.Marks = False,
     theme: lens_options.ThemeName = "light",
     width: lens_options.Width = 1600,
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Print figures of two lenses side by side, at the same focus and stop if these are given, and draw both."""
     from ..photography import lens_summary
 
-    lenses = [options.lens(name, focus, f_number) for name in (first, second)]
+    lenses = [options.lens(name, focus, f_number, glass=glass, force=force) for name in (first, second)]
     colours = lens_options.numbers(wavelengths, "--wavelengths")
     if output is not None:
         from ..drawing.figure import check_picture
@@ -192,3 +196,19 @@ def compare(
         )
         if not as_json:
             typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")
+
+
+@app.command("convert")
+def convert(
+    name: lens_options.LensName,
+    output: Annotated[Path, typer.Option("--output", "-o", help="A .toml, .zmx or .seq file.")],
+    zoom: lens_options.Zoom = None,
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
+) -> None:
+    """Write a lens as a file of realcam (.toml), Zemax (.zmx) or CODE V (.seq)."""
+    if Path(name).is_file() and output.exists() and output.samefile(name):
+        raise InputError(f"{output}: is the lens file itself; another name is wanted")
+    options.lens(name, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness).save(output)
+    typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")

@@ -1,4 +1,4 @@
-"""Options that drawings of lenses share."""
+"""Options that the commands about lenses share."""
 
 from __future__ import annotations
 
@@ -9,6 +9,33 @@ import typer
 
 from .._core import InputError
 from . import options
+
+LensName = Annotated[
+    str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")
+]
+FNumber = Annotated[Optional[float], typer.Option("--f-number", help="Close the diaphragm to this f-number.")]  # noqa: UP045
+Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to film in metres, or inf.")]  # noqa: UP045
+Zoom = Annotated[Optional[str], typer.Option("--zoom", help="Zoom position, by its name in `realcam lens info`.")]  # noqa: UP045
+Glasses = Annotated[
+    Optional[list[str]],  # noqa: UP045
+    typer.Option(
+        "--glass",
+        help="A glass that the lens's file names and no catalogue has, or several: NAME=n_d,V_d or NAME=schott:F4; "
+        "may be repeated.",
+        metavar="NAME=N,V",
+    ),
+]
+Force = Annotated[
+    bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it.")
+]
+PbrtThickness = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option(
+        "--pbrt-thickness",
+        help="Where a thickness in a .dat file stands: after or before the surface of its row [by the first row].",
+        metavar="WHERE",
+    ),
+]
 
 Rays = Annotated[int, typer.Option(help="Rays of each bundle.", min=0, max=101)]
 RaysFrom = Annotated[

@@ -11,26 +11,20 @@ import typer
 from numpy.typing import NDArray
 
 from .._core import InputError
-from . import options
+from . import lens_options, options
 
-LensName = Annotated[
-    str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")
-]
-FNumber = Annotated[Optional[float], typer.Option("--f-number", help="Close the diaphragm to this f-number.")]  # noqa: UP045
-Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to film in metres, or inf.")]  # noqa: UP045
 ObjectDistance = Annotated[
     Optional[str],  # noqa: UP045
     typer.Option("--object-distance", help="Object plane to front vertex in metres, or inf [the plane in focus]."),
 ]
 Fields = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--fields", help="Field angles in degrees, with commas between [up to the film's corner]."),
+    typer.Option("--fields-deg", help="Field angles in degrees, with commas between [up to the film's corner]."),
 ]
 Wavelengths = Annotated[
     Optional[str],  # noqa: UP045
     typer.Option("--wavelengths", help="In nm, with commas between [F line, the design wavelength, C line]."),
 ]
-Theme = Annotated[str, typer.Option("--theme", help="light or dark.")]
 
 
 def register(app: typer.Typer) -> None:
@@ -49,8 +43,11 @@ def plot(
         Optional[list[Path]],  # noqa: UP045
         typer.Option("--output", "-o", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated."),
     ] = None,
-    f_number: FNumber = None,
-    focus: Focus = None,
+    f_number: lens_options.FNumber = None,
+    focus: lens_options.Focus = None,
+    zoom: lens_options.Zoom = None,
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     frequencies: Annotated[
@@ -58,7 +55,7 @@ def plot(
         typer.Option("--frequencies", help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest."),
     ] = None,
     object_distance: ObjectDistance = None,
-    theme: Theme = "light",
+    theme: lens_options.ThemeName = "light",
     size: Annotated[str, typer.Option("--size", help="small or large.")] = "large",
     as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON.")] = False,
 ) -> None:
@@ -80,12 +77,12 @@ def plot(
             numbers.check_numbers_target(target)
         else:
             style.check_plot_target(target)
-    lens = options.lens(name, focus, f_number)
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force)
     bundles = analysis.Bundles(lens, _distance(object_distance))
     asked = kinds.Asked(
         lens,
         bundles,
-        _numbers(fields, "--fields"),
+        _numbers(fields, "--fields-deg"),
         _numbers(wavelengths, "--wavelengths"),
         _numbers(frequencies, "--frequencies"),
     )
@@ -103,27 +100,30 @@ def plot(
 
 
 def report(
-    name: LensName,
+    name: lens_options.LensName,
     output: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Option("--output", "-o", help="A .pdf or .html file [LENS.pdf, here]."),
     ] = None,
-    f_number: FNumber = None,
-    focus: Focus = None,
+    f_number: lens_options.FNumber = None,
+    focus: lens_options.Focus = None,
+    zoom: lens_options.Zoom = None,
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     object_distance: ObjectDistance = None,
-    theme: Theme = "light",
+    theme: lens_options.ThemeName = "light",
 ) -> None:
     """Write all about a lens on three pages: rays, contrast and colour, waves and light."""
     from ..analysis import save_report
 
-    lens = options.lens(name, focus, f_number)
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force)
     target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.pdf")
     save_report(
         lens,
         target,
-        fields_deg=_numbers(fields, "--fields"),
+        fields_deg=_numbers(fields, "--fields-deg"),
         wavelengths_nm=_numbers(wavelengths, "--wavelengths"),
         object_distance_m=_distance(object_distance),
         theme=theme,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import typer
 
@@ -29,9 +30,37 @@ def number(text: str, what: str) -> float:
     return value
 
 
-def lens(name: str, focus: str | None, f_number: float | None) -> Lens:
+def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str]:
+    """Glasses as the command line names them: NAME=n_d,V_d, NAME=n or NAME=schott:F4. Raises InputError."""
+    result: dict[str, tuple[float, float] | float | str] = {}
+    for text in texts:
+        name, equals, glass = text.partition("=")
+        if not (name and equals and glass):
+            raise InputError(f'--glass: "{text}": NAME=n_d,V_d or NAME=MAKER:GLASS is wanted')
+        if name in result:
+            raise InputError(f'--glass: the glass "{name}" is given twice')
+        n_d, comma, v_d = glass.partition(",")
+        if comma:
+            result[name] = (number(n_d, "--glass"), number(v_d, "--glass"))
+        else:
+            result[name] = number(n_d, "--glass") if n_d[0].isdigit() else glass
+    return result
+
+
+def lens(
+    name: str,
+    focus: str | None = None,
+    f_number: float | None = None,
+    *,
+    zoom: str | None = None,
+    glass: Sequence[str] | None = None,
+    force: bool = False,
+    pbrt_thickness: str | None = None,
+) -> Lens:
     """A lens with its rings set."""
-    result = Lens.load(name)
+    result = Lens.load(name, glass=glasses(glass or ()), force=force, pbrt_thickness=pbrt_thickness)
+    if zoom is not None:
+        result = result.zoomed(zoom)
     # The stop first: f-numbers are of the lens at infinity, and a focusing group that has moved makes another lens.
     if f_number is not None:
         result = result.stopped_down(f_number)

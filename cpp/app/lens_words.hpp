@@ -1,0 +1,23 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "../io/lens_file.hpp"
+
+namespace realcam::app {
+
+/// What the command line says of how a lens file is read, and which zoom position is taken.
+struct LensWords {
+    std::vector<std::string> glasses;
+    std::string pbrt_thickness, zoom;
+    bool force = false;
+};
+
+/// Adds --zoom, --glass, --force and --pbrt-thickness.
+void add_lens_options(CLI::App& command, LensWords& words);
+
+/// Their meaning; what a reader has to tell goes to stderr. Throws InputError.
+io::LensReadOptions lens_options_of(const LensWords& words);
+
+}  // namespace realcam::app

@@ -1,0 +1,61 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lens_file.hpp"
+
+namespace realcam::io {
+
+/// A glass of the catalogue by maker and name: "schott", "N-BK7".
+struct CatalogueName {
+    std::string maker, name;
+
+    std::string full() const { return maker + ':' + name; }
+};
+
+/// A name as it is compared: in capital letters, without what other programs leave out or write otherwise, hyphens and
+/// blanks.
+std::string bare_glass_name(std::string_view name);
+
+/// All whose name is this one without regard to case, hyphens and blanks, as other programs spell it.
+std::vector<CatalogueName> catalogue_names_like(std::string_view name);
+/// The catalogue's name of a glass that is exactly the one its label names; nothing where it is none.
+std::optional<CatalogueName> catalogue_name_of(const Glass& glass);
+/// Every name of the catalogue, for suggestions.
+std::vector<std::string> catalogue_plain_names();
+
+/// Glasses as another program's file names them. What is not known exactly is an error: a glass that is taken from
+/// another maker's catalogue, or replaced, spoils a lens in silence.
+class LensGlasses {
+public:
+    explicit LensGlasses(const LensReadOptions& options) : options_(options) {}
+
+    /// A glass that the file itself defines.
+    void define(const std::string& name, Glass glass) { own_.insert_or_assign(name, std::move(glass)); }
+
+    /// `catalogues`: those that the file lists, in its words; empty: any. `hint`: what the file says of it besides.
+    /// Throws InputError with the candidates.
+    Glass find(const std::string& name, const std::vector<std::string>& catalogues, const std::string& hint = {});
+
+    /// Throws InputError where the options name a glass that the file did not ask for.
+    void check_all_used() const;
+
+private:
+    const LensReadOptions& options_;
+    std::map<std::string, Glass> own_;
+    std::set<std::string> asked_, used_;
+};
+
+/// n_d and V_d of a glass; V_d is 0 where it has one index at all wavelengths.
+struct AbbePair {
+    double n_d, v_d;
+};
+AbbePair abbe_pair(const Glass& glass);
+
+/// From n_d and V_d, of which 0 means no dispersion, with a label that says both. Throws InputError.
+Glass glass_of_pair(double n_d, double v_d);
+
+}  // namespace realcam::io

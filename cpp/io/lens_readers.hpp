@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "lens_glass.hpp"
+#include "lens_prescription.hpp"
+
+namespace realcam::io {
+
+// The readers of other programs' lens files. Each takes the text as UTF-8, throws LensFileError with line and surface
+// for what is wrong in it, and lists what realcam has no model of.
+
+/// Zemax OpticStudio, .zmx.
+Prescription read_zemax(std::string_view text, const std::string& file, LensGlasses& glasses);
+
+/// CODE V, .seq.
+Prescription read_code_v(std::string_view text, const std::string& file, LensGlasses& glasses);
+
+/// pbrt, .dat.
+Prescription read_pbrt(std::string_view text, const std::string& file, PbrtThickness thickness);
+
+/// Optiland's JSON.
+Prescription read_optiland(std::string_view text, const std::string& file, LensGlasses& glasses);
+
+/// ray-optics, .roa.
+Prescription read_ray_optics(std::string_view text, const std::string& file, LensGlasses& glasses);
+
+}  // namespace realcam::io

@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+
+#include "lens_file.hpp"
+
+namespace realcam::io {
+
+/// realcam's own format: the same lens is read again.
+std::string lens_as_toml(const LensSystem& lens);
+/// Zemax OpticStudio, .zmx.
+LensText lens_as_zemax(const LensSystem& lens);
+/// CODE V, .seq.
+LensText lens_as_code_v(const LensSystem& lens);
+
+/// A number in as few digits as read again give the same double.
+std::string exact_number(double value);
+
+/// What neither format has a word for: coatings, blades of the iris, focusing.
+std::vector<std::string> left_out_of_foreign_files(const LensSystem& lens, const std::string& format);
+
+}  // namespace realcam::io

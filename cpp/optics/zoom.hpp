@@ -1,0 +1,42 @@
+#pragma once
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "focus.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The index of a zoom position. Throws InputError, naming those that there are.
+inline int zoom_position_named(const LensSystem& lens, const std::string& name) {
+    std::string names;
+    for (std::size_t i = 0; i < lens.zoom.positions.size(); ++i) {
+        if (lens.zoom.positions[i].name == name) return static_cast<int>(i);
+        names += (i == 0 ? "\"" : ", \"") + lens.zoom.positions[i].name + '"';
+    }
+    throw InputError("lens \"" + lens.name + "\" has no zoom position \"" + name + "\"; " +
+                     (names.empty() ? "it does not zoom" : "it has " + names));
+}
+
+/// The lens with its zoom ring in another position, counted from 0. The plane in focus stays where it is, a diaphragm
+/// that is wide open stays so, and one that is closed keeps its f-number, as far as it opens there.
+/// Throws InputError where there is no such position, or the plane cannot be brought into focus there.
+inline LensSystem zoomed(const LensSystem& lens, int position) {
+    const int count = static_cast<int>(lens.zoom.positions.size());
+    if (position < 0 || position >= count)
+        throw InputError("lens \"" + lens.name + "\" has no zoom position " + std::to_string(position) + "; " +
+                         (count == 0 ? "it does not zoom" : "it has " + std::to_string(count) + ", counted from 0"));
+    const double rest = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].focus_distance;
+    LensSystem result = at_zoom_position(lens, position);
+    if (lens.focus_distance != rest) result = focused(result, lens.focus_distance);
+    if (lens.is_wide_open()) return result;
+    const double f_number = first_order(lens, lens.wavelength_nm).f_number;
+    return stopped_down(result, std::max(f_number, first_order(result, lens.wavelength_nm).f_number));
+}
+
+/// The same by name.
+inline LensSystem zoomed(const LensSystem& lens, const std::string& name) {
+    return zoomed(lens, zoom_position_named(lens, name));
+}
+
+}  // namespace REALCAM_NAMESPACE
