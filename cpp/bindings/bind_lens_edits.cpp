@@ -9,6 +9,10 @@ using namespace py::literals;
 
 void bind_lens_edits(py::module_& m) {
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+        .def("with_surfaces", &with_surfaces, "surfaces"_a,
+             "The lens with other surfaces in place of some: a dict of index, from 0, and Surface. All else stays, as "
+             "in\n"
+             "with_surface. Raises InputError, and LensFileError where the lens cannot be built.")
         .def("with_film", &with_film, "width_mm"_a, "height_mm"_a,
              "The lens for another film, at its place. Raises LensFileError for sizes that are none.")
         .def(

@@ -27,6 +27,7 @@ namespace py = pybind11;
 void bind_errors(py::module_& m);
 void bind_coating(py::module_& m);
 void bind_lens(py::module_& m);
+void bind_lens_edits(py::module_& m);
 void bind_device_array(py::module_& m);
 void bind_trace(py::module_& m);
 void bind_seidel(py::module_& m);

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
     bind_errors(m);
     bind_coating(m);
     bind_lens(m);
+    bind_lens_edits(m);
     bind_device_array(m);
     bind_trace(m);
     bind_seidel(m);

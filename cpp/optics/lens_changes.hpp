@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -28,32 +29,41 @@ void change_zoom_value(ZoomRange& zoom, double change, const Get& value) {
         if (same || static_cast<int>(i) == zoom.current) value(zoom.positions[i]) += change;
 }
 
-}  // namespace lens_changes_detail
-
-/// The lens with another surface in place of one, counted from 0. All else stays, the film's place too: focused()
-/// brings the picture into focus again. A thickness that zooming changes, changes in the current position. A diaphragm
-/// that is wide open stays so. Throws InputError where there is no such surface, and LensFileError where the lens
-/// cannot be built.
-inline LensSystem with_surface(LensSystem lens, int index, Surface surface) {
-    check_surface_exists(lens, index);
-    const bool was_open = lens.is_wide_open();
-    const Surface before = lens.surfaces[static_cast<std::size_t>(index)];
+inline void replace(LensSystem& lens, int index, const Surface& surface) {
+    Surface& before = lens.surfaces[static_cast<std::size_t>(index)];
     for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
         if (lens.zoom.surfaces[i] == index)
-            lens_changes_detail::change_zoom_value(
-                lens.zoom, surface.thickness - before.thickness,
-                [i](ZoomPosition& position) -> double& { return position.thicknesses[i]; });
+            change_zoom_value(lens.zoom, surface.thickness - before.thickness,
+                              [i](ZoomPosition& position) -> double& { return position.thicknesses[i]; });
     if (!lens.zoom.positions.empty() && lens.zoom.positions.front().stop_semi_diameter > 0 &&
         before.type == SurfaceType::stop && surface.type == SurfaceType::stop)
-        lens_changes_detail::change_zoom_value(
-            lens.zoom, surface.clear_semi_diameter - before.clear_semi_diameter,
-            [](ZoomPosition& position) -> double& { return position.stop_semi_diameter; });
-    lens.surfaces[static_cast<std::size_t>(index)] = std::move(surface);
+        change_zoom_value(lens.zoom, surface.clear_semi_diameter - before.clear_semi_diameter,
+                          [](ZoomPosition& position) -> double& { return position.stop_semi_diameter; });
+    before = surface;
+}
+
+}  // namespace lens_changes_detail
+
+/// The lens with other surfaces in place of some, by their numbers from 0. All else stays, the film's place too:
+/// focused() brings the picture into focus again. A thickness that zooming changes, changes in the current position. A
+/// diaphragm that is wide open stays so. Throws InputError where there is no such surface, and LensFileError where the
+/// lens cannot be built.
+inline LensSystem with_surfaces(LensSystem lens, const std::map<int, Surface>& surfaces) {
+    const bool was_open = lens.is_wide_open();
+    for (const auto& [index, surface] : surfaces) {
+        check_surface_exists(lens, index);
+        lens_changes_detail::replace(lens, index, surface);
+    }
     lens.surfaces.back().thickness = 0;
     validate(lens);
     const double rim = lens.stop().clear_semi_diameter;
     lens.stop_semi_diameter = was_open ? rim : std::min(lens.stop_semi_diameter, rim);
     return lens;
+}
+
+/// The same for one surface.
+inline LensSystem with_surface(LensSystem lens, int index, const Surface& surface) {
+    return with_surfaces(std::move(lens), {{index, surface}});
 }
 
 /// The lens with other blades, which leave the same area open: its f-number stays. Throws LensFileError.

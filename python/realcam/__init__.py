@@ -62,6 +62,7 @@ from .drawing import CrossSection, cross_section
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
+from .optimisation import Optimisation, Targets, Variable, optimised
 from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
 from .planning import plan
 from .raw_image import RawImage
@@ -104,6 +105,7 @@ __all__ = [
     "Material",
     "Mirror",
     "NothingToPlan",
+    "Optimisation",
     "PhotographicFigures",
     "Plan",
     "PlanDecision",
@@ -124,7 +126,9 @@ __all__ = [
     "Spot",
     "Stop",
     "Surface",
+    "Targets",
     "TraceResult",
+    "Variable",
     "Wavefront",
     "__version__",
     "accuracy_cost",
@@ -136,6 +140,7 @@ __all__ = [
     "effects",
     "fit_camera_model",
     "lens_names",
+    "optimised",
     "photographic_figures",
     "plan",
     "read_environment",

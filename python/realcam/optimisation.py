@@ -86,7 +86,8 @@ class Targets:
     """What a lens is to become.
 
     fields_deg, field_weights: angles in the scene whose spots are to be small, and how much they count.
-    wavelengths_nm: all colours count alike, about one centroid: lateral colour counts, too. None: the design wavelength.
+    wavelengths_nm: all colours count alike, about one centroid, so that lateral colour counts, too. None: the design
+    wavelength.
     object_distance_m: from the front vertex; None: the plane in focus. focal_length_mm: None: whatever comes.
     focal_length_weight: an error of the focal length counts as so many times that radius of all spots.
     refocuses: the film is where it is sharpest on the axis; else it stays.

@@ -102,6 +102,7 @@ HOST_ONLY = {
     "optics/lens_changes.hpp",
     "optics/lens_checks.hpp",
     "optics/lens_dispersion.hpp",
+    "optics/lens_edits.hpp",
     "optics/lens_path.hpp",
     "optics/lens_polynomial.hpp",
     "optics/lens_system.hpp",

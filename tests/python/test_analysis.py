@@ -239,12 +239,12 @@ def test_commands(tmp_path: Path) -> None:
         (["plot", "mft", "tessar-50mm"], 'unknown plot "mft"'),
         (["plot", "mtf"], "the name of a lens is missing"),
         (["plot", "mtf", "tessar-50mm", "-o", "x.bmp"], ".svg, .png or .pdf is wanted"),
-        (["plot", "wavefront", "tessar-50mm", "--fields", "0,5"], "of one field; 2 are given"),
-        (["plot", "mtf", "tessar-50mm", "--fields", "1,a"], '"a" is not a number'),
+        (["plot", "wavefront", "tessar-50mm", "--fields-deg", "0,5"], "of one field; 2 are given"),
+        (["plot", "mtf", "tessar-50mm", "--fields-deg", "1,a"], '"a" is not a number'),
         (["plot", "mtf", "tessar-50mm", "--theme", "blue"], "light or dark is wanted"),
         (["report", "tessar-50mm", "-o", "x.svg"], ".pdf or .html is wanted"),
-        (["report", "tessar-50mm", "--fields", "1,2", "-o", "x.pdf"], "three fields; 2 are given"),
-        (["report", "tessar-50mm", "--fields", "0,10,70", "-o", "x.pdf"], "70"),
+        (["report", "tessar-50mm", "--fields-deg", "1,2", "-o", "x.pdf"], "three fields; 2 are given"),
+        (["report", "tessar-50mm", "--fields-deg", "0,10,70", "-o", "x.pdf"], "70"),
     ],
 )
 def test_mistakes_end_in_one_line(arguments: list[str], message: str, tmp_path: Path) -> None:

@@ -36,10 +36,10 @@ def experiment(device: str) -> Experiment:
     return Experiment(
         "Figure 5: aberrations of one convex lens",
         (
-            "A single lens (singlet-100mm, its stop behind it) images a small bright square. On the axis its rim focuses "
-            "nearer than its middle; off the axis with the full aperture the spot grows a tail; stopped down, what is left is "
-            "that radial and tangential lines are sharp at different distances. The pictures are rendered, pixel by "
-            "pixel, and the spots in them are as wide as the spots of rays beside them.",
+            "A single lens (singlet-100mm, its stop behind it) images a small bright square. On the axis its rim "
+            "focuses nearer than its middle; off the axis with the full aperture the spot grows a tail; stopped "
+            "down, what is left is that radial and tangential lines are sharp at different distances. The pictures "
+            "are rendered, pixel by pixel, and the spots in them are as wide as the spots of rays beside them.",
         ),
         tuple(figures),
         tuple(rows),
@@ -103,7 +103,6 @@ def _picture(case: Case, device: str) -> Figure:
     samples = max(64, int(3e7 / (columns * SIZE)))
     image = render(stars([place], side, 1e3), camera, spp=samples, device=device, effects=())
     light = image.pixels.mean(axis=2)
-    row, column = np.unravel_index(int(light.argmax()), light.shape)
     middle = int(np.average(np.arange(columns), weights=light.sum(axis=0)))
     left = int(np.clip(middle - SIZE // 2, 0, columns - SIZE))
     part = image.pixels[:, left : left + SIZE]

@@ -51,9 +51,9 @@ def experiment(device: str) -> Experiment:
         (
             "One equation has two unknowns, so that the paper's depth belongs to a whole row of f-numbers and "
             "magnifications; the table has those on an aperture ring. The double Gauss is set to one of them, and "
-            "photographs a row of small lights that stand one behind the other. The diameter of the even disc that is as "
-            "wide as each light's image (its second moment, less that of pixel and light) is drawn; where it is below the "
-            "circle of confusion the picture is sharp.",
+            "photographs a row of small lights that stand one behind the other. The diameter of the even disc that "
+            "is as wide as each light's image (its second moment, less that of pixel and light) is drawn; where it "
+            "is below the circle of confusion the picture is sharp.",
         ),
         (drawn("Blur measured in the pictures", _plot(offsets, full, thin)),),
         tuple(rows),

@@ -38,9 +38,9 @@ def experiment(device: str) -> Experiment:
     return Experiment(
         "Figure 6: distortion",
         (
-            "The same board through an ideal thin lens, which keeps straight lines straight, and through the wide angle of "
-            "the same focal length. Below the inside of a squared room through a fisheye of 220 degrees: straight lines "
-            "become curves, and the corners of the film stay dark, because no light reaches them.",
+            "The same board through an ideal thin lens, which keeps straight lines straight, and through the wide "
+            "angle of the same focal length. Below the inside of a squared room through a fisheye of 220 degrees: "
+            "straight lines become curves, and the corners of the film stay dark, because no light reaches them.",
         ),
         (
             photographed("thin lens", straight),

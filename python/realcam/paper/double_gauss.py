@@ -27,10 +27,10 @@ def experiment(device: str) -> Experiment:
     return Experiment(
         "Figures 2 and 3: the lens table and its sketch",
         (
-            "A lens is its maker's table: radii, thicknesses, glasses and clear diameters of each surface. In the sketch "
-            "a face is blue where its radius of curvature is positive (its centre lies on the film's side) and red "
-            "where it is negative, as in the paper. The rays come from the object, so that they show how well the lens "
-            "brings them together.",
+            "A lens is its maker's table: radii, thicknesses, glasses and clear diameters of each surface. In the "
+            "sketch a face is blue where its radius of curvature is positive (its centre lies on the film's side) "
+            "and red where it is negative, as in the paper. The rays come from the object, so that they show how "
+            "well the lens brings them together.",
         ),
         (drawn("Double Gauss 50 mm f/2 (US 2,673,491)", sketch),),
         tuple(rows),

@@ -77,7 +77,8 @@ def _page(sections: list[str]) -> str:
 <meta name="viewport" content="width=device-width">
 <title>The experiments of Liu and Hsu (2013), with realcam</title>
 <style>
-body {{ font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #1a1a1a; background: #fff; }}
+body {{ font: 15px/1.5 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; }}
+body {{ color: #1a1a1a; background: #fff; }}
 figure {{ margin: 0; }}
 figcaption {{ font-size: 13px; color: #555; }}
 .figures {{ display: flex; flex-wrap: wrap; gap: 1em; align-items: end; }}

@@ -34,9 +34,10 @@ def experiment(device: str) -> Experiment:
     return Experiment(
         "The pixel pupil",
         (
-            "Rays that start anywhere on the rear element are often stopped inside the lens. The paper lets each pixel "
-            "learn where its rays pass (after Steinert et al. 2011); realcam knows it before the first sample, from the "
-            "outline that real rays find when the lens is set. Compared is the time to the same error.",
+            "Rays that start anywhere on the rear element are often stopped inside the lens. The paper lets each "
+            "pixel learn where its rays pass (after Steinert et al. 2011); realcam knows it before the first "
+            "sample, from the outline that real rays find when the lens is set. Compared is the time to the same "
+            "error.",
         ),
         (),
         tuple(rows),

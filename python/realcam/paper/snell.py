@@ -51,10 +51,10 @@ def experiment(device: str) -> Experiment:
     return Experiment(
         "Equation 5: Snell's law as a vector",
         (
-            "The law is R1 = mu R0 + (sqrt(1 - mu² (1 - cos²)) - mu cos) N with mu = n0 / n1 and N along the light. The "
-            "paper prints mu instead of mu² under the root. What is printed gives vectors that are no unit vectors, and "
-            "other angles, because the part along the surface is mu sin and the part across it has to be sqrt(1 - mu² "
-            "sin²). The error vanishes at normal incidence, where it is easily overlooked.",
+            "The law is R1 = mu R0 + (sqrt(1 - mu² (1 - cos²)) - mu cos) N with mu = n0 / n1 and N along the light."
+            " The paper prints mu instead of mu² under the root. What is printed gives vectors that are no unit "
+            "vectors, and other angles, because the part along the surface is mu sin and the part across it has to "
+            "be sqrt(1 - mu² sin²). The error vanishes at normal incidence, where it is easily overlooked.",
         ),
         (),
         tuple(rows),

@@ -19,20 +19,20 @@ def experiment(device: str) -> Experiment:
     busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds
     name = next((d for d in devices() if stats.device in d or d.startswith(device)), stats.device)
     live = LiveView(scene, device="cuda" if "GPU" in stats.device else "cpu")
-    live.shoot(camera, spp=SAMPLES).codes  # noqa: B018: what is prepared once
+    _ = live.shoot(camera, spp=SAMPLES).codes  # what is prepared once
     begin, frames = time.perf_counter(), 0
     while frames < 3 or time.perf_counter() - begin < 2:
         aside = 0.01 * (frames % 20)
-        live.shoot(camera.replace(position=(aside, 1.5, 4)), spp=SAMPLES).codes  # noqa: B018
+        _ = live.shoot(camera.replace(position=(aside, 1.5, 4)), spp=SAMPLES).codes
         frames += 1
     rate = frames / (time.perf_counter() - begin)
     return Experiment(
         "Figure 8: speed",
         (
-            f"640 x 640 pixels of {SAMPLES} samples, each through all eleven surfaces, with one shadow ray; "
-            "the camera moves from frame to frame, and each frame is a finished 8-bit picture in the host's memory. The "
-            "paper's machine is of 2013, so that frames per second say little; what is left to compare is the lens's "
-            "share of the time.",
+            f"640 x 640 pixels of {SAMPLES} samples, each through all eleven surfaces, with one shadow ray; the "
+            "camera moves from frame to frame, and each frame is a finished 8-bit picture in the host's memory. "
+            "The paper's machine is of 2013, so that frames per second say little; what is left to compare is the "
+            "lens's share of the time.",
         ),
         (),
         (
