@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import realcam as rc
 
-LIMIT_UM = 0.08  # 1/50 of a pixel of 4 um
+LIMIT_UM = 0.08  # 1/50 of a pixel of 4 um, on films up to 24 mm x 36 mm; larger films have larger pixels (limit_um)
+SMALL_FILM_MM = 21.7  # half the diagonal of 24 mm x 36 mm
 
 # The image circle that the lens is made for, where its film is larger. Beyond 110 degrees the image of the 220 degree
 # fisheye runs away: 0.2 mm on the film for 1e-3 in direction and 25 um for 1 um in place, so that the rounding of a few
@@ -22,6 +23,11 @@ BEYOND_UM = 0.25
 
 FILM_RADII = 33
 RAYS_PER_RADIUS = 16_000
+
+
+def limit_um(lens: rc.Lens) -> float:
+    """What float32 may leave of an image point, um: roundings grow with a lens, as pixels do with the film."""
+    return LIMIT_UM * max(1.0, 0.5 * float(np.hypot(*lens.film_mm)) / SMALL_FILM_MM)
 
 
 @dataclass(frozen=True)

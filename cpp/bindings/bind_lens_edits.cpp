@@ -20,10 +20,13 @@ void bind_lens_edits(py::module_& m) {
             "The lens with all lengths times factor: film, focus distance and zoom positions with it; coatings keep\n"
             "their thickness. Raises InputError for a factor that is not positive and finite, and LensFileError where\n"
             "the lens cannot be built.")
-        .def("reversed", &reversed, "film_distance_mm"_a = py::none(),
-             "The lens turned round, its last surface towards the scene, focused at infinity.\n"
-             "film_distance_mm: last vertex to film; None: where infinity is sharpest. Focus group and zoom positions\n"
-             "are kept. Raises LensFileError where infinity has no real image and no distance is given.")
+        .def(
+            "reversed",
+            [](const LensSystem& lens, std::optional<double> film_distance) { return reversed(lens, film_distance); },
+            "film_distance_mm"_a = py::none(),
+            "The lens turned round, its last surface towards the scene, focused at infinity.\n"
+            "film_distance_mm: last vertex to film; None: where infinity is sharpest. Focus group and zoom positions\n"
+            "are kept. Raises LensFileError where infinity has no real image and no distance is given.")
         .def(
             "inserted",
             [](const LensSystem& lens, int index, const std::vector<Surface>& surfaces, std::optional<double> gap) {

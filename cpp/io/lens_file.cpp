@@ -11,6 +11,8 @@
 #include "lens_zoom.hpp"
 #include "regular_file.hpp"
 
+#include <algorithm>
+
 namespace realcam::io {
 namespace {
 
@@ -271,6 +273,7 @@ std::string text_of_file(const std::string& path) {
 std::vector<std::string> lens_names() {
     std::vector<std::string> names;
     for (const BundledFile& file : bundled_lens_files()) names.emplace_back(file.name);
+    std::sort(names.begin(), names.end());  // with their ".toml" they are in another order: '-' comes before '.'
     return names;
 }
 

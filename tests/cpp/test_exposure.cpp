@@ -143,7 +143,7 @@ double irradiance_over_last_surface(const LensSystem& lens, double film_x, doubl
 
 TEST_CASE("on the axis a constant field gives pi sin^2(theta')") {
     for (const std::string& name : io::lens_names())
-        for (const double f_number : {0.0, 8.0, 22.0}) {
+        for (const double f_number : {0.0, 11.0, 22.0}) {
             CAPTURE(name);
             CAPTURE(f_number);
             LensSystem lens = io::read_lens(name);
@@ -180,7 +180,7 @@ TEST_CASE("an unvignetted, unaberrated pupil falls off with the fourth power of 
 
 TEST_CASE("relative illumination is that of a brute-force integral over the last surface") {
     for (const std::string& name : io::lens_names())
-        for (const double f_number : {0.0, 8.0}) {
+        for (const double f_number : {0.0, 11.0}) {
             CAPTURE(name);
             CAPTURE(f_number);
             LensSystem lens = io::read_lens(name);

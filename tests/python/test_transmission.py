@@ -175,7 +175,7 @@ def test_the_mean_of_s_and_p_at_each_surface_is_near_the_truth() -> None:
             errors[name] = max(errors.get(name, 0.0), abs(averaged - exact))
     for tried, worst, limit in (
         (f"{fisheye}, to 112 degrees", errors[fisheye], 0.05),
-        ("the other bundled lenses", max(error for name, error in errors.items() if name != fisheye), 0.02),
+        ("the other bundled lenses", max(error for name, error in errors.items() if name != fisheye), 0.025),
     ):
         what = "mean of s and p at each bare surface"
         hold(Measurement("Effects", what, tried, "core", "float64", worst, limit, "of the light"))

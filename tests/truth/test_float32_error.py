@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-from ..float32_error import BEYOND_UM, IMAGE_RADIUS_MM, LIMIT_UM, Rays, image_point_errors, rays_over_film_and_pupil
+from ..float32_error import BEYOND_UM, IMAGE_RADIUS_MM, Rays, image_point_errors, limit_um, rays_over_film_and_pupil
 from ..measurement import Measurement, hold
 from ..ray_decisions import EDGE_LIMIT, SHARE_LIMIT, decided_otherwise, distance_to_edge, rays_at_edges
 from .backends import BACKENDS
@@ -56,7 +56,7 @@ def test_image_points(sampled: Sampled) -> None:
     inside = errors.film_radius_mm <= IMAGE_RADIUS_MM.get(name, np.inf)
     tried = f"{inside.sum():,} rays over film and pupil"
     worst = errors.error_um[inside].max()
-    hold_figure(sampled.backend, f"image points of {name}", tried, worst, LIMIT_UM, "µm")
+    hold_figure(sampled.backend, f"image points of {name}", tried, worst, limit_um(sampled.lens), "µm")
     if not inside.all():
         tried = f"{(~inside).sum():,} rays over film and pupil"
         worst = errors.error_um[~inside].max()

@@ -212,3 +212,23 @@ def convert(
         raise InputError(f"{output}: is the lens file itself; another name is wanted")
     options.lens(name, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness).save(output)
     typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")
+
+
+@app.command("gallery")
+def gallery(
+    names: Annotated[
+        Optional[list[str]],  # noqa: UP045
+        typer.Argument(help="Lenses, bundled or files [all that are bundled].", metavar="LENS"),
+    ] = None,
+    output: Annotated[Path, typer.Option("--output", "-o", help="A .png, .svg or .pdf file.")] = Path("lenses.png"),
+    columns: Annotated[int, typer.Option(help="Drawings side by side.", min=1, max=50)] = 6,
+) -> None:
+    """Write a contact sheet: the cross-sections of all bundled lenses, or of those named."""
+    from ..gallery import save_gallery
+
+    lenses = [options.lens(name, None, None) for name in names] if names else None
+    for name in names or []:
+        if Path(name).is_file() and output.exists() and output.samefile(name):
+            raise InputError(f"{output}: is one of the lens files; the contact sheet needs another name")
+    save_gallery(output, lenses, columns)
+    typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")

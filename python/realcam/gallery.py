@@ -1,0 +1,77 @@
+"""A contact sheet of lenses: a grid of small cross-sections, with matplotlib."""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib.figure
+from matplotlib.axes import Axes
+
+from . import files
+from ._core import ImageFileError, InputError, Lens, lens_names
+from .draw import draw_cross_section
+
+SUFFIXES = (".png", ".svg", ".pdf")
+CELL_INCHES = (2.6, 2.0)
+
+
+def save_gallery(path: str | os.PathLike[str], lenses: Sequence[Lens] | None = None, columns: int = 6) -> None:
+    """Writes cross-sections of lenses, each with name, focal length in mm and f-number, as .png, .svg or .pdf.
+
+    lenses: the bundled ones, by name, if None. columns: of the grid; its rows follow.
+    Each drawing has its own scale. A film far behind the glass is left out, so that the glass is large enough to see.
+    Raises ImageFileError for a name that cannot be written, InputError for no lenses or no columns.
+    """
+    target = Path(path)
+    suffix = target.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise ImageFileError(f"{target}: unknown suffix; .png, .svg or .pdf is wanted")
+    if columns < 1:
+        raise InputError(f"columns: {columns} is too few; 1 or more is wanted")
+    files.check_target(target)
+    if lenses is None:
+        lenses = [Lens.load(name) for name in lens_names()]
+    if not lenses:
+        raise InputError("a contact sheet needs at least one lens")
+    columns = min(columns, len(lenses))
+    rows = math.ceil(len(lenses) / columns)
+    figure = matplotlib.figure.Figure(
+        figsize=(columns * CELL_INCHES[0], rows * CELL_INCHES[1]), facecolor="white", layout="constrained"
+    )
+    grid = figure.subplots(rows, columns, squeeze=False).ravel()
+    for lens, axes in zip(lenses, grid, strict=False):
+        _draw_cell(lens, axes)
+    for axes in grid[len(lenses) :]:
+        axes.set_axis_off()
+    # In memory, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
+    sheet = io.BytesIO()
+    figure.savefig(sheet, format=suffix[1:], dpi=150)
+    files.write_whole(target, sheet.getvalue())
+
+
+def _draw_cell(lens: Lens, axes: Axes) -> None:
+    draw_cross_section(lens, axes)
+    data = lens.first_order()
+    # Names are text, and a dollar sign in one begins no formula.
+    name = "".join(c for c in lens.name if c.isprintable())
+    axes.set_title(
+        f"{name}\n{data.effective_focal_length_mm:.4g} mm  f/{data.f_number:.3g}", fontsize=7, parse_math=False
+    )
+    left, right, half_height = _window(lens)
+    axes.set_xlim(left, right)
+    axes.set_ylim(-half_height, half_height)
+    axes.set_axis_off()
+
+
+def _window(lens: Lens) -> tuple[float, float, float]:
+    """What a cell shows, in mm: the glass with a margin, and the film where it stands near enough."""
+    front, back = min(lens.vertices_mm), max(lens.vertices_mm)
+    rim = max(surface.clear_semi_diameter_mm for surface in lens.surfaces)
+    reach = max(back - front, 2 * rim)
+    right = min(max(lens.film_position_mm, back) + 0.05 * reach, back + 0.8 * reach)
+    half_film = 0.5 * math.hypot(*lens.film_mm) if lens.film_position_mm < right else 0.0
+    return front - 0.25 * reach, right, 1.08 * max(rim, half_film)
