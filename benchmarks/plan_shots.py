@@ -15,7 +15,7 @@ LENSES = (
     "tessar-50mm",
     "telephoto-250mm",
     "mirror-telephoto-500mm",
-    "zoom-70-210mm-at-70mm",
+    "zoom-70-210mm",
 )
 KINDS = ("daylight", "night", "sun", "near", "landscape", "moving", "verge", "verge", "single")
 ON_THE_VERGE = ("defocus", "aberrations", "distortion", "dispersion", "diffraction")

@@ -132,12 +132,18 @@ def optimised(
     from scipy.optimize import least_squares  # slow to load, and no other part of the package needs it
 
     search = _Search(lens, list(variables), targets or Targets(), samples, progress)
-    start = np.zeros(len(search.variables))
-    before = search.rms_of(search.residuals(start))
-    lower, upper = search.bounds()
+    before = search.rms_of(search.of_start)
     try:
         found = least_squares(
-            search.residuals, start, jac=search.jacobian, bounds=(lower, upper), max_nfev=most_steps, x_scale=1.0
+            search.residuals,
+            np.zeros(len(search.variables)),
+            jac=search.jacobian,
+            bounds=search.bounds(),
+            max_nfev=most_steps,
+            # Sums of squares of micrometres in mm are small, whatever the slope is: it tells nothing of the end.
+            ftol=1e-9,
+            xtol=1e-9,
+            gtol=None,
         )
         message = str(found.message)
     except _Ended:
@@ -162,6 +168,7 @@ class _Search:
         self.best, self.best_rms, self.best_merit = lens, math.inf, math.inf
         self.spot_count = 0
         self.of_start = self._judge(lens)
+        self.failed = 1e3 * (1 + float(np.abs(self.of_start).max()))
         if not np.isfinite(self.of_start).all():
             raise InputError(f'no light passes lens "{lens.name}" from one of the fields')
 
@@ -185,7 +192,7 @@ class _Search:
             residuals = np.full_like(self.of_start, np.nan)
         if not np.isfinite(residuals).all():
             # So bad that the step is taken back, and halved.
-            return np.full_like(self.of_start, 1e3 * (1 + np.abs(self.of_start).max()))
+            return np.full_like(self.of_start, self.failed)
         merit = float(residuals @ residuals)
         if merit < self.best_merit:
             self.best, self.best_merit, self.best_rms = lens, merit, self.rms_of(residuals)
@@ -194,20 +201,20 @@ class _Search:
         return residuals
 
     def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """One-sided differences, to the other side where one cannot be built."""
-        here = self.residuals(x)
-        failed = 1e3 * (1 + np.abs(self.of_start).max())
+        """Central differences: a focal length depends on curvatures so much more than a spot does that the error of
+        one-sided ones would hide the spot. One-sided where a lens to one side cannot be built."""
+        reach = 0.005
         columns = []
-        for i in range(len(x)):
-            column = np.zeros_like(here)
-            for side in (0.05, -0.05):
-                moved = x.copy()
-                moved[i] += side
-                there = self.residuals(moved)
-                if there[0] != failed:
-                    column = (there - here) / side
-                    break
-            columns.append(column)
+        for unit in np.eye(len(x)):
+            looks = [(side, self.residuals(x + side * unit)) for side in (reach, -reach)]
+            possible = [(side, residuals) for side, residuals in looks if residuals[0] != self.failed]
+            if len(possible) == 1:
+                possible.append((0.0, self.residuals(x)))
+            if not possible:
+                columns.append(np.zeros_like(self.of_start))
+                continue
+            (a, first), (b, last) = possible
+            columns.append((first - last) / (a - b))
         return np.array(columns).T
 
     def rms_of(self, residuals: NDArray[np.float64]) -> float:

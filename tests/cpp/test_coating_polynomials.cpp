@@ -94,7 +94,7 @@ TEST_CASE("polynomials in the cosine follow all coatings at one wavelength") {
                         fit_coatings<kOneWavelengthTerms>(lens, direction, {lens.wavelength_nm}), 0, errors);
             }
     // 1e-4 of the light at each of twenty surfaces is half a code value of 255. Glass of n = 2.0, of which
-    // zoom-11-24mm-at-11mm has one element, takes 1.3e-4.
+    // zoom-11-24mm has one element, takes 1.3e-4.
     hold({"Effects", "transmittance of a coated surface, up to 73 degrees", "all lenses, 3 coatings", "core", "float32",
           errors.worst_below_73, 1.5e-4, ""});
     hold({"Effects", "transmittance of a coated surface, all angles", "all lenses, 3 coatings", "core", "float32",

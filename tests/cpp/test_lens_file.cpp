@@ -288,11 +288,11 @@ TEST_CASE("every bundled lens is valid, cites its source, and has the focal leng
                                                                 {"ultra-wide-14mm", 14.2},
                                                                 {"wide-22mm", 22.0235},
                                                                 {"wide-24mm", 24.5},
-                                                                {"zoom-11-24mm-at-11mm", 11.33},
-                                                                {"zoom-25-50mm-at-25mm", 25.5},
-                                                                {"zoom-70-200mm-at-70mm", 72.1},
-                                                                {"zoom-70-210mm-at-70mm", 70.55},
-                                                                {"zoom-80-200mm-at-80mm", 80.1}};
+                                                                {"zoom-11-24mm", 11.33},
+                                                                {"zoom-25-50mm", 25.5},
+                                                                {"zoom-70-200mm", 72.1},
+                                                                {"zoom-70-210mm", 70.55},
+                                                                {"zoom-80-200mm", 80.1}};
     const std::vector<std::string> names = io::lens_names();
     CHECK(names.size() >= 40);
     for (const std::string& name : names) {

@@ -120,7 +120,7 @@ def test_half_the_time_is_half_the_exposure_exactly() -> None:
     np.testing.assert_array_equal(half, whole / 2)
 
 
-@pytest.mark.parametrize("name", ["double-gauss-50mm", "tessar-50mm", "wide-22mm", "zoom-70-210mm-at-70mm"])
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "tessar-50mm", "wide-22mm", "zoom-70-210mm"])
 def test_one_stop_halves_the_exposure(name: str) -> None:
     wide = rc.Lens.load(name).stopped_down(5.6)
     closed = rc.Lens.load(name).stopped_down(5.6 * math.sqrt(2))
