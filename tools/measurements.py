@@ -24,6 +24,7 @@ SECTIONS = (
     "Effects",
     "Truth",
     "Other programs",
+    "Computer vision",
     "Parity",
 )
 

@@ -868,20 +868,20 @@ class Camera(_Value):
     ) -> RayChunks[Any, Any, Any]: ...
     @overload
     def project(
-        self, points_m: ArrayLike, *, through: str = "light", return_status: Literal[False] = False
-    ) -> NDArray[np.float64]: ...
-    @overload
-    def project(
         self, points_m: ArrayLike, *, through: str = "light", return_status: Literal[True]
     ) -> tuple[NDArray[np.float64], NDArray[np.int32]]: ...
     @overload
-    def ray(
-        self, pixels: ArrayLike, *, through: str = "light", return_light: Literal[False] = False
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+    def project(
+        self, points_m: ArrayLike, *, through: str = "light", return_status: Literal[False] = False
+    ) -> NDArray[np.float64]: ...
     @overload
     def ray(
         self, pixels: ArrayLike, *, through: str = "light", return_light: Literal[True]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    @overload
+    def ray(
+        self, pixels: ArrayLike, *, through: str = "light", return_light: Literal[False] = False
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     @property
     def camera_matrix(self) -> NDArray[np.float64]: ...
     @property
