@@ -2,6 +2,7 @@
 
 #include <map>
 #include <tuple>
+#include <variant>
 
 #include "../io/lens_format.hpp"
 #include "../optics/focus.hpp"
@@ -241,6 +242,10 @@ std::optional<std::string> zoom_position_of(const LensSystem& lens) {
     return lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].name;
 }
 
+LensSystem zoomed_to(const LensSystem& lens, const std::variant<std::string, int>& position) {
+    return std::visit([&](const auto& which) { return zoomed(lens, which); }, position);
+}
+
 void bind_glass(py::module_& m) {
     py::class_<Glass> glass(m, "Glass", "An optical medium: refractive index relative to air, by wavelength.");
     def_hashable_value(glass);
@@ -378,14 +383,10 @@ void bind_lens(py::module_& m) {
         .def_property_readonly("zoom_positions", &zoom_position_names,
                                "Names of the zoom positions; empty: the focal length is fixed.")
         .def_property_readonly("zoom_position", &zoom_position_of, "The current one; None: the lens does not zoom.")
-        .def(
-            "zoomed", [](const LensSystem& lens, const std::string& position) { return zoomed(lens, position); },
-            "position"_a,
-            "The lens in another zoom position, by name or index. The plane in focus stays, an open diaphragm stays "
-            "open,\n"
-            "and a closed one keeps its f-number as far as it opens. Raises InputError.")
-        .def(
-            "zoomed", [](const LensSystem& lens, int position) { return zoomed(lens, position); }, "position"_a)
+        .def("zoomed", &zoomed_to, "position"_a,
+             "The lens in another zoom position, by name or index. The plane in focus stays, an open diaphragm stays "
+             "open,\n"
+             "and a closed one keeps its f-number as far as it opens. Raises InputError.")
         .def(
             "first_order",
             [](const LensSystem& lens, std::optional<double> nm) {

@@ -137,6 +137,8 @@ HOST_ONLY = {
     "optics/trace_path.hpp",
     "optics/transmission.hpp",
     "optics/wavefront.hpp",
+    "optics/zoom.hpp",
+    "optics/zoom_range.hpp",
     "render/adaptive_sampling.hpp",
     "render/axis_crossings.hpp",
     "render/daylight.hpp",

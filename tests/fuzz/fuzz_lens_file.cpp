@@ -79,8 +79,6 @@ clear_semi_diameter_mm = 15.0
 )";
 
 constexpr const char* kZoom = R"(
-[focus]
-group = [1, 1]
 [[zoom]]
 name = "a"
 thickness_mm = { 4 = 30.0 }
