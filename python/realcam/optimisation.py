@@ -233,7 +233,7 @@ class _Search:
         if targets.focal_length_mm is None:
             return spots
         error = lens.first_order().effective_focal_length_mm - targets.focal_length_mm
-        return np.append(spots, targets.focal_length_weight * error)
+        return np.asarray(np.append(spots, targets.focal_length_weight * error))
 
     def _ray_errors(self, lens: Lens, field_deg: float) -> NDArray[np.float64]:
         wavelengths = self.targets.wavelengths_nm or [lens.wavelength_nm]

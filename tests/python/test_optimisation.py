@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 import realcam as rc
 
-pytest.importorskip("scipy")
-
 
 def thin_lens(n: float, c1: float, c2: float) -> rc.Lens:
     """Of f = 100 mm at f/20, the stop at its front."""

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -178,15 +176,6 @@ def test_opencv_projects_what_the_fit_does() -> None:
 def test_mistakes_are_explained(call: object, says: str) -> None:
     with pytest.raises(rc.InputError, match=says):
         call()
-
-
-def test_without_scipy_the_extra_is_named() -> None:
-    code = (
-        "import sys; sys.modules['scipy'] = None\nimport realcam as rc\n"
-        "try: rc.fit_camera_model(rc.Camera(rc.Lens.load('tessar-50mm')))\nexcept rc.InputError as e: print(e)"
-    )
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert said.strip().endswith("pip install realcam[vision]") and "\n" not in said.strip()
 
 
 def test_json_has_pose_and_intrinsics(tmp_path: Path) -> None:

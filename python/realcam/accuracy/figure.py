@@ -84,7 +84,7 @@ def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
     """The least error that any of the lines has reached by then."""
     lines = [np.log([(p.seconds, p.rmse) for p in rung.pictures]).T for rung in rungs]
     times = np.linspace(min(line[0, 0] for line in lines), max(line[0, -1] for line in lines), 400)
-    errors = [np.interp(times, *line, left=np.inf) for line in lines]
+    errors = [np.interp(times, line[0], line[1], left=np.inf) for line in lines]
     best = np.minimum.accumulate(np.min(errors, axis=0))
     axes.plot(np.exp(times), np.exp(best), color="black", linewidth=5, alpha=0.15, label="frontier", zorder=0)
 

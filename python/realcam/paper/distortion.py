@@ -25,7 +25,7 @@ def experiment(device: str) -> Experiment:
     corner = math.degrees(
         math.atan(math.hypot(film.width_mm, film.height_mm) / 2 / wide.first_order().effective_focal_length_mm)
     )
-    percent = distortion(wide, fields_deg=[corner]).distortion_percent
+    percent = distortion(wide, fields_deg=[corner]).percent
     fisheye = Lens.load("fisheye-6mm-220deg").focused(math.inf)
     inside = room(5.0, 10)
     round_film = Film(24, 24, (360, 360))

@@ -13,7 +13,6 @@ from .._core import Camera, Film, InputError, Lens
 from ..files import write_whole
 from .fit import CameraModelFit, fit_camera_model
 from .models import distortion_coefficients, model_named
-from .scipy_extra import scipy_or_error
 
 NAMES = {
     "pinhole": "PINHOLE",
@@ -34,7 +33,8 @@ def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], 
     if model not in NAMES:
         model_named(model)  # raises for a name that is none
         raise InputError(f"COLMAP has no camera model {model}; one of {', '.join(NAMES)} is wanted")
-    rotations = scipy_or_error().spatial.transform.Rotation
+    from scipy.spatial.transform import Rotation  # slow to load
+
     fits: dict[tuple[Lens, Film, str], tuple[int, CameraModelFit]] = {}
     images = []
     for i, (name, camera) in enumerate(pictures.items(), start=1):
@@ -44,7 +44,7 @@ def save_colmap(folder: str | os.PathLike[str], pictures: Mapping[str, Camera], 
         if kind not in fits:
             fits[kind] = len(fits) + 1, fit_camera_model(camera, model)
         rotation, translation = camera.world_to_camera
-        x, y, z, w = rotations.from_matrix(rotation).as_quat()
+        x, y, z, w = Rotation.from_matrix(rotation).as_quat()
         numbers = _text(np.array([w, x, y, z, *translation]))
         images.append(f"{i} {numbers} {fits[kind][0]} {name}\n\n")  # the second line: its points
     cameras = [f"{i} {_camera_line(fit)}\n" for i, fit in fits.values()]

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import Camera, InputError
 from . import conventions
 from .models import RadialModel, distortion_coefficients, model_named
-from .scipy_extra import scipy_or_error
 
 Array = NDArray[np.float64]
 
@@ -123,11 +122,13 @@ def fit_camera_model(
     of the lens. distance_m: of the points that are matched, from there, infinity allowed; None: of the plane in focus.
     through: as Camera.project has it. Where the film gets less than a tenth of the light in its middle does not count.
 
-    Wants scipy (pip install realcam[vision]). Raises InputError; for models by the tangent of the angle also where the
+    Raises InputError; for models by the tangent of the angle also where the
     film sees 90 degrees to the side.
     """
+    from scipy import optimize  # slow to load
+
     from_model = model_named(model)
-    optimize = scipy_or_error().optimize
+
     if distance_m is None:
         distance_m = _focus_from_pupil_m(camera)
     seen, pixels = calibration_points(camera, distance_m, through)
