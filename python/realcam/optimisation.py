@@ -215,7 +215,8 @@ class _Search:
                 continue
             (a, first), (b, last) = possible
             columns.append((first - last) / (a - b))
-        return np.array(columns).T
+        derivatives: NDArray[np.float64] = np.array(columns).T
+        return derivatives
 
     def rms_of(self, residuals: NDArray[np.float64]) -> float:
         return float(np.sqrt(np.sum(residuals[: self.spot_count] ** 2)))
