@@ -353,6 +353,7 @@ private:
     void read_zoom(const Words& words) {
         if (words.size() < 2) lines_.fail("ZOO needs a number of positions, or what zooming changes");
         if (is_number(words[1].text)) {
+            if (positions_ > 0) lines_.fail("the number of zoom positions is given twice");
             positions_ = lines_.whole_number_of(words[1].text, "the number of zoom positions", 1, 1000);
             for (int i = 1; i <= positions_; ++i) p_.zoom_names.push_back(std::to_string(i));
             return;
