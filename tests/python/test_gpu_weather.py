@@ -101,7 +101,7 @@ wide = rc.Camera(lens, film=rc.Film(36, 24, (6000, 4000)), position=(0, 1, 3), l
 rc.render(scene, camera, spp=1, device="cuda:0")
 free, _ = torch.cuda.mem_get_info(0)
 hog = torch.empty(free - (600 << 20), dtype=torch.uint8, device="cuda:0")  # the film alone has 960 MB of sums
-pixels = rc.render(scene, wide, spp=2, device="cuda:0").pixels.astype(float)
+pixels = rc.render(scene, wide, effects=(), spp=2, device="cuda:0").pixels.astype(float)
 print(repr(float(pixels.sum())), repr(float(pixels[::-1][:100].sum())))
 """
     done = run(code)

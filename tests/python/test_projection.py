@@ -28,9 +28,11 @@ def grid(camera: rc.Camera, places: int = 31) -> np.ndarray:
 @pytest.mark.parametrize("through", ["light", "chief"])
 def test_a_point_on_a_pixels_ray_shows_in_the_pixel(through: str) -> None:
     worst, tried = 0.0, 0
-    for name in rc.lens_names():
+    # Each lens state has its table of lines of sight made, which takes up to a second: every fifth is stopped down, too.
+    for number, name in enumerate(rc.lens_names()):
         wide_open = rc.Lens.load(name)
-        for lens in (wide_open, wide_open.stopped_down(1.3 * wide_open.first_order().f_number)):
+        stopped = [wide_open.stopped_down(1.3 * wide_open.first_order().f_number)] if number % 5 == 0 else []
+        for lens in (wide_open, *stopped):
             camera = rc.Camera(
                 lens, film=rc.Film.for_lens(lens), position=(3, 1, -2), look_at=(1, 1.5, 4), up=(1, 3, 0)
             )
@@ -51,7 +53,7 @@ def test_a_point_on_a_pixels_ray_shows_in_the_pixel(through: str) -> None:
         Measurement(
             "Computer vision",
             f"`project` of a point on the line of `ray`, through {through}",
-            f"all bundled lenses at two stops, {tried} pixels and distances",
+            f"all bundled lenses, some at two stops, {tried} pixels and distances",
             "core",
             "float64",
             worst,
