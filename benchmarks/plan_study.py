@@ -7,9 +7,8 @@ An effect is measured by leaving it out of a picture that has all, a camera mode
 effects. A decision is too noisy to tell where the threshold lies within four standard deviations of what is measured.
 The oracle knows what was measured: it keeps what reaches its threshold and takes the cheapest camera model that the
 measurements allow.
-Times are those of the samples, without the preparation of scene and lens: of the same number of samples of everything
-and of what is planned; and of what is planned with samples by tile (spp="auto", one code) against everything with the
-same number in all pixels, to the same noise of the noisiest tiles (see tile_samples.py).
+Times are those of the samples, without the preparation of scene and lens, of the same number of samples of everything
+and of what is planned. What samples by tile save besides: tile_samples.py.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from picture_changes import Comparison, Picture, Size, added_codes, square_means
 from plan_shots import Shot, drawn_shot
 from realcam.bench import machine
 from srgb import srgb_codes
-from tile_samples import Noise, seconds_of, time_to
+from tile_samples import seconds_of
 
 EFFECTS = ("dispersion", "coatings", "ghosts", "diffraction")
 MODELS = {  # without, with
@@ -72,10 +71,7 @@ class Decision:
 
 @dataclass
 class Outcome:
-    """Of one shot. Errors are those of the planned picture against that with everything.
-
-    by_tile_s: what is planned, with samples by tile; as_clean_s: everything, with as little noise as that.
-    """
+    """Of one shot. Errors are those of the planned picture against that with everything."""
 
     shot: str
     decisions: list[Decision]
@@ -84,8 +80,6 @@ class Outcome:
     everything_s: float
     planned_s: float
     oracle_s: float
-    by_tile_s: float
-    as_clean_s: float
     flip: float
     flip_noise: float
     rms: float
@@ -225,16 +219,6 @@ def rms_of_white(a: Picture, b: Picture) -> float:
     return float(np.sqrt(np.mean((a - b) ** 2)))
 
 
-def seconds_by_tile(plan: rc.Plan, room: Darkroom, everything: frozenset[str]) -> tuple[float, float]:
-    """by_tile_s and as_clean_s of the outcome."""
-    by_tile = room.fresh(plan.effects, plan.model, 5, spp="auto", noise_codes=1)
-    noise, _ = Noise(room.image(plan.effects, plan.model)).of(by_tile)
-    of_everything = Noise(room.image(everything))
-    even = [room.fresh(everything, "full", 5, spp=4**k) for k in (1, 2, 3, 4, 5)]
-    curve = [(of_everything.of(image)[0], seconds_of(image)) for image in even]
-    return seconds_of(by_tile), time_to(noise, curve)
-
-
 def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
     room = Darkroom(shot, device, spp)
     everything = frozenset(EFFECTS)
@@ -245,7 +229,6 @@ def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
     decisions = decisions_of(plan, room, everything)
     oracle, oracle_model = oracle_of(decisions, any(d.effect == "motion_blur" for d in plan.decisions))
     planned, full, again = room.image(plan.effects, plan.model), room.image(everything), room.image(everything, seed=2)
-    by_tile, as_clean = seconds_by_tile(plan, room, everything)
     return Outcome(
         shot=shot.name,
         decisions=decisions,
@@ -254,8 +237,6 @@ def outcome_of(shot: Shot, device: str, spp: int) -> Outcome:
         everything_s=room.seconds(everything, "full"),
         planned_s=room.seconds(plan.effects, plan.model),
         oracle_s=room.seconds(oracle, oracle_model),
-        by_tile_s=by_tile,
-        as_clean_s=as_clean,
         flip=flip(values(full), values(planned)),
         flip_noise=flip(values(full), values(again)),
         rms=rms_of_white(values(full), values(planned)),
@@ -268,13 +249,8 @@ def summary(outcomes: list[Outcome]) -> list[str]:
     decisions = [d for d in every if d.verdict != NOISY]
     wrong = [d for d in decisions if d.verdict != "right"]
     large_drops = [d for d in wrong if d.verdict == "false drop" and d.measured > 2 * d.threshold]
-    times, ideal, by_tile = (
-        [getattr(o, ours) / getattr(o, theirs) for o in outcomes]
-        for ours, theirs in (
-            ("planned_s", "everything_s"),
-            ("oracle_s", "everything_s"),
-            ("by_tile_s", "as_clean_s"),
-        )
+    times, ideal = (
+        [getattr(outcome, which) / outcome.everything_s for outcome in outcomes] for which in ("planned_s", "oracle_s")
     )
     saved = sum(o.everything_s - o.planned_s for o in outcomes)
     savable = sum(o.everything_s - o.oracle_s for o in outcomes)
@@ -285,8 +261,7 @@ def summary(outcomes: list[Outcome]) -> list[str]:
         f"{len(every) - len(decisions)} more are too noisy to tell. "
         f"Dropped with more than twice the threshold: {len(large_drops)}.",
         f"- Time as planned over time with everything: median {median(times):.2f}, worst {max(times):.2f}; the oracle "
-        f"has {median(ideal):.2f} and {max(ideal):.2f}, and {100 * saved / savable:.0f}% of what it saves is saved. "
-        f"With samples by tile, to the same noise: median {median(by_tile):.2f}, worst {max(by_tile):.2f}.",
+        f"has {median(ideal):.2f} and {max(ideal):.2f}, and {100 * saved / savable:.0f}% of what it saves is saved.",
         f"- FLIP of the planned picture against that with everything: median {median(o.flip for o in outcomes):.4f}, "
         f"worst {max(o.flip for o in outcomes):.4f} (of noise alone: "
         f"{median(o.flip_noise for o in outcomes):.4f}, {max(o.flip_noise for o in outcomes):.4f}); root mean square "
@@ -309,16 +284,15 @@ def write_page() -> None:
         record = json.loads(path.read_text(encoding="utf-8"))
         outcomes = [Outcome(**{**o, "decisions": [Decision(**d) for d in o["decisions"]]}) for o in record["outcomes"]]
         lines += ["", f"## {record['where']}", "", *summary(outcomes), ""]
-        lines += ["| shot | taken with | time, of everything | by tile | FLIP | foreseen / measured, where not right |"]
-        lines += ["|---|---|---|---|---|---|"]
+        lines += ["| shot | taken with | time, of everything | FLIP | foreseen / measured, where not right |"]
+        lines += ["|---|---|---|---|---|"]
         for o in outcomes:
             wrong = "; ".join(
                 f"{d.effect} {d.foreseen:.2g} / {d.measured:.2g} {d.unit} ({d.verdict})"
                 for d in o.decisions
                 if d.verdict.startswith("false")
             )
-            shares = f"{o.planned_s / o.everything_s:.2f} | {o.by_tile_s / o.as_clean_s:.2f}"
-            lines += [f"| {o.shot} | {o.planned} | {shares} | {o.flip:.4f} | {wrong} |"]
+            lines += [f"| {o.shot} | {o.planned} | {o.planned_s / o.everything_s:.2f} | {o.flip:.4f} | {wrong} |"]
         lines += ["", "Sizes foreseen / measured:", ""]
         names = list(dict.fromkeys(d.effect for o in outcomes for d in o.decisions))
         lines += ["| shot | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]

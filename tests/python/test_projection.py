@@ -28,7 +28,7 @@ def grid(camera: rc.Camera, places: int = 31) -> np.ndarray:
 @pytest.mark.parametrize("through", ["light", "chief"])
 def test_a_point_on_a_pixels_ray_shows_in_the_pixel(through: str) -> None:
     worst, tried = 0.0, 0
-    # Each lens state has its table of lines of sight made, which takes up to a second: every fifth is stopped down, too.
+    # A table of lines of sight is made for each state of a lens, in up to a second: every fifth is stopped down, too.
     for number, name in enumerate(rc.lens_names()):
         wide_open = rc.Lens.load(name)
         stopped = [wide_open.stopped_down(1.3 * wide_open.first_order().f_number)] if number % 5 == 0 else []
