@@ -14,17 +14,15 @@ from .scenes import grid_board, room
 
 
 def experiment(device: str) -> Experiment:
-    wide = Lens.load("wide-22mm").focused(math.inf)
-    film = Film(30, 20, (480, 320))
+    wide = Lens.load("wide-16mm-100deg").focused(math.inf)
+    film = Film(21.6, 14.4, (440, 293))
     distance = 20.0
     across = film.width_mm / wide.first_order().effective_focal_length_mm * distance
-    board = grid_board((0, 0, -distance), 1.3 * across, 26)
+    board = grid_board((0, 0, -distance), 1.8 * across, 36)
     camera = Camera(wide, film=film).metered(board, device="cpu")
     straight = render(board, camera.replace(model="thin"), spp=32, device=device, effects=())
     curved = render(board, camera, spp=32, device=device, effects=())
-    corner = math.degrees(
-        math.atan(math.hypot(film.width_mm, film.height_mm) / 2 / wide.first_order().effective_focal_length_mm)
-    )
+    corner = 0.49 * camera.field_of_view_deg.diagonal
     percent = distortion(wide, fields_deg=[corner]).percent
     fisheye = Lens.load("fisheye-6mm-220deg").focused(math.inf)
     inside = room(5.0, 10)
@@ -45,7 +43,7 @@ def experiment(device: str) -> Experiment:
         ),
         (
             photographed("thin lens", straight),
-            photographed("wide-22mm, every surface", curved),
+            photographed("wide-16mm-100deg, every surface", curved),
             photographed("fisheye-6mm-220deg in a squared room", barrel),
         ),
         (
