@@ -113,7 +113,7 @@ public:
 
 private:
     /// More is too good to be believed of few doublings.
-    static constexpr double kMostDecay = 1.5;
+    static constexpr double kMostDecay = 1.25;
 
     /// The pixels of a tile that are decided upon together.
     struct Half {
