@@ -29,7 +29,7 @@ def main(target: Path) -> None:
         analysis.plot_pupil_shapes(analysis.film_pupils(wide_open, samples=5), pupils)
         analysis.plot_spot_diagram(analysis.spot_diagram(lens, rings=16, bundles=bundles), spot, 1)
         analysis.plot_bokeh(analysis.bokeh(wide_open, rays=1_000_000), disc, 2)
-        analysis.save_plot(figure, target, dpi=130)
+        analysis.save_figure(figure, target, dpi=130)
 
 
 if __name__ == "__main__":

@@ -12,10 +12,11 @@ from matplotlib.figure import Figure
 
 from ._core import InputError, Lens
 from .drawing.draw import draw_section, extent_of, prepare_axes
-from .drawing.figure import Row, check_picture, figure_of, save_figure
+from .drawing.figure import Row, figure_of
 from .drawing.section import CrossSection, cross_section
 from .drawing.style import Style
 from .drawing.themes import theme_named
+from .figure_files import check_figure_target, save_figure
 
 __all__ = ["draw_cross_section", "draw_states", "save_cross_section", "save_states", "states_of"]
 
@@ -47,7 +48,7 @@ def save_cross_section(
     theme: "light" or "dark". width_px: of the picture.
     Raises ImageFileError, and InputError where no light passes the lens or what is asked makes no sense.
     """
-    target = check_picture(path)
+    target = check_figure_target(path)
     style = Style(theme_named(theme), radius_colours, marks)
     section = cross_section(
         lens,
@@ -62,7 +63,7 @@ def save_cross_section(
     row = Row(lens.title or lens.name, _data_of(lens, section), section, other)
     # Rays that were sent from one point of the film meet in it, whatever the lens does.
     figure = figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
-    save_figure(figure, target, width_px)
+    save_figure(figure, target, dpi=width_px / figure.get_figwidth())
 
 
 def draw_cross_section(
@@ -142,7 +143,7 @@ def save_states(
     width_px: int = 1600,
 ) -> None:
     """Writes draw_states as .svg, .png or .pdf. Raises ImageFileError and InputError."""
-    target = check_picture(path)
+    target = check_figure_target(path)
     figure = draw_states(
         states,
         rays=rays,
@@ -155,7 +156,7 @@ def save_states(
         theme=theme,
         width_px=width_px,
     )
-    save_figure(figure, target, width_px)
+    save_figure(figure, target, dpi=width_px / figure.get_figwidth())
 
 
 def states_of(lens: Lens) -> list[tuple[str, Lens]]:

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import io
 import math
 import os
 from collections.abc import Sequence
-from pathlib import Path
 
 import matplotlib.figure
 from matplotlib.axes import Axes
 
-from . import files
-from ._core import ImageFileError, InputError, Lens, lens_names
+from ._core import InputError, Lens, lens_names
 from .draw import draw_cross_section
+from .figure_files import check_figure_target, save_figure
 
-SUFFIXES = (".png", ".svg", ".pdf")
 CELL_INCHES = (2.6, 2.0)
 
 
@@ -26,13 +23,9 @@ def save_gallery(path: str | os.PathLike[str], lenses: Sequence[Lens] | None = N
     Each drawing has its own scale. A film far behind the glass is left out, so that the glass is large enough to see.
     Raises ImageFileError for a name that cannot be written, InputError for no lenses or no columns.
     """
-    target = Path(path)
-    suffix = target.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise ImageFileError(f"{target}: unknown suffix; .png, .svg or .pdf is wanted")
+    target = check_figure_target(path)
     if columns < 1:
         raise InputError(f"columns: {columns} is too few; 1 or more is wanted")
-    files.check_target(target)
     if lenses is None:
         lenses = [Lens.load(name) for name in lens_names()]
     if not lenses:
@@ -47,10 +40,7 @@ def save_gallery(path: str | os.PathLike[str], lenses: Sequence[Lens] | None = N
         _draw_cell(lens, axes)
     for axes in grid[len(lenses) :]:
         axes.set_axis_off()
-    # In memory, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
-    sheet = io.BytesIO()
-    figure.savefig(sheet, format=suffix[1:], dpi=150)
-    files.write_whole(target, sheet.getvalue())
+    save_figure(figure, target, dpi=150)
 
 
 def _draw_cell(lens: Lens, axes: Axes) -> None:

@@ -12,6 +12,7 @@ fields go from the axis to the corner of the film, colours are the F line, the d
 object is in the plane in focus of the lens as it stands.
 """
 
+from ..figure_files import save_figure
 from .bokeh import Bokeh, bokeh, plot_bokeh
 from .distortion import (
     Distortion,
@@ -43,7 +44,7 @@ from .report import save_report
 from .seidel_bars import SeidelBars, plot_seidel_bars, seidel_bars
 from .spherical_aberration import LongitudinalAberration, longitudinal_aberration, plot_longitudinal_aberration
 from .spot_diagram import SpotDiagram, plot_spot_diagram, spot_diagram
-from .style import save_plot, themed
+from .style import themed
 from .wavefront_map import WavefrontMap, plot_wavefront_map, wavefront_map
 from .zernike import ZernikeFit, fit_zernike, plot_zernike_fit, zernike_fit
 
@@ -99,8 +100,8 @@ __all__ = [
     "plot_zernike_fit",
     "point_spread",
     "ray_fan",
+    "save_figure",
     "save_numbers",
-    "save_plot",
     "save_report",
     "seidel_bars",
     "spot_diagram",

@@ -20,6 +20,8 @@ from numpy.typing import ArrayLike
 
 from .. import files
 from .._core import ImageFileError, InputError, Lens
+from ..drawing.themes import theme_named
+from ..figure_files import figure_bytes
 from . import style
 from .bokeh import bokeh, plot_bokeh
 from .distortion import distortion, distortion_grid, plot_distortion, plot_distortion_grid
@@ -246,13 +248,11 @@ def _pdf(pages: list[matplotlib.figure.Figure]) -> bytes:
 def _html(report: _Report, pages: list[matplotlib.figure.Figure], theme: str) -> bytes:
     pictures = []
     for number, page in enumerate(pages):
-        # Ids within one page of HTML have to differ.
-        with matplotlib.rc_context({"svg.hashsalt": f"realcam-{number}"}):
-            text = style.content_of(page, ".svg", dpi=130).decode()
+        text = figure_bytes(page, ".svg", dpi=130, salt=f"realcam-{number}").decode()
         pictures.append(text[text.index("<svg") :])
     title = html.escape(report.title)
     rows = "\n".join(f"<tr><th>{html.escape(a)}</th><td>{html.escape(b)}</td></tr>" for a, b in report.heading())
-    paper, ink = style.PAGES[theme]
+    paper, ink = theme_named(theme).page, theme_named(theme).text
     drawn = "\n".join(pictures)
     return f"""<!doctype html>
 <html lang="en">

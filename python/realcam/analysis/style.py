@@ -1,12 +1,9 @@
-"""How plots look: themes, colours of wavelengths and fields, and files."""
+"""How plots look: themes, and colours of wavelengths and fields."""
 
 from __future__ import annotations
 
-import io
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -16,11 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
-from .. import files
-from .._core import ImageFileError, InputError
+from ..drawing.themes import theme_named
 
-PAGES = {"light": ("white", "#202020"), "dark": ("#16191d", "#d8dadd")}  # paper and ink
-FORMATS = (".svg", ".png", ".pdf")
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}
 # Colours that stand out from a white and from a dark page alike (a contrast of 3 and more to either).
 BLUE, GREEN, RED = "#4a78d6", "#2f9a58", "#d9493c"
@@ -46,9 +40,7 @@ def field_colour(number: int) -> str:
 @contextmanager
 def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
     """Figures that are made within have the theme's page, text and lines. Raises InputError for an unknown theme."""
-    if theme not in PAGES:
-        raise InputError(f'unknown theme "{theme}"; light or dark is wanted')
-    page, text = PAGES[theme]
+    page, text = theme_named(theme).page, theme_named(theme).text
     grid = "#d5d5d5" if theme == "light" else "#3c4148"
     settings: Any = {
         "figure.facecolor": page,
@@ -77,9 +69,6 @@ def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
         "legend.handlelength": 1.4,
         "legend.borderaxespad": 0.2,
         "axes.formatter.limits": (-4, 5),
-        "svg.fonttype": "none",
-        "svg.hashsalt": "realcam",
-        "pdf.compression": 6,
     }
     with matplotlib.rc_context(settings):
         yield
@@ -92,29 +81,6 @@ def text_colour() -> str:
 
 def new_figure(width_in: float, height_in: float) -> matplotlib.figure.Figure:
     return matplotlib.figure.Figure(figsize=(width_in, height_in), layout="constrained")
-
-
-def check_plot_target(path: str | os.PathLike[str]) -> Path:
-    """Raises ImageFileError where no plot can be written to this name."""
-    target = Path(path)
-    if target.suffix.lower() not in FORMATS:
-        raise ImageFileError(f"{target}: unknown suffix; .svg, .png or .pdf is wanted")
-    files.check_target(target)
-    return target
-
-
-def content_of(figure: matplotlib.figure.Figure, suffix: str, dpi: float = 160) -> bytes:
-    """The bytes of a file. They have no date in them: the same plot has the same bytes."""
-    drawing = io.BytesIO()
-    dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
-    figure.savefig(drawing, format=suffix.lower()[1:], dpi=dpi, metadata=dates[suffix.lower()])
-    return drawing.getvalue()
-
-
-def save_plot(figure: matplotlib.figure.Figure, path: str | os.PathLike[str], dpi: float = 160) -> None:
-    """Writes .svg, .png or .pdf, as a whole or not at all. Raises ImageFileError."""
-    target = check_plot_target(path)
-    files.write_whole(target, content_of(figure, target.suffix, dpi))
 
 
 def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:

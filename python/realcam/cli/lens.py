@@ -170,9 +170,9 @@ def compare(
     lenses = [options.lens(name, focus, f_number, glass=glass, force=force) for name in (first, second)]
     colours = lens_options.numbers(wavelengths, "--wavelengths")
     if output is not None:
-        from ..drawing.figure import check_picture
+        from ..figure_files import check_figure_target
 
-        lens_options.check_not_the_lens(check_picture(output), first, second)
+        lens_options.check_not_the_lens(check_figure_target(output), first, second)
     frequencies = lens_options.numbers(mtf, "--mtf") or []
     summaries = [
         lens_summary(lens, mtf_frequencies_per_mm=frequencies, circle_of_confusion_mm=circle) for lens in lenses

@@ -65,7 +65,8 @@ def plot(
     seidel, wavefront, zernike, psf, mtf, mtf-field, mtf-focus, relative-illumination, pupil, bokeh.
     """
     from .. import analysis  # brings matplotlib, which other commands need not load
-    from ..analysis import kinds, numbers, style
+    from ..analysis import kinds, numbers
+    from ..figure_files import check_figure_target, save_figure
 
     if kind not in kinds.KINDS:
         raise InputError(f'unknown plot "{kind}"; one of {", ".join(kinds.KINDS)} is wanted')
@@ -76,7 +77,7 @@ def plot(
         if target.suffix.lower() in (".json", ".csv"):
             numbers.check_numbers_target(target)
         else:
-            style.check_plot_target(target)
+            check_figure_target(target)
     lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force)
     bundles = analysis.Bundles(lens, _distance(object_distance))
     asked = kinds.Asked(
@@ -92,7 +93,7 @@ def plot(
             numbers.save_numbers(data, target)
         else:
             figure = kinds.plot_figure(kind, data, theme=theme, size=size, title=options.title_of(lens))
-            style.save_plot(figure, target)
+            save_figure(figure, target)
         if not as_json:
             _say_written(target)
     if as_json:

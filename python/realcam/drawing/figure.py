@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import io
-import os
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import matplotlib
 import matplotlib.figure
 
-from .. import files
-from .._core import ImageFileError, InputError
+from .._core import InputError
 from .draw import Extent, draw_section, extent_of, prepare_axes
 from .inset import draw_inset, shown_in_insets
 from .section import CrossSection
 from .style import Style, legend_of_wavelengths
-
-SUFFIXES = (".svg", ".png", ".pdf")
-_SETTINGS: Any = {"svg.fonttype": "none", "svg.hashsalt": "realcam", "pdf.fonttype": 42}  # text stays text
 
 
 @dataclass(frozen=True)
@@ -32,32 +24,6 @@ class Row:
     subtitle: str
     section: CrossSection
     ghost: CrossSection | None = None
-
-
-def check_picture(path: str | os.PathLike[str]) -> Path:
-    """Raises ImageFileError where a drawing cannot go there."""
-    target = Path(path)
-    if target.suffix.lower() not in SUFFIXES:
-        raise ImageFileError(f"{target}: unknown suffix; {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]} is wanted")
-    files.check_target(target)
-    return target
-
-
-def save_figure(figure: matplotlib.figure.Figure, target: Path, width_px: int) -> None:
-    """Writes it as a whole or not at all. Raises ImageFileError."""
-    kind = target.suffix[1:].lower()
-    # In memory, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
-    drawing = io.BytesIO()
-    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(kind, {})
-    with matplotlib.rc_context(_SETTINGS):
-        figure.savefig(
-            drawing,
-            format=kind,
-            dpi=width_px / figure.get_figwidth(),
-            facecolor=figure.get_facecolor(),
-            metadata=metadata,
-        )
-    files.write_whole(target, drawing.getvalue())
 
 
 def figure_of(

@@ -12,6 +12,7 @@ import matplotlib.figure
 import numpy as np
 
 from .._core import develop
+from ..figure_files import figure_bytes
 from ..image import Image
 
 
@@ -43,10 +44,7 @@ class Experiment:
 
 
 def drawn(caption: str, figure: matplotlib.figure.Figure) -> Figure:
-    text = io.StringIO()
-    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "realcam"}):
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    svg = text.getvalue()
+    svg = figure_bytes(figure, ".svg", salt=caption).decode()
     return Figure(caption, svg[svg.index("<svg") :])
 
 

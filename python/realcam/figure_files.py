@@ -1,0 +1,45 @@
+"""Files of matplotlib's figures: .svg, .png and .pdf, with the same bytes each time, whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import os
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from . import files
+from ._core import ImageFileError
+
+FORMATS = (".svg", ".png", ".pdf")
+_SETTINGS: Any = {"svg.fonttype": "none", "pdf.fonttype": 42}  # text stays text
+_WITHOUT_DATE: dict[str, dict[str, None]] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
+
+
+def check_figure_target(path: str | os.PathLike[str]) -> Path:
+    """Raises ImageFileError where no figure can be written to this name."""
+    target = Path(path)
+    if target.suffix.lower() not in FORMATS:
+        raise ImageFileError(f"{target}: unknown suffix; {', '.join(FORMATS[:-1])} or {FORMATS[-1]} is wanted")
+    files.check_target(target)
+    return target
+
+
+def figure_bytes(figure: Figure, suffix: str, dpi: float = 160, salt: str = "realcam") -> bytes:
+    """What a file of that suffix holds. salt: another one for each drawing of one page, where ids have to differ."""
+    kind = suffix.lower()
+    drawing = io.BytesIO()
+    with matplotlib.rc_context({**_SETTINGS, "svg.hashsalt": salt}):
+        figure.savefig(
+            drawing, format=kind[1:], dpi=dpi, facecolor=figure.get_facecolor(), metadata=_WITHOUT_DATE[kind]
+        )
+    return drawing.getvalue()
+
+
+def save_figure(figure: Figure, path: str | os.PathLike[str], dpi: float = 160) -> None:
+    """Raises ImageFileError."""
+    target = check_figure_target(path)
+    # Made in memory first, because matplotlib takes its time: a program that is ended meanwhile leaves nothing behind.
+    files.write_whole(target, figure_bytes(figure, target.suffix, dpi))
