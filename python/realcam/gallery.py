@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 
 import matplotlib.figure
 from matplotlib.axes import Axes
 
 from ._core import InputError, Lens, lens_names
-from .draw import draw_cross_section
+from .drawing import cross_section
+from .drawing.draw import draw_section, extent_of, prepare_axes
+from .drawing.style import Style
+from .drawing.themes import theme_named
 from .figure_files import check_figure_target, save_figure
 
 CELL_INCHES = (2.6, 2.0)
@@ -44,7 +48,10 @@ def save_gallery(path: str | os.PathLike[str], lenses: Sequence[Lens] | None = N
 
 
 def _draw_cell(lens: Lens, axes: Axes) -> None:
-    draw_cross_section(lens, axes)
+    style = Style(theme_named("light"))
+    section = replace(cross_section(lens), focus_group=None)  # its note is wider than a cell
+    prepare_axes(axes, extent_of(section, style), style)
+    draw_section(section, axes, style)
     data = lens.first_order()
     # Names are text, and a dollar sign in one begins no formula.
     name = "".join(c for c in lens.name if c.isprintable())
