@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
-from .._core import Camera, Film, Scene
+from .._core import Camera, Film, InputError, Scene
 from ..image import Image
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
@@ -159,9 +159,15 @@ def accuracy_cost(
     try:
         for number, (level, against) in enumerate(climbs):
             tell((1 + number) / (1 + len(climbs)))
-            if possible[number]:
-                done.append((number < rung_count, _climb(level, scene, camera, against, most_spp, seed, settings)))
-                missing.remove(level.name)
+            if not possible[number]:
+                continue
+            try:
+                rung = _climb(level, scene, camera, against, most_spp, seed, settings)
+            except InputError:  # the reference was taken, so that it is this level that cannot show the whole film
+                possible[number] = False
+            else:
+                done.append((number < rung_count, rung))
+            missing.remove(level.name)
     except KeyboardInterrupt:
         pass
     return AccuracyCost(
