@@ -256,7 +256,7 @@ class _Search:
         share = np.where(passes, share, 0.0)
         share = share / share.sum()
         middle = share @ np.where(passes[:, None], at, 0.0)
-        # Rays that are blocked count as those that pass do on average: a lens does not become sharp by being dark.
+        # A lens does not become sharp by being dark: the fewer rays pass, the more their errors count.
         errors = np.where(passes[:, None], at - middle, 0.0) * np.sqrt(share)[:, None]
         return np.asarray(errors.ravel() / math.sqrt(max(passes.mean(), 1e-9)))
 

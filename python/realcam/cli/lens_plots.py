@@ -133,7 +133,8 @@ def report(
 
 
 def _numbers(text: str | None, what: str) -> NDArray[np.float64] | None:
-    return None if text is None else np.array([options.number(part.strip(), what) for part in text.split(",")])
+    values = lens_options.numbers(text, what)
+    return None if values is None else np.array(values)
 
 
 def _distance(text: str | None) -> float | None:
