@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "../io/lens_format.hpp"
+#include "../io/lens_glass.hpp"
 #include "../optics/focus.hpp"
 #include "../optics/lens_changes.hpp"
 #include "../optics/zoom.hpp"
@@ -349,6 +350,7 @@ void bind_lens(py::module_& m) {
     bind_surface(m);
     bind_first_order(m);
     m.def("lens_names", &io::lens_names, "Names of the bundled lenses.");
+    m.def("glass_names", &io::catalogue_full_names, "Names of the glasses of the catalogue, as \"schott:N-BK7\".");
     py::class_<LensSystem> lens_class(m, "Lens",
                                       "A lens in one state of its rings. A value: every change returns a new Lens.");
     def_hashable_value(lens_class, [](const LensSystem& lens) { validate(lens); });

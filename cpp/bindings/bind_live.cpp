@@ -4,12 +4,15 @@
 #include <memory>
 #include <mutex>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "../cuda/cuda_session.hpp"
 #include "../devices/devices.hpp"
 #include "../render/live_view.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "picture.hpp"
 
 namespace realcam::bindings {
 
@@ -39,11 +42,20 @@ public:
     PythonLiveView(const PythonLiveView&) = delete;
     PythonLiveView& operator=(const PythonLiveView&) = delete;
 
-    FramePointer shoot(const Camera& camera, int spp, const std::string& tone) {
+    FramePointer shoot(const Camera& camera, int spp, const std::string& tone, const std::vector<std::string>& effects,
+                       const std::string& illuminant) {
         const ToneCurve curve = tone_curve_from(tone);
+        const RenderSettings settings = settings_from(spp, seed_, max_bounces_, "paths", 0, 0, {}, effects, illuminant);
         const Unlocked unlocked;
-        return view_->shoot(camera, {spp, seed_, max_bounces_, 0}, curve, heed_signals,
-                            std::make_shared<WorkUnderWay>());
+        return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkUnderWay>());
+    }
+
+    py::tuple image() const {
+        const Image image = [&] {
+            const Unlocked unlocked;
+            return view_->collected().picture(heed_signals);
+        }();
+        return picture_from(image, {});
     }
 
     py::tuple picture() const {
@@ -132,13 +144,17 @@ void bind_live(py::module_& m) {
              "device"_a = "cuda", "seed"_a = 0, "max_bounces"_a = 1)
         .def(
             "shoot",
-            [](PythonLiveView& live, const Camera& camera, int spp, const std::string& tone) {
-                return std::const_pointer_cast<LiveFrame>(live.shoot(camera, spp, tone));
+            [](PythonLiveView& live, const Camera& camera, int spp, const std::string& tone,
+               const std::vector<std::string>& effects, const std::string& illuminant) {
+                return std::const_pointer_cast<LiveFrame>(live.shoot(camera, spp, tone, effects, illuminant));
             },
-            "camera"_a, py::kw_only(), "spp"_a = 1, "tone"_a = "film",
+            "camera"_a, py::kw_only(), "spp"_a = 1, "tone"_a = "film", "effects"_a = std::vector<std::string>(),
+            "illuminant"_a = "",
             "Starts to take spp more samples of each pixel, developed with the camera's exposure time and ISO and a\n"
-            "tone curve (see Image.developed). Returns a LiveFrame at once, or when the oldest of those under way is\n"
-            "there. Raises KeyboardInterrupt on Ctrl-C.")
+            "tone curve (see Image.developed). effects: names of rc.effects(), but not \"auto\"; illuminant: as text, "
+            "of\n"
+            "dispersion and diffraction. Returns a LiveFrame at once, or when the oldest of those under way is there.\n"
+            "Raises KeyboardInterrupt on Ctrl-C.")
         .def("show", &PythonLiveView::show, "scene"_a, py::call_guard<Unlocked>(),
              "Another scene for the frames to come. Made for every frame: of one that comes from the last by moved(),\n"
              "only the places are copied. Raises InputError.")
@@ -148,6 +164,7 @@ void bind_live(py::module_& m) {
             "and depth (H, W) in metres, as Image has them. DeviceArrays in the memory of the GPU; of a view on the\n"
             "CPU numpy arrays. Waits for the frames under way. Raises InputError before the first frame, Cancelled\n"
             "where another thread stops them meanwhile, and KeyboardInterrupt on Ctrl-C.")
+        .def("_image", &PythonLiveView::image)
         .def("cancel", &PythonLiveView::cancel, py::call_guard<Unlocked>(),
              "Gives up all frames under way within some milliseconds, from any thread: their codes raise Cancelled, "
              "and\n"

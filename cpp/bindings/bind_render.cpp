@@ -10,6 +10,7 @@
 #include "../camera/develop.hpp"
 #include "../devices/devices.hpp"
 #include "../render/effect_names.hpp"
+#include "../render/metering.hpp"
 #include "../render/take_picture.hpp"
 #include "../shot/names.hpp"
 #include "arrays.hpp"
@@ -181,6 +182,14 @@ void bind_render(py::module_& m) {
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");
+    m.def(
+        "_metered_exposure",
+        [](const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure) {
+            Image image;
+            image.exposure.assign(exposure.data(), exposure.data() + exposure.size());
+            return metered_exposure(image);
+        },
+        "exposure"_a);
     m.def(
         "devices",
         [] {

@@ -43,11 +43,7 @@ Glass qualified_glass(const std::string& name) {
     const std::size_t colon = name.find(':');
     const toml::table* maker = catalogue()[name.substr(0, colon)].as_table();
     const toml::node* glass = maker ? maker->get(name.substr(colon + 1)) : nullptr;
-    if (!glass) {
-        std::vector<std::string> all;
-        for (const auto& [plain, full] : names()) all.push_back(full);
-        throw InputError("unknown glass \"" + name + '"' + did_you_mean(name, all));
-    }
+    if (!glass) throw InputError("unknown glass \"" + name + '"' + did_you_mean(name, catalogue_full_names()));
     return glass_from_table(TomlTable(*glass->as_table(), std::string(kCatalogueFile)));
 }
 
@@ -65,6 +61,12 @@ std::vector<CatalogueName> catalogue_names_like(std::string_view name) {
     const auto [first, last] = bare_names().equal_range(bare_glass_name(name));
     for (auto it = first; it != last; ++it) found.push_back(it->second);
     return found;
+}
+
+std::vector<std::string> catalogue_full_names() {
+    std::vector<std::string> all;
+    for (const auto& [plain, full] : names()) all.push_back(full);
+    return all;
 }
 
 std::vector<std::string> catalogue_plain_names() {
@@ -117,11 +119,8 @@ Glass catalogue_glass(const std::string& name) {
     std::string full = name;
     if (name.find(':') == std::string::npos) {
         const auto [first, last] = names().equal_range(name);
-        if (first == last) {
-            std::vector<std::string> all;
-            for (const auto& [plain, qualified] : names()) all.push_back(plain);
-            throw InputError("unknown glass \"" + name + '"' + did_you_mean(name, all));
-        }
+        if (first == last)
+            throw InputError("unknown glass \"" + name + '"' + did_you_mean(name, catalogue_plain_names()));
         if (std::next(first) != last) {
             std::string choices;
             for (auto it = first; it != last; ++it) choices += (choices.empty() ? "\"" : ", \"") + it->second + '"';

@@ -24,6 +24,8 @@ std::string bare_glass_name(std::string_view name);
 std::vector<CatalogueName> catalogue_names_like(std::string_view name);
 /// The catalogue's name of a glass that is exactly the one its label names; nothing where it is none.
 std::optional<CatalogueName> catalogue_name_of(const Glass& glass);
+/// Every glass of the catalogue with its maker, "schott:N-BK7", by plain name.
+std::vector<std::string> catalogue_full_names();
 /// Every name of the catalogue, for suggestions.
 std::vector<std::string> catalogue_plain_names();
 

@@ -54,6 +54,7 @@ from ._core import (
     __version__,
     devices,
     effects,
+    glass_names,
     lens_names,
     sensor_names,
 )
@@ -139,6 +140,7 @@ __all__ = [
     "devices",
     "effects",
     "fit_camera_model",
+    "glass_names",
     "lens_names",
     "optimised",
     "photographic_figures",

@@ -10,7 +10,7 @@ import typer
 
 from .. import __version__
 from .._core import RealcamError, one_line
-from . import bench, cost, demo, lens, paper, sensor
+from . import bench, cost, demo, lens, paper, sensor, view
 from .options import add_command_of_the_executable
 
 # click's, which newer versions of typer bring along under a private name.
@@ -32,6 +32,7 @@ app.command("demo")(demo.demo)
 app.command("bench")(bench.bench)
 app.command("cost")(cost.cost)
 app.command("paper")(paper.paper)
+app.command("view")(view.view)
 
 
 def _print_version(wanted: bool) -> None:

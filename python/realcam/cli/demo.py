@@ -24,7 +24,7 @@ def demo(
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
 
-    shot = _scenes_folder() / "demo.toml"
+    shot = scenes_folder() / "demo.toml"
     new_folders = [folder for folder in (output, *output.parents) if not folder.exists()]
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # by way of what cleans up
     try:
@@ -65,7 +65,7 @@ def _render(shot: Path, spp: int, *rest: Path | str) -> None:
         sys.exit(code if code > 0 else 128 - code)
 
 
-def _scenes_folder() -> Path:
+def scenes_folder() -> Path:
     """Beside the package where it is installed, in the repository where it is not."""
     package = Path(__file__).resolve().parents[1]
     for folder in (package / "scenes", package.parents[1] / "scenes"):

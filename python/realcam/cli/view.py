@@ -1,0 +1,48 @@
+"""realcam view: the lens bench in the browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .._core import InputError
+from .demo import scenes_folder
+
+
+def view(
+    shot: Annotated[Path | None, typer.Argument(help="Shot file; the demo if left out.", show_default=False)] = None,
+    folder: Annotated[
+        list[Path] | None,
+        typer.Option(help="Folder that the page may read and write, besides the current one.", show_default=False),
+    ] = None,
+    host: Annotated[str, typer.Option(help="Address to serve at.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port to serve at.", min=1, max=65535)] = 8080,
+    allow_network: Annotated[
+        bool, typer.Option("--allow-network", help="Serve at an address that other machines reach; makes a token.")
+    ] = False,
+    token: Annotated[str, typer.Option(help="The token that pages have to give.", show_default=False)] = "",
+    device: Annotated[str, typer.Option(help="auto, cpu, cuda, cuda:1 ...; see `realcam devices`.")] = "auto",
+    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
+) -> None:
+    """Photograph a scene in the browser: turn the rings, edit the lens, and see the picture follow."""
+    try:
+        from ..viewer.access import is_local
+        from ..viewer.server import ServerSettings, serve
+    except ImportError as error:
+        raise InputError(f"the lens bench needs {error.name}; pip install realcam[view] brings it") from None
+    if not is_local(host) and not allow_network:
+        raise InputError(f"--host {host}: other machines reach this address; --allow-network allows that")
+    path = scenes_folder() / "demo.toml" if shot is None else shot
+    serve(
+        ServerSettings(
+            shot=path,
+            folders=(Path.cwd(), *(folder or ())),
+            host=host,
+            port=port,
+            device=device,
+            token=token,
+            shows_browser=browser,
+        )
+    )

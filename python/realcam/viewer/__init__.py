@@ -1,0 +1,1 @@
+"""The lens bench: a camera in the browser, whose rings are turned and whose lens is edited (`realcam view`)."""

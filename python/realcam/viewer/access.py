@@ -1,0 +1,116 @@
+"""Who may use the server, and which files they may reach."""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+from collections.abc import MutableMapping, Sequence
+from http.cookies import SimpleCookie
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+from starlette.datastructures import Headers
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from .._core import InputError
+
+_COOKIE = "realcam_token"
+
+
+def is_local(host: str) -> bool:
+    """Whether only programs of this machine reach an address."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+class Gate:
+    """ASGI middleware in front of all pages, files and sockets.
+
+    token: wanted as ?token= or as the cookie that this sets; None where every program of this machine may come. Then
+    pages of other sites that the user's browser shows are kept out by the Host and Origin headers: a site can point a
+    name of its own at 127.0.0.1, but it cannot change what the browser says that it asked for.
+    """
+
+    def __init__(self, app: ASGIApp, token: str | None = None) -> None:
+        self._app, self._token = app, token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        by_query = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
+        if not self._is_admitted(headers, by_query):
+            await _refuse(scope, receive, send)
+            return
+        if scope["type"] == "http" and self._token and by_query:
+
+            async def send_with_cookie(message: MutableMapping[str, Any]) -> None:
+                if message["type"] == "http.response.start":
+                    cookie = f"{_COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/"
+                    pairs: Any = message.get("headers") or []
+                    message["headers"] = [*pairs, (b"set-cookie", cookie.encode())]
+                await send(message)
+
+            await self._app(scope, receive, send_with_cookie)
+            return
+        await self._app(scope, receive, send)
+
+    def _is_admitted(self, headers: Headers, by_query: str) -> bool:
+        origin = headers.get("origin")
+        if origin and urlsplit(origin).netloc != headers.get("host", ""):
+            return False
+        if self._token is None:
+            return is_local(urlsplit(f"//{headers.get('host', '')}").hostname or "")
+        cookies = SimpleCookie(headers.get("cookie", ""))
+        given = by_query or (cookies[_COOKIE].value if _COOKIE in cookies else "")
+        return hmac.compare_digest(given.encode(), self._token.encode())
+
+
+async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.close", "code": 1008})
+        return
+    text = "realcam: the address with the token that the server has printed is wanted\n"
+    await PlainTextResponse(text, status_code=403)(scope, receive, send)
+
+
+class Folders:
+    """The folders that were named when the server was started; nothing else is read or written for a page."""
+
+    def __init__(self, folders: Sequence[Path]) -> None:
+        self._folders = [folder.resolve() for folder in folders]
+        for folder in self._folders:
+            if not folder.is_dir():
+                raise InputError(f"{folder}: there is no such folder")
+
+    @property
+    def first(self) -> Path:
+        return self._folders[0]
+
+    def files(self, suffixes: Sequence[str]) -> list[Path]:
+        """Of all the folders, not of folders in them."""
+        return sorted(
+            path
+            for folder in self._folders
+            for path in folder.iterdir()
+            if path.suffix.lower() in suffixes and path.is_file()
+        )
+
+    def inside(self, name: str) -> Path:
+        """A path in one of the folders; a relative one is in the first.
+
+        Raises InputError for any other, as for a link that leads out of them.
+        """
+        if not name or "\0" in name:
+            raise InputError("a file name is wanted")
+        path = (self.first / name).resolve()
+        if not any(path.is_relative_to(folder) for folder in self._folders):
+            raise InputError(f'"{name:.80}" is outside the folders that the server was started with')
+        return path

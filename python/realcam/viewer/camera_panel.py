@@ -1,0 +1,174 @@
+"""The rings and dials of the camera."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from nicegui import ui
+from nicegui.events import GenericEventArguments
+
+from .focus_scale import focus_scale_svg
+from .ring_scales import ISO, SHUTTER_S, Ring
+from .window import Window
+
+MODELS = {
+    "full": "all surfaces (exact)",
+    "polynomial": "polynomial fit",
+    "mapped": "thin lens with the real distortion",
+    "thick": "thick lens",
+    "thin": "thin lens",
+    "pinhole": "pinhole",
+}
+WIDTHS = (320, 480, 640, 960, 1280, 1920)
+NOISES = {4.0: "4 codes (draft)", 2.0: "2 codes", 1.0: "1 code", 0.5: "half a code (fine)"}
+_FOCUS_STEPS = 400  # of the slider, even in the inverse distance, as the travel of a focusing lens is
+
+
+class CameraPanel:
+    """Shows how the camera stands, and turns it. update() brings it up to date after changes from elsewhere."""
+
+    def __init__(self, window: Window, run: Callable[..., Awaitable[Any]]) -> None:
+        self._window, self._bench, self._run = window, window.bench, run
+        self._build()
+        self.update()
+
+    def _build(self) -> None:
+        with ui.element("section").classes("rc-controls").props('aria-label="Camera"'):
+            self._zoom = self._choice("Zoom", {}, lambda value: self._change(zoom=value), "Position of the zoom ring")
+            self._focus_text = ui.label().props('data-testid="focus-text"')
+            self._focus = self._slider(
+                "Focus", _FOCUS_STEPS, self._set_focus, "Distance from the film to the plane that is sharp"
+            )
+            self._scale = ui.html("", sanitize=False).classes("rc-scale")
+            self._aperture_text = ui.label().props('data-testid="aperture-text"')
+            self._aperture = self._slider(
+                "Aperture", 1, self._set_aperture, "A smaller opening is a larger f-number: darker, and sharp over more"
+            )
+            self._shutter_text = ui.label().props('data-testid="shutter-text"')
+            self._shutter = self._slider(
+                "Shutter", len(SHUTTER_S.values) - 1, self._set_shutter, "How long the film is exposed"
+            )
+            self._iso_text = ui.label().props('data-testid="iso-text"')
+            self._iso = self._slider("ISO", len(ISO.values) - 1, self._set_iso, "How little light makes middle grey")
+            with ui.row().classes("items-center w-full"):
+                self._automatic = ui.switch("Automatic exposure").props('data-testid="automatic"')
+                self._automatic.on("update:model-value", lambda e: self._change(is_automatic=bool(_value(e))))
+                self._automatic.tooltip("The exposure time follows the mean brightness of the picture")
+                self._compensation = ui.number("Correction (EV)", min=-5, max=5, step=1 / 3, format="%.2f")
+                self._compensation.on("update:model-value", self._set_compensation, throttle=0.1)
+                self._compensation.tooltip("Brighter (+) or darker (-) than metered, in stops").classes("w-32")
+            self._model = self._choice(
+                "Camera model", MODELS, lambda value: self._change(model=value), "How much of the lens is simulated"
+            )
+            self._width = self._choice(
+                "Resolution",
+                {w: f"{w} pixels across" for w in WIDTHS},
+                lambda value: self._run(self._bench.set_resolution, int(value)),
+                "Of the refined picture",
+            )
+            self._noise = self._choice(
+                "Refine to",
+                NOISES,
+                lambda value: self._run(self._bench.set_noise, float(value)),
+                "The noise at which the picture is done, in 8-bit codes",
+            )
+
+    def update(self) -> None:
+        """On the server's loop."""
+        now = self._bench.controls
+        positions = now.lens.zoom_positions
+        self._zoom.set_visibility(bool(positions))
+        self._zoom.set_options({name: name for name in positions}, value=now.zoom)
+        apertures = self._bench.apertures
+        f_number = max(now.f_number or 0.0, apertures.values[0])
+        step = apertures.step_of(f_number)
+        _set(self._aperture, step, len(apertures.values) - 1)
+        self._aperture_text.set_text(f"Aperture f/{apertures.text_of(f_number)}")
+        _set(self._shutter, SHUTTER_S.step_of(now.exposure_time_s))
+        automatic = " (automatic)" if now.is_automatic else ""
+        self._shutter_text.set_text(f"Shutter {_seconds(SHUTTER_S, now.exposure_time_s)}{automatic}")
+        _set(self._iso, ISO.step_of(now.iso))
+        self._iso_text.set_text(f"ISO {ISO.text_of(now.iso)}")
+        nearest = self._nearest_m
+        _set(self._focus, round(_FOCUS_STEPS * (1 - nearest / now.focus_m)) if now.focus_m > nearest else 0)
+        self._focus_text.set_text(f"Focus {_distance(now.focus_m)}")
+        figures = self._bench.figures()
+        self._scale.set_content(focus_scale_svg(now.focus_m, figures["near_m"], figures["far_m"], nearest))
+        self._automatic.set_value(now.is_automatic)
+        self._model.set_value(now.model)
+        width = now.film.resolution[0]
+        self._width.set_options({w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, value=width)
+        self._noise.set_value(self._bench.noise_codes)
+
+    @property
+    def _nearest_m(self) -> float:
+        """Where the focus ring ends: where the lens says so, else at ten focal lengths."""
+        body = self._bench.controls.body
+        if body.nearest_focus_m > 0:
+            return body.nearest_focus_m
+        return 0.01 * abs(body.first_order().effective_focal_length_mm)
+
+    def _set_focus(self, step: float) -> Awaitable[Any]:
+        share = step / _FOCUS_STEPS
+        return self._change(focus_m=math.inf if share >= 1 else self._nearest_m / (1 - share))
+
+    def _set_aperture(self, step: float) -> Awaitable[Any]:
+        values = self._bench.apertures.values
+        return self._change(f_number=values[min(int(step), len(values) - 1)])
+
+    def _set_shutter(self, step: float) -> Awaitable[Any]:
+        return self._change(exposure_time_s=SHUTTER_S.values[int(step)], is_automatic=False)
+
+    def _set_iso(self, step: float) -> Awaitable[Any]:
+        return self._change(iso=ISO.values[int(step)])
+
+    async def _set_compensation(self, event: GenericEventArguments) -> None:
+        value = _value(event)
+        if isinstance(value, int | float) and math.isfinite(value) and abs(value) <= 10:
+            await self._change(compensation_ev=float(value))
+
+    def _change(self, **changes: Any) -> Awaitable[Any]:
+        return self._run(self._bench.change, **changes)
+
+    def _slider(self, name: str, last: int, act: Callable[[float], Awaitable[Any]], help: str) -> ui.slider:
+        slider = ui.slider(min=0, max=last, step=1).props(f'aria-label="{name}" data-testid="{name.lower()}"')
+        slider.tooltip(help)
+
+        async def turned(event: GenericEventArguments) -> None:
+            value = _value(event)
+            if isinstance(value, int | float):
+                await act(value)
+
+        slider.on("update:model-value", turned, throttle=0.03)
+        return slider
+
+    def _choice(self, name: str, options: dict[Any, str], act: Callable[[Any], Awaitable[Any]], help: str) -> ui.select:
+        choice = ui.select(options, label=name).classes("w-full").props(f'data-testid="{name.lower()}"')
+        choice.tooltip(help)
+
+        async def chosen() -> None:
+            await act(choice.value)
+
+        choice.on("update:model-value", chosen)
+        return choice
+
+
+def _set(slider: ui.slider, step: int, last: int | None = None) -> None:
+    if last is not None:
+        slider.props(f"max={last}")
+    slider.set_value(step)
+
+
+def _value(event: GenericEventArguments) -> Any:
+    return event.args[0] if isinstance(event.args, list) and event.args else event.args
+
+
+def _seconds(ring: Ring, value: float) -> str:
+    text = ring.text_of(value)
+    return f"{text} s" if "/" in text or float(text) >= 0.1 else f"1/{1 / value:.3g} s"
+
+
+def _distance(metres: float) -> str:
+    return "∞" if math.isinf(metres) else f"{metres:.3g} m"

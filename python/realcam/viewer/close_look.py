@@ -1,0 +1,63 @@
+"""The plots of a window: the lens as it stands, for the point that was clicked."""
+
+from __future__ import annotations
+
+import io
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import analysis
+from .._core import InputError, Lens
+from ..analysis import kinds
+from ..analysis.fields import Bundles
+from ..fields import angle_of_height
+
+# What a window offers, by the names of `realcam lens plot`, with a title and a sentence that explains the optics.
+PLOTS = {
+    "spot": ("Spot diagram", "Where the rays of one object point meet the film; a perfect lens would make a dot."),
+    "ray-fan": ("Ray fan", "How far each ray lands from the chief ray, by where it crosses the stop."),
+    "mtf": ("MTF", "The contrast that is left of stripes, by how fine they are on the film."),
+    "distortion": ("Distortion", "How much farther out points appear than in a picture with straight lines."),
+    "relative-illumination": ("Relative illumination", "How dark the picture becomes towards its corner."),
+    "pupil": ("Pupil shapes", "The outline of the light as the film sees it: cat's eyes towards the corner."),
+}
+_OF_ONE_FIELD = ("spot", "ray-fan", "mtf")
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is plotted. height_mm: on the film, from the axis. theme: "light" or "dark"."""
+
+    kind: str
+    lens: Lens
+    height_mm: float
+    object_distance_m: float | None
+    theme: str
+
+
+def plot_svg(look: Look) -> str:
+    """An SVG of the plot. Raises InputError where there is nothing to plot."""
+    fields = None
+    if look.kind in _OF_ONE_FIELD:
+        fields = np.array([angle_of_height(look.lens, look.height_mm, look.object_distance_m)[0]])
+    bundles = Bundles(look.lens, look.object_distance_m)
+    data = kinds.compute(look.kind, kinds.Asked(look.lens, bundles, fields))
+    figure = analysis.plot_figure(look.kind, data, theme=look.theme, size="small")
+    content = io.StringIO()
+    figure.savefig(content, format="svg", facecolor="none", transparent=True)
+    svg = content.getvalue()
+    return svg[svg.index("<svg") :]
+
+
+def height_of(u: float, v: float, film_mm: tuple[float, float]) -> float:
+    """Distance from the middle of the film, mm, of a place in the picture."""
+    return math.hypot((u - 0.5) * film_mm[0], (v - 0.5) * film_mm[1])
+
+
+def checked_kind(kind: str) -> str:
+    """Raises InputError."""
+    if kind not in PLOTS:
+        raise InputError(f'there is no plot "{kind:.40}"')
+    return kind

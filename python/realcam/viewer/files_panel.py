@@ -1,0 +1,142 @@
+"""Other lenses, and what is saved."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Awaitable, Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from nicegui import events, ui
+
+from .._core import Lens, RealcamError, lens_names
+from ..gallery import save_gallery
+from .access import Folders
+from .lens_bench import COMPARISONS
+from .saving import save_lens, save_picture, save_shot
+from .window import Window
+
+LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".dat", ".json", ".roa")
+MOST_UPLOADED = 2 * 1024 * 1024  # bytes
+
+
+@lru_cache(maxsize=128)
+def lens_preview(name: str) -> str:
+    """A small section of a bundled lens, as SVG."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "lens.svg"
+        save_gallery(path, [Lens.load(name)], columns=1)
+        svg = path.read_text(encoding="utf-8")
+    return svg[svg.index("<svg") :]
+
+
+class FilesPanel:
+    """Opens lenses and saves pictures, shots and lenses, in the folders that the server was started with."""
+
+    def __init__(self, window: Window, folders: Folders, source: Path, run: Callable[..., Awaitable[Any]]) -> None:
+        self._window, self._bench, self._folders, self._source, self._run = window, window.bench, folders, source, run
+        with ui.element("section").classes("rc-controls").props('aria-label="Lens and files"'):
+            with ui.row().classes("items-center w-full"):
+                self._lens = ui.select(lens_names(), label="Lens", with_input=True).classes("grow")
+                self._lens.props('data-testid="lens"').on("update:model-value", self._choose)
+                self._lens.tooltip("One of the bundled lenses")
+                ui.button("Gallery", on_click=self._open_gallery).props("flat no-caps")
+            self._compare = ui.select(list(COMPARISONS), label="Compare with", value="nothing").classes("w-full")
+            self._compare.props('data-testid="compare"').on("update:model-value", self._compare_with)
+            self._compare.tooltip("A second picture behind a wipe")
+            self._other = ui.select(lens_names(), label="Other lens").classes("w-full")
+            self._other.on("update:model-value", self._compare_with)
+            self._other.bind_visibility_from(self._compare, "value", lambda value: value == "another lens")
+            ui.upload(
+                label="Open a lens file (.toml .zmx .seq .dat .json .roa)",
+                max_file_size=MOST_UPLOADED,
+                auto_upload=True,
+                on_upload=self._upload,
+                on_rejected=lambda: ui.notify("That file is too large to be a lens", type="negative"),
+            ).classes("w-full").props('flat bordered data-testid="upload"')
+            with ui.row().classes("items-end w-full"):
+                self._name = ui.input("Save as", value="picture.png").classes("grow").props('data-testid="save-name"')
+                self._name.tooltip("picture.png, .exr or .dng; shot.toml; lens.toml, .zmx or .seq")
+                self._what = ui.select(["picture", "shot", "lens"], value="picture").props('data-testid="save-what"')
+                self._what.on("update:model-value", self._propose)
+                ui.button("Save", on_click=self._save).props('no-caps data-testid="save"')
+            self._said = ui.label().props('aria-live="polite" data-testid="said"')
+
+    def update(self) -> None:
+        """On the server's loop."""
+        name = self._bench.controls.lens.name
+        options = [*lens_names(), *([] if name in lens_names() else [name])]
+        self._lens.set_options(options, value=name)
+
+    async def _choose(self) -> None:
+        if self._lens.value in lens_names():
+            await self._run(lambda: self._bench.set_lens(Lens.load(self._lens.value)))
+
+    async def _compare_with(self) -> None:
+        what = self._compare.value
+        if what == "another lens" and not self._other.value:
+            return
+        lens = Lens.load(self._other.value) if what == "another lens" else None
+        await self._run(self._bench.compare, what, lens)
+
+    async def _upload(self, event: events.UploadEventArguments) -> None:
+        suffix = Path(event.file.name).suffix.lower()
+        if suffix not in LENS_SUFFIXES:
+            self._say(f'"{event.file.name}": one of {" ".join(LENS_SUFFIXES)} is wanted')
+            return
+        content = await event.file.read()
+
+        def opened() -> None:
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / f"{Path(event.file.name).stem[:60]}{suffix}"
+                path.write_bytes(content)
+                lens = Lens.load(path)
+            self._bench.set_lens(lens)
+
+        await self._try(opened, f"Opened {event.file.name}")
+
+    def _propose(self) -> None:
+        self._name.set_value({"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}[self._what.value])
+
+    async def _save(self) -> None:
+        what, bench = self._what.value, self._bench
+        try:
+            path = self._folders.inside(self._name.value)
+        except RealcamError as error:
+            self._say(str(error))
+            return
+
+        def saved() -> None:
+            if path == self._source:
+                save_shot(self._source, bench.controls, bench.effect_words(), path)
+            elif what == "picture":
+                save_picture(bench.image(), path, bench.shot.tone)
+            elif what == "shot":
+                save_shot(self._source, bench.controls, bench.effect_words(), path)
+            else:
+                save_lens(bench.controls.set_lens, path)
+
+        await self._try(saved, f"Wrote {path.name}")
+
+    async def _try(self, action: Callable[[], None], done: str) -> None:
+        try:
+            await self._window.do(action)
+        except (RealcamError, OSError) as error:
+            self._say(str(error))
+        else:
+            self._say(done)
+
+    def _say(self, text: str) -> None:
+        self._said.set_text(text)
+
+    def _open_gallery(self) -> None:
+        async def choose(name: str) -> None:
+            dialog.close()
+            await self._run(lambda: self._bench.set_lens(Lens.load(name)))
+
+        with ui.dialog() as dialog, ui.card().classes("max-w-5xl"), ui.row().classes("rc-gallery"):
+            for name in lens_names():
+                with ui.button(on_click=lambda name=name: choose(name)).props(f'flat no-caps aria-label="{name}"'):
+                    ui.html(lens_preview(name), sanitize=False)
+        dialog.open()

@@ -1,0 +1,53 @@
+"""The distance scale of a lens barrel, with the marks between which the picture is sharp."""
+
+from __future__ import annotations
+
+import math
+
+_WIDTH, _HEIGHT = 320, 46
+_MARGIN = 14
+_ENGRAVED = (0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10, 20, 50, 100, 300, 1000, math.inf)
+_CLEARANCE = 26  # between two figures
+
+
+def focus_scale_svg(focus_m: float, near_m: float, far_m: float, nearest_m: float) -> str:
+    """Distances in metres; near and far are nan where nothing is sharp.
+
+    Even in the inverse distance, as on a barrel.
+    """
+
+    def x(distance_m: float) -> float:
+        share = 1 - nearest_m / distance_m if distance_m > nearest_m else 0.0
+        return _MARGIN + (_WIDTH - 2 * _MARGIN) * share
+
+    parts = []
+    if not math.isnan(near_m):
+        left, right = x(near_m), x(far_m)
+        parts.append(
+            f'<rect x="{left:.1f}" y="4" width="{max(1.0, right - left):.1f}" height="10" rx="2" '
+            'fill="var(--rc-ray1)" opacity="0.55"/>'
+        )
+    parts.append(f'<line x1="{_MARGIN}" x2="{_WIDTH - _MARGIN}" y1="16" y2="16" stroke="var(--rc-line)"/>')
+    last = -math.inf
+    for distance in reversed(_ENGRAVED):
+        at = x(distance)
+        if distance < nearest_m or abs(at - last) < _CLEARANCE:
+            continue
+        last = at
+        text = "∞" if math.isinf(distance) else f"{distance:g}"
+        parts.append(
+            f'<line x1="{at:.1f}" x2="{at:.1f}" y1="16" y2="21" stroke="var(--rc-line)"/>'
+            f'<text x="{at:.1f}" y="33" text-anchor="middle" font-size="11" fill="var(--rc-text)">{text}</text>'
+        )
+    at = x(focus_m)
+    parts.append(f'<line x1="{at:.1f}" x2="{at:.1f}" y1="1" y2="22" stroke="var(--rc-accent)" stroke-width="2.5"/>')
+    parts.append(f'<text x="{_WIDTH - 2}" y="44" text-anchor="end" font-size="9" fill="var(--rc-faint)">m</text>')
+    label = f"Focused at {_text(focus_m)}; sharp from {_text(near_m)} to {_text(far_m)}"
+    if math.isnan(near_m):
+        label = f"Focused at {_text(focus_m)}; the lens is sharp nowhere"
+    head = f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{label}"><title>{label}</title>'
+    return f"{head}{''.join(parts)}</svg>"
+
+
+def _text(distance_m: float) -> str:
+    return "infinity" if math.isinf(distance_m) else f"{distance_m:.3g} m"

@@ -1,0 +1,403 @@
+"""One window's camera: what the user has set, and the picture and the lens that follow."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from .. import planning
+from .._core import Film, InputError, Lens, LensFileError, NothingToPlan, Plan, RealcamError, effects
+from ..image import Image
+from ..photography import depth_of_field
+from ..shot import Shot
+from .camera_controls import CameraControls
+from .lens_edits import LensHistory
+from .lens_view import lens_view
+from .newest_task import NewestTask
+from .picture_loop import PictureLoop
+from .picture_request import Frame, PictureRequest
+from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
+
+EFFECTS = tuple(line.partition(":")[0] for line in effects() if "on unless left out" not in line)
+COMPARISONS = ("nothing", "thin lens", "these settings", "another lens")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Why what was asked for last is not shown. surface: of the lens, if one is to blame."""
+
+    message: str
+    surface: int | None = None
+
+
+@dataclass
+class Listeners:
+    """What a window is told, on any thread. Each replaces what was told before of the same."""
+
+    frame: Callable[[str, Frame], None] = lambda slot, frame: None
+    controls: Callable[[], None] = lambda: None
+    lens: Callable[[dict[str, Any]], None] = lambda view: None
+    problem: Callable[[Problem | None], None] = lambda problem: None
+    plan: Callable[[Plan | None, str], None] = lambda plan, note: None
+
+
+@dataclass
+class Switches:
+    """How effects are chosen: each "auto", "on" or "off"."""
+
+    of: dict[str, str] = field(default_factory=lambda: dict.fromkeys(EFFECTS, "auto"))
+
+    def named(self, plan: Plan | None) -> tuple[str, ...]:
+        """What is simulated: what is on, and what the plan keeps of the others."""
+        kept = plan.effects if plan else ()
+        return tuple(
+            name
+            for name, state in self.of.items()
+            if state == "on" or (state == "auto" and any(effect.partition("=")[0] == name for effect in kept))
+        )
+
+
+class LensBench:
+    """Holds a shot's scene before a camera that a user changes. Functions may be called from one thread at a time.
+
+    A change that makes no camera leaves everything as it is, and is told as a Problem; the next that makes one ends it.
+    """
+
+    def __init__(
+        self, shot: Shot, *, device: str = "auto", make_loop: Callable[..., PictureLoop] = PictureLoop
+    ) -> None:
+        self.shot, self._device = shot, device
+        self.listeners = Listeners()
+        self.controls = CameraControls.of(shot.camera)
+        self.history = LensHistory(self.controls.lens)
+        self.switches = Switches()
+        for name in shot.effects:
+            if (plain := name.partition("=")[0]) in EFFECTS:
+                self.switches.of[plain] = "on"
+        if "auto" not in shot.effects:
+            self.switches.of = {name: "off" if state == "auto" else state for name, state in self.switches.of.items()}
+        self.plan: Plan | None = None
+        self.problem: Problem | None = None
+        self.noise_codes = 1.0
+        self.hovered: tuple[float, float] | None = None
+        self._other: CameraControls | None = None  # what the picture is compared with
+        self.comparison = "nothing"
+        self._make_loop = make_loop
+        self._lock = threading.RLock()
+        self._loops = {"a": self._new_loop("a")}
+        self._drawing = NewestTask("realcam-drawing")
+        self._planning = NewestTask("realcam-planning")
+
+    def close(self) -> None:
+        """Ends all threads of the window."""
+        self.listeners = Listeners()
+        for task in (self._drawing, self._planning):
+            task.close()
+        for loop in self._loops.values():
+            loop.close()
+
+    # The camera.
+
+    def show(self) -> None:
+        """Photographs and draws everything as it stands, for a page that has just been opened."""
+        self._photograph()
+        self._draw()
+        self._ask_for_plan()
+        self.listeners.controls()
+        self.listeners.problem(self.problem)
+
+    def change(self, **changes: Any) -> bool:
+        """Sets fields of CameraControls. Whether a camera came of it."""
+        return self._take(lambda: replace(self.controls, **changes))
+
+    @property
+    def apertures(self) -> Ring:
+        return aperture_ring(self.controls.body.first_order().f_number)
+
+    def turn(self, ring: str, steps: int) -> bool:
+        """Turns a ring or dial by thirds of a stop: "aperture" (closes), "shutter" (longer) or "iso"."""
+        now = self.controls
+        if ring == "aperture":
+            scale, value = self.apertures, now.f_number or 0.0
+            return self.change(f_number=_turned(scale, max(value, scale.values[0]), steps))
+        if ring == "shutter":
+            return self.change(exposure_time_s=_turned(SHUTTER_S, now.exposure_time_s, steps), is_automatic=False)
+        if ring == "iso":
+            return self.change(iso=_turned(ISO, now.iso, steps))
+        raise InputError(f'there is no ring "{ring:.40}"')
+
+    def orbit(self, right: float, up: float) -> bool:
+        """By shares of the picture's height: that much of it is about a radian."""
+        return self.change(pose=self.controls.pose.orbited(-2.5 * right, -2.5 * up))
+
+    def pan(self, right: float, up: float) -> bool:
+        """By shares of the picture's height, so that what is looked at follows the mouse."""
+        pose, lens = self.controls.pose, self.controls.lens
+        height = pose.distance_m * self.controls.film.height_mm / abs(lens.first_order().effective_focal_length_mm)
+        return self.change(pose=pose.panned(-right * height, up * height))
+
+    def dolly(self, steps: float) -> bool:
+        """Nearer by a tenth of the distance for each step."""
+        return self.change(pose=self.controls.pose.dollied(0.9**steps))
+
+    def focus_at(self, u: float, v: float) -> bool:
+        """Focuses at what is at u, v of the picture."""
+        distance = self._loops["a"].point(u, v).result().distance_m
+        return self._take(lambda: replace(self.controls, focus_m=distance).focused_within_reach())
+
+    def meter_at(self, u: float, v: float) -> bool:
+        """Exposes so that what is around u, v becomes middle grey."""
+        exposure = self._loops["a"].point(u, v).result().exposure_lx_s
+        if not exposure > 0:
+            self._set_problem(Problem("there is no light where the meter looks"))
+            return False
+        now = self.controls
+        wanted = 10 * 2**now.compensation_ev / now.iso
+        return self.change(exposure_time_s=now.exposure_time_s * wanted / exposure, is_automatic=False)
+
+    def set_resolution(self, width: int) -> bool:
+        """Pixels across; the height follows from the film."""
+        film = self.controls.film
+        height = max(1, round(width * film.height_mm / film.width_mm))
+        return self.change(film=film.replace(resolution=(width, height)))
+
+    # The lens.
+
+    def set_lens(self, lens: Lens) -> bool:
+        """Another lens on the camera, with its own film."""
+        width = self.controls.film.resolution[0]
+        film = Film.for_lens(lens, None, (width, max(1, round(width * lens.film_mm[1] / lens.film_mm[0]))))
+
+        def controls() -> CameraControls:
+            return replace(self.controls.with_lens(lens), film=film).focused_within_reach()
+
+        if not self._take(controls):
+            return False
+        self.history = LensHistory(self.controls.lens)
+        self.listeners.controls()
+        return True
+
+    def edit(self, edited: Callable[[Lens], Lens], gesture: object = None) -> bool:
+        """Changes the lens; see lens_edits. gesture: the same for all steps of one drag."""
+
+        def controls() -> CameraControls:
+            return self.controls.with_lens(edited(self.history.lens)).focused_within_reach()
+
+        if not self._take(controls):
+            return False
+        self.history.push(self.controls.lens, gesture)
+        self.listeners.controls()
+        return True
+
+    def undo(self) -> bool:
+        return self._take(lambda: self.controls.with_lens(self.history.undo()).focused_within_reach())
+
+    def redo(self) -> bool:
+        return self._take(lambda: self.controls.with_lens(self.history.redo()).focused_within_reach())
+
+    def hover(self, u: float, v: float) -> None:
+        """Draws the rays of what is at u, v of the picture."""
+        self.hovered = u, v
+        self._draw()
+
+    # Effects, and what the picture is compared with.
+
+    def switch(self, effect: str, state: str) -> None:
+        """effect: one of EFFECTS. state: "auto", "on" or "off". Raises InputError."""
+        if effect not in EFFECTS or state not in ("auto", "on", "off"):
+            raise InputError(f'there is no switch "{effect:.40}" that could be "{state:.10}"')
+        self.switches.of[effect] = state
+        self._photograph()
+        self._ask_for_plan()
+
+    def set_noise(self, codes: float) -> None:
+        """Refines the picture until its noise is as small."""
+        self.noise_codes = codes
+        self._photograph()
+
+    def compare(self, with_what: str, lens: Lens | None = None) -> None:
+        """Shows a second picture: one of COMPARISONS. Raises InputError where its camera makes none."""
+        other = self._compared(with_what, lens)
+        if other is not None:
+            other.camera()
+        self.comparison, self._other = with_what, other
+        if other is None:
+            loop = self._loops.pop("b", None)
+            if loop:
+                loop.close()
+        elif "b" not in self._loops:
+            self._loops["b"] = self._new_loop("b")
+        self._photograph()
+        self.listeners.controls()
+
+    def _compared(self, with_what: str, lens: Lens | None) -> CameraControls | None:
+        if with_what == "thin lens":
+            return replace(self.controls, model="thin")
+        if with_what == "these settings":
+            return self.controls
+        if with_what == "another lens" and lens is not None:
+            return self.controls.with_lens(lens).focused_within_reach()
+        if with_what != "nothing":
+            raise InputError(f'there is nothing like "{with_what:.40}" to compare with')
+        return None
+
+    def effect_words(self) -> list[str]:
+        """As shot files name them."""
+        states = self.switches.of
+        automatic = ["auto"] if "auto" in states.values() else []
+        left_out = [f"-{name}" for name, state in states.items() if state == "off" and automatic]
+        return [*automatic, *(name for name, state in states.items() if state == "on"), *left_out]
+
+    # What comes of it.
+
+    def image(self, slot: str = "a") -> Image:
+        """The picture with all its samples; waits for it."""
+        return self._loops[slot].image().result()
+
+    def set_jpeg_quality(self, quality: int) -> None:
+        for loop in self._loops.values():
+            loop.jpeg_quality = quality
+
+    def figures(self) -> dict[str, float]:
+        """Depth of field and so on, in metres; nan where there is none."""
+        lens = self.controls.set_lens
+        try:
+            sharp = depth_of_field(lens).real
+        except InputError:
+            return {"near_m": math.nan, "far_m": math.nan}
+        return {"near_m": sharp.near_m, "far_m": sharp.far_m}
+
+    def _new_loop(self, slot: str) -> PictureLoop:
+        return self._make_loop(
+            self.shot.scene,
+            lambda frame: self._take_frame(slot, frame),
+            lambda _, message: self._set_problem(Problem(message)),
+            device=self._device,
+            max_bounces=self.shot.max_bounces,
+            seed=self.shot.seed,
+        )
+
+    def _take_frame(self, slot: str, frame: Frame) -> None:
+        if slot == "a" and self.controls.is_automatic:
+            # Not a change by the user: it stays so when the exposure is no longer automatic.
+            self.controls = replace(self.controls, exposure_time_s=frame.exposure_time_s)
+        self.listeners.frame(slot, frame)
+
+    def _take(self, changed: Callable[[], CameraControls]) -> bool:
+        """Tries a change; where no camera comes of it, everything stays as it is."""
+        before = self.controls
+        try:
+            controls = changed()
+            controls.camera()
+        except RealcamError as error:
+            surface = error.surface if isinstance(error, LensFileError) and error.surface >= 0 else None
+            self._set_problem(Problem(str(error), surface))
+            return False
+        self.controls = controls
+        self._set_problem(None)
+        self._photograph()
+        lens_changed = (before.lens, before.zoom, before.focus_m, before.f_number) != (
+            controls.lens,
+            controls.zoom,
+            controls.focus_m,
+            controls.f_number,
+        )
+        if lens_changed:
+            self._draw()
+        self._ask_for_plan()
+        self.listeners.controls()
+        return True
+
+    def _set_problem(self, problem: Problem | None) -> None:
+        if problem != self.problem:
+            self.problem = problem
+            self.listeners.problem(problem)
+
+    def _request(self, controls: CameraControls) -> PictureRequest:
+        is_full = controls.model == "full"
+        names = self.switches.named(self.plan)
+        return PictureRequest(
+            camera=controls.camera(),
+            effects=tuple(name for name in names if is_full or name == "diffraction"),
+            tone=self.shot.tone,
+            is_automatic=controls.is_automatic,
+            compensation_ev=controls.compensation_ev,
+            noise_codes=self.noise_codes,
+        )
+
+    def _photograph(self) -> None:
+        self._loops["a"].submit(self._request(self.controls))
+        if self._other is not None and "b" in self._loops:
+            now, other = self.controls, self._other
+            # The second camera stands where the first one does, and has its exposure but for its own settings.
+            other = replace(other, pose=now.pose)
+            if self.comparison != "these settings":
+                other = replace(
+                    other,
+                    focus_m=now.focus_m,
+                    f_number=now.f_number,
+                    exposure_time_s=now.exposure_time_s,
+                    iso=now.iso,
+                    is_automatic=now.is_automatic,
+                    compensation_ev=now.compensation_ev,
+                    lens=now.lens if self.comparison == "thin lens" else other.lens,
+                    zoom=now.zoom if self.comparison == "thin lens" else other.zoom,
+                )
+            try:
+                request = self._request(other.focused_within_reach())
+            except RealcamError as error:
+                self._set_problem(Problem(f"the picture to compare with: {error}"))
+                return
+            self._loops["b"].submit(request)
+
+    def _draw(self) -> None:
+        lens, fields = self.controls.set_lens, self._fields()
+        self._drawing.submit(lambda: self.listeners.lens(lens_view(lens, fields)))
+
+    def _fields(self) -> Sequence[float]:
+        """Of the drawn rays: shares of the height of the film's corner."""
+        if self.hovered is None:
+            return (0.0, 0.7)
+        film = self.controls.film
+        u, v = self.hovered
+        height = math.hypot((u - 0.5) * film.width_mm, (v - 0.5) * film.height_mm)
+        share = min(1.0, height / (0.5 * math.hypot(film.width_mm, film.height_mm)))
+        return (0.0, share) if share > 1e-3 else (0.0,)
+
+    def _ask_for_plan(self) -> None:
+        if "auto" not in self.switches.of.values():
+            return
+        controls = self.controls
+        named = [("-" if state == "off" else "") + name for name, state in self.switches.of.items() if state != "auto"]
+
+        def plan() -> None:
+            note = ""
+            found: Plan | None = None
+            try:
+                found = planning.plan(
+                    self.shot.scene,
+                    controls.camera().replace(model="full"),
+                    device=self._device,
+                    seed=self.shot.seed,
+                    max_bounces=self.shot.max_bounces,
+                    effects=["auto", *named],
+                )
+            except NothingToPlan as nothing:
+                note = str(nothing)
+            except RealcamError as error:
+                note = str(error)
+            before = self.switches.named(self.plan)
+            self.plan = found
+            self.listeners.plan(found, note)
+            if self.switches.named(found) != before:
+                self._photograph()
+
+        self._planning.submit(plan)
+
+
+def _turned(ring: Ring, value: float, steps: int) -> float:
+    step = min(max(ring.step_of(value) + steps, 0), len(ring.values) - 1)
+    return ring.values[step]

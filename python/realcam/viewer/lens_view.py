@@ -1,0 +1,110 @@
+"""What the browser draws of a lens: its section, its rays, its table and its first-order data, as JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .._core import InputError, Lens
+from ..drawing import CrossSection, cross_section
+from ..drawing.outlines import Points
+
+_RAYS = 9
+
+
+def lens_view(
+    lens: Lens, fields: Sequence[float] = (0.0, 0.7), object_distance_m: float | None = None
+) -> dict[str, Any]:
+    """Lengths in mm, lens frame. fields: shares of the height of the film's corner. Where no light passes there are no
+    rays, and `note` says why.
+    """
+    note = ""
+    try:
+        section = cross_section(lens, rays=_RAYS, fields=fields, object_distance_m=object_distance_m)
+    except InputError as error:
+        section, note = cross_section(lens, rays=0), str(error)
+    return {
+        "name": lens.name,
+        "title": lens.title,
+        "surfaces": [_row(lens, index) for index in range(len(lens.surfaces))],
+        "stop": lens.stop_index,
+        "stop_semi_diameter_mm": lens.stop_semi_diameter_mm,
+        "film": {"z": lens.film_position_mm, "half": section.film_semi_diagonal_mm},
+        "figures": _figures(lens),
+        "note": note,
+        **_shapes(section),
+    }
+
+
+def _row(lens: Lens, index: int) -> dict[str, Any]:
+    surface = lens.surfaces[index]
+    last = index + 1 == len(lens.surfaces)
+    return {
+        "z": lens.vertices_mm[index],
+        "type": surface.type,
+        "radius_mm": _finite(surface.radius_of_curvature_mm),
+        "thickness_mm": lens.film_distance_mm if last else surface.thickness_mm,
+        "glass": surface.material.label,
+        "semi_diameter_mm": surface.clear_semi_diameter_mm,
+        "conic": surface.conic,
+        "aspheric": {str(power): value for power, value in surface.aspheric_coefficients.items()},
+    }
+
+
+def _shapes(section: CrossSection) -> dict[str, Any]:
+    return {
+        "faces": [
+            {
+                "surface": face.surface,
+                "sign": face.radius_sign,
+                "is_mirror": face.is_mirror,
+                "parts": [_points(part) for part in face.parts],
+            }
+            for face in section.faces
+        ],
+        "elements": [_points(polygon) for element in section.elements for polygon in element.polygons],
+        "blockers": [
+            {
+                "surface": b.surface,
+                "is_stop": b.is_stop,
+                "z": b.z_mm,
+                "opening": b.opening_mm,
+                "outer": b.outer_mm,
+                "obstruction": b.obstruction_mm,
+            }
+            for b in section.blockers
+        ],
+        "crossings": [_points(zone) for crossing in section.crossings for zone in crossing.zones],
+        "marks": [{"kind": m.kind, "label": m.label, "z": m.z_mm, "half": m.semi_diameter_mm} for m in section.marks],
+        "bundles": [[_points(path[:, [2, 1]]) for path in bundle.paths_mm] for bundle in section.bundles],
+        "focus_group": None if section.focus_group is None else [section.focus_group.first, section.focus_group.last],
+    }
+
+
+def _figures(lens: Lens) -> dict[str, float | None]:
+    data = lens.first_order()
+    return {
+        "effective_focal_length_mm": _finite(data.effective_focal_length_mm),
+        "f_number": _finite(data.f_number),
+        "back_focal_distance_mm": _finite(data.back_focal_distance_mm),
+        "front_focal_distance_mm": _finite(data.front_focal_distance_mm),
+        "entrance_pupil_position_mm": _finite(data.entrance_pupil_position_mm),
+        "entrance_pupil_diameter_mm": _finite(data.entrance_pupil_diameter_mm),
+        "exit_pupil_position_mm": _finite(data.exit_pupil_position_mm),
+        "exit_pupil_diameter_mm": _finite(data.exit_pupil_diameter_mm),
+        "film_distance_mm": lens.film_distance_mm,
+    }
+
+
+def _points(points: Points) -> list[list[float]]:
+    # A thousandth of the thickness of a line, wherever a lens is as large as the window.
+    size = float(np.max(np.abs(points), initial=1e-9))
+    return np.round(points, max(0, 5 - math.floor(math.log10(size)))).tolist()  # type: ignore[no-any-return]
+
+
+def _finite(value: float) -> float | None:
+    """JSON has no infinity."""
+    return value if math.isfinite(value) else None

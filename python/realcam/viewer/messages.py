@@ -1,0 +1,144 @@
+"""What a browser may ask for over the stream: small JSON texts, looked at before anything is done."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from typing import Any
+
+from .._core import InputError
+from . import lens_edits
+from .lens_bench import LensBench
+
+MOST_BYTES = 64 * 1024
+_SUMMED = ("orbit", "pan")  # of several that wait, the sum is done
+_REPLACED = ("hover",)  # of several that wait, the last one is done
+
+Message = dict[str, Any]
+
+
+class BadMessage(Exception):  # noqa: N818
+    """What no page of ours sends."""
+
+
+def parsed(text: str) -> Message:
+    """Raises BadMessage."""
+    if len(text) > MOST_BYTES:
+        raise BadMessage("the message is too long")
+    try:
+        message = json.loads(text)
+    except (ValueError, RecursionError):
+        raise BadMessage("the message is no JSON") from None
+    if not isinstance(message, dict) or message.get("type") not in _ACTIONS:
+        raise BadMessage("the message asks for nothing that is known")
+    return message
+
+
+def merged(waiting: Message, newer: Message) -> Message | None:
+    """One message for two, where the older one need not be done by itself."""
+    kind = newer["type"]
+    if waiting["type"] != kind:
+        return None
+    if kind in _SUMMED:
+        return {
+            "type": kind,
+            "x": _real(waiting, "x") + _real(newer, "x"),
+            "y": _real(waiting, "y") + _real(newer, "y"),
+        }
+    if kind in _REPLACED:
+        return newer
+    same = ("surface", "field", "gesture")
+    if kind == "edit" and newer.get("gesture") and all(waiting.get(key) == newer.get(key) for key in same):
+        return newer
+    return None
+
+
+def perform(message: Message, bench: LensBench) -> None:
+    """Raises BadMessage, and InputError for what the user cannot have."""
+    _ACTIONS[message["type"]](message, bench)
+
+
+def _real(message: Message, key: str) -> float:
+    value = message.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise BadMessage(f'"{key}" is to be a number')
+    return min(max(float(value), -1e6), 1e6)
+
+
+def _index(message: Message, key: str = "surface") -> int:
+    value = message.get(key)
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise BadMessage(f'"{key}" is to be an integer')
+    return value
+
+
+def _place(message: Message) -> tuple[float, float]:
+    u, v = _real(message, "u"), _real(message, "v")
+    if not (0 <= u <= 1 and 0 <= v <= 1):
+        raise BadMessage("places in the picture lie between 0 and 1")
+    return u, v
+
+
+def _text(message: Message, key: str) -> str:
+    value = message.get(key)
+    if not isinstance(value, str) or len(value) > 200:
+        raise BadMessage(f'"{key}" is to be a short text')
+    return value
+
+
+def _edit(message: Message, bench: LensBench) -> None:
+    surface, field, value = _index(message), _text(message, "field"), message.get("value")
+    if not isinstance(value, str | int | float | None) or isinstance(value, bool):
+        raise BadMessage('"value" is to be a number or a text')
+    gesture = message.get("gesture")
+    if gesture is not None and not isinstance(gesture, int):
+        raise BadMessage('"gesture" is to be an integer')
+    bench.edit(lambda lens: lens_edits.with_value(lens, surface, field, value), gesture)
+
+
+def _insert(message: Message, bench: LensBench) -> None:
+    surface = _index(message)
+    bench.edit(lambda lens: lens_edits.with_plate(lens, surface))
+
+
+def _remove(message: Message, bench: LensBench) -> None:
+    surface = _index(message)
+    bench.edit(lambda lens: lens_edits.without(lens, surface))
+
+
+def _swap(message: Message, bench: LensBench) -> None:
+    surface, other = _index(message), _index(message, "other")
+    bench.edit(lambda lens: lens_edits.swapped(lens, surface, other))
+
+
+def _turn(message: Message, bench: LensBench) -> None:
+    try:
+        bench.turn(_text(message, "ring"), max(-100, min(100, _index(message, "steps"))))
+    except InputError as error:
+        raise BadMessage(str(error)) from None
+
+
+def _switch(message: Message, bench: LensBench) -> None:
+    try:
+        bench.switch(_text(message, "effect"), _text(message, "state"))
+    except InputError as error:
+        raise BadMessage(str(error)) from None
+
+
+_ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {
+    "orbit": lambda m, bench: bench.orbit(_real(m, "x"), _real(m, "y")),
+    "pan": lambda m, bench: bench.pan(_real(m, "x"), _real(m, "y")),
+    "dolly": lambda m, bench: bench.dolly(max(-20.0, min(20.0, _real(m, "steps")))),
+    "focus": lambda m, bench: bench.focus_at(*_place(m)),
+    "meter": lambda m, bench: bench.meter_at(*_place(m)),
+    "hover": lambda m, bench: bench.hover(*_place(m)),
+    "edit": _edit,
+    "insert": _insert,
+    "remove": _remove,
+    "swap": _swap,
+    "undo": lambda m, bench: bench.undo(),
+    "redo": lambda m, bench: bench.redo(),
+    "turn": _turn,
+    "switch": _switch,
+}

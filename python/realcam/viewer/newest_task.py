@@ -1,0 +1,48 @@
+"""A thread that does the newest of the tasks that it is given."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable
+
+_log = logging.getLogger(__name__)
+
+
+class NewestTask:
+    """For work that each change makes out of date: of those that wait, only the newest is done.
+
+    Tasks report what they find by themselves. An exception is logged, and the next task is done as ever.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._wake = threading.Condition()
+        self._task: Callable[[], None] | None = None
+        self._is_closed = False
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+
+    def submit(self, task: Callable[[], None]) -> None:
+        with self._wake:
+            self._task = task
+            self._wake.notify()
+
+    def close(self) -> None:
+        """Ends the thread after the task that it is doing."""
+        with self._wake:
+            self._is_closed = True
+            self._wake.notify()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while True:
+            with self._wake:
+                while self._task is None and not self._is_closed:
+                    self._wake.wait()
+                task, self._task = self._task, None
+                if self._is_closed or task is None:
+                    return
+            try:
+                task()
+            except Exception:
+                _log.exception("a task of thread %s failed", self._thread.name)

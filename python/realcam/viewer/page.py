@@ -1,0 +1,94 @@
+"""The page of a window."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from nicegui import ui
+from nicegui.client import Client
+from nicegui.events import GenericEventArguments
+
+from .._core import RealcamError
+from .access import Folders
+from .camera_panel import CameraPanel
+from .elements import CostPanel, LensDrawing, PictureCanvas
+from .files_panel import FilesPanel
+from .plots_panel import PlotsPanel
+from .window import Window
+
+
+def build_page(client: Client, window: Window, folders: Folders, source: Path) -> None:
+    """Lays out the page and keeps it up to date. Call within the page's function."""
+    loop, bench = asyncio.get_running_loop(), window.bench
+    ui.add_head_html('<link rel="stylesheet" href="/realcam/page.css">')
+    dark = ui.dark_mode(None)
+
+    async def run(action: Callable[..., Any], *arguments: Any, **named: Any) -> None:
+        try:
+            await window.do(action, *arguments, **named)
+        except RealcamError as error:
+            ui.notify(str(error), type="negative")
+
+    with ui.row().classes("w-full items-center"):
+        ui.label(f"realcam: {source.name}").classes("text-lg")
+        ui.space()
+        ui.toggle({None: "Auto", False: "Light", True: "Dark"}, value=None).bind_value_to(dark, "value").props(
+            'dense no-caps aria-label="Colours of the page" data-testid="theme"'
+        )
+    with ui.element("main").classes("rc-page"):
+        with ui.element("div").classes("rc-column"):
+            canvas = PictureCanvas(window.path)
+            drawing = LensDrawing(window.path)
+        with ui.element("div").classes("rc-column"):
+            camera = CameraPanel(window, run)
+            files = FilesPanel(window, folders, source, run)
+            with ui.element("section").classes("rc-controls"):
+                CostPanel(window.path)
+            plots = PlotsPanel(window, lambda: bool(dark.value))
+    files.update()
+    canvas.on("picked", lambda event: _pick(event, plots))
+    dark.on_value_change(lambda _: plots.update())
+
+    def update() -> None:
+        with client:
+            camera.update()
+            files.update()
+            plots.update()
+            drawing.run_method("setHistory", bench.history.can_undo, bench.history.can_redo)
+            canvas.run_method("setComparison", bench.comparison != "nothing")
+
+    waiting = False
+
+    def update_soon() -> None:
+        """Once for all changes of the same moment."""
+        nonlocal waiting
+        if not waiting:
+            waiting = True
+            loop.call_later(0.05, update_now)
+
+    def update_now() -> None:
+        nonlocal waiting
+        waiting = False
+        update()
+
+    def on_controls() -> None:
+        if not loop.is_closed():
+            loop.call_soon_threadsafe(update_soon)
+
+    bench.listeners.controls = on_controls
+
+    async def close() -> None:
+        plots.close()
+        await asyncio.to_thread(window.close)
+
+    client.on_delete(close)
+
+
+def _pick(event: GenericEventArguments, plots: PlotsPanel) -> None:
+    place = event.args if isinstance(event.args, dict) else {}
+    u, v = place.get("u"), place.get("v")
+    if isinstance(u, int | float) and isinstance(v, int | float) and 0 <= u <= 1 and 0 <= v <= 1:
+        plots.pick(float(u), float(v))

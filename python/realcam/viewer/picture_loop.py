@@ -1,0 +1,409 @@
+"""A thread that photographs the newest request, first quickly and coarsely, then ever better, and then sleeps."""
+
+from __future__ import annotations
+
+import logging
+import math
+import statistics
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+import simplejpeg
+from numpy.typing import NDArray
+
+from .. import _core
+from .._core import Camera, Cancelled, InputError, LiveFrame, LiveView, RealcamError, RenderStats, Scene, develop
+from ..image import Image, image_of
+from .picture_request import Costs, Frame, PictureRequest, Point
+
+T = TypeVar("T")
+_log = logging.getLogger(__name__)
+
+_PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
+_REFINING_S = 0.120  # what a frame may take that only refines, as long as it is more than a sample
+_SLOW_S = 0.050  # a frame that takes longer must not keep the user waiting for what needs no new samples
+_MOST_SPP = 64  # of one frame, so that a fast GPU shows how a picture grows
+_DIVISORS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)  # of the width: few, because each size is prepared anew
+_METERED_PIXELS = 96  # width of the picture that the light is metered on, as Camera.metered does
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear Rec. 709
+_ROUNDING = 1 / 6  # variance of the difference of two 8-bit codes that are rounded
+
+
+_Arrays = tuple[NDArray[np.float32], NDArray[np.float32]]  # exposure and depth
+
+
+@dataclass
+class _Growing:
+    """The picture that collects samples."""
+
+    request: PictureRequest
+    serial: int
+    begun: float
+    size: tuple[int, int]
+    samples: int = 0
+    spent_s: float = 0.0  #: by these
+    exposure_time_s: float = 0.0  #: with which the samples were developed last
+    is_final: bool = False
+    noise_codes: float | None = None
+    costs: Costs | None = None
+    compared: tuple[int, NDArray[np.uint8]] | None = None  #: samples and codes that the noise is measured against
+    kept: _Arrays | None = None  #: of the last frame, where the next one is slow
+
+
+@dataclass(frozen=True)
+class _Pending:
+    request: PictureRequest
+    serial: int
+    begun: float
+
+
+@dataclass(frozen=True)
+class _Question:
+    ask: Callable[[], Any]
+    answer: Future[Any]
+    needs_samples: bool  #: and has to wait for the frame that is under way
+
+
+class PictureLoop:
+    """Photographs a scene for one window.
+
+    on_frame and on_error (with the request's serial and a message) are called on the loop's thread. submit() may come
+    as often as a mouse moves: every request that is begun gets its first frame, and of those that come meanwhile the
+    newest is next.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        on_frame: Callable[[Frame], None],
+        on_error: Callable[[int, str], None],
+        *,
+        device: str = "auto",
+        max_bounces: int = 1,
+        seed: int = 0,
+    ) -> None:
+        self._live = LiveView(scene, device=device, seed=seed, max_bounces=max_bounces)
+        self._seed = seed
+        self._on_frame, self._on_error = on_frame, on_error
+        self._wake = threading.Condition()
+        self._pending: _Pending | None = None
+        self._questions: deque[_Question] = deque()
+        self._refines = False  # a frame is under way that a change may give up
+        self._is_closed = False
+        self._serial = 0
+        self._picture: _Growing | None = None
+        self._exposure_time_s = 0.0  # that was metered last
+        # Samples a second of the last frames: several, so that one that was slow for another reason makes nothing
+        # coarse. Those that begin a picture have rates of their own, because the lens is prepared in their time.
+        self._first_rates: deque[float] = deque([1e6], maxlen=5)
+        self._rates: deque[float] = deque([1e6], maxlen=5)
+        self.jpeg_quality = 85
+        self._thread = threading.Thread(target=self._run, name="realcam-picture", daemon=True)
+        self._thread.start()
+
+    def submit(self, request: PictureRequest) -> int:
+        """Photographs it as soon as possible. Returns the serial that its frames will have."""
+        with self._wake:
+            self._serial += 1
+            serial = self._serial
+            self._pending = _Pending(request, serial, time.perf_counter())
+            picture = self._picture
+            gives_up = self._refines and not (picture and picture.request.is_same_picture(request))
+            self._wake.notify()
+        if gives_up:
+            self._live.cancel()
+        return serial
+
+    def image(self) -> Future[Image]:
+        """The picture as it stands, at its whole resolution with all its samples."""
+        return self._ask(self._image, True)
+
+    def point(self, u: float, v: float, spot: float = 0.03) -> Future[Point]:
+        """What is at u, v (0 to 1, from the upper left corner). spot: width of what is metered, of the picture's."""
+        return self._ask(lambda: self._point(u, v, spot), False)
+
+    def close(self) -> None:
+        """Ends the thread, from any other."""
+        with self._wake:
+            self._is_closed = True
+            self._wake.notify()
+        self._live.cancel()
+        self._thread.join()
+
+    def _ask(self, question: Callable[[], T], needs_samples: bool) -> Future[T]:
+        answer: Future[T] = Future()
+        with self._wake:
+            if self._is_closed:
+                answer.set_exception(Cancelled("the window is closed"))
+            else:
+                self._questions.append(_Question(question, answer, needs_samples))
+                self._wake.notify()
+        return answer
+
+    # From here on: on the loop's thread.
+
+    def _run(self) -> None:
+        while self._wait_for_work():
+            while self._questions:
+                self._answer(self._questions.popleft())
+            with self._wake:
+                pending, self._pending = self._pending, None
+            try:
+                if pending:
+                    self._begin(pending)
+                elif self._picture and not self._picture.is_final:
+                    self._refine(self._picture)
+            except Cancelled:
+                # A newer request has given this frame up; where it came too late for that, it is taken once more.
+                with self._wake:
+                    self._pending = self._pending or pending
+            except RealcamError as error:
+                self._fail(pending, str(error))
+            except Exception:
+                _log.exception("the picture could not be taken")
+                self._fail(pending, "the picture could not be taken; the server's log says more")
+        while self._questions:
+            self._questions.popleft().answer.set_exception(Cancelled("the window is closed"))
+
+    def _wait_for_work(self) -> bool:
+        with self._wake:
+            while not self._is_closed:
+                if self._pending or self._questions or (self._picture and not self._picture.is_final):
+                    return True
+                self._wake.wait()
+        return False
+
+    def _answer(self, question: _Question) -> None:
+        if not question.answer.set_running_or_notify_cancel():
+            return
+        try:
+            question.answer.set_result(question.ask())
+        except BaseException as error:
+            question.answer.set_exception(error)
+
+    def _fail(self, pending: _Pending | None, message: str) -> None:
+        serial = pending.serial if pending else self._picture.serial if self._picture else 0
+        self._picture = None
+        if self._is_closed:
+            return  # which has given up the samples that somebody wanted to look at
+        self._on_error(serial, message)
+
+    def _begin(self, pending: _Pending) -> None:
+        request = pending.request
+        if not self._exposure_time_s:
+            self._exposure_time_s = request.camera.exposure_time_s
+        picture = self._picture
+        if picture and picture.samples and picture.request.is_same_picture(request):
+            self._develop_for(picture, pending)
+            return
+        self._picture = picture = _Growing(request, pending.serial, pending.begun, self._preview_size(request))
+        affordable = _PREVIEW_S * statistics.median(self._first_rates)
+        spp = max(1, min(_MOST_SPP, int(affordable / math.prod(picture.size))))
+        codes = self._shoot(picture, spp)
+        if request.is_automatic and self._meter(picture):
+            self._develop(picture)
+        else:
+            self._show(picture, codes)
+
+    def _refine(self, picture: _Growing) -> None:
+        """Once more of its samples, after as few steps as the whole resolution takes."""
+        whole = picture.request.camera.film.resolution
+        rate = statistics.median(self._rates)
+        if picture.size != whole:
+            one_sample_s = math.prod(whole) / rate
+            coarse = (min(2 * picture.size[0], whole[0]), min(2 * picture.size[1], whole[1]))
+            picture.size = whole if one_sample_s < 8 * _PREVIEW_S or coarse[0] > 0.7 * whole[0] else coarse
+            picture.samples, picture.spent_s, picture.compared = 0, 0.0, None
+        spp = max(1, min(_MOST_SPP, int(_REFINING_S * rate / math.prod(picture.size))))
+        request = picture.request
+        spp = min(spp, max(1, request.max_spp - picture.samples))
+        with self._wake:
+            if self._pending:
+                return
+            self._refines = True
+        try:
+            codes = self._shoot(picture, spp)
+        finally:
+            with self._wake:
+                self._refines = False
+        if picture.size == whole:
+            self._measure_noise(picture, codes)
+        if request.is_automatic and picture.samples <= 2 * spp and self._meter(picture):
+            self._develop(picture)
+        else:
+            self._show(picture, codes)
+
+    def _shoot(self, picture: _Growing, spp: int) -> NDArray[np.uint8]:
+        request, camera = picture.request, self._camera(picture)
+        start = time.perf_counter()
+        frame = self._live.shoot(
+            camera, spp=spp, tone=request.tone, effects=list(request.effects), illuminant=request.illuminant
+        )
+        if picture.kept:
+            self._wait_for(frame, picture)
+        codes = frame.codes
+        seconds = max(time.perf_counter() - start, 1e-6)
+        rate = spp * math.prod(picture.size) / seconds
+        (self._rates if picture.samples else self._first_rates).append(rate)
+        if camera.exposure_time_s != picture.exposure_time_s:
+            picture.compared = None
+        picture.spent_s += seconds
+        picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
+        picture.kept = self._live_arrays() if seconds > _SLOW_S else None
+        return codes
+
+    def _wait_for(self, frame: LiveFrame, picture: _Growing) -> None:
+        """Meanwhile what asks for no new samples is done with those of the frame before."""
+        while not frame.ready:
+            with self._wake:
+                self._wake.wait(0.005)
+                pending = self._pending
+                if pending and picture.request.is_same_picture(pending.request):
+                    self._pending = None
+                quick = [question for question in self._questions if not question.needs_samples]
+                for question in quick:
+                    self._questions.remove(question)
+            for question in quick:
+                self._answer(question)
+            if pending and picture.request.is_same_picture(pending.request):
+                self._develop_for(picture, pending)
+
+    def _camera(self, picture: _Growing) -> Camera:
+        camera = picture.request.camera
+        film = camera.film.replace(resolution=picture.size)
+        time_s = self._exposure_time_s if picture.request.is_automatic else camera.exposure_time_s
+        return camera.replace(film=film, exposure_time_s=time_s)
+
+    def _preview_size(self, request: PictureRequest) -> tuple[int, int]:
+        width, height = request.camera.film.resolution
+        for divisor in _DIVISORS:
+            size = max(1, round(width / divisor)), max(1, round(height / divisor))
+            if math.prod(size) <= _PREVIEW_S * statistics.median(self._first_rates):
+                break
+        return size
+
+    def _meter(self, picture: _Growing) -> bool:
+        """Sets the exposure time by the light of the picture. Whether it has changed so that it is seen."""
+        exposure, _ = self._arrays(picture)
+        step = max(1, exposure.shape[1] // _METERED_PIXELS)
+        mean = _core._metered_exposure(exposure[::step, ::step])
+        if not (mean > 0 and math.isfinite(mean)):
+            return False
+        before = picture.exposure_time_s
+        wanted = 10 * 2**picture.request.compensation_ev / picture.request.camera.iso  # lux seconds: middle grey
+        self._exposure_time_s = min(max(before * wanted / mean, 1e-6), 1e4)
+        return abs(math.log2(self._exposure_time_s / before)) > 0.02
+
+    def _develop_for(self, picture: _Growing, pending: _Pending) -> None:
+        """Shows for a new request the samples that are there."""
+        request = pending.request
+        picture.request, picture.serial, picture.begun = request, pending.serial, pending.begun
+        picture.is_final = self._is_good_enough(picture)
+        if request.is_automatic:
+            self._meter(picture)
+        self._develop(picture)
+
+    def _develop(self, picture: _Growing) -> None:
+        """Shows the samples that are there with another exposure."""
+        exposure, _ = self._arrays(picture)
+        ratio = self._camera(picture).exposure_time_s / picture.exposure_time_s
+        self._show(picture, develop(exposure * np.float32(ratio), picture.request.camera.iso, picture.request.tone))
+
+    def _arrays(self, picture: _Growing) -> _Arrays:
+        return picture.kept or self._live_arrays()
+
+    def _live_arrays(self) -> _Arrays:
+        exposure, depth = self._live.picture()
+        return np.asarray(exposure), np.asarray(depth)
+
+    def _collected(self, picture: _Growing) -> Image:
+        request = picture.request
+        camera = self._camera(picture).replace(exposure_time_s=picture.exposure_time_s)
+        return image_of(self._live._image(), camera, self._seed, "paths", 0.0, request.effects, request.illuminant)
+
+    def _image(self) -> Image:
+        picture = self._picture
+        if picture is None:
+            raise InputError("there is no picture yet")
+        while picture.size != picture.request.camera.film.resolution:
+            self._refine(picture)
+        image = self._collected(picture)
+        time_s = self._camera(picture).exposure_time_s
+        ratio = np.float32(time_s / image.camera.exposure_time_s)
+        return replace(image, pixels=image.pixels * ratio, camera=image.camera.replace(exposure_time_s=time_s))
+
+    def _point(self, u: float, v: float, spot: float) -> Point:
+        if self._picture is None or not self._picture.samples:
+            raise InputError("there is no picture yet")
+        exposure, depth = self._arrays(self._picture)
+        height, width = depth.shape
+        row, column = min(int(v * height), height - 1), min(int(u * width), width - 1)
+        reach = max(1, round(0.5 * spot * width))
+        around = np.s_[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1]
+        near = depth[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
+        met = near[np.isfinite(near)]
+        return Point(
+            distance_m=float(np.median(met)) if met.size else math.inf,
+            exposure_lx_s=float(np.mean(exposure[around] @ LUMINANCE)),
+        )
+
+    def _measure_noise(self, picture: _Growing, codes: NDArray[np.uint8]) -> None:
+        """From the difference of two pictures of which the second has the samples of the first and as many more.
+
+        The variance of the mean of n samples is s^2 / n, and that of the difference between the means of the first m
+        and of all n of them s^2 (1/m - 1/n). So it is n/m - 1 times the variance of the later mean.
+        """
+        if picture.compared is None or picture.samples >= 2 * picture.compared[0]:
+            if picture.compared is not None:
+                samples, before = picture.compared
+                difference = codes.astype(np.float32) - before
+                variance = max(0.0, float(np.mean(difference * difference)) - _ROUNDING)
+                picture.noise_codes = math.sqrt(variance * samples / (picture.samples - samples))
+                picture.costs = _costs(self._collected(picture).stats, picture.spent_s)
+            picture.compared = picture.samples, codes
+        picture.is_final = self._is_good_enough(picture)
+
+    def _is_good_enough(self, picture: _Growing) -> bool:
+        request = picture.request
+        is_quiet = picture.noise_codes is not None and picture.noise_codes <= request.noise_codes
+        return is_quiet or picture.samples >= request.max_spp
+
+    def _show(self, picture: _Growing, codes: NDArray[np.uint8]) -> None:
+        whole = picture.request.camera.film.resolution
+        jpeg = simplejpeg.encode_jpeg(codes, quality=self.jpeg_quality, colorsubsampling="420")
+        self._on_frame(
+            Frame(
+                serial=picture.serial,
+                jpeg=jpeg,
+                width=picture.size[0],
+                height=picture.size[1],
+                whole_width=whole[0],
+                whole_height=whole[1],
+                samples=picture.samples,
+                is_preview=picture.size != whole,
+                is_final=picture.is_final,
+                noise_codes=picture.noise_codes,
+                seconds=time.perf_counter() - picture.begun,
+                exposure_time_s=self._camera(picture).exposure_time_s,
+                costs=picture.costs,
+            )
+        )
+
+
+def _costs(stats: RenderStats, seconds: float) -> Costs:
+    stages = stats.lens_seconds, stats.scene_seconds, stats.other_seconds
+    all_stages = sum(stages) or 1.0
+    return Costs(
+        lens_share=stages[0] / all_stages,
+        scene_share=stages[1] / all_stages,
+        other_share=stages[2] / all_stages,
+        samples_per_s=stats.sampled_rays / seconds,
+        rays_per_s=stats.scene_rays / seconds,
+        passing_share=stats.passed_rays / max(stats.sampled_rays, 1),
+    )

@@ -1,0 +1,69 @@
+"""What is to be photographed for a window, and what comes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .._core import Camera
+
+
+@dataclass(frozen=True)
+class PictureRequest:
+    """camera: of the whole resolution. The others are as the user has set them."""
+
+    camera: Camera
+    effects: tuple[str, ...] = ()
+    illuminant: str = ""
+    tone: str = "film"
+    is_automatic: bool = False  #: the exposure time follows the light
+    compensation_ev: float = 0.0
+    noise_codes: float = 1.0  #: the picture is refined until its noise is as small
+    max_spp: int = 4096
+
+    def is_same_picture(self, other: PictureRequest) -> bool:
+        """Whether the samples of one can be developed for the other."""
+        mine, others = self.camera, other.camera
+        return (
+            mine.replace(exposure_time_s=1, iso=100) == others.replace(exposure_time_s=1, iso=100)
+            and self.effects == other.effects
+            and self.illuminant == other.illuminant
+        )
+
+
+@dataclass(frozen=True)
+class Costs:
+    """Where the time of a picture goes, and its rays."""
+
+    lens_share: float
+    scene_share: float
+    other_share: float
+    samples_per_s: float
+    rays_per_s: float
+    passing_share: float  #: of the rays that are sent into the lens
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A developed picture on its way to the browser."""
+
+    serial: int  #: of the request that it shows
+    jpeg: bytes
+    width: int
+    height: int
+    whole_width: int  #: of the picture that was asked for
+    whole_height: int
+    samples: int  #: per pixel
+    is_preview: bool  #: of fewer pixels than were asked for
+    is_final: bool  #: nothing will be added
+    noise_codes: float | None  #: root mean square, 8-bit codes; None where it is not known yet
+    seconds: float  #: from the request to this frame
+    exposure_time_s: float
+    costs: Costs | None
+
+
+@dataclass(frozen=True)
+class Point:
+    """What a pixel shows."""
+
+    distance_m: float  #: along the camera's axis from the film; inf where nothing is met
+    exposure_lx_s: float  #: mean luminance exposure of the spot around it

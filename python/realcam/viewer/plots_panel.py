@@ -1,0 +1,57 @@
+"""A closer look at the lens: plots for the point that was clicked."""
+
+from __future__ import annotations
+
+import asyncio
+import html
+from collections.abc import Callable
+from contextlib import suppress
+
+from nicegui import ui
+
+from .._core import RealcamError
+from .close_look import PLOTS, Look, height_of, plot_svg
+from .newest_task import NewestTask
+from .window import Window
+
+
+class PlotsPanel:
+    """One plot at a time, drawn on a thread of its own while the lens is changed."""
+
+    def __init__(self, window: Window, is_dark: Callable[[], bool]) -> None:
+        self._bench, self._is_dark = window.bench, is_dark
+        self._loop = asyncio.get_running_loop()
+        self._task = NewestTask("realcam-plots")
+        self._at = (0.5, 0.5)
+        with ui.element("section").classes("rc-controls").props('aria-label="A closer look"'):
+            self._kind = ui.select({kind: title for kind, (title, _) in PLOTS.items()}, value="spot", label="Plot")
+            self._kind.classes("w-full").props('data-testid="plot"').on("update:model-value", self.update)
+            self._help = ui.label().classes("rc-note")
+            self._place = ui.label().classes("rc-note").props('data-testid="plot-place"')
+            self._plot = ui.html("", sanitize=False).classes("w-full rc-plot").props('data-testid="plot-svg"')
+        self.update()
+
+    def close(self) -> None:
+        self._task.close()
+
+    def pick(self, u: float, v: float) -> None:
+        """Plots what is of one point for this place in the picture."""
+        self._at = u, v
+        self.update()
+
+    def update(self) -> None:
+        """On the server's loop."""
+        kind, controls = self._kind.value, self._bench.controls
+        self._help.set_text(PLOTS[kind][1])
+        height = height_of(*self._at, (controls.film.width_mm, controls.film.height_mm))
+        self._place.set_text(f"{height:.3g} mm from the middle of the film; in the plane in focus")
+        look = Look(kind, controls.set_lens, height, None, "dark" if self._is_dark() else "light")
+        self._task.submit(lambda: self._draw(look))
+
+    def _draw(self, look: Look) -> None:
+        try:
+            content = plot_svg(look)
+        except RealcamError as error:
+            content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
+        with suppress(RuntimeError):  # the server is going down
+            self._loop.call_soon_threadsafe(self._plot.set_content, content)

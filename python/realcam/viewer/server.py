@@ -1,0 +1,85 @@
+"""The web server of the lens bench."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import dataclass
+from pathlib import Path
+
+from fastapi import WebSocket
+from nicegui import app, ui
+from nicegui.client import Client
+
+from ..shot import Shot
+from .access import Folders, Gate, is_local
+from .lens_bench import LensBench
+from .page import build_page
+from .window import Window
+
+_STATIC = Path(__file__).with_name("static")
+_RECONNECT_S = 30.0  # for so long a window whose connection is lost keeps what it has
+_MOST_MESSAGE = 1 << 20  # bytes, of the page's own socket, too
+_UNKNOWN_WINDOW = 4404  # see stream.js
+_MOST_WINDOWS = 16  # each has threads, a scene on the device and a picture
+
+
+@dataclass(frozen=True)
+class ServerSettings:
+    """shot: the file. folders: the only ones that are read and written. token: "" makes one where it is wanted."""
+
+    shot: Path
+    folders: tuple[Path, ...]
+    host: str = "127.0.0.1"
+    port: int = 8080
+    device: str = "auto"
+    token: str = ""
+    shows_browser: bool = True
+
+
+def serve(settings: ServerSettings) -> None:
+    """Serves until Ctrl-C. Raises InputError, SceneFileError, LensFileError and DeviceError before it begins."""
+    shot = Shot.load(settings.shot, device=settings.device)
+    folders = Folders(settings.folders)
+    token = settings.token or (None if is_local(settings.host) else secrets.token_urlsafe(24))
+    windows: dict[str, Window] = {}
+
+    app.add_middleware(Gate, token=token)
+    app.add_static_files("/realcam", _STATIC)
+
+    @ui.page("/", title="realcam", response_timeout=30)
+    async def page(client: Client) -> None:
+        if len(windows) >= _MOST_WINDOWS:
+            ui.label("Too many windows are open; close one and load this page again.")
+            return
+        window = Window(LensBench(shot, device=settings.device))
+        windows[window.key] = window
+        client.on_delete(lambda: windows.pop(window.key, None))
+        build_page(client, window, folders, settings.shot.resolve())
+
+    @app.websocket("/realcam/stream/{key}")
+    async def stream(socket: WebSocket, key: str) -> None:
+        window = windows.get(key)
+        if window is None:
+            await socket.accept()
+            await socket.close(_UNKNOWN_WINDOW, "the server does not know this window any more")
+            return
+        await window.stream.serve(socket)
+
+    address = f"http://{_shown(settings.host)}:{settings.port}/" + (f"?token={token}" if token else "")
+    app.on_startup(lambda: print(f"realcam: the lens bench is at {address}", flush=True))
+    ui.run(
+        host=settings.host,
+        port=settings.port,
+        title="realcam",
+        show=address if settings.shows_browser else False,
+        reload=False,
+        show_welcome_message=False,
+        reconnect_timeout=_RECONNECT_S,
+        binding_refresh_interval=None,
+        ws_max_size=_MOST_MESSAGE,
+        tailwind=True,
+    )
+
+
+def _shown(host: str) -> str:
+    return f"[{host}]" if ":" in host else host

@@ -1,0 +1,112 @@
+// The effects with what the planner says of them, and what the picture costs.
+
+import { streamAt } from "/realcam/stream.js";
+
+const W = 300, H = 120, LEFT = 34, BOTTOM = 20;
+
+export default {
+  props: { path: String, effects: Array },
+  template: `
+<section class="rc-costs" aria-label="Effects and cost">
+  <table class="rc-effects"><caption class="rc-hidden">Effects, and what the planner says of them</caption>
+    <thead><tr><th scope="col">Effect</th><th scope="col">Simulated</th><th scope="col">Size here</th></tr></thead>
+    <tbody>
+      <tr v-for="e in effects" :key="e.name" :title="e.help">
+        <th scope="row">{{ e.name.replaceAll('_', ' ') }}</th>
+        <td><select :aria-label="e.name" :data-effect="e.name" :value="states[e.name]" @change="choose(e.name, $event.target.value)">
+          <option value="auto">auto{{ rows[e.name] ? (rows[e.name].is_kept ? ' (on)' : ' (off)') : '' }}</option>
+          <option value="on">on</option><option value="off">off</option></select></td>
+        <td class="rc-size">{{ size(e.name) }}</td>
+      </tr>
+      <tr v-for="row in others" :key="row.effect" :title="row.reason"><th scope="row">{{ row.effect }}</th><td>by the camera model</td>
+        <td class="rc-size">{{ size(row.effect) }}</td></tr>
+    </tbody></table>
+  <p v-if="note" class="rc-note">{{ note }}</p>
+  <details><summary>Reasons</summary><ul class="rc-reasons"><li v-for="row in all" :key="row.effect"><b>{{ row.effect }}</b>: {{ row.reason }}</li></ul></details>
+  <template v-if="costs">
+    <div class="rc-bar" role="img" :aria-label="barText" :title="barText">
+      <span class="rc-bar-lens" :style="{ flexGrow: costs.lens_share }"></span><span class="rc-bar-scene" :style="{ flexGrow: costs.scene_share }"></span><span class="rc-bar-other" :style="{ flexGrow: costs.other_share }"></span>
+    </div>
+    <p class="rc-note">{{ barText }}. {{ large(costs.samples_per_s) }} samples/s, {{ large(costs.rays_per_s) }} rays/s;
+      {{ (100 * costs.passing_share).toFixed(1) }}% of the rays into the lens pass it.</p>
+  </template>
+  <svg class="rc-noise" viewBox="0 0 ${W} ${H}" role="img" aria-label="Noise over time, both logarithmic">
+    <line x1="${LEFT}" y1="${H - BOTTOM}" x2="${W}" y2="${H - BOTTOM}" /><line x1="${LEFT}" y1="0" x2="${LEFT}" y2="${H - BOTTOM}" />
+    <text x="${(W + LEFT) / 2}" y="${H - 4}" text-anchor="middle">time (s), {{ range[0] }} to {{ range[1] }}</text>
+    <text x="10" y="${(H - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 10 ${(H - BOTTOM) / 2})">noise (codes)</text>
+    <text x="${LEFT - 3}" y="9" text-anchor="end">{{ top }}</text><text x="${LEFT - 3}" y="${H - BOTTOM}" text-anchor="end">{{ bottom }}</text>
+    <polyline class="rc-curve" :points="curve" />
+    <g v-for="rung in placedRungs" :key="rung.name"><circle :cx="rung.x" :cy="rung.y" r="3"><title>{{ rung.name }}</title></circle></g>
+  </svg>
+  <slot></slot>
+</section>`,
+  data: () => ({ states: {}, all: [], note: "", costs: null, points: [], rungs: [], serial: 0 }),
+  computed: {
+    rows() {
+      return Object.fromEntries(this.all.map((row) => [row.effect, row]));
+    },
+    others() {
+      const names = new Set(this.effects.map((e) => e.name));
+      return this.all.filter((row) => !names.has(row.effect));
+    },
+    barText() {
+      const percent = (x) => `${Math.round(100 * x)}%`;
+      return `Time: lens ${percent(this.costs.lens_share)}, scene ${percent(this.costs.scene_share)}, ` +
+        `shading and effects ${percent(this.costs.other_share)}`;
+    },
+    limits() {
+      const all = [...this.points, ...this.rungs.map((r) => [r.seconds, r.error_codes])].filter(([t, n]) => t > 0 && n > 0);
+      if (!all.length) return [0.01, 10, 0.5, 20];
+      const t = all.map((p) => p[0]), n = all.map((p) => p[1]);
+      return [Math.min(...t) / 1.2, Math.max(...t) * 1.2, Math.min(...n) / 1.3, Math.max(...n) * 1.3];
+    },
+    range() { return this.limits.slice(0, 2).map((x) => x.toPrecision(2)); },
+    bottom() { return this.limits[2].toPrecision(2); },
+    top() { return this.limits[3].toPrecision(2); },
+    curve() {
+      return this.points.map(([t, n]) => this.at(t, n).join(",")).join(" ");
+    },
+    placedRungs() {
+      return this.rungs.filter((r) => r.error_codes > 0).map((r) => {
+        const [x, y] = this.at(r.seconds, r.error_codes);
+        return { name: r.name, x, y };
+      });
+    },
+  },
+  mounted() {
+    this.stream = streamAt(this.path);
+    this.ends = [
+      this.stream.on("plan", ({ rows, note, states }) => { this.all = rows; this.note = note; this.states = states; }),
+      this.stream.on("rungs", ({ rungs }) => { this.rungs = rungs; }),
+      this.stream.on("frame", ({ header }) => this.take(header)),
+    ];
+  },
+  unmounted() {
+    this.ends.forEach((end) => end());
+  },
+  methods: {
+    take(header) {
+      if (header.slot !== "a") return;
+      if (header.costs) this.costs = header.costs;
+      if (header.serial !== this.serial) {
+        this.serial = header.serial;
+        this.points = [];
+      }
+      const last = this.points[this.points.length - 1];
+      if (header.noise_codes && (!last || last[1] !== header.noise_codes)) this.points.push([header.seconds, header.noise_codes]);
+    },
+    at(t, n) {
+      const [t0, t1, n0, n1] = this.limits, share = (x, a, b) => Math.log(x / a) / Math.log(b / a);
+      return [LEFT + (W - LEFT) * share(t, t0, t1), (H - BOTTOM) * (1 - share(n, n0, n1))];
+    },
+    size(name) {
+      const row = this.rows[name];
+      return row ? `${Number(row.size.toPrecision(2))} ${row.unit} of ${Number(row.threshold.toPrecision(2))}` : "";
+    },
+    choose(effect, state) {
+      this.states = { ...this.states, [effect]: state };
+      this.stream.send({ type: "switch", effect, state });
+    },
+    large: (x) => (x >= 1e9 ? `${(x / 1e9).toPrecision(3)} G` : x >= 1e6 ? `${(x / 1e6).toPrecision(3)} M` : `${(x / 1e3).toPrecision(3)} k`),
+  },
+};

@@ -1,0 +1,214 @@
+// The lens: its section, to scale, whose surfaces can be dragged, and the table of its surfaces.
+
+import { streamAt, oncePerFrame } from "/realcam/stream.js";
+import { profile, radiusOfSag, sag } from "/realcam/lens_shape.js";
+
+const FIGURES = [
+  ["effective_focal_length_mm", "Focal length", "mm", "Distance from the rear principal plane to the rear focal point"],
+  ["f_number", "f-number", "", "Focal length over the diameter of the entrance pupil"],
+  ["back_focal_distance_mm", "Back focal distance", "mm", "From the last surface to the rear focal point"],
+  ["film_distance_mm", "Film distance", "mm", "From the last surface to the film"],
+  ["entrance_pupil_diameter_mm", "Entrance pupil", "mm", "Diameter of the stop as seen from the object"],
+  ["exit_pupil_diameter_mm", "Exit pupil", "mm", "Diameter of the stop as seen from the film"],
+];
+const COLUMNS = [
+  ["radius_mm", "Radius", "mm", "Radius of curvature; positive where the centre lies on the film's side, empty for a plane"],
+  ["thickness_mm", "Thickness", "mm", "Along the axis to the next surface"],
+  ["glass", "Glass", "", "What follows the surface: empty for air, an index, an index and an Abbe number, or a name"],
+  ["semi_diameter_mm", "Semi-diameter", "mm", "From the axis to the rim that stops light"],
+  ["conic", "Conic", "", "0 for a sphere, -1 for a paraboloid"],
+];
+
+let gestures = Math.floor(Math.random() * 2 ** 30);
+
+export default {
+  props: { path: String, glasses: Array },
+  template: `
+<section class="rc-lens" aria-label="Lens">
+  <div class="rc-lens-head">
+    <h2>{{ view ? view.title || view.name : "No lens yet" }}</h2>
+    <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last edit back">Undo</button>
+    <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Do it again">Redo</button>
+    <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of radii</label>
+    <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Marks</label>
+  </div>
+  <svg v-if="view" ref="svg" class="rc-section" :viewBox="box.join(' ')" preserveAspectRatio="xMidYMid meet"
+      role="img" :aria-label="'Section of ' + view.name" @pointermove="drag" @pointerup="drop" @pointercancel="drop">
+    <g transform="scale(1,-1)">
+      <line class="rc-axis" :x1="box[0]" :x2="box[0] + box[2]" y1="0" y2="0" />
+      <polygon v-for="(e, k) in view.elements" :key="'e' + k" class="rc-glass" :points="text(e)" />
+      <g v-for="(bundle, b) in view.bundles" :key="'b' + b" :class="'rc-rays rc-rays-' + b">
+        <polyline v-for="(path, k) in bundle" :key="k" :points="text(path)" />
+      </g>
+      <polygon v-for="(c, k) in view.crossings" :key="'c' + k" class="rc-crossing" :points="text(c)" />
+      <g v-for="face in view.faces" :key="'f' + face.surface" :class="faceClass(face)">
+        <polyline v-for="(part, k) in face.parts" :key="k" :points="text(part)" />
+        <polyline v-for="(part, k) in face.parts" :key="'hit' + k" class="rc-hit" :points="text(part)"
+          :data-surface="face.surface" @pointerdown.stop="choose(face.surface)" />
+      </g>
+      <g v-for="b in view.blockers" :key="'s' + b.surface" :class="b.is_stop ? 'rc-stop' : 'rc-blocker'">
+        <line :x1="b.z" :x2="b.z" :y1="b.opening" :y2="b.outer" /><line :x1="b.z" :x2="b.z" :y1="-b.opening" :y2="-b.outer" />
+      </g>
+      <line class="rc-film" :x1="view.film.z" :x2="view.film.z" :y1="-view.film.half" :y2="view.film.half" />
+      <g v-if="showsMarks">
+        <g v-for="m in view.marks" :key="m.label" class="rc-mark">
+          <line :x1="m.z" :x2="m.z" :y1="-(m.half || 0.04 * box[3])" :y2="m.half || 0.04 * box[3]" />
+        </g>
+      </g>
+      <polyline v-if="dragged" :class="['rc-dragged', problem ? 'rc-impossible' : '']" :points="text(dragged)" />
+      <g v-if="surface && handles.length">
+        <circle v-for="h in handles" :key="h.field" class="rc-handle" :cx="h.at[0]" :cy="h.at[1]" :r="0.022 * box[3]"
+          :data-handle="h.field" @pointerdown.stop="take($event, h)"><title>{{ h.title }}</title></circle>
+      </g>
+    </g>
+    <g v-if="showsMarks" class="rc-mark">
+      <text v-for="m in view.marks" :key="'t' + m.label" :x="m.z" :y="-(m.half || 0.04 * box[3]) - 0.02 * box[3]" :font-size="0.05 * box[3]">{{ m.label }}</text>
+    </g>
+  </svg>
+  <p v-if="problem" class="rc-problem" role="alert" data-testid="problem">{{ problem.message }}</p>
+  <p v-else-if="view && view.note" class="rc-problem">{{ view.note }}</p>
+  <dl v-if="view" class="rc-figures">
+    <div v-for="[key, label, unit, help] in figures" :key="key" :title="help"><dt>{{ label }}</dt>
+      <dd :data-testid="key">{{ number(view.figures[key], 4) }} {{ unit }}</dd></div>
+  </dl>
+  <div v-if="view" class="rc-table-scroll">
+  <table class="rc-table">
+    <caption class="rc-hidden">Surfaces from the object to the film</caption>
+    <thead><tr><th scope="col">#</th>
+      <th v-for="[key, label, unit, help] in columns" :key="key" scope="col" :title="help">{{ label }}<small v-if="unit"> ({{ unit }})</small></th>
+      <th scope="col"><span class="rc-hidden">Changes</span></th></tr></thead>
+    <tbody>
+      <tr v-for="(row, s) in view.surfaces" :key="s" :class="{ 'rc-chosen': s === chosen, 'rc-bad': problem && problem.surface === s }"
+          @focusin="chosen = s">
+        <th scope="row">{{ s }}<small v-if="row.type !== 'refracting'"> {{ row.type }}</small></th>
+        <td v-for="[key, label, unit] in columns" :key="key">
+          <input v-if="has(row, key)" :value="shown(row, key)" :aria-label="label + ' of surface ' + s" :data-cell="s + '-' + key"
+            :list="key === 'glass' ? 'rc-glasses' : null" :readonly="key === 'thickness_mm' && s + 1 === view.surfaces.length"
+            @change="edit(s, key, $event.target.value)">
+        </td>
+        <td class="rc-row-buttons">
+          <button type="button" @click="send('insert', { surface: s })" :aria-label="'Insert a plate before surface ' + s" title="Insert a plate of glass before this surface">+</button>
+          <button type="button" @click="send('remove', { surface: s })" :aria-label="'Delete surface ' + s" title="Delete this surface">×</button>
+          <button type="button" :disabled="s === 0" @click="send('swap', { surface: s, other: s - 1 })" :aria-label="'Move surface ' + s + ' towards the object'" title="Swap with the surface before">↑</button>
+          <button type="button" :disabled="s + 1 === view.surfaces.length" @click="send('swap', { surface: s, other: s + 1 })" :aria-label="'Move surface ' + s + ' towards the film'" title="Swap with the surface behind">↓</button>
+        </td>
+      </tr>
+    </tbody>
+  </table>
+  <datalist id="rc-glasses"><option v-for="name in glasses" :key="name" :value="name"></option></datalist>
+  </div>
+</section>`,
+  data: () => ({
+    view: null, problem: null, chosen: null, dragged: null, box: [0, 0, 1, 1], colours: false, showsMarks: false,
+    history: { can_undo: false, can_redo: false }, figures: FIGURES,
+  }),
+  computed: {
+    surface() {
+      return this.view && this.chosen !== null ? this.view.surfaces[this.chosen] : null;
+    },
+    /// Of the chosen surface: what can be dragged, and where it is taken.
+    handles() {
+      const s = this.surface;
+      if (!s) return [];
+      const rim = s.semi_diameter_mm, bends = s.type !== "stop" && s.type !== "aperture";
+      const list = [{ field: "semi_diameter_mm", at: [s.z + sag(s, rim), rim], title: "Drag the rim" }];
+      if (bends) list.push({ field: "radius_mm", at: [s.z + sag(s, 0.7 * rim), -0.7 * rim], title: "Drag the curvature" });
+      if (this.chosen > 0) list.push({ field: "thickness_mm", at: [s.z, 0], title: "Drag along the axis" });
+      return list;
+    },
+    columns() {
+      const powers = new Set();
+      for (const row of this.view?.surfaces ?? []) Object.keys(row.aspheric).forEach((p) => powers.add(Number(p)));
+      const terms = [...powers].sort((a, b) => a - b);
+      return [...COLUMNS, ...terms.map((p) => [`a${p}`, `A${p}`, `mm^${1 - p}`, `Aspheric coefficient of r^${p}`])];
+    },
+  },
+  mounted() {
+    this.stream = streamAt(this.path);
+    this.ends = [
+      this.stream.on("lens", (view) => this.show(view)),
+      this.stream.on("problem", ({ problem }) => { this.problem = problem; }),
+    ];
+    this.sendDrag = oncePerFrame((message) => this.stream.send(message));
+  },
+  unmounted() {
+    this.ends.forEach((end) => end());
+  },
+  methods: {
+    show(view) {
+      this.view = view;
+      if (this.chosen !== null && this.chosen >= view.surfaces.length) this.chosen = null;
+      if (this.held) return; // the scale stays while something is dragged
+      this.dragged = null;
+      this.fit();
+    },
+    setHistory(can_undo, can_redo) {
+      this.history = { can_undo, can_redo };
+    },
+    /// Glass and film fill the drawing; a film far behind the glass may lie outside.
+    fit() {
+      const v = this.view, zs = v.surfaces.map((s) => s.z), rims = v.surfaces.map((s) => s.semi_diameter_mm);
+      const front = Math.min(...zs), back = Math.max(...zs), rim = Math.max(...rims);
+      const length = Math.max(back - front, 2 * rim);
+      const right = Math.min(Math.max(v.film.z, back) + 0.06 * length, back + 2.5 * length);
+      const half = 1.12 * Math.max(rim, v.film.z < right ? Math.min(v.film.half, 2 * rim) : 0);
+      const left = front - 0.3 * length;
+      this.box = [left, -half, right - left, 2 * half];
+    },
+    text: (points) => points.map(([z, y]) => `${z},${y}`).join(" "),
+    faceClass(face) {
+      const sign = !this.colours ? "" : face.sign > 0 ? "rc-positive" : face.sign < 0 ? "rc-negative" : "rc-plane";
+      const bad = this.problem?.surface === face.surface ? "rc-impossible" : "";
+      return ["rc-face", face.is_mirror ? "rc-mirror" : "", sign, bad, face.surface === this.chosen ? "rc-chosen" : ""];
+    },
+    choose(s) {
+      this.chosen = s;
+    },
+    has: (row, key) => row.type === "refracting" || !["glass"].includes(key) && (row.type === "mirror" || ["thickness_mm", "semi_diameter_mm"].includes(key)),
+    shown(row, key) {
+      const value = key.match(/^a\d+$/) ? (row.aspheric[key.slice(1)] ?? 0) : row[key];
+      return value === null ? "" : typeof value === "number" ? this.number(value, 7) : value;
+    },
+    number: (value, digits) => (value === null || value === undefined ? "-" : String(Number(value.toPrecision(digits)))),
+    send(type, more = {}) {
+      this.stream.send({ type, ...more });
+    },
+    edit(surface, field, text) {
+      const isNumber = field !== "glass" && text.trim() !== "" && !Number.isNaN(Number(text));
+      this.send("edit", { surface, field, value: isNumber ? Number(text) : text });
+    },
+    take(event, handle) {
+      this.$refs.svg.setPointerCapture(event.pointerId);
+      this.held = { ...handle, surface: this.chosen, from: { ...this.surface }, gesture: ++gestures };
+      event.preventDefault();
+    },
+    /// The mouse in mm.
+    at(event) {
+      const m = this.$refs.svg.getScreenCTM();
+      return [(event.clientX - m.e) / m.a, -(event.clientY - m.f) / m.d];
+    },
+    drag(event) {
+      const held = this.held;
+      if (!held) return;
+      const [z, y] = this.at(event), s = held.from, now = { ...s };
+      if (held.field === "semi_diameter_mm") now.semi_diameter_mm = Math.max(0.01 * s.semi_diameter_mm, y);
+      else if (held.field === "radius_mm") now.radius_mm = radiusOfSag(s, 0.7 * s.semi_diameter_mm, z - s.z);
+      else now.z = z;
+      this.dragged = profile(now);
+      const isMove = held.field === "thickness_mm";
+      const before = isMove ? this.view.surfaces[held.surface - 1] : null;
+      held.thickness ??= before?.thickness_mm;
+      this.sendDrag({
+        type: "edit", gesture: held.gesture, field: held.field,
+        surface: isMove ? held.surface - 1 : held.surface,
+        value: isMove ? held.thickness + z - s.z : now[held.field],
+      });
+    },
+    drop() {
+      if (!this.held) return;
+      this.held = null;
+      if (!this.problem) this.dragged = null;
+      this.fit();
+    },
+  },
+};

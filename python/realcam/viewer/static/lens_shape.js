@@ -1,0 +1,28 @@
+// The shape of a surface, for what follows the mouse before the server has answered. Lengths in mm.
+
+/// z of a conic with an even asphere at a distance from the axis (ISO 10110-12).
+export function sag(surface, h) {
+  const c = surface.radius_mm ? 1 / surface.radius_mm : 0;
+  const root = 1 - (1 + surface.conic) * c * c * h * h;
+  let z = (c * h * h) / (1 + Math.sqrt(Math.max(0, root)));
+  for (const [power, value] of Object.entries(surface.aspheric)) z += value * h ** Number(power);
+  return z;
+}
+
+/// The radius of curvature with which the conic's share of the sag at h is as large; null for a plane.
+export function radiusOfSag(surface, h, z) {
+  const rest = sag({ ...surface, radius_mm: null }, h);
+  const conicShare = z - rest;
+  const curvature = (2 * conicShare) / (h * h + (1 + surface.conic) * conicShare * conicShare);
+  return Math.abs(curvature) < 1e-6 ? null : 1 / curvature;
+}
+
+/// Points of the section from rim to rim.
+export function profile(surface, steps = 48) {
+  const points = [];
+  for (let k = -steps; k <= steps; ++k) {
+    const y = (k / steps) * surface.semi_diameter_mm;
+    points.push([surface.z + sag(surface, y), y]);
+  }
+  return points;
+}

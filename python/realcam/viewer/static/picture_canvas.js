@@ -1,0 +1,205 @@
+// The picture as it is streamed, and what the mouse and the keys do with it.
+
+import { streamAt, oncePerFrame } from "/realcam/stream.js";
+import { clippedShare, drawHistogram, histogramOf, marksOf } from "/realcam/exposure_marks.js";
+
+const CLICK_PX = 4; // a press that moves less is a click
+const KEY_STEP = 0.04; // of the picture's height
+const MAGNIFIED = 4;
+
+export default {
+  props: { path: String },
+  template: `
+<section class="rc-picture" aria-label="Picture">
+  <div class="rc-stage" ref="stage">
+    <canvas ref="canvas" class="rc-canvas" tabindex="0" role="img" :aria-label="description"
+      aria-describedby="rc-picture-keys"
+      @pointerdown="press" @pointermove="move" @pointerup="release" @pointercancel="release"
+      @pointerleave="showsMagnifier = false" @wheel.prevent="wheel" @keydown="key" @contextmenu.prevent></canvas>
+    <canvas ref="marks" class="rc-marks" v-show="clipping || peaking"></canvas>
+    <canvas ref="magnifier" class="rc-magnifier" width="200" height="200" v-show="magnifier && showsMagnifier"
+      :style="magnifierStyle"></canvas>
+    <div v-if="mark" class="rc-crosshair" :style="mark"></div>
+    <div v-if="compares" class="rc-wipe-line" :style="{ left: 100 * wipe + '%' }"></div>
+    <div v-if="!isConnected" class="rc-lost" role="alert">Connection lost. Trying again...</div>
+  </div>
+  <p id="rc-picture-keys" class="rc-hidden">Arrow keys move the camera around, with Shift sideways, plus and minus
+    nearer and farther. F focuses and M meters in the middle. [ and ] turn the aperture ring, comma and period the
+    shutter dial, I and Shift I the ISO dial.</p>
+  <div class="rc-toolbar">
+    <fieldset><legend class="rc-hidden">A click in the picture</legend>
+      <label title="Bring the point that you click into focus"><input type="radio" value="focus" v-model="mode"> Focus</label>
+      <label title="Expose so that the point that you click becomes middle grey"><input type="radio" value="meter" v-model="mode"> Meter</label>
+    </fieldset>
+    <label title="Marks edges that are sharp in yellow"><input type="checkbox" v-model="peaking"> Peaking</label>
+    <label title="Stripes where the picture is as bright as it can show"><input type="checkbox" v-model="clipping"> Clipping</label>
+    <label title="Four times as large under the mouse"><input type="checkbox" v-model="magnifier"> Magnifier</label>
+    <label v-if="compares" class="rc-wipe">Wipe <input type="range" min="0" max="1" step="0.005" v-model.number="wipe"
+      aria-label="Where one picture ends and the other begins"></label>
+    <canvas ref="histogram" class="rc-histogram" width="192" height="48" role="img"
+      aria-label="Histogram of red, green and blue, from black to white"></canvas>
+    <output class="rc-status" data-testid="status">{{ status }}</output>
+  </div>
+</section>`,
+  data: () => ({
+    mode: "focus", peaking: false, clipping: false, magnifier: false, showsMagnifier: false, magnifierStyle: {},
+    wipe: 0.5, compares: false, isConnected: true, mark: null, header: null, clipped: 0,
+  }),
+  computed: {
+    status() {
+      const h = this.header;
+      if (!h) return "No picture yet";
+      const noise = h.noise_codes === null ? "" : `, noise ${h.noise_codes.toFixed(1)} codes`;
+      const done = h.is_final ? ", done" : h.is_preview ? ", preview" : "";
+      const clipped = this.clipped > 0.0005 ? `, ${(100 * this.clipped).toFixed(1)}% clipped` : "";
+      return `${h.width} × ${h.height} pixels, ${h.samples} samples${noise}${clipped}${done}`;
+    },
+    description() {
+      return `The picture through the lens. ${this.status}`;
+    },
+  },
+  watch: {
+    wipe() { this.draw(); },
+    peaking() { this.drawMarks(); },
+    clipping() { this.drawMarks(); },
+  },
+  created() {
+    this.bitmaps = {}; // not reactive: Vue need not look into pictures
+  },
+  mounted() {
+    this.stream = streamAt(this.path);
+    this.ends = [
+      this.stream.on("frame", (frame) => this.take(frame)),
+      this.stream.on("connection", ({ isOpen }) => { this.isConnected = isOpen; }),
+    ];
+    this.sendHover = oncePerFrame((u, v) => this.stream.send({ type: "hover", u, v }));
+    this.drawMarksSoon = oncePerFrame(() => this.drawMarks());
+  },
+  unmounted() {
+    this.ends.forEach((end) => end());
+  },
+  methods: {
+    take({ header, bitmap }) {
+      this.bitmaps[header.slot]?.close();
+      this.bitmaps[header.slot] = bitmap;
+      if (header.slot === "a") {
+        this.header = header;
+        this.drawMarksSoon();
+      }
+      const canvas = this.$refs.canvas;
+      if (header.slot === "a" && (canvas.width !== header.whole_width || canvas.height !== header.whole_height)) {
+        canvas.width = header.whole_width;
+        canvas.height = header.whole_height;
+      }
+      this.draw();
+      this.$emit("frame", { ...header });
+    },
+    setComparison(compares) {
+      this.compares = compares;
+      if (!compares) {
+        this.bitmaps.b?.close();
+        delete this.bitmaps.b;
+      }
+      this.draw();
+    },
+    draw() {
+      const canvas = this.$refs.canvas, context = canvas.getContext("2d");
+      const { a, b } = this.bitmaps;
+      if (a) context.drawImage(a, 0, 0, canvas.width, canvas.height);
+      if (b && this.compares) {
+        const from = Math.round(this.wipe * canvas.width);
+        context.save();
+        context.beginPath();
+        context.rect(from, 0, canvas.width - from, canvas.height);
+        context.clip();
+        context.drawImage(b, 0, 0, canvas.width, canvas.height);
+        context.restore();
+      }
+    },
+    drawMarks() {
+      const a = this.bitmaps.a;
+      if (!a) return;
+      const scratch = (this.scratch ??= document.createElement("canvas"));
+      // Half the pixels each way are enough for a histogram, but not for edges and stripes.
+      const scale = this.peaking || this.clipping ? 1 : Math.min(1, 320 / a.width);
+      scratch.width = Math.max(1, Math.round(a.width * scale));
+      scratch.height = Math.max(1, Math.round(a.height * scale));
+      const context = scratch.getContext("2d", { willReadFrequently: true });
+      context.drawImage(a, 0, 0, scratch.width, scratch.height);
+      const image = context.getImageData(0, 0, scratch.width, scratch.height);
+      this.clipped = clippedShare(image);
+      drawHistogram(this.$refs.histogram, histogramOf(image));
+      if (this.peaking || this.clipping) {
+        const marks = this.$refs.marks;
+        marks.width = scratch.width;
+        marks.height = scratch.height;
+        marks.getContext("2d").putImageData(marksOf(image, this), 0, 0);
+      }
+    },
+    place(event) {
+      const box = this.$refs.canvas.getBoundingClientRect();
+      const within = (x) => Math.min(1, Math.max(0, x));
+      return [within((event.clientX - box.left) / box.width), within((event.clientY - box.top) / box.height)];
+    },
+    press(event) {
+      this.$refs.canvas.setPointerCapture(event.pointerId);
+      this.pressed = { x: event.clientX, y: event.clientY, moved: 0, pans: event.shiftKey || event.button !== 0 };
+    },
+    move(event) {
+      if (this.pressed) {
+        const height = this.$refs.canvas.getBoundingClientRect().height;
+        const x = (event.clientX - this.pressed.x) / height, y = (event.clientY - this.pressed.y) / height;
+        this.pressed.moved += Math.hypot(event.clientX - this.pressed.x, event.clientY - this.pressed.y);
+        Object.assign(this.pressed, { x: event.clientX, y: event.clientY });
+        if (this.pressed.moved >= CLICK_PX) this.stream.send({ type: this.pressed.pans ? "pan" : "orbit", x, y: -y });
+        return;
+      }
+      const [u, v] = this.place(event);
+      this.sendHover(u, v);
+      this.showsMagnifier = true;
+      if (this.magnifier) this.magnify(event, u, v);
+    },
+    release(event) {
+      if (this.pressed && this.pressed.moved < CLICK_PX && event.type === "pointerup") {
+        const [u, v] = this.place(event);
+        this.act(this.mode, u, v);
+      }
+      this.pressed = null;
+    },
+    act(mode, u, v) {
+      this.stream.send({ type: mode, u, v });
+      this.mark = { left: `${100 * u}%`, top: `${100 * v}%` };
+      clearTimeout(this.markTimer);
+      this.markTimer = setTimeout(() => { this.mark = null; }, 1200);
+      this.$emit("picked", { u, v });
+    },
+    wheel(event) {
+      this.stream.send({ type: "dolly", steps: event.deltaY < 0 ? 0.5 : -0.5 });
+    },
+    magnify(event, u, v) {
+      const canvas = this.$refs.canvas, target = this.$refs.magnifier, size = target.width / MAGNIFIED;
+      const box = this.$refs.stage.getBoundingClientRect();
+      this.magnifierStyle = { left: `${event.clientX - box.left + 16}px`, top: `${event.clientY - box.top + 16}px` };
+      const context = target.getContext("2d");
+      context.imageSmoothingEnabled = false;
+      context.clearRect(0, 0, target.width, target.height);
+      context.drawImage(canvas, u * canvas.width - size / 2, v * canvas.height - size / 2, size, size,
+        0, 0, target.width, target.height);
+    },
+    key(event) {
+      const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      const turn = { "[": ["aperture", -1], "]": ["aperture", 1], ",": ["shutter", -1], ".": ["shutter", 1],
+        i: ["iso", 1], I: ["iso", -1] }[event.key];
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (way) {
+        this.stream.send({ type: event.shiftKey ? "pan" : "orbit", x: -KEY_STEP * way[0], y: -KEY_STEP * way[1] });
+      } else if (turn) this.stream.send({ type: "turn", ring: turn[0], steps: turn[1] });
+      else if (event.key === "+" || event.key === "=") this.stream.send({ type: "dolly", steps: 1 });
+      else if (event.key === "-") this.stream.send({ type: "dolly", steps: -1 });
+      else if (event.key === "f") this.act("focus", 0.5, 0.5);
+      else if (event.key === "m") this.act("meter", 0.5, 0.5);
+      else return;
+      event.preventDefault();
+    },
+  },
+};

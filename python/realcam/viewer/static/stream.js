@@ -1,0 +1,94 @@
+// The WebSocket to the window's bench, shared by all components of the page. See stream.py for what it carries.
+
+const FIRST_WAIT_MS = 250;
+const LONGEST_WAIT_MS = 4000;
+
+class Stream {
+  constructor(path) {
+    this.path = path;
+    this.listeners = new Map();
+    this.latest = new Map(); // for components that are mounted later
+    this.wait = FIRST_WAIT_MS;
+    this.framesShown = 0;
+    this.connect();
+  }
+
+  connect() {
+    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+    this.socket = new WebSocket(`${scheme}//${location.host}${this.path}`);
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onopen = () => {
+      this.wait = FIRST_WAIT_MS;
+      this.tell("connection", { isOpen: true });
+    };
+    this.socket.onmessage = (event) =>
+      typeof event.data === "string" ? this.takeText(event.data) : this.takeFrame(event.data);
+    this.socket.onclose = (event) => {
+      this.tell("connection", { isOpen: false });
+      if (event.code === 4404) {
+        location.reload(); // the server was started anew and does not know this window
+        return;
+      }
+      setTimeout(() => this.connect(), this.wait);
+      this.wait = Math.min(2 * this.wait, LONGEST_WAIT_MS);
+    };
+  }
+
+  takeText(text) {
+    const message = JSON.parse(text);
+    this.tell(message.type, message);
+  }
+
+  async takeFrame(buffer) {
+    const length = new DataView(buffer).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+    const jpeg = new Blob([new Uint8Array(buffer, 4 + length)], { type: "image/jpeg" });
+    let bitmap;
+    try {
+      bitmap = await createImageBitmap(jpeg);
+    } finally {
+      if (this.socket.readyState === WebSocket.OPEN) this.socket.send(`ack ${header.slot} ${header.serial}`);
+    }
+    this.framesShown += 1;
+    this.tell("frame", { header, bitmap });
+  }
+
+  tell(type, message) {
+    if (type !== "frame") this.latest.set(type, message);
+    for (const listener of this.listeners.get(type) ?? []) listener(message);
+  }
+
+  /// Returns what ends it.
+  on(type, listener) {
+    if (!this.listeners.has(type)) this.listeners.set(type, new Set());
+    this.listeners.get(type).add(listener);
+    if (this.latest.has(type)) listener(this.latest.get(type));
+    return () => this.listeners.get(type).delete(listener);
+  }
+
+  send(message) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+}
+
+const streams = new Map();
+
+export function streamAt(path) {
+  if (!streams.has(path)) streams.set(path, new Stream(path));
+  return streams.get(path);
+}
+// For scripts that look at a page from outside, tests above all.
+window.realcamStreams = streams;
+
+/// Calls f with the last arguments, once for each picture that the browser draws.
+export function oncePerFrame(f) {
+  let waiting = null;
+  return (...args) => {
+    if (waiting === null) requestAnimationFrame(() => {
+      const last = waiting;
+      waiting = null;
+      f(...last);
+    });
+    waiting = args;
+  };
+}

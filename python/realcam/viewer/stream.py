@@ -1,0 +1,178 @@
+"""The WebSocket between a window's bench and its page: frames and drawings one way, mouse and keys the other.
+
+A frame is a binary message: the length of a JSON header as four bytes, little-endian, the header, a JPEG. At most one
+is under way; of those that come meanwhile the newest is sent when the page has acknowledged it. All else is JSON text.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+import struct
+import time
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
+from typing import Any
+
+from fastapi import WebSocket, WebSocketDisconnect
+
+from .._core import Plan, RealcamError
+from .lens_bench import LensBench, Problem
+from .messages import BadMessage, Message, merged, parsed, perform
+from .picture_request import Frame
+
+_log = logging.getLogger(__name__)
+
+_QUALITIES = (40, 90)  # of JPEG
+_SLOW_S, _QUICK_S = 0.120, 0.050  # from sending a frame to its acknowledgement
+_MOST_WAITING = 64  # messages of the page that are not done yet
+
+
+class PictureStream:
+    """Serves the pages that show one bench: one at a time, and the next one after a lost connection."""
+
+    def __init__(self, bench: LensBench, executor: ThreadPoolExecutor) -> None:
+        self._bench, self._executor = bench, executor
+        self._loop = asyncio.get_running_loop()
+        self._frames: dict[str, Frame] = {}
+        self._texts: dict[str, str] = {}
+        self._news = asyncio.Event()
+        self._inbox: deque[Message] = deque()
+        self._mail = asyncio.Event()
+        self._sent: tuple[str, float] | None = None  #: the frame that is not acknowledged, and when it was sent
+        self._quality = _QUALITIES[1]
+        self.frames_sent = 0
+        bench.listeners.frame = self._offer_frame
+        bench.listeners.lens = lambda view: self._offer_text("lens", view)
+        bench.listeners.problem = self._offer_problem
+        bench.listeners.plan = self._offer_plan
+
+    async def serve(self, socket: WebSocket) -> None:
+        """Until the page goes. Refuses what no page of ours sends by closing the connection."""
+        await socket.accept()
+        self._sent = None
+        self._inbox.clear()
+        tasks = [
+            asyncio.create_task(part)
+            for part in (self._receive(socket), self._send(socket), self._work(socket), self._begin())
+        ]
+        try:
+            done, _ = await asyncio.wait(tasks[:3], return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                error = task.exception()
+                if isinstance(error, BadMessage):
+                    await socket.close(1008, str(error)[:100])
+                elif error and not isinstance(error, WebSocketDisconnect | RuntimeError):
+                    raise error
+        finally:
+            for task in tasks:
+                task.cancel()
+
+    async def _begin(self) -> None:
+        await self._loop.run_in_executor(self._executor, self._bench.show)
+
+    async def _receive(self, socket: WebSocket) -> None:
+        while True:
+            event = await socket.receive()
+            if event["type"] == "websocket.disconnect":
+                return
+            text = event.get("text")
+            if text is None:
+                raise BadMessage("texts are wanted")
+            if text.startswith("ack "):
+                self._acknowledge(text[4:])
+                continue
+            message = parsed(text)
+            one = merged(self._inbox[-1], message) if self._inbox else None
+            if one is not None:
+                self._inbox[-1] = one
+            elif len(self._inbox) < _MOST_WAITING:
+                self._inbox.append(message)
+            self._mail.set()
+
+    async def _work(self, socket: WebSocket) -> None:
+        while True:
+            await self._mail.wait()
+            self._mail.clear()
+            while self._inbox:
+                message = self._inbox.popleft()
+                try:
+                    await self._loop.run_in_executor(self._executor, perform, message, self._bench)
+                except RealcamError as error:
+                    self._offer_problem(Problem(str(error)))
+
+    async def _send(self, socket: WebSocket) -> None:
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            texts, self._texts = self._texts, {}
+            for text in texts.values():
+                await socket.send_text(text)
+            if self._frames and self._sent is None:
+                slot = next(iter(self._frames))
+                frame = self._frames.pop(slot)
+                self._sent = f"{slot} {frame.serial}", time.perf_counter()
+                await socket.send_bytes(_packed(slot, frame))
+                self.frames_sent += 1
+
+    def _acknowledge(self, name: str) -> None:
+        if self._sent is None or self._sent[0] != name:
+            return
+        took = time.perf_counter() - self._sent[1]
+        self._sent = None
+        # Down by a share, up by steps: a slow moment is forgotten after ten quick frames.
+        lowest, highest = _QUALITIES
+        if took > _SLOW_S:
+            self._quality = max(lowest, int(0.8 * self._quality))
+        elif took < _QUICK_S:
+            self._quality = min(highest, self._quality + 5)
+        self._bench.set_jpeg_quality(self._quality)
+        self._news.set()
+
+    # On any thread.
+
+    def _offer_frame(self, slot: str, frame: Frame) -> None:
+        self._call(self._put_frame, slot, frame)
+
+    def _offer_problem(self, problem: Problem | None) -> None:
+        self._offer_text("problem", {"problem": asdict(problem) if problem else None})
+
+    def _offer_plan(self, plan: Plan | None, note: str) -> None:
+        rows = [
+            {
+                "effect": decision.effect,
+                "size": decision.size,
+                "unit": decision.unit,
+                "threshold": decision.threshold,
+                "is_kept": decision.is_kept,
+                "reason": decision.reason,
+            }
+            for decision in (plan.decisions if plan else ())
+        ]
+        self._offer_text("plan", {"rows": rows, "note": note, "states": dict(self._bench.switches.of)})
+
+    def _offer_text(self, kind: str, content: dict[str, Any]) -> None:
+        self._call(self._put_text, kind, json.dumps({"type": kind, **content}))
+
+    def _call(self, function: Any, *arguments: Any) -> None:
+        try:
+            self._loop.call_soon_threadsafe(function, *arguments)
+        except RuntimeError:  # the server is going down
+            _log.debug("the server's loop is closed")
+
+    def _put_frame(self, slot: str, frame: Frame) -> None:
+        self._frames[slot] = frame
+        self._news.set()
+
+    def _put_text(self, kind: str, text: str) -> None:
+        self._texts[kind] = text
+        self._news.set()
+
+
+def _packed(slot: str, frame: Frame) -> bytes:
+    header = {key: value for key, value in vars(frame).items() if key not in ("jpeg", "costs")}
+    header |= {"slot": slot, "costs": vars(frame.costs) if frame.costs else None}
+    text = json.dumps(header).encode()
+    return struct.pack("<I", len(text)) + text + frame.jpeg
