@@ -9,6 +9,7 @@ from typing import Any
 from nicegui import ui
 from nicegui.events import GenericEventArguments
 
+from ..photography import SharpRange
 from .focus_scale import focus_scale_svg
 from .ring_scales import ISO, SHUTTER_S, Ring
 from .window import Window
@@ -31,6 +32,7 @@ class CameraPanel:
 
     def __init__(self, window: Window, run: Callable[..., Awaitable[Any]]) -> None:
         self._window, self._bench, self._run = window, window.bench, run
+        self._sharp = SharpRange(math.nan, math.nan)
         self._build()
         self.update()
 
@@ -42,6 +44,7 @@ class CameraPanel:
                 "Focus", _FOCUS_STEPS, self._set_focus, "Distance from the film to the plane that is sharp"
             )
             self._scale = ui.html("", sanitize=False).classes("rc-scale")
+            self._sharp_text = ui.label().classes("rc-note").props('data-testid="sharp-text"')
             self._aperture_text = ui.label().props('data-testid="aperture-text"')
             self._aperture = self._slider(
                 "Aperture", 1, self._set_aperture, "A smaller opening is a larger f-number: darker, and sharp over more"
@@ -94,13 +97,26 @@ class CameraPanel:
         nearest = self._nearest_m
         _set(self._focus, round(_FOCUS_STEPS * (1 - nearest / now.focus_m)) if now.focus_m > nearest else 0)
         self._focus_text.set_text(f"Focus {_distance(now.focus_m)}")
-        figures = self._bench.figures()
-        self._scale.set_content(focus_scale_svg(now.focus_m, figures["near_m"], figures["far_m"], nearest))
+        self._show_scale()
         self._automatic.set_value(now.is_automatic)
         self._model.set_value(now.model)
         width = now.film.resolution[0]
         self._width.set_options({w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, value=width)
         self._noise.set_value(self._bench.noise_codes)
+
+    def show_sharp_range(self, sharp: SharpRange) -> None:
+        """On the server's loop."""
+        self._sharp = sharp
+        self._show_scale()
+
+    def _show_scale(self) -> None:
+        now, sharp = self._bench.controls, self._sharp
+        self._scale.set_content(focus_scale_svg(now.focus_m, sharp.near_m, sharp.far_m, self._nearest_m))
+        if math.isnan(sharp.near_m):
+            text = "Nothing is sharp by the usual measure (a blur of the film's diagonal / 1500)"
+        else:
+            text = f"Sharp from {_distance(sharp.near_m)} to {_distance(sharp.far_m)}"
+        self._sharp_text.set_text(text)
 
     @property
     def _nearest_m(self) -> float:

@@ -12,6 +12,7 @@ from .. import analysis
 from .._core import InputError, Lens
 from ..analysis import kinds
 from ..analysis.fields import Bundles
+from ..drawing.themes import LIGHT
 from ..fields import angle_of_height
 
 # What a window offers, by the names of `realcam lens plot`, with a title and a sentence that explains the optics.
@@ -23,32 +24,33 @@ PLOTS = {
     "relative-illumination": ("Relative illumination", "How dark the picture becomes towards its corner."),
     "pupil": ("Pupil shapes", "The outline of the light as the film sees it: cat's eyes towards the corner."),
 }
+_GRID = "#d5d5d5"  # of the light theme's plots
 _OF_ONE_FIELD = ("spot", "ray-fan", "mtf")
 
 
 @dataclass(frozen=True)
 class Look:
-    """What is plotted. height_mm: on the film, from the axis. theme: "light" or "dark"."""
+    """What is plotted. height_mm: on the film, from the axis."""
 
     kind: str
     lens: Lens
     height_mm: float
     object_distance_m: float | None
-    theme: str
 
 
 def plot_svg(look: Look) -> str:
-    """An SVG of the plot. Raises InputError where there is nothing to plot."""
+    """An SVG of the plot, whose text has the colour of the page's. Raises InputError where there is nothing to plot."""
     fields = None
     if look.kind in _OF_ONE_FIELD:
         fields = np.array([angle_of_height(look.lens, look.height_mm, look.object_distance_m)[0]])
     bundles = Bundles(look.lens, look.object_distance_m)
     data = kinds.compute(look.kind, kinds.Asked(look.lens, bundles, fields))
-    figure = analysis.plot_figure(look.kind, data, theme=look.theme, size="small")
+    figure = analysis.plot_figure(look.kind, data, size="small")
     content = io.StringIO()
     figure.savefig(content, format="svg", facecolor="none", transparent=True)
     svg = content.getvalue()
-    return svg[svg.index("<svg") :]
+    # The page may be light or dark, and change while the plot is shown.
+    return svg[svg.index("<svg") :].replace(LIGHT.text, "currentColor").replace(_GRID, "var(--rc-grid)")
 
 
 def height_of(u: float, v: float, film_mm: tuple[float, float]) -> float:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Awaitable, Callable
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from nicegui import events, ui
 
-from .._core import Lens, RealcamError, lens_names
+from .._core import Lens, LensFileError, RealcamError, lens_names
 from ..gallery import save_gallery
 from .access import Folders
 from .lens_bench import COMPARISONS
@@ -21,14 +21,16 @@ LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".dat", ".json", ".roa")
 MOST_UPLOADED = 2 * 1024 * 1024  # bytes
 
 
-@lru_cache(maxsize=128)
+@cache
 def lens_preview(name: str) -> str:
-    """A small section of a bundled lens, as SVG."""
+    """A small section of a bundled lens, as SVG. Raises LensFileError for any other name."""
+    if name not in lens_names():
+        raise LensFileError(f'there is no bundled lens "{name:.40}"')
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "lens.svg"
         save_gallery(path, [Lens.load(name)], columns=1)
         svg = path.read_text(encoding="utf-8")
-    return svg[svg.index("<svg") :]
+    return svg
 
 
 class FilesPanel:
@@ -137,6 +139,6 @@ class FilesPanel:
 
         with ui.dialog() as dialog, ui.card().classes("max-w-5xl"), ui.row().classes("rc-gallery"):
             for name in lens_names():
-                with ui.button(on_click=lambda name=name: choose(name)).props(f'flat no-caps aria-label="{name}"'):
-                    ui.html(lens_preview(name), sanitize=False)
+                with ui.button(on_click=lambda name=name: choose(name)).props("flat no-caps"):
+                    ui.element("img").props(f'src="/realcam-lenses/{name}.svg" alt="{name}" loading="lazy" width="190"')
         dialog.open()

@@ -11,7 +11,7 @@ from typing import Any
 from .. import planning
 from .._core import Film, InputError, Lens, LensFileError, NothingToPlan, Plan, RealcamError, effects
 from ..image import Image
-from ..photography import depth_of_field
+from ..photography import SharpRange, depth_of_field
 from ..shot import Shot
 from .camera_controls import CameraControls
 from .lens_edits import LensHistory
@@ -27,7 +27,7 @@ COMPARISONS = ("nothing", "thin lens", "these settings", "another lens")
 
 @dataclass(frozen=True)
 class Problem:
-    """Why what was asked for last is not shown. surface: of the lens, if one is to blame."""
+    """Why what was asked for last is not shown. surface: index of the lens's surface that is to blame, if one is."""
 
     message: str
     surface: int | None = None
@@ -42,6 +42,7 @@ class Listeners:
     lens: Callable[[dict[str, Any]], None] = lambda view: None
     problem: Callable[[Problem | None], None] = lambda problem: None
     plan: Callable[[Plan | None, str], None] = lambda plan, note: None
+    sharp_range: Callable[[SharpRange], None] = lambda sharp: None
 
 
 @dataclass
@@ -89,12 +90,14 @@ class LensBench:
         self._lock = threading.RLock()
         self._loops = {"a": self._new_loop("a")}
         self._drawing = NewestTask("realcam-drawing")
-        self._planning = NewestTask("realcam-planning")
+        # Both take as long as some frames of the picture.
+        self._planning = NewestTask("realcam-planning", quiet_s=0.4)
+        self._measuring = NewestTask("realcam-depth-of-field", quiet_s=0.1)
 
     def close(self) -> None:
         """Ends all threads of the window."""
         self.listeners = Listeners()
-        for task in (self._drawing, self._planning):
+        for task in (self._drawing, self._planning, self._measuring):
             task.close()
         for loop in self._loops.values():
             loop.close()
@@ -105,6 +108,7 @@ class LensBench:
         """Photographs and draws everything as it stands, for a page that has just been opened."""
         self._photograph()
         self._draw()
+        self._measure()
         self._ask_for_plan()
         self.listeners.controls()
         self.listeners.problem(self.problem)
@@ -261,15 +265,6 @@ class LensBench:
         for loop in self._loops.values():
             loop.jpeg_quality = quality
 
-    def figures(self) -> dict[str, float]:
-        """Depth of field and so on, in metres; nan where there is none."""
-        lens = self.controls.set_lens
-        try:
-            sharp = depth_of_field(lens).real
-        except InputError:
-            return {"near_m": math.nan, "far_m": math.nan}
-        return {"near_m": sharp.near_m, "far_m": sharp.far_m}
-
     def _new_loop(self, slot: str) -> PictureLoop:
         return self._make_loop(
             self.shot.scene,
@@ -293,7 +288,8 @@ class LensBench:
             controls = changed()
             controls.camera()
         except RealcamError as error:
-            surface = error.surface if isinstance(error, LensFileError) and error.surface >= 0 else None
+            # Messages count surfaces from 1.
+            surface = error.surface - 1 if isinstance(error, LensFileError) and error.surface > 0 else None
             self._set_problem(Problem(str(error), surface))
             return False
         self.controls = controls
@@ -307,8 +303,10 @@ class LensBench:
         )
         if lens_changed:
             self._draw()
+            self._measure()
         self._ask_for_plan()
-        self.listeners.controls()
+        if replace(before, pose=controls.pose) != controls:
+            self.listeners.controls()
         return True
 
     def _set_problem(self, problem: Problem | None) -> None:
@@ -356,6 +354,18 @@ class LensBench:
     def _draw(self) -> None:
         lens, fields = self.controls.set_lens, self._fields()
         self._drawing.submit(lambda: self.listeners.lens(lens_view(lens, fields)))
+
+    def _measure(self) -> None:
+        lens = self.controls.set_lens
+
+        def measure() -> None:
+            try:
+                sharp = depth_of_field(lens).real
+            except InputError:
+                sharp = SharpRange(math.nan, math.nan)
+            self.listeners.sharp_range(sharp)
+
+        self._measuring.submit(measure)
 
     def _fields(self) -> Sequence[float]:
         """Of the drawn rays: shares of the height of the film's corner."""

@@ -13,9 +13,11 @@ class NewestTask:
     """For work that each change makes out of date: of those that wait, only the newest is done.
 
     Tasks report what they find by themselves. An exception is logged, and the next task is done as ever.
+    quiet_s: a task is begun when none has come for so long, so that what is costly waits for the end of a movement.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, quiet_s: float = 0.0) -> None:
+        self._quiet_s = quiet_s
         self._wake = threading.Condition()
         self._task: Callable[[], None] | None = None
         self._is_closed = False
@@ -39,6 +41,8 @@ class NewestTask:
             with self._wake:
                 while self._task is None and not self._is_closed:
                     self._wake.wait()
+                while self._quiet_s and not self._is_closed and self._wake.wait(self._quiet_s):
+                    pass
                 task, self._task = self._task, None
                 if self._is_closed or task is None:
                     return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -47,10 +48,9 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
             files = FilesPanel(window, folders, source, run)
             with ui.element("section").classes("rc-controls"):
                 CostPanel(window.path)
-            plots = PlotsPanel(window, lambda: bool(dark.value))
+            plots = PlotsPanel(window)
     files.update()
     canvas.on("picked", lambda event: _pick(event, plots))
-    dark.on_value_change(lambda _: plots.update())
 
     def update() -> None:
         with client:
@@ -74,17 +74,20 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
         waiting = False
         update()
 
-    def on_controls() -> None:
-        if not loop.is_closed():
-            loop.call_soon_threadsafe(update_soon)
-
-    bench.listeners.controls = on_controls
+    bench.listeners.controls = lambda: _on_loop(loop, update_soon)
+    bench.listeners.sharp_range = lambda sharp: _on_loop(loop, camera.show_sharp_range, sharp)
 
     async def close() -> None:
         plots.close()
         await asyncio.to_thread(window.close)
 
     client.on_delete(close)
+
+
+def _on_loop(loop: asyncio.AbstractEventLoop, function: Callable[..., None], *arguments: Any) -> None:
+    """From any thread, also while the server is going down."""
+    with suppress(RuntimeError):
+        loop.call_soon_threadsafe(function, *arguments)
 
 
 def _pick(event: GenericEventArguments, plots: PlotsPanel) -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import html
-from collections.abc import Callable
+import multiprocessing
+import os
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
+from functools import cache
 
 from nicegui import ui
 
@@ -15,11 +18,17 @@ from .newest_task import NewestTask
 from .window import Window
 
 
+@cache
+def plotting_process() -> ProcessPoolExecutor:
+    """Draws for all windows, where it does not keep the threads of the pictures from running."""
+    return ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"), initializer=os.nice, initargs=(10,))
+
+
 class PlotsPanel:
     """One plot at a time, drawn on a thread of its own while the lens is changed."""
 
-    def __init__(self, window: Window, is_dark: Callable[[], bool]) -> None:
-        self._bench, self._is_dark = window.bench, is_dark
+    def __init__(self, window: Window) -> None:
+        self._bench = window.bench
         self._loop = asyncio.get_running_loop()
         self._task = NewestTask("realcam-plots")
         self._at = (0.5, 0.5)
@@ -45,12 +54,12 @@ class PlotsPanel:
         self._help.set_text(PLOTS[kind][1])
         height = height_of(*self._at, (controls.film.width_mm, controls.film.height_mm))
         self._place.set_text(f"{height:.3g} mm from the middle of the film; in the plane in focus")
-        look = Look(kind, controls.set_lens, height, None, "dark" if self._is_dark() else "light")
+        look = Look(kind, controls.set_lens, height, None)
         self._task.submit(lambda: self._draw(look))
 
     def _draw(self, look: Look) -> None:
         try:
-            content = plot_svg(look)
+            content = plotting_process().submit(plot_svg, look).result()
         except RealcamError as error:
             content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
         with suppress(RuntimeError):  # the server is going down

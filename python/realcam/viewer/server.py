@@ -6,12 +6,14 @@ import secrets
 from dataclasses import dataclass
 from pathlib import Path
 
-from fastapi import WebSocket
+from fastapi import Response, WebSocket
 from nicegui import app, ui
 from nicegui.client import Client
 
+from .._core import LensFileError
 from ..shot import Shot
 from .access import Folders, Gate, is_local
+from .files_panel import lens_preview
 from .lens_bench import LensBench
 from .page import build_page
 from .window import Window
@@ -55,6 +57,14 @@ def serve(settings: ServerSettings) -> None:
         windows[window.key] = window
         client.on_delete(lambda: windows.pop(window.key, None))
         build_page(client, window, folders, settings.shot.resolve())
+
+    # Not a coroutine: the server draws them on threads of its own.
+    @app.get("/realcam-lenses/{name}.svg")
+    def preview(name: str) -> Response:
+        try:
+            return Response(lens_preview(name), media_type="image/svg+xml")
+        except LensFileError:
+            return Response(status_code=404)
 
     @app.websocket("/realcam/stream/{key}")
     async def stream(socket: WebSocket, key: str) -> None:

@@ -80,17 +80,17 @@ export default {
     <tbody>
       <tr v-for="(row, s) in view.surfaces" :key="s" :class="{ 'rc-chosen': s === chosen, 'rc-bad': problem && problem.surface === s }"
           @focusin="chosen = s">
-        <th scope="row">{{ s }}<small v-if="row.type !== 'refracting'"> {{ row.type }}</small></th>
+        <th scope="row">{{ s + 1 }}<small v-if="row.type !== 'refracting'"> {{ row.type }}</small></th>
         <td v-for="[key, label, unit] in columns" :key="key">
-          <input v-if="has(row, key)" :value="shown(row, key)" :aria-label="label + ' of surface ' + s" :data-cell="s + '-' + key"
+          <input v-if="has(row, key)" :value="shown(row, key)" :aria-label="label + ' of surface ' + (s + 1)" :data-cell="s + '-' + key"
             :list="key === 'glass' ? 'rc-glasses' : null" :readonly="key === 'thickness_mm' && s + 1 === view.surfaces.length"
             @change="edit(s, key, $event.target.value)">
         </td>
         <td class="rc-row-buttons">
-          <button type="button" @click="send('insert', { surface: s })" :aria-label="'Insert a plate before surface ' + s" title="Insert a plate of glass before this surface">+</button>
-          <button type="button" @click="send('remove', { surface: s })" :aria-label="'Delete surface ' + s" title="Delete this surface">×</button>
-          <button type="button" :disabled="s === 0" @click="send('swap', { surface: s, other: s - 1 })" :aria-label="'Move surface ' + s + ' towards the object'" title="Swap with the surface before">↑</button>
-          <button type="button" :disabled="s + 1 === view.surfaces.length" @click="send('swap', { surface: s, other: s + 1 })" :aria-label="'Move surface ' + s + ' towards the film'" title="Swap with the surface behind">↓</button>
+          <button type="button" @click="send('insert', { surface: s })" :aria-label="'Insert a plate before surface ' + (s + 1)" title="Insert a plate of glass before this surface">+</button>
+          <button type="button" @click="send('remove', { surface: s })" :aria-label="'Delete surface ' + (s + 1)" title="Delete this surface">×</button>
+          <button type="button" :disabled="s === 0" @click="send('swap', { surface: s, other: s - 1 })" :aria-label="'Move surface ' + (s + 1) + ' towards the object'" title="Swap with the surface before">↑</button>
+          <button type="button" :disabled="s + 1 === view.surfaces.length" @click="send('swap', { surface: s, other: s + 1 })" :aria-label="'Move surface ' + (s + 1) + ' towards the film'" title="Swap with the surface behind">↓</button>
         </td>
       </tr>
     </tbody>
