@@ -19,8 +19,10 @@ from .lens_view import lens_view
 from .newest_task import NewestTask
 from .picture_loop import PictureLoop
 from .picture_request import Frame, PictureRequest
+from .remote import RemotePictureLoop
 from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
 
+AnyPictureLoop = PictureLoop | RemotePictureLoop
 EFFECTS = tuple(line.partition(":")[0] for line in effects() if "on unless left out" not in line)
 COMPARISONS = ("nothing", "thin lens", "these settings", "another lens")
 
@@ -68,7 +70,7 @@ class LensBench:
     """
 
     def __init__(
-        self, shot: Shot, *, device: str = "auto", make_loop: Callable[..., PictureLoop] = PictureLoop
+        self, shot: Shot, *, device: str = "auto", make_loop: Callable[..., AnyPictureLoop] = PictureLoop
     ) -> None:
         self.shot, self._device = shot, device
         self.listeners = Listeners()
@@ -265,7 +267,7 @@ class LensBench:
         for loop in self._loops.values():
             loop.jpeg_quality = quality
 
-    def _new_loop(self, slot: str) -> PictureLoop:
+    def _new_loop(self, slot: str) -> AnyPictureLoop:
         return self._make_loop(
             self.shot.scene,
             lambda frame: self._take_frame(slot, frame),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import secrets
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from fastapi import Response, WebSocket
@@ -14,8 +16,10 @@ from .._core import LensFileError
 from ..shot import Shot
 from .access import Folders, Gate, is_local
 from .files_panel import lens_preview
-from .lens_bench import LensBench
+from .lens_bench import AnyPictureLoop, LensBench
 from .page import build_page
+from .picture_loop import PictureLoop
+from .remote import RemotePictureLoop
 from .window import Window
 
 _STATIC = Path(__file__).with_name("static")
@@ -27,7 +31,9 @@ _MOST_WINDOWS = 16  # each has threads, a scene on the device and a picture
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """shot: the file. folders: the only ones that are read and written. token: "" makes one where it is wanted."""
+    """shot: the file. folders: the only ones that are read and written. token: "" makes one where it is wanted. With
+    connect, it is the one of the machine that photographs, too.
+    """
 
     shot: Path
     folders: tuple[Path, ...]
@@ -35,6 +41,7 @@ class ServerSettings:
     port: int = 8080
     device: str = "auto"
     token: str = ""
+    connect: tuple[str, int] | None = None  #: the machine that photographs, if it is not this one
     shows_browser: bool = True
 
 
@@ -42,8 +49,13 @@ def serve(settings: ServerSettings) -> None:
     """Serves until Ctrl-C. Raises InputError, SceneFileError, LensFileError and DeviceError before it begins."""
     shot = Shot.load(settings.shot, device=settings.device)
     folders = Folders(settings.folders)
-    token = settings.token or (None if is_local(settings.host) else secrets.token_urlsafe(24))
+    is_open = is_local(settings.host) and (settings.connect is not None or not settings.token)
+    token = None if is_open else settings.token or secrets.token_urlsafe(24)
     windows: dict[str, Window] = {}
+    make_loop: Callable[..., AnyPictureLoop] = PictureLoop
+    if settings.connect is not None:
+        make_loop = partial(RemotePictureLoop, address=settings.connect, token=settings.token)
+        make_loop(shot.scene, lambda _: None, lambda *_: None).close()  # so that a mistake is told at once
 
     app.add_middleware(Gate, token=token)
     app.add_static_files("/realcam", _STATIC)
@@ -53,7 +65,7 @@ def serve(settings: ServerSettings) -> None:
         if len(windows) >= _MOST_WINDOWS:
             ui.label("Too many windows are open; close one and load this page again.")
             return
-        window = Window(LensBench(shot, device=settings.device))
+        window = Window(LensBench(shot, device=settings.device, make_loop=make_loop))
         windows[window.key] = window
         client.on_delete(lambda: windows.pop(window.key, None))
         build_page(client, window, folders, settings.shot.resolve())
