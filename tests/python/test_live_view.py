@@ -54,6 +54,22 @@ def test_frames_collect_the_samples_of_one_picture(scene: rc.Scene, on: str) -> 
 
 
 @on_each
+@pytest.mark.parametrize("effects", [["dispersion"], ["diffraction"], ["coatings", "ghosts"]])
+def test_frames_have_the_effects_that_are_named(scene: rc.Scene, on: str, effects: list[str]) -> None:
+    live = rc.LiveView(scene, device=on, seed=3)
+    plain = live.shoot(camera(), spp=8)
+    frame = live.shoot(camera(), spp=8, effects=effects)
+    assert (plain.samples, frame.samples) == (8, 8)  # another picture
+    whole = rc.render(scene, camera(), effects=effects, spp=8, seed=3, device=on)
+    expected = rc._core.develop(whole.pixels, camera().iso)
+    # Sums in double in another order: a code may change where a value lies on its border.
+    assert np.abs(frame.codes.astype(int) - expected).max() <= 1
+    assert np.abs(frame.codes.astype(int) - plain.codes).max() > 3
+    with pytest.raises(rc.InputError, match="sharpness"):
+        live.shoot(camera(), effects=["sharpness"])
+
+
+@on_each
 def test_another_camera_begins_anew_and_another_exposure_does_not(scene: rc.Scene, on: str) -> None:
     live = rc.LiveView(scene, device=on)
     live.shoot(camera(), spp=4)

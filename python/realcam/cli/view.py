@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from .._core import InputError
+from ..shot import Shot
 from .demo import scenes_folder
 
 
@@ -48,8 +49,9 @@ def view(
         serve_pictures(host, port, secret, device)
     path = scenes_folder() / "demo.toml" if shot is None else shot
     serve(
+        Shot.load(path, device="cpu" if connect else device),
         ServerSettings(
-            shot=path,
+            source=path,
             folders=(Path.cwd(), *(folder or ())),
             host=host,
             port=port,
@@ -57,7 +59,7 @@ def view(
             token=token,
             connect=_address(connect, token),
             shows_browser=browser,
-        )
+        ),
     )
 
 

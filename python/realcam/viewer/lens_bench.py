@@ -91,7 +91,7 @@ class LensBench:
         self._make_loop = make_loop
         self._lock = threading.RLock()
         self._loops = {"a": self._new_loop("a")}
-        self._drawing = NewestTask("realcam-drawing")
+        self._drawing = NewestTask("realcam-drawing", delay_s=0.02)  # after the picture's first frame
         # Both take as long as some frames of the picture.
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
         self._measuring = NewestTask("realcam-depth-of-field", quiet_s=0.1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections.abc import Callable
 
 _log = logging.getLogger(__name__)
@@ -14,10 +15,11 @@ class NewestTask:
 
     Tasks report what they find by themselves. An exception is logged, and the next task is done as ever.
     quiet_s: a task is begun when none has come for so long, so that what is costly waits for the end of a movement.
+    delay_s: a task is begun so much later, so that what is more urgent is done first.
     """
 
-    def __init__(self, name: str, quiet_s: float = 0.0) -> None:
-        self._quiet_s = quiet_s
+    def __init__(self, name: str, *, quiet_s: float = 0.0, delay_s: float = 0.0) -> None:
+        self._quiet_s, self._delay_s = quiet_s, delay_s
         self._wake = threading.Condition()
         self._task: Callable[[], None] | None = None
         self._is_closed = False
@@ -43,6 +45,9 @@ class NewestTask:
                     self._wake.wait()
                 while self._quiet_s and not self._is_closed and self._wake.wait(self._quiet_s):
                     pass
+            if self._delay_s:
+                time.sleep(self._delay_s)
+            with self._wake:
                 task, self._task = self._task, None
                 if self._is_closed or task is None:
                     return

@@ -26,6 +26,7 @@ T = TypeVar("T")
 _log = logging.getLogger(__name__)
 
 _PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
+_QUICK_S = 0.008  # for so long it takes more than one sample, on a GPU: 60 frames a second remain
 _REFINING_S = 0.120  # what a frame may take that only refines, as long as it is more than a sample
 _SLOW_S = 0.050  # a frame that takes longer must not keep the user waiting for what needs no new samples
 _MOST_SPP = 64  # of one frame, so that a fast GPU shows how a picture grows
@@ -203,7 +204,7 @@ class PictureLoop:
             self._develop_for(picture, pending)
             return
         self._picture = picture = _Growing(request, pending.serial, pending.begun, self._preview_size(request))
-        affordable = _PREVIEW_S * statistics.median(self._first_rates)
+        affordable = _QUICK_S * statistics.median(self._first_rates)
         spp = max(1, min(_MOST_SPP, int(affordable / math.prod(picture.size))))
         codes = self._shoot(picture, spp)
         if request.is_automatic and self._meter(picture):
@@ -215,18 +216,22 @@ class PictureLoop:
         """Once more of its samples, after as few steps as the whole resolution takes."""
         whole = picture.request.camera.film.resolution
         rate = statistics.median(self._rates)
-        if picture.size != whole:
+        is_new_size = picture.size != whole
+        if is_new_size:
             one_sample_s = math.prod(whole) / rate
             coarse = (min(2 * picture.size[0], whole[0]), min(2 * picture.size[1], whole[1]))
             picture.size = whole if one_sample_s < 8 * _PREVIEW_S or coarse[0] > 0.7 * whole[0] else coarse
-            picture.samples, picture.spent_s, picture.compared = 0, 0.0, None
         spp = max(1, min(_MOST_SPP, int(_REFINING_S * rate / math.prod(picture.size))))
         request = picture.request
         spp = min(spp, max(1, request.max_spp - picture.samples))
+        if picture.kept is None and spp * math.prod(picture.size) / rate > _SLOW_S:
+            picture.kept = self._live_arrays()
         with self._wake:
             if self._pending:
                 return
             self._refines = True
+        if is_new_size:
+            picture.samples, picture.spent_s, picture.compared = 0, 0.0, None
         try:
             codes = self._shoot(picture, spp)
         finally:
@@ -243,7 +248,7 @@ class PictureLoop:
         request, camera = picture.request, self._camera(picture)
         start = time.perf_counter()
         frame = self._live.shoot(
-            camera, spp=spp, tone=request.tone, effects=list(request.effects), illuminant=request.illuminant
+            camera, spp=spp, tone=request.tone, effects=self._effects(picture), illuminant=request.illuminant
         )
         if picture.kept:
             self._wait_for(frame, picture)
@@ -257,6 +262,11 @@ class PictureLoop:
         picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
         picture.kept = self._live_arrays() if seconds > _SLOW_S else None
         return codes
+
+    def _effects(self, picture: _Growing) -> list[str]:
+        """Of fewer pixels diffraction is left out: it is smaller than they are, and its tables take 50 ms of a core."""
+        is_whole = picture.size == picture.request.camera.film.resolution
+        return [effect for effect in picture.request.effects if is_whole or effect != "diffraction"]
 
     def _wait_for(self, frame: LiveFrame, picture: _Growing) -> None:
         """Meanwhile what asks for no new samples is done with those of the frame before."""
@@ -381,12 +391,12 @@ class PictureLoop:
             Frame(
                 serial=picture.serial,
                 jpeg=jpeg,
-                width=picture.size[0],
-                height=picture.size[1],
+                width=codes.shape[1],
+                height=codes.shape[0],
                 whole_width=whole[0],
                 whole_height=whole[1],
                 samples=picture.samples,
-                is_preview=picture.size != whole,
+                is_preview=codes.shape[1::-1] != whole,
                 is_final=picture.is_final,
                 noise_codes=picture.noise_codes,
                 seconds=time.perf_counter() - picture.begun,

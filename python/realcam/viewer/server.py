@@ -31,11 +31,12 @@ _MOST_WINDOWS = 16  # each has threads, a scene on the device and a picture
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """shot: the file. folders: the only ones that are read and written. token: "" makes one where it is wanted. With
-    connect, it is the one of the machine that photographs, too.
+    """source: the shot's file. folders: the only ones that are read and written.
+
+    token: "" makes one where it is wanted; with connect, it is that of the machine that photographs.
     """
 
-    shot: Path
+    source: Path
     folders: tuple[Path, ...]
     host: str = "127.0.0.1"
     port: int = 8080
@@ -45,9 +46,8 @@ class ServerSettings:
     shows_browser: bool = True
 
 
-def serve(settings: ServerSettings) -> None:
-    """Serves until Ctrl-C. Raises InputError, SceneFileError, LensFileError and DeviceError before it begins."""
-    shot = Shot.load(settings.shot, device=settings.device)
+def serve(shot: Shot, settings: ServerSettings) -> None:
+    """Serves until Ctrl-C. Raises InputError and DeviceError before it begins."""
     folders = Folders(settings.folders)
     is_open = is_local(settings.host) and (settings.connect is not None or not settings.token)
     token = None if is_open else settings.token or secrets.token_urlsafe(24)
@@ -68,7 +68,7 @@ def serve(settings: ServerSettings) -> None:
         window = Window(LensBench(shot, device=settings.device, make_loop=make_loop))
         windows[window.key] = window
         client.on_delete(lambda: windows.pop(window.key, None))
-        build_page(client, window, folders, settings.shot.resolve())
+        build_page(client, window, folders, settings.source.resolve())
 
     # Not a coroutine: the server draws them on threads of its own.
     @app.get("/realcam-lenses/{name}.svg")
