@@ -10,6 +10,7 @@ from typing import Any
 
 from .. import planning
 from .._core import Film, InputError, Lens, LensFileError, NothingToPlan, Plan, RealcamError, effects
+from ..accuracy import accuracy_cost
 from ..image import Image
 from ..photography import SharpRange, depth_of_field
 from ..shot import Shot
@@ -24,6 +25,7 @@ from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
 
 AnyPictureLoop = PictureLoop | RemotePictureLoop
 EFFECTS = tuple(line.partition(":")[0] for line in effects() if "on unless left out" not in line)
+_RUNGS: dict[str, Any] = {"size": 120, "most_spp": 16, "reference_spp": 256}  # some seconds on two cores
 COMPARISONS = ("nothing", "thin lens", "these settings", "another lens")
 
 
@@ -44,6 +46,7 @@ class Listeners:
     lens: Callable[[dict[str, Any]], None] = lambda view: None
     problem: Callable[[Problem | None], None] = lambda problem: None
     plan: Callable[[Plan | None, str], None] = lambda plan, note: None
+    rungs: Callable[[list[dict[str, Any]], str], None] = lambda rungs, note: None
     sharp_range: Callable[[SharpRange], None] = lambda sharp: None
 
 
@@ -94,12 +97,13 @@ class LensBench:
         self._drawing = NewestTask("realcam-drawing", delay_s=0.02)  # after the picture's first frame
         # Both take as long as some frames of the picture.
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
+        self._measuring_rungs = NewestTask("realcam-rungs")
         self._measuring = NewestTask("realcam-depth-of-field", quiet_s=0.1)
 
     def close(self) -> None:
         """Ends all threads of the window."""
         self.listeners = Listeners()
-        for task in (self._drawing, self._planning, self._measuring):
+        for task in (self._drawing, self._planning, self._measuring, self._measuring_rungs):
             task.close()
         for loop in self._loops.values():
             loop.close()
@@ -256,6 +260,27 @@ class LensBench:
         automatic = ["auto"] if "auto" in states.values() else []
         left_out = [f"-{name}" for name, state in states.items() if state == "off" and automatic]
         return [*automatic, *(name for name, state in states.items() if state == "on"), *left_out]
+
+    def measure_rungs(self) -> None:
+        """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
+        camera = self.controls.camera()
+
+        def measure() -> None:
+            self.listeners.rungs([], "measuring ...")
+            try:
+                cost = accuracy_cost(self.shot.scene, camera, **_RUNGS, device=self._device, samplings=False)
+            except RealcamError as error:
+                self.listeners.rungs([], str(error))
+                return
+            # As long as a picture of all pixels takes.
+            pixels = math.prod(camera.film.resolution) / math.prod(cost.size)
+            rungs = [
+                {"name": rung.name, "points": [[pixels * p.seconds, p.rmse] for p in rung.pictures]}
+                for rung in cost.rungs
+            ]
+            self.listeners.rungs(rungs, f"against a reference with noise of {cost.reference_noise_codes:.2g} codes")
+
+        self._measuring_rungs.submit(measure)
 
     # What comes of it.
 

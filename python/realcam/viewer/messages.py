@@ -140,5 +140,6 @@ _ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {
     "undo": lambda m, bench: bench.undo(),
     "redo": lambda m, bench: bench.redo(),
     "turn": _turn,
+    "rungs": lambda m, bench: bench.measure_rungs(),
     "switch": _switch,
 }

@@ -48,6 +48,7 @@ class PictureStream:
         bench.listeners.lens = lambda view: self._offer_text("lens", view)
         bench.listeners.problem = self._offer_problem
         bench.listeners.plan = self._offer_plan
+        bench.listeners.rungs = lambda rungs, note: self._offer_text("rungs", {"rungs": rungs, "note": note})
 
     async def serve(self, socket: WebSocket) -> None:
         """Until the page goes. Refuses what no page of ours sends by closing the connection."""

@@ -2,6 +2,8 @@
 
 import { streamAt } from "/realcam/stream.js";
 
+// Which stand out from a light page and a dark one.
+const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a"];
 const W = 300, H = 120, LEFT = 34, BOTTOM = 20;
 
 export default {
@@ -36,11 +38,15 @@ export default {
     <text x="10" y="${(H - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 10 ${(H - BOTTOM) / 2})">noise (codes)</text>
     <text x="${LEFT - 3}" y="9" text-anchor="end">{{ top }}</text><text x="${LEFT - 3}" y="${H - BOTTOM}" text-anchor="end">{{ bottom }}</text>
     <polyline class="rc-curve" :points="curve" />
-    <g v-for="rung in placedRungs" :key="rung.name"><circle :cx="rung.x" :cy="rung.y" r="3"><title>{{ rung.name }}</title></circle></g>
+    <g v-for="(rung, k) in placedRungs" :key="rung.name" class="rc-rung" :style="{ color: colour(k) }">
+      <title>{{ rung.name }}</title><polyline :points="rung.line" /><circle v-for="(p, j) in rung.points" :key="j" :cx="p[0]" :cy="p[1]" r="2.5" /></g>
   </svg>
-  <slot></slot>
+  <button type="button" @click="stream.send({ type: 'rungs' })"
+    title="Takes this shot at every level of simulation, in few pixels, and shows what each costs">Measure the levels of simulation</button>
+  <p v-if="rungsNote" class="rc-note" data-testid="rungs-note">{{ rungsNote }}</p>
+  <ul class="rc-legend"><li v-for="(rung, k) in rungs" :key="rung.name"><span :style="{ background: colour(k) }"></span>{{ rung.name }}</li></ul>
 </section>`,
-  data: () => ({ states: {}, all: [], note: "", costs: null, points: [], rungs: [], serial: 0 }),
+  data: () => ({ states: {}, all: [], note: "", costs: null, points: [], rungs: [], rungsNote: "", serial: 0 }),
   computed: {
     rows() {
       return Object.fromEntries(this.all.map((row) => [row.effect, row]));
@@ -55,7 +61,7 @@ export default {
         `shading and effects ${percent(this.costs.other_share)}`;
     },
     limits() {
-      const all = [...this.points, ...this.rungs.map((r) => [r.seconds, r.error_codes])].filter(([t, n]) => t > 0 && n > 0);
+      const all = [...this.points, ...this.rungs.flatMap((r) => r.points)].filter(([t, n]) => t > 0 && n > 0);
       if (!all.length) return [0.01, 10, 0.5, 20];
       const t = all.map((p) => p[0]), n = all.map((p) => p[1]);
       return [Math.min(...t) / 1.2, Math.max(...t) * 1.2, Math.min(...n) / 1.3, Math.max(...n) * 1.3];
@@ -67,9 +73,9 @@ export default {
       return this.points.map(([t, n]) => this.at(t, n).join(",")).join(" ");
     },
     placedRungs() {
-      return this.rungs.filter((r) => r.error_codes > 0).map((r) => {
-        const [x, y] = this.at(r.seconds, r.error_codes);
-        return { name: r.name, x, y };
+      return this.rungs.map(({ name, points }) => {
+        const placed = points.filter((p) => p[0] > 0 && p[1] > 0).map((p) => this.at(...p));
+        return { name, points: placed, line: placed.map((p) => p.join(",")).join(" ") };
       });
     },
   },
@@ -77,7 +83,7 @@ export default {
     this.stream = streamAt(this.path);
     this.ends = [
       this.stream.on("plan", ({ rows, note, states }) => { this.all = rows; this.note = note; this.states = states; }),
-      this.stream.on("rungs", ({ rungs }) => { this.rungs = rungs; }),
+      this.stream.on("rungs", ({ rungs, note }) => { this.rungs = rungs; this.rungsNote = note; }),
       this.stream.on("frame", ({ header }) => this.take(header)),
     ];
   },
@@ -99,6 +105,7 @@ export default {
       const [t0, t1, n0, n1] = this.limits, share = (x, a, b) => Math.log(x / a) / Math.log(b / a);
       return [LEFT + (W - LEFT) * share(t, t0, t1), (H - BOTTOM) * (1 - share(n, n0, n1))];
     },
+    colour: (k) => COLOURS[k % COLOURS.length],
     size(name) {
       const row = this.rows[name];
       return row ? `${Number(row.size.toPrecision(2))} ${row.unit} of ${Number(row.threshold.toPrecision(2))}` : "";
