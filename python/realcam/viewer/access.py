@@ -11,8 +11,9 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers
+from starlette.exceptions import HTTPException
 from starlette.responses import PlainTextResponse
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from .._core import InputError
 
@@ -63,11 +64,15 @@ class Gate:
         await self._app(scope, receive, send)
 
     def _is_admitted(self, headers: Headers, by_query: str) -> bool:
-        origin = headers.get("origin")
-        if origin and urlsplit(origin).netloc != headers.get("host", ""):
+        host, origin = headers.get("host", ""), headers.get("origin")
+        try:
+            if origin and urlsplit(origin).netloc != host:
+                return False
+            name = urlsplit(f"//{host}").hostname or ""
+        except ValueError:  # brackets that hold no address
             return False
         if self._token is None:
-            return is_local(urlsplit(f"//{headers.get('host', '')}").hostname or "")
+            return "@" not in host and is_local(name)
         cookies = SimpleCookie(headers.get("cookie", ""))
         given = by_query or (cookies[_COOKIE].value if _COOKIE in cookies else "")
         return hmac.compare_digest(given.encode(), self._token.encode())
@@ -79,6 +84,36 @@ async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
         return
     text = "realcam: the address with the token that the server has printed is wanted\n"
     await PlainTextResponse(text, status_code=403)(scope, receive, send)
+
+
+class BodyLimit:
+    """ASGI middleware that refuses requests of more than `most` bytes.
+
+    The limit that the page has for uploads is kept by browsers, and by nothing else.
+    """
+
+    def __init__(self, app: ASGIApp, most: int) -> None:
+        self._app, self._most = app, most
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        length = Headers(scope=scope).get("content-length", "")
+        if length.isdecimal() and int(length) > self._most:
+            await PlainTextResponse("realcam: too large\n", status_code=413)(scope, receive, send)
+            return
+        taken = 0
+
+        async def counted() -> Message:
+            nonlocal taken
+            message = await receive()
+            taken += len(message.get("body", b""))
+            if taken > self._most:
+                raise HTTPException(413)  # in the place that reads the request, so that it is answered
+            return message
+
+        await self._app(scope, counted, send)
 
 
 class Folders:
@@ -100,7 +135,7 @@ class Folders:
             path
             for folder in self._folders
             for path in folder.iterdir()
-            if path.suffix.lower() in suffixes and path.is_file()
+            if path.suffix.lower() in suffixes and path.is_file() and self._holds(path.resolve())
         )
 
     def inside(self, name: str) -> Path:
@@ -110,7 +145,13 @@ class Folders:
         """
         if not name or "\0" in name:
             raise InputError("a file name is wanted")
-        path = (self.first / name).resolve()
-        if not any(path.is_relative_to(folder) for folder in self._folders):
+        try:
+            path = (self.first / name).resolve()
+        except (OSError, RuntimeError, ValueError):  # a link to itself; a name that no file can have
+            raise InputError(f'"{name!a:.80}" cannot be the name of a file') from None
+        if not self._holds(path):
             raise InputError(f'"{name:.80}" is outside the folders that the server was started with')
         return path
+
+    def _holds(self, path: Path) -> bool:
+        return any(path.is_relative_to(folder) for folder in self._folders)

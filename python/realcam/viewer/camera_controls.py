@@ -37,7 +37,7 @@ class CameraControls:
             film=camera.film,
             pose=Pose(camera.position, camera.look_at, camera.up),
             zoom=camera.lens.zoom_position,
-            f_number=camera.lens.first_order().f_number,
+            f_number=camera.lens.focused(math.inf).first_order().f_number,  # as engraved
             focus_m=camera.lens.focus_distance_m,
             exposure_time_s=camera.exposure_time_s,
             iso=camera.iso,

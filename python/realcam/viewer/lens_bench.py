@@ -160,13 +160,13 @@ class LensBench:
 
     def meter_at(self, u: float, v: float) -> bool:
         """Exposes so that what is around u, v becomes middle grey."""
-        exposure = self._loops["a"].point(u, v).result().exposure_lx_s
-        if not exposure > 0:
+        illuminance = self._loops["a"].point(u, v).result().illuminance_lx
+        if not illuminance > 0:
             self._set_problem(Problem("there is no light where the meter looks"))
             return False
         now = self.controls
         wanted = 10 * 2**now.compensation_ev / now.iso
-        return self.change(exposure_time_s=now.exposure_time_s * wanted / exposure, is_automatic=False)
+        return self.change(exposure_time_s=wanted / illuminance, is_automatic=False)
 
     def set_resolution(self, width: int) -> bool:
         """Pixels across; the height follows from the film."""

@@ -9,6 +9,7 @@ from .._core import Glass, InputError, Lens, Surface
 
 _MOST_STEPS = 200
 _PLATE_GLASS = "schott:N-BK7"
+_BETWEEN_NUMBERS = str.maketrans(",/()", "    ")  # as labels of glasses have them: "1.67 / 47.1" and "(1.67, 47.1)"
 
 
 def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
@@ -28,7 +29,7 @@ def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
         return lens.with_surface(index, conic=_number(value, "the conic constant"))
     if field == "glass":
         return lens.with_surface(index, material=glass_of(value))
-    if field.startswith("a") and field[1:].isdigit():
+    if field.startswith("a") and field[1:].isdecimal():
         terms = dict(surface.aspheric_coefficients)
         terms[int(field[1:])] = _number(value, "the aspheric coefficient")
         return lens.with_surface(index, aspheric_coefficients=terms)
@@ -39,7 +40,7 @@ def with_plate(lens: Lens, index: int) -> Lens:
     """With a thin plate of glass before surface `index` (or behind the last one), in the middle of the air there."""
     surfaces = lens.surfaces
     if not 0 <= index <= len(surfaces):
-        raise InputError(f"there is no place {index} in a lens of {len(surfaces)} surfaces")
+        raise InputError(f"there is no place {index + 1} in a lens of {len(surfaces)} surfaces")
     beside = surfaces[min(index, len(surfaces) - 1)].clear_semi_diameter_mm
     thickness = 0.2 * beside
     plate = [
@@ -51,7 +52,7 @@ def with_plate(lens: Lens, index: int) -> Lens:
     room = lens.film_distance_mm if index == len(surfaces) else surfaces[index - 1].thickness_mm
     gap = 0.5 * (room - thickness)
     if gap <= 0:
-        raise InputError(f"there is no room for a plate of {thickness:.3g} mm before surface {index}")
+        raise InputError(f"there is no room for a plate of {thickness:.3g} mm before surface {index + 1}")
     return lens.inserted(index, plate, gap_mm=gap)
 
 
@@ -67,8 +68,8 @@ def swapped(lens: Lens, index: int, other: int) -> Lens:
 
 
 def glass_of(text: Any) -> float | tuple[float, float] | Glass | None:
-    """A glass as the table has it: air, 1.5168, "1.5168, 64.2" or "schott:N-BK7". Raises InputError."""
-    words = [word for word in str("" if text is None else text).replace(",", " ").split() if word]
+    """A glass as the table has it: air, 1.5168, "1.5168 / 64.2" or "schott:N-BK7". Raises InputError."""
+    words = [word for word in str("" if text is None else text).translate(_BETWEEN_NUMBERS).split() if word]
     if not words or words == ["air"]:
         return None
     if words[0][0].isdigit():
@@ -121,7 +122,7 @@ class LensHistory:
 
 def _surface(lens: Lens, index: int) -> Surface:
     if not (isinstance(index, int) and 0 <= index < len(lens.surfaces)):
-        raise InputError(f"there is no surface {index} in a lens of {len(lens.surfaces)}")
+        raise InputError(f"there is no surface {index + 1} in a lens of {len(lens.surfaces)}")
     return lens.surfaces[index]
 
 

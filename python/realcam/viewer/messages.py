@@ -30,7 +30,7 @@ def parsed(text: str) -> Message:
         message = json.loads(text)
     except (ValueError, RecursionError):
         raise BadMessage("the message is no JSON") from None
-    if not isinstance(message, dict) or message.get("type") not in _ACTIONS:
+    if not isinstance(message, dict) or str(message.get("type")) not in _ACTIONS:
         raise BadMessage("the message asks for nothing that is known")
     return message
 
@@ -61,9 +61,12 @@ def perform(message: Message, bench: LensBench) -> None:
 
 def _real(message: Message, key: str) -> float:
     value = message.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise BadMessage(f'"{key}" is to be a number')
-    return min(max(float(value), -1e6), 1e6)
+    bounded = min(max(value, -1e6), 1e6)  # an integer of JSON may be larger than any float
+    if not math.isfinite(value if isinstance(value, float) else bounded):
+        raise BadMessage(f'"{key}" is to be a number')
+    return float(bounded)
 
 
 def _index(message: Message, key: str = "surface") -> int:

@@ -10,7 +10,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -51,10 +51,16 @@ class _Growing:
     spent_s: float = 0.0  #: by these
     exposure_time_s: float = 0.0  #: with which the samples were developed last
     is_final: bool = False
+    is_given_up: bool = False  #: and its samples with it
     noise_codes: float | None = None
     costs: Costs | None = None
-    compared: tuple[int, NDArray[np.uint8]] | None = None  #: samples and codes that the noise is measured against
+    #: Samples and illuminance (lx) of the last two pictures between which the noise is measured, whatever the exposure.
+    measured: deque[tuple[int, NDArray[np.float32]]] = field(default_factory=lambda: deque(maxlen=2))
     kept: _Arrays | None = None  #: of the last frame, where the next one is slow
+
+    def can_be(self, request: PictureRequest) -> bool:
+        """Whether its samples are there and serve a request."""
+        return not self.is_given_up and self.request.is_same_picture(request)
 
 
 @dataclass(frozen=True)
@@ -115,10 +121,10 @@ class PictureLoop:
             serial = self._serial
             self._pending = _Pending(request, serial, time.perf_counter())
             picture = self._picture
-            gives_up = self._refines and not (picture and picture.request.is_same_picture(request))
             self._wake.notify()
-        if gives_up:
-            self._live.cancel()
+            if self._refines and picture and not picture.request.is_same_picture(request):
+                picture.is_given_up = True
+                self._live.cancel()  # while the lock holds the other thread in the frame that is meant
         return serial
 
     def image(self) -> Future[Image]:
@@ -151,8 +157,8 @@ class PictureLoop:
 
     def _run(self) -> None:
         while self._wait_for_work():
-            while self._questions:
-                self._answer(self._questions.popleft())
+            for question in self._answerable():
+                self._answer(question)
             with self._wake:
                 pending, self._pending = self._pending, None
             try:
@@ -165,7 +171,10 @@ class PictureLoop:
                 with self._wake:
                     self._pending = self._pending or pending
             except RealcamError as error:
-                self._fail(pending, str(error))
+                with self._wake:
+                    is_given_up = pending is None and self._pending is not None
+                if not is_given_up:  # a frame that was done when it was given up has lost its samples
+                    self._fail(pending, str(error))
             except Exception:
                 _log.exception("the picture could not be taken")
                 self._fail(pending, "the picture could not be taken; the server's log says more")
@@ -180,11 +189,26 @@ class PictureLoop:
                 self._wake.wait()
         return False
 
+    def _answerable(self) -> list[_Question]:
+        """Takes the questions that can be answered now. Who asks for a picture means the one that was wanted last."""
+        with self._wake:
+            now = [question for question in self._questions if not (question.needs_samples and self._pending)]
+            for question in now:
+                self._questions.remove(question)
+        return now
+
     def _answer(self, question: _Question) -> None:
-        if not question.answer.set_running_or_notify_cancel():
+        if not (question.answer.running() or question.answer.set_running_or_notify_cancel()):
             return
         try:
             question.answer.set_result(question.ask())
+        except RealcamError as error:
+            with self._wake:
+                # The samples were given up for another picture, of which the question is asked again.
+                if self._pending and not self._is_closed:
+                    self._questions.append(question)
+                    return
+            question.answer.set_exception(error)
         except BaseException as error:
             question.answer.set_exception(error)
 
@@ -200,7 +224,7 @@ class PictureLoop:
         if not self._exposure_time_s:
             self._exposure_time_s = request.camera.exposure_time_s
         picture = self._picture
-        if picture and picture.samples and picture.request.is_same_picture(request):
+        if picture and picture.samples and picture.can_be(request):
             self._develop_for(picture, pending)
             return
         self._picture = picture = _Growing(request, pending.serial, pending.begun, self._preview_size(request))
@@ -231,14 +255,14 @@ class PictureLoop:
                 return
             self._refines = True
         if is_new_size:
-            picture.samples, picture.spent_s, picture.compared = 0, 0.0, None
+            picture.samples, picture.spent_s = 0, 0.0
         try:
             codes = self._shoot(picture, spp)
         finally:
             with self._wake:
                 self._refines = False
         if picture.size == whole:
-            self._measure_noise(picture, codes)
+            self._measure_noise(picture)
         if request.is_automatic and picture.samples <= 2 * spp and self._meter(picture):
             self._develop(picture)
         else:
@@ -256,8 +280,6 @@ class PictureLoop:
         seconds = max(time.perf_counter() - start, 1e-6)
         rate = spp * math.prod(picture.size) / seconds
         (self._rates if picture.samples else self._first_rates).append(rate)
-        if camera.exposure_time_s != picture.exposure_time_s:
-            picture.compared = None
         picture.spent_s += seconds
         picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
         picture.kept = self._live_arrays() if seconds > _SLOW_S else None
@@ -274,14 +296,14 @@ class PictureLoop:
             with self._wake:
                 self._wake.wait(0.005)
                 pending = self._pending
-                if pending and picture.request.is_same_picture(pending.request):
+                if pending and picture.can_be(pending.request):
                     self._pending = None
                 quick = [question for question in self._questions if not question.needs_samples]
                 for question in quick:
                     self._questions.remove(question)
             for question in quick:
                 self._answer(question)
-            if pending and picture.request.is_same_picture(pending.request):
+            if pending and picture.can_be(pending.request):
                 self._develop_for(picture, pending)
 
     def _camera(self, picture: _Growing) -> Camera:
@@ -314,9 +336,10 @@ class PictureLoop:
         """Shows for a new request the samples that are there."""
         request = pending.request
         picture.request, picture.serial, picture.begun = request, pending.serial, pending.begun
-        picture.is_final = self._is_good_enough(picture)
         if request.is_automatic:
             self._meter(picture)
+        picture.noise_codes = self._noise_of(picture)
+        picture.is_final = self._is_good_enough(picture)
         self._develop(picture)
 
     def _develop(self, picture: _Growing) -> None:
@@ -341,8 +364,10 @@ class PictureLoop:
         picture = self._picture
         if picture is None:
             raise InputError("there is no picture yet")
-        while picture.size != picture.request.camera.film.resolution:
+        while picture.size != picture.request.camera.film.resolution or not picture.samples:
             self._refine(picture)
+            if self._pending:
+                raise Cancelled("another picture is wanted")
         image = self._collected(picture)
         time_s = self._camera(picture).exposure_time_s
         ratio = np.float32(time_s / image.camera.exposure_time_s)
@@ -360,24 +385,36 @@ class PictureLoop:
         met = near[np.isfinite(near)]
         return Point(
             distance_m=float(np.median(met)) if met.size else math.inf,
-            exposure_lx_s=float(np.mean(exposure[around] @ LUMINANCE)),
+            illuminance_lx=float(np.mean(exposure[around] @ LUMINANCE)) / self._picture.exposure_time_s,
         )
 
-    def _measure_noise(self, picture: _Growing, codes: NDArray[np.uint8]) -> None:
+    def _measure_noise(self, picture: _Growing) -> None:
+        """Whenever there are twice as many samples."""
+        if not picture.measured or picture.samples >= 2 * picture.measured[-1][0]:
+            exposure, _ = self._arrays(picture)
+            picture.measured.append((picture.samples, exposure / np.float32(picture.exposure_time_s)))
+            picture.noise_codes = self._noise_of(picture)
+            if picture.noise_codes is not None:
+                picture.costs = _costs(self._collected(picture).stats, picture.spent_s)
+        picture.is_final = self._is_good_enough(picture)
+
+    def _noise_of(self, picture: _Growing) -> float | None:
         """From the difference of two pictures of which the second has the samples of the first and as many more.
 
         The variance of the mean of n samples is s^2 / n, and that of the difference between the means of the first m
-        and of all n of them s^2 (1/m - 1/n). So it is n/m - 1 times the variance of the later mean.
+        and of all n of them s^2 (1/m - 1/n). So it is n/m - 1 times the variance of the later mean. In codes of the
+        picture as it is developed now: a longer exposure shows more noise.
         """
-        if picture.compared is None or picture.samples >= 2 * picture.compared[0]:
-            if picture.compared is not None:
-                samples, before = picture.compared
-                difference = codes.astype(np.float32) - before
-                variance = max(0.0, float(np.mean(difference * difference)) - _ROUNDING)
-                picture.noise_codes = math.sqrt(variance * samples / (picture.samples - samples))
-                picture.costs = _costs(self._collected(picture).stats, picture.spent_s)
-            picture.compared = picture.samples, codes
-        picture.is_final = self._is_good_enough(picture)
+        if len(picture.measured) < 2:
+            return None
+        time_s, request = np.float32(self._camera(picture).exposure_time_s), picture.request
+        (samples, before), (all_samples, after) = picture.measured
+        codes = [
+            develop(illuminance * time_s, request.camera.iso, request.tone).astype(np.float32)
+            for illuminance in (before, after)
+        ]
+        variance = max(0.0, float(np.mean((codes[1] - codes[0]) ** 2)) - _ROUNDING)
+        return math.sqrt(variance * samples / (all_samples - samples))
 
     def _is_good_enough(self, picture: _Growing) -> bool:
         request = picture.request

@@ -66,4 +66,4 @@ class Point:
     """What a pixel shows."""
 
     distance_m: float  #: along the camera's axis from the film; inf where nothing is met
-    exposure_lx_s: float  #: mean luminance exposure of the spot around it
+    illuminance_lx: float  #: on the film, mean of the spot around it

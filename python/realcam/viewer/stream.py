@@ -99,10 +99,16 @@ class PictureStream:
             self._mail.clear()
             while self._inbox:
                 message = self._inbox.popleft()
+                done = self._loop.run_in_executor(self._executor, perform, message, self._bench)
                 try:
-                    await self._loop.run_in_executor(self._executor, perform, message, self._bench)
+                    await done
+                except BadMessage:
+                    raise
                 except RealcamError as error:
                     self._offer_problem(Problem(str(error)))
+                except Exception:
+                    _log.exception("%.200s could not be done", message)
+                    self._offer_problem(Problem("that could not be done; the server's log says more"))
 
     async def _send(self, socket: WebSocket) -> None:
         while True:
