@@ -9,7 +9,7 @@ from pathlib import Path
 
 from .. import files
 from .._core import ImageFileError, InputError
-from . import aberrations, depth_of_field, distortion, double_gauss, pixel_pupil, snell, speed
+from . import aberrations, depth_of_field, distortion, double_gauss, interaction, pixel_pupil, snell, speed
 from .experiment import Experiment
 
 EXPERIMENTS: dict[str, Callable[[str], Experiment]] = {
@@ -19,6 +19,7 @@ EXPERIMENTS: dict[str, Callable[[str], Experiment]] = {
     "distortion": distortion.experiment,
     "depth-of-field": depth_of_field.experiment,
     "speed": speed.experiment,
+    "interaction": interaction.experiment,
     "pixel-pupil": pixel_pupil.experiment,
 }
 

@@ -1,0 +1,118 @@
+"""The animated picture of docs/lens-bench.md and the one of the README: a page of the lens bench, driven by a script.
+
+    python tools/lens_bench_capture.py FOLDER
+
+Wants playwright, Debian's chromium and Pillow; some minutes on two cores, because every picture is refined.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import Page, sync_playwright
+
+SIZE = {"width": 1280, "height": 900}
+SAMPLES = 24  # of each picture that is shown
+SHOWN_MS = 260  # of a step of a movement
+RESTING_MS = 1400
+WIDTH = 900  # of the animation
+
+
+class Capture:
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        self.frames: list[tuple[Image.Image, int]] = []
+
+    def refined(self, samples: int) -> None:
+        """Waits until the whole picture has so many samples."""
+        status = self.page.get_by_test_id("status")
+        time.sleep(0.4)
+        while True:
+            text = status.text_content() or ""
+            found = re.search(r"(\d+) samples", text)
+            if found and "preview" not in text and int(found[1]) >= samples:
+                return
+            time.sleep(0.1)
+
+    def take(self, milliseconds: int, samples: int = SAMPLES) -> None:
+        self.refined(samples)
+        picture = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
+        self.frames.append((picture, milliseconds))
+
+    def each(self, steps: int, act: Callable[[], None], samples: int = SAMPLES // 3) -> None:
+        """A movement: act, and a frame, again and again; at its end the picture rests."""
+        for _ in range(steps):
+            act()
+            self.take(SHOWN_MS, samples)
+        self.take(RESTING_MS)
+
+    def save(self, path: Path) -> None:
+        height = round(WIDTH * SIZE["height"] / SIZE["width"])
+        small = [frame.resize((WIDTH, height), Image.Resampling.LANCZOS) for frame, _ in self.frames]
+        times = [milliseconds for _, milliseconds in self.frames]
+        small[0].save(path, save_all=True, append_images=small[1:], duration=times, loop=0, quality=60, method=6)
+
+
+def act_out(capture: Capture) -> None:
+    """Closes the iris, focuses on the background, bends a face until the picture is spoilt, and takes it back."""
+    page = capture.page
+    page.get_by_test_id("resolution").click()
+    page.get_by_role("option", name="480 pixels across").click()
+    capture.take(RESTING_MS)
+    canvas = page.locator("canvas.rc-canvas")
+    canvas.focus()
+    capture.each(9, lambda: page.keyboard.press("]"))
+    capture.each(9, lambda: page.keyboard.press("["))
+    box = canvas.bounding_box()
+    assert box
+    page.mouse.click(box["x"] + 0.55 * box["width"], box["y"] + 0.3 * box["height"])
+    capture.take(RESTING_MS)
+    page.mouse.click(box["x"] + 0.44 * box["width"], box["y"] + 0.65 * box["height"])
+    capture.take(RESTING_MS)
+    page.locator('polyline.rc-hit[data-surface="2"]').first.dispatch_event("pointerdown")
+    handle = page.locator('[data-handle="radius_mm"]').bounding_box()
+    assert handle
+    x, y = handle["x"] + handle["width"] / 2, handle["y"] + handle["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    place = iter(range(1, 100))
+    capture.each(6, lambda: page.mouse.move(x - 1.2 * next(place), y))
+    page.mouse.up()
+    page.get_by_role("button", name="Undo").click()
+    capture.take(RESTING_MS)
+
+
+def main() -> None:
+    folder = Path(sys.argv[1])
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [sys.executable, "-m", "realcam", "view", "--no-browser", "--port", str(port)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server, sync_playwright() as playwright:
+        try:
+            assert server.stdout and "lens bench" in server.stdout.readline()
+            browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
+            page = browser.new_page(viewport=SIZE, color_scheme="dark")
+            page.goto(f"http://127.0.0.1:{port}/")
+            capture = Capture(page)
+            act_out(capture)
+            capture.save(folder / "lens-bench.webp")
+            page.set_viewport_size({"width": 1280, "height": 1240})
+            capture.refined(96)
+            still = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+            still.save(folder / "lens-bench.jpg", quality=85)
+            browser.close()
+        finally:
+            server.terminate()
+
+
+if __name__ == "__main__":
+    main()
