@@ -158,6 +158,7 @@ def main() -> None:
     parser.add_argument("--device", default="auto")
     parser.add_argument("--shot", type=Path, help="shot file, or a pickled Shot; the demo if left out")
     parser.add_argument("--resolution", type=int, nargs=2, help="pixels across and down, of a film as wide as it was")
+    parser.add_argument("--plain", action="store_true", help="without effects, instead of those that are planned")
     parser.add_argument("--idle", action="store_true", help="wait until the picture is done, and measure the idle CPU")
     parser.add_argument("--serve", type=int, help=argparse.SUPPRESS)
     parser.add_argument("-o", "--output", type=Path)
@@ -169,6 +170,8 @@ def main() -> None:
             wide = shot.camera.film.width_mm
             film = shot.camera.film.replace(height_mm=wide * height / width, resolution=(width, height))
             shot = replace(shot, camera=shot.camera.replace(film=film))
+        if options.plain:
+            shot = replace(shot, effects=())
         serve(shot, options.device, options.serve)
         return
     port = free_port()

@@ -19,11 +19,11 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
-SIZE = {"width": 1280, "height": 900}
-SAMPLES = 24  # of each picture that is shown
+SIZE = {"width": 1280, "height": 1120}  # the picture and the drawing of the lens are seen together
+SAMPLES = 16  # of each picture that is shown
 SHOWN_MS = 260  # of a step of a movement
 RESTING_MS = 1400
-WIDTH = 900  # of the animation
+WIDTH = 860  # of the animation
 
 
 class Capture:
@@ -105,7 +105,7 @@ def main() -> None:
             capture = Capture(page)
             act_out(capture)
             capture.save(folder / "lens-bench.webp")
-            page.set_viewport_size({"width": 1280, "height": 1240})
+            page.set_viewport_size({"width": 1280, "height": 1400})
             capture.refined(96)
             still = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
             still.save(folder / "lens-bench.jpg", quality=85)
