@@ -92,7 +92,7 @@ class LensBench:
         self._other: CameraControls | None = None  # what the picture is compared with
         self.comparison = "nothing"
         self._make_loop = make_loop
-        self._lock = threading.RLock()
+        self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
         self._loops = {"a": self._new_loop("a")}
         self._drawing = NewestTask("realcam-drawing", delay_s=0.02)  # after the picture's first frame
         # Both take as long as some frames of the picture.
@@ -172,7 +172,7 @@ class LensBench:
         """Pixels across; the height follows from the film."""
         film = self.controls.film
         height = max(1, round(width * film.height_mm / film.width_mm))
-        return self.change(film=film.replace(resolution=(width, height)))
+        return self._take(lambda: replace(self.controls, film=film.replace(resolution=(width, height))))
 
     # The lens.
 
@@ -182,7 +182,11 @@ class LensBench:
         film = Film.for_lens(lens, None, (width, max(1, round(width * lens.film_mm[1] / lens.film_mm[0]))))
 
         def controls() -> CameraControls:
-            return replace(self.controls.with_lens(lens), film=film).focused_within_reach()
+            fitted = replace(self.controls.with_lens(lens), film=film)
+            try:
+                return fitted.focused_within_reach()
+            except InputError:  # too near for it, and its file does not say what its nearest focus is
+                return replace(fitted, focus_m=math.inf)
 
         if not self._take(controls):
             return False
@@ -203,10 +207,17 @@ class LensBench:
         return True
 
     def undo(self) -> bool:
-        return self._take(lambda: self.controls.with_lens(self.history.undo()).focused_within_reach())
+        return self.history.can_undo and self._step(self.history.undo, self.history.redo)
 
     def redo(self) -> bool:
-        return self._take(lambda: self.controls.with_lens(self.history.redo()).focused_within_reach())
+        return self.history.can_redo and self._step(self.history.redo, self.history.undo)
+
+    def _step(self, there: Callable[[], Lens], back: Callable[[], Lens]) -> bool:
+        lens = there()
+        if self._take(lambda: self.controls.with_lens(lens).focused_within_reach()):
+            return True
+        back()
+        return False
 
     def hover(self, u: float, v: float) -> None:
         """Draws the rays of what is at u, v of the picture."""
@@ -303,9 +314,14 @@ class LensBench:
         )
 
     def _take_frame(self, slot: str, frame: Frame) -> None:
-        if slot == "a" and self.controls.is_automatic:
-            # Not a change by the user: it stays so when the exposure is no longer automatic.
-            self.controls = replace(self.controls, exposure_time_s=frame.exposure_time_s)
+        if slot == "a":
+            with self._lock:
+                before = self.controls
+                if before.is_automatic:
+                    # Not a change by the user: it stays so when the exposure is no longer automatic.
+                    self.controls = replace(before, exposure_time_s=frame.exposure_time_s)
+            if before.is_automatic and abs(math.log2(frame.exposure_time_s / before.exposure_time_s)) > 0.01:
+                self.listeners.controls()
         self.listeners.frame(slot, frame)
 
     def _take(self, changed: Callable[[], CameraControls]) -> bool:
@@ -319,7 +335,10 @@ class LensBench:
             surface = error.surface - 1 if isinstance(error, LensFileError) and error.surface > 0 else None
             self._set_problem(Problem(str(error), surface))
             return False
-        self.controls = controls
+        with self._lock:
+            if before.is_automatic and controls.is_automatic:
+                controls = replace(controls, exposure_time_s=self.controls.exposure_time_s)
+            self.controls = controls
         self._set_problem(None)
         self._photograph()
         lens_changed = (before.lens, before.zoom, before.focus_m, before.f_number) != (
@@ -406,6 +425,8 @@ class LensBench:
 
     def _ask_for_plan(self) -> None:
         if "auto" not in self.switches.of.values():
+            self.plan = None
+            self._planning.submit(lambda: self.listeners.plan(None, ""))  # how the switches stand
             return
         controls = self.controls
         named = [("-" if state == "off" else "") + name for name, state in self.switches.of.items() if state != "auto"]

@@ -1,0 +1,381 @@
+"""The lens bench without its page: what actions make of camera, picture and files."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import realcam as rc
+
+pytest.importorskip("simplejpeg")
+
+from realcam.viewer import lens_edits, saving
+from realcam.viewer.camera_controls import CameraControls
+from realcam.viewer.lens_bench import EFFECTS, LensBench, Problem
+
+from . import bench_shots
+
+pytestmark = pytest.mark.pictures
+
+
+class Told:
+    """What a page would be told."""
+
+    def __init__(self, bench: LensBench) -> None:
+        self.bench = bench
+        self.frames: list[Any] = []
+        self.lenses: list[dict[str, Any]] = []
+        self.problems: list[Problem | None] = []
+        self.plans: list[Any] = []
+        self.news = threading.Condition()
+        bench.listeners.frame = lambda slot, frame: self.take(self.frames, (slot, frame))
+        bench.listeners.lens = lambda view: self.take(self.lenses, view)
+        bench.listeners.problem = lambda problem: self.take(self.problems, problem)
+        bench.listeners.plan = lambda plan, note: self.take(self.plans, (plan, note))
+
+    def take(self, where: list[Any], what: Any) -> None:
+        with self.news:
+            where.append(what)
+            self.news.notify_all()
+
+    def until(self, has_come: Callable[[], object]) -> None:
+        with self.news:
+            assert self.news.wait_for(has_come, 60)
+
+    def until_final(self, slot: str = "a") -> Any:
+        """The last frame of what was asked for last."""
+
+        def frames() -> list[Any]:
+            return [frame for s, frame in self.frames if s == slot]
+
+        wanted = self.bench._loops[slot]._serial
+        self.until(lambda: frames() and frames()[-1].is_final and frames()[-1].serial >= wanted)
+        return frames()[-1]
+
+
+@pytest.fixture
+def shot_path(tmp_path: Path) -> Path:
+    return bench_shots.write_panels_shot(tmp_path)
+
+
+@pytest.fixture
+def bench(shot_path: Path) -> Iterator[LensBench]:
+    made = LensBench(rc.Shot.load(shot_path), device="cpu")
+    yield made
+    made.close()
+
+
+def codes(bench: LensBench) -> np.ndarray:
+    image = bench.image()
+    return rc._core.develop(image.pixels, image.camera.iso)
+
+
+def state(bench: LensBench) -> tuple[Any, ...]:
+    return bench.controls, bench.history.lens, bench.history.can_undo, bench.history.can_redo
+
+
+def test_the_bench_begins_with_the_shot(bench: LensBench, shot_path: Path) -> None:
+    shot = rc.Shot.load(shot_path)
+    assert bench.controls.camera().film == shot.camera.film
+    assert bench.controls.focus_m == pytest.approx(bench_shots.MIDDLE_M)
+    told = Told(bench)
+    bench.show()
+    told.until_final()
+    told.until(lambda: told.lenses)
+    picture = rc.render(shot.scene, shot.camera, effects=(), spp=256, device="cpu")
+    difference = codes(bench).astype(float) - rc._core.develop(picture.pixels, 100)
+    assert math.sqrt(np.mean(difference**2)) < 2  # refined to the noise of one code
+
+
+def test_a_click_focuses_at_its_point(bench: LensBench) -> None:
+    told = Told(bench)
+    bench.show()
+    told.until_final()
+    for u, distance in ((1 / 6, bench_shots.NEAR_M), (5 / 6, bench_shots.FAR_M), (1 / 2, bench_shots.MIDDLE_M)):
+        assert bench.focus_at(u, 0.5)
+        assert bench.controls.focus_m == pytest.approx(distance, rel=0.01)
+        told.until_final()
+        sharp = bench_shots.sharpness(codes(bench))
+        assert np.argmax(sharp) == round(3 * u - 0.5)
+
+
+def test_metering_makes_its_point_grey_however_often(bench: LensBench) -> None:
+    """Middle grey is 10 lx s over the ISO speed (ISO 12232)."""
+    told = Told(bench)
+    bench.show()
+    told.until_final()
+    times = []
+    for _ in range(3):
+        assert bench.meter_at(0.5, 0.5)
+        times.append(bench.controls.exposure_time_s)
+        image = bench.image()
+    assert times == pytest.approx([times[0]] * 3, rel=0.02)
+    spot = image.pixels[38:43, 58:63] @ np.array([0.2126, 0.7152, 0.0722])
+    assert spot.mean() == pytest.approx(0.1, rel=0.15)
+
+
+def test_rings_turn_by_thirds_and_stop_at_their_ends(bench: LensBench) -> None:
+    bench.turn("aperture", 100)
+    assert bench.controls.f_number == 64
+    bench.turn("aperture", -100)
+    assert bench.controls.camera().lens.first_order().f_number == pytest.approx(2.03, abs=0.01)
+    bench.turn("aperture", 6)
+    assert bench.controls.f_number == pytest.approx(4)  # 2.03, 2.2, 2.5, 2.8, 3.2, 3.5, 4
+    bench.change(iso=100)
+    bench.turn("iso", 3)
+    assert bench.controls.iso == 200
+    bench.change(exposure_time_s=1 / 64)
+    bench.turn("shutter", -6)
+    assert bench.controls.exposure_time_s == 1 / 256
+    with pytest.raises(rc.InputError, match="no ring"):
+        bench.turn("barrel", 1)
+
+
+IMPOSSIBLE: dict[str, Callable[[LensBench], object]] = {
+    "a radius": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 2, "radius_mm", 1.0)),
+    "a stop that is deleted": lambda b: b.edit(lambda lens: lens_edits.without(lens, lens.stop_index)),
+    "a glass": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 0, "glass", "nothing")),
+    "a focus": lambda b: b.change(focus_m=0.02),
+    "a focus that is none": lambda b: b.change(focus_m=math.nan),
+    "an exposure": lambda b: b.change(exposure_time_s=-1.0),
+    "a speed": lambda b: b.change(iso=0.0),
+    "a model": lambda b: b.change(model="fisheye"),
+    "a zoom position": lambda b: b.change(zoom="200mm"),
+    "a resolution": lambda b: b.set_resolution(0),
+    "a place": lambda b: b.dolly(1e5),
+}
+
+
+@pytest.mark.parametrize("what", IMPOSSIBLE)
+def test_what_is_impossible_leaves_all_as_it_was(bench: LensBench, what: str) -> None:
+    told = Told(bench)
+    assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.8))
+    before = state(bench)
+    assert IMPOSSIBLE[what](bench) is False
+    assert state(bench) == before
+    assert told.problems[-1] is not None
+    assert told.problems[-1].message
+    assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.9))
+    assert told.problems[-1] is None
+    assert bench.undo()
+    assert bench.controls.lens == before[1]
+
+
+def test_the_surface_to_blame_is_told(bench: LensBench) -> None:
+    IMPOSSIBLE["a radius"](bench)
+    assert bench.problem is not None
+    assert bench.problem.surface == 2  # the third
+    assert "surface 3" in bench.problem.message
+    IMPOSSIBLE["a focus"](bench)
+    assert bench.problem.surface is None
+
+
+def test_an_undo_that_cannot_be_leaves_the_history(bench: LensBench) -> None:
+    """A lens that was possible may be none with the camera as it has been set since."""
+    first = bench.controls.lens
+    assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.9))
+    edited = bench.controls.lens
+    real = CameraControls.camera
+
+    def picky(self: CameraControls) -> rc.Camera:
+        if self.lens == first:
+            raise rc.InputError("not with this film")
+        return real(self)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(CameraControls, "camera", picky)
+        assert not bench.undo()
+        assert (bench.controls.lens, bench.history.lens) == (edited, edited)
+        assert bench.history.can_undo
+    assert bench.undo()
+    assert bench.controls.lens == first
+
+
+def test_automatic_exposure_does_not_undo_what_the_user_does(bench: LensBench) -> None:
+    """The picture's thread writes the time that it has metered while the user turns other rings."""
+    told = Told(bench)
+    bench.change(is_automatic=True)
+    for k in range(60):
+        focus = 1.0 + 0.01 * k
+        assert bench.change(focus_m=focus)
+        time.sleep(0.002)
+        assert bench.controls.focus_m == focus
+    told.until_final()
+    assert bench.controls.focus_m == focus
+    assert bench.controls.exposure_time_s == told.frames[-1][1].exposure_time_s
+
+
+def test_another_lens_brings_its_film_and_keeps_the_rings(bench: LensBench) -> None:
+    bench.change(f_number=5.6)
+    assert bench.set_lens(rc.Lens.load("phone-4mm"))
+    film = bench.controls.film
+    assert film.width_mm < 10
+    assert film.resolution[0] == bench_shots.WIDTH
+    assert bench.controls.f_number == 5.6
+    assert bench.set_lens(rc.Lens.load("macro-105mm"))
+    assert bench.controls.focus_m == pytest.approx(bench_shots.MIDDLE_M)
+    bench.change(focus_m=0.45)
+    assert bench.set_lens(rc.Lens.load("telephoto-200mm-inner-focus"))
+    assert bench.controls.focus_m == 2.5  # its nearest
+    assert not bench.history.can_undo
+
+
+@pytest.mark.parametrize("name", rc.lens_names())
+def test_every_bundled_lens_can_be_put_on_the_camera(bench: LensBench, name: str) -> None:
+    told = Told(bench)
+    bench.show()
+    assert bench.set_lens(rc.Lens.load(name)), told.problems
+    assert math.isfinite(bench.apertures.values[0])
+    told.until(lambda: told.lenses and told.lenses[-1]["name"] == name)
+
+
+def test_switches_name_the_effects(bench: LensBench) -> None:
+    told = Told(bench)
+    assert bench.effect_words() == []
+    bench.show()
+    told.until(lambda: told.plans)  # how the switches stand, where nothing is left to the planner
+    bench.switch("dispersion", "on")
+    assert bench.effect_words() == ["dispersion"]
+    for effect in EFFECTS:
+        bench.switch(effect, "auto")
+    assert bench.effect_words() == ["auto"]
+    bench.switch("dispersion", "off")
+    assert bench.effect_words() == ["auto", "-dispersion"]
+    with pytest.raises(rc.InputError):
+        bench.switch("gravity", "on")
+
+
+def test_a_second_picture_to_compare_with(bench: LensBench) -> None:
+    told = Told(bench)
+    bench.change(f_number=16.0, exposure_time_s=1.2)
+    bench.compare("these settings")
+    told.until_final("b")
+    bench.turn("aperture", -100)
+    bench.change(exposure_time_s=0.02)
+    told.until_final()
+    assert bench_shots.sharpness(codes(bench))[0] < 25
+    image = bench.image("b")
+    assert bench_shots.sharpness(rc._core.develop(image.pixels, 100))[0] > 35
+    bench.compare("nothing")
+    with pytest.raises(rc.InputError):
+        bench.compare("elsewhere")
+
+
+# Files.
+
+
+def saved_again(bench: LensBench, source: Path, path: Path) -> rc.Shot:
+    saving.save_shot(source, bench.controls, bench.effect_words(), path)
+    return rc.Shot.load(path)
+
+
+def assert_same_camera(one: rc.Camera, other: rc.Camera) -> None:
+    assert one.film == other.film
+    assert (one.position, one.look_at, one.up) == (other.position, other.look_at, other.up)
+    assert (one.exposure_time_s, one.iso, one.model) == (other.exposure_time_s, other.iso, other.model)
+    assert one.lens.zoom_position == other.lens.zoom_position
+    assert one.lens.focus_distance_m == pytest.approx(other.lens.focus_distance_m, rel=1e-9)
+    assert one.lens.film_distance_mm == pytest.approx(other.lens.film_distance_mm, rel=1e-9)
+    assert one.lens.stop_semi_diameter_mm == pytest.approx(other.lens.stop_semi_diameter_mm, rel=1e-9)
+    for mine, others in zip(one.lens.surfaces, other.lens.surfaces, strict=True):
+        assert mine.replace(thickness_mm=0) == others.replace(thickness_mm=0)
+        assert mine.thickness_mm == pytest.approx(others.thickness_mm, rel=1e-9)
+
+
+CHANGES: dict[str, Callable[[LensBench], object]] = {
+    "nothing": lambda b: True,
+    "the rings": lambda b: b.change(f_number=5.6, focus_m=3.0, exposure_time_s=0.5, iso=400, model="thin"),
+    "infinity": lambda b: b.change(focus_m=math.inf),
+    "the pose": lambda b: b.orbit(0.1, 0.1) and b.pan(0.1, 0) and b.dolly(1),
+    "another lens": lambda b: b.set_lens(rc.Lens.load("tessar-50mm")),
+    "a phone": lambda b: b.set_lens(rc.Lens.load("phone-4mm")),
+    "a zoom": lambda b: b.set_lens(rc.Lens.load("zoom-70-210mm")) and b.change(zoom="137mm", f_number=8.0),
+    "a lens of which a group moves": lambda b: b.set_lens(rc.Lens.load("macro-105mm")) and b.change(focus_m=0.45),
+    "an edit": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 0, "radius_mm", 30.0)),
+    "an asphere": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 0, "a4", 1e-7)),
+    "an effect": lambda b: b.switch("dispersion", "on") or True,
+}
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_a_saved_shot_is_the_same_camera(bench: LensBench, shot_path: Path, tmp_path: Path, what: str) -> None:
+    assert CHANGES[what](bench)
+    other = tmp_path / "elsewhere"
+    other.mkdir()
+    again = saved_again(bench, shot_path, other / "saved.toml")
+    assert_same_camera(again.camera, bench.controls.camera())
+    assert list(again.effects) == bench.effect_words()
+    # And once more, from what was saved: nothing drifts, and no lens is written anew.
+    bench_of_it = LensBench(again, device="cpu")
+    try:
+        assert_same_camera(saved_again(bench_of_it, other / "saved.toml", other / "twice.toml").camera, again.camera)
+    finally:
+        bench_of_it.close()
+
+
+def test_a_shot_is_saved_over_itself(bench: LensBench, shot_path: Path) -> None:
+    bench.change(iso=800)
+    assert saved_again(bench, shot_path, shot_path).camera.iso == 800
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "blades = 6\nblade_rotation_deg = 10\n",
+        "blades = 6\nf_number = 4\n",
+        "f_number = 2.8\n",
+    ],
+)
+def test_what_a_shot_says_of_its_diaphragm_is_kept(tmp_path: Path, more: str) -> None:
+    path = bench_shots.write_panels_shot(tmp_path, more=more)
+    shot = rc.Shot.load(path)
+    bench = LensBench(shot, device="cpu")
+    try:
+        again = saved_again(bench, path, tmp_path / "saved.toml")
+    finally:
+        bench.close()
+    assert_same_camera(again.camera, shot.camera)
+    assert again.camera.lens.iris_blades == shot.camera.lens.iris_blades
+
+
+@pytest.mark.filterwarnings("ignore:not in the file")
+@pytest.mark.parametrize("suffix", [".toml", ".zmx", ".seq"])
+def test_a_saved_lens_is_the_same_lens(bench: LensBench, tmp_path: Path, suffix: str) -> None:
+    bench.edit(lambda lens: lens_edits.with_value(lens, 0, "radius_mm", 30.0))
+    lens = bench.controls.lens
+    path = tmp_path / f"lens{suffix}"
+    saving.save_lens(lens, path)
+    again = rc.Lens.load(path)
+    assert again.first_order().effective_focal_length_mm == pytest.approx(
+        lens.first_order().effective_focal_length_mm, rel=1e-6
+    )
+    with pytest.raises(rc.InputError, match="wanted"):
+        saving.save_lens(lens, tmp_path / "lens.txt")
+
+
+def test_pictures_of_all_kinds(bench: LensBench, tmp_path: Path) -> None:
+    told = Told(bench)
+    bench.show()
+    told.until_final()
+    image = bench.image()
+    for suffix in saving.PICTURE_SUFFIXES:
+        saving.save_picture(image, tmp_path / f"picture{suffix}", "film")
+    oiio = pytest.importorskip("OpenImageIO")
+    png = oiio.ImageBuf(str(tmp_path / "picture.png")).get_pixels(oiio.UINT8)[..., :3]
+    assert np.array_equal(png, rc._core.develop(image.pixels, image.camera.iso))
+    exr = oiio.ImageBuf(str(tmp_path / "picture.exr")).get_pixels(oiio.FLOAT)[..., :3]
+    assert np.allclose(exr, image.pixels, rtol=2e-3) or np.allclose(
+        exr / exr.max(), image.pixels / image.pixels.max(), rtol=2e-3
+    )
+    rawpy = pytest.importorskip("rawpy")
+    with rawpy.imread(str(tmp_path / "picture.dng")) as raw:
+        assert raw.raw_image_visible.shape == image.pixels.shape[:2]
+    for name in ("picture.jpg", "picture", "picture.png.exe"):
+        with pytest.raises(rc.InputError, match="wanted"):
+            saving.save_picture(image, tmp_path / name, "film")
