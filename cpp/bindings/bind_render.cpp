@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "../camera/develop.hpp"
+#include "../camera/code_table.hpp"
 #include "../devices/devices.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/metering.hpp"
@@ -131,10 +131,10 @@ py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso,
     std::uint8_t* to = codes.mutable_data();
     constexpr py::ssize_t kBetweenSignals = 1 << 20;  // some ten milliseconds
     const Unlocked unlocked;
+    const CodeTable code(iso, curve);
     for (py::ssize_t done = 0; done < exposure.size(); done += kBetweenSignals) {
         heed_signals();
-        for (py::ssize_t i = done; i < std::min(done + kBetweenSignals, exposure.size()); ++i)
-            to[i] = srgb_code(apply_tone_curve(curve, sensor_value(static_cast<double>(from[i]), iso)));
+        for (py::ssize_t i = done; i < std::min(done + kBetweenSignals, exposure.size()); ++i) to[i] = code(from[i]);
     }
     return codes;
 }

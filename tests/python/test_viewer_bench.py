@@ -82,7 +82,7 @@ def state(bench: LensBench) -> tuple[Any, ...]:
 
 def test_the_bench_begins_with_the_shot(bench: LensBench, shot_path: Path) -> None:
     shot = rc.Shot.load(shot_path)
-    assert bench.controls.camera().film == shot.camera.film
+    assert bench.controls.camera.film == shot.camera.film
     assert bench.controls.focus_m == pytest.approx(bench_shots.MIDDLE_M)
     told = Told(bench)
     bench.show()
@@ -124,7 +124,7 @@ def test_rings_turn_by_thirds_and_stop_at_their_ends(bench: LensBench) -> None:
     bench.turn("aperture", 100)
     assert bench.controls.f_number == 64
     bench.turn("aperture", -100)
-    assert bench.controls.camera().lens.first_order().f_number == pytest.approx(2.03, abs=0.01)
+    assert bench.controls.camera.lens.first_order().f_number == pytest.approx(2.03, abs=0.01)
     bench.turn("aperture", 6)
     assert bench.controls.f_number == pytest.approx(4)  # 2.03, 2.2, 2.5, 2.8, 3.2, 3.5, 4
     bench.change(iso=100)
@@ -181,7 +181,7 @@ def test_an_undo_that_cannot_be_leaves_the_history(bench: LensBench) -> None:
     first = bench.controls.lens
     assert bench.edit(lambda lens: lens_edits.with_value(lens, 0, "thickness_mm", 3.9))
     edited = bench.controls.lens
-    real = CameraControls.camera
+    real = CameraControls.camera.func
 
     def picky(self: CameraControls) -> rc.Camera:
         if self.lens == first:
@@ -189,7 +189,7 @@ def test_an_undo_that_cannot_be_leaves_the_history(bench: LensBench) -> None:
         return real(self)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(CameraControls, "camera", picky)
+        patch.setattr(CameraControls, "camera", property(picky))
         assert not bench.undo()
         assert (bench.controls.lens, bench.history.lens) == (edited, edited)
         assert bench.history.can_undo
@@ -309,7 +309,7 @@ def test_a_saved_shot_is_the_same_camera(bench: LensBench, shot_path: Path, tmp_
     other = tmp_path / "elsewhere"
     other.mkdir()
     again = saved_again(bench, shot_path, other / "saved.toml")
-    assert_same_camera(again.camera, bench.controls.camera())
+    assert_same_camera(again.camera, bench.controls.camera)
     assert list(again.effects) == bench.effect_words()
     # And once more, from what was saved: nothing drifts, and no lens is written anew.
     bench_of_it = LensBench(again, device="cpu")

@@ -121,7 +121,7 @@ def test_the_aperture_stays_where_it_is_while_lenses_change() -> None:
 
 def test_a_zoom_position_stays_where_the_lens_has_it() -> None:
     at_137 = replace(controls("zoom-70-210mm"), zoom="137mm")
-    assert at_137.camera().lens.first_order().effective_focal_length_mm == pytest.approx(137, rel=0.02)
+    assert at_137.camera.lens.first_order().effective_focal_length_mm == pytest.approx(137, rel=0.02)
     assert at_137.with_lens(rc.Lens.load("zoom-70-210mm")).zoom == "137mm"
     assert at_137.with_lens(rc.Lens.load("zoom-70-200mm")).zoom == "70mm"
     assert at_137.with_lens(rc.Lens.load("tessar-50mm")).zoom is None
@@ -130,9 +130,9 @@ def test_a_zoom_position_stays_where_the_lens_has_it() -> None:
 def test_focus_stops_at_the_nearest() -> None:
     now = controls("macro-105mm", focus_m=0.2)
     with pytest.raises(rc.InputError):
-        now.camera()
+        now.camera  # noqa: B018
     assert now.focused_within_reach().focus_m == pytest.approx(0.41)
-    assert now.focused_within_reach().camera().lens.focus_distance_m == pytest.approx(0.41)
+    assert now.focused_within_reach().camera.lens.focus_distance_m == pytest.approx(0.41)
     far = controls("macro-105mm", focus_m=3.0)
     assert far.focused_within_reach() is far
 
@@ -150,7 +150,7 @@ def test_controls_of_a_camera_make_that_camera(name: str) -> None:
     near = max(lens.nearest_focus_m * 1.2, 60e-3 * abs(lens.first_order().effective_focal_length_mm))
     made = lens.stopped_down(1.5 * wide).focused(near)
     camera = rc.Camera(made, film=FILM, position=(1, 2, 3), look_at=(0, 0, 1), exposure_time_s=0.1, iso=400)
-    again = CameraControls.of(camera).camera()
+    again = CameraControls.of(camera).camera
     assert again.position == camera.position
     assert (again.exposure_time_s, again.iso, again.film) == (camera.exposure_time_s, camera.iso, camera.film)
     assert again.lens.focus_distance_m == pytest.approx(camera.lens.focus_distance_m)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from .._core import Camera, Film, InputError, Lens
 from .pose import Pose
@@ -45,12 +46,12 @@ class CameraControls:
             model=camera.model,
         )
 
-    @property
+    @cached_property
     def body(self) -> Lens:
         """The lens at its zoom position, at its design's focus, wide open."""
         return self.lens if self.zoom is None else self.lens.zoomed(self.zoom)
 
-    @property
+    @cached_property
     def set_lens(self) -> Lens:
         """With its rings set. Raises InputError where the lens cannot be focused so, or is none."""
         # The stop first: f-numbers are of the lens at infinity, and a focusing group that has moved makes another lens.
@@ -59,6 +60,7 @@ class CameraControls:
             lens = lens.stopped_down(self.f_number)
         return lens.focused(self.focus_m)
 
+    @cached_property
     def camera(self) -> Camera:
         """Raises InputError."""
         return Camera(

@@ -243,7 +243,7 @@ class LensBench:
         """Shows a second picture: one of COMPARISONS. Raises InputError where its camera makes none."""
         other = self._compared(with_what, lens)
         if other is not None:
-            other.camera()
+            other.camera  # noqa: B018
         self.comparison, self._other = with_what, other
         if other is None:
             loop = self._loops.pop("b", None)
@@ -274,7 +274,7 @@ class LensBench:
 
     def measure_rungs(self) -> None:
         """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
-        camera = self.controls.camera()
+        camera = self.controls.camera
 
         def measure() -> None:
             self.listeners.rungs([], "measuring ...")
@@ -329,7 +329,7 @@ class LensBench:
         before = self.controls
         try:
             controls = changed()
-            controls.camera()
+            controls.camera  # noqa: B018
         except RealcamError as error:
             # Messages count surfaces from 1.
             surface = error.surface - 1 if isinstance(error, LensFileError) and error.surface > 0 else None
@@ -364,7 +364,7 @@ class LensBench:
         is_full = controls.model == "full"
         names = self.switches.named(self.plan)
         return PictureRequest(
-            camera=controls.camera(),
+            camera=controls.camera,
             effects=tuple(name for name in names if is_full or name == "diffraction"),
             tone=self.shot.tone,
             is_automatic=controls.is_automatic,
@@ -437,7 +437,7 @@ class LensBench:
             try:
                 found = planning.plan(
                     self.shot.scene,
-                    controls.camera().replace(model="full"),
+                    controls.camera.replace(model="full"),
                     device=self._device,
                     seed=self.shot.seed,
                     max_bounces=self.shot.max_bounces,

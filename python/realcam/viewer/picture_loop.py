@@ -9,7 +9,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -27,7 +27,9 @@ _log = logging.getLogger(__name__)
 
 _PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
 _QUICK_S = 0.008  # for so long it takes more than one sample, on a GPU: 60 frames a second remain
-_REFINING_S = 0.120  # what a frame may take that only refines, as long as it is more than a sample
+_REFINING_S = 0.040  # what a frame may take that only refines, as long as it is more than a sample
+_RESTING_S = 0.025  # after the first frame of a change: moves come so often, and what refines would be given up
+_FEW_PIXELS = 50_000  # are developed here sooner than one more sample of them is taken
 _SLOW_S = 0.050  # a frame that takes longer must not keep the user waiting for what needs no new samples
 _MOST_SPP = 64  # of one frame, so that a fast GPU shows how a picture grows
 _DIVISORS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)  # of the width: few, because each size is prepared anew
@@ -51,6 +53,7 @@ class _Growing:
     spent_s: float = 0.0  #: by these
     exposure_time_s: float = 0.0  #: with which the samples were developed last
     is_final: bool = False
+    refines_from: float = 0.0  #: time.perf_counter()
     is_given_up: bool = False  #: and its samples with it
     noise_codes: float | None = None
     costs: Costs | None = None
@@ -80,7 +83,7 @@ class _Question:
 class PictureLoop:
     """Photographs a scene for one window.
 
-    on_frame and on_error (with the request's serial and a message) are called on the loop's thread. submit() may come
+    on_frame and on_error (with the request's serial and a message) are called on threads of the loop. submit() may come
     as often as a mouse moves: every request that is begun gets its first frame, and of those that come meanwhile the
     newest is next.
     """
@@ -111,6 +114,8 @@ class PictureLoop:
         self._first_rates: deque[float] = deque([1e6], maxlen=5)
         self._rates: deque[float] = deque([1e6], maxlen=5)
         self.jpeg_quality = 85
+        self._encoder = ThreadPoolExecutor(1, "realcam-jpeg")
+        self._encoding: Future[None] | None = None
         self._thread = threading.Thread(target=self._run, name="realcam-picture", daemon=True)
         self._thread.start()
 
@@ -142,6 +147,7 @@ class PictureLoop:
             self._wake.notify()
         self._live.cancel()
         self._thread.join()
+        self._encoder.shutdown()
 
     def _ask(self, question: Callable[[], T], needs_samples: bool) -> Future[T]:
         answer: Future[T] = Future()
@@ -184,9 +190,15 @@ class PictureLoop:
     def _wait_for_work(self) -> bool:
         with self._wake:
             while not self._is_closed:
-                if self._pending or self._questions or (self._picture and not self._picture.is_final):
+                if self._pending or self._questions:
                     return True
-                self._wake.wait()
+                if self._picture and not self._picture.is_final:
+                    resting = self._picture.refines_from - time.perf_counter()
+                    if resting <= 0:
+                        return True
+                    self._wake.wait(resting)
+                else:
+                    self._wake.wait()
         return False
 
     def _answerable(self) -> list[_Question]:
@@ -231,6 +243,7 @@ class PictureLoop:
         affordable = _QUICK_S * statistics.median(self._first_rates)
         spp = max(1, min(_MOST_SPP, int(affordable / math.prod(picture.size))))
         codes = self._shoot(picture, spp)
+        picture.refines_from = time.perf_counter() + _RESTING_S
         if request.is_automatic and self._meter(picture):
             self._develop(picture)
         else:
@@ -344,6 +357,9 @@ class PictureLoop:
 
     def _develop(self, picture: _Growing) -> None:
         """Shows the samples that are there with another exposure."""
+        if not picture.kept and math.prod(picture.size) > _FEW_PIXELS:
+            self._show(picture, self._shoot(picture, 1))  # the device takes a sample and develops in less time
+            return
         exposure, _ = self._arrays(picture)
         ratio = self._camera(picture).exposure_time_s / picture.exposure_time_s
         self._show(picture, develop(exposure * np.float32(ratio), picture.request.camera.iso, picture.request.tone))
@@ -423,24 +439,30 @@ class PictureLoop:
 
     def _show(self, picture: _Growing, codes: NDArray[np.uint8]) -> None:
         whole = picture.request.camera.film.resolution
-        jpeg = simplejpeg.encode_jpeg(codes, quality=self.jpeg_quality, colorsubsampling="420")
-        self._on_frame(
-            Frame(
-                serial=picture.serial,
-                jpeg=jpeg,
-                width=codes.shape[1],
-                height=codes.shape[0],
-                whole_width=whole[0],
-                whole_height=whole[1],
-                samples=picture.samples,
-                is_preview=codes.shape[1::-1] != whole,
-                is_final=picture.is_final,
-                noise_codes=picture.noise_codes,
-                seconds=time.perf_counter() - picture.begun,
-                exposure_time_s=self._camera(picture).exposure_time_s,
-                costs=picture.costs,
-            )
+        frame = Frame(
+            serial=picture.serial,
+            jpeg=b"",
+            width=codes.shape[1],
+            height=codes.shape[0],
+            whole_width=whole[0],
+            whole_height=whole[1],
+            samples=picture.samples,
+            is_preview=codes.shape[1::-1] != whole,
+            is_final=picture.is_final,
+            noise_codes=picture.noise_codes,
+            seconds=time.perf_counter() - picture.begun,
+            exposure_time_s=self._camera(picture).exposure_time_s,
+            costs=picture.costs,
         )
+        # While the next frame is taken; one at a time, so that they stay in their order.
+        before, self._encoding = self._encoding, None
+        if before:
+            before.result()
+        self._encoding = self._encoder.submit(self._encode, frame, codes)
+
+    def _encode(self, frame: Frame, codes: NDArray[np.uint8]) -> None:
+        jpeg = simplejpeg.encode_jpeg(codes, quality=self.jpeg_quality, colorsubsampling="420")
+        self._on_frame(replace(frame, jpeg=jpeg))
 
 
 def _costs(stats: RenderStats, seconds: float) -> Costs:
