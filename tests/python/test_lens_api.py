@@ -113,6 +113,12 @@ def test_a_name_with_a_point_is_a_file_where_there_is_one(tmp_path: Path, monkey
     assert rc.Lens.load("tessar-50mm").first_order().effective_focal_length_mm == pytest.approx(49.94, abs=0.01)
 
 
+def test_glasses_are_called_by_their_numbers() -> None:
+    labels = [surface.material.label for name in rc.lens_names() for surface in rc.Lens.load(name).surfaces]
+    assert "1.658 / 57" in labels
+    assert not [label for label in labels if label.endswith(".") or ". " in label]
+
+
 def test_an_f_number_is_that_of_the_lens_at_infinity() -> None:
     lens = rc.Lens.load("telephoto-200mm-inner-focus")
     near = lens.focused(3.0)
