@@ -12,7 +12,8 @@
 namespace realcam::io {
 namespace {
 
-/// The catalogue that a file means: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI", "MISC"; empty for one that is not known.
+/// The catalogue that a file means: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI", "MISC"; empty for one that is not
+/// known.
 std::string maker_of(const std::string& catalogue) {
     const std::string word = upper_case(catalogue);
     for (const char* maker : {"schott", "ohara", "hoya", "cdgm", "hikari", "sumita"})

@@ -165,8 +165,8 @@ inline double f_number_at_infinity(const LensSystem& lens) {
 }
 
 /// The lens with its diaphragm closed to an f-number, of the lens at infinity (exact for paraxial rays), whatever it is
-/// focused on: closing the diaphragm and focusing commute. Throws InputError where the lens is not as fast, or has no f-number. A number 0.5% below the lens's own counts as
-/// wide open: f-numbers are engraved with two digits.
+/// focused on: closing the diaphragm and focusing commute. Throws InputError where the lens is not as fast, or has no
+/// f-number. A number 0.5% below the lens's own counts as wide open: f-numbers are engraved with two digits.
 inline LensSystem stopped_down(LensSystem lens, double f_number) {
     const double full = lens.stop().clear_semi_diameter;
     lens.stop_semi_diameter = full;
@@ -175,8 +175,9 @@ inline LensSystem stopped_down(LensSystem lens, double f_number) {
         throw InputError("the f-number is " + std::to_string(f_number) + "; a positive number is wanted");
     if (!(fastest > 0) || !std::isfinite(fastest))
         throw InputError("lens \"" + lens.name + "\" has no f-number: " +
-                         (first_order(lens, lens.wavelength_nm).is_afocal() ? "it is afocal, parallel light leaves it parallel"
-                                           : "its entrance pupil lies at infinity"));
+                         (first_order(lens, lens.wavelength_nm).is_afocal()
+                              ? "it is afocal, parallel light leaves it parallel"
+                              : "its entrance pupil lies at infinity"));
     if (f_number < 0.995 * fastest) {
         char text[160];
         std::snprintf(text, sizeof text, "f/%.4g is faster than lens \"%s\", which opens to f/%.4g", f_number,
