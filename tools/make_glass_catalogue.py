@@ -38,6 +38,17 @@ MAKERS = [  # catalogue, name in opticalglass, formula, edition of the data shee
     ("sumita", "Sumita", [0, 2, -2, -4, -6, -8], "Sumita, Ver. 12.00.05, 29 July 2020"),
 ]
 
+# What no maker lists, and lens-design programs have in catalogues of mixed materials, by the names that they use.
+# B, and wavelengths in um whose squares are C.
+OTHERS = [
+    (
+        "Fused silica: I. H. Malitson, J. Opt. Soc. Am. 55, 1205 (1965), at 20 C, 0.21 to 3.71 um",
+        ("SILICA", "F_SILICA"),
+        [0.6961663, 0.4079426, 0.8974794],
+        [0.0684043, 0.1162414, 9.896161],
+    ),
+]
+
 
 def sellmeier_index(b, c, um):
     um2 = np.asarray(um) ** 2
@@ -167,13 +178,18 @@ def main():
                 seen.add((catalogue, name.upper()))
                 counts[made] = counts.get(made, 0) + 1
                 lines.append(f'"{name}" = {{ {toml} }}')
+    lines.append("\n[misc]")
+    for title, names, b, roots in OTHERS:
+        lines.append(f"# {title}")
+        lines += [f'"{name}" = {{ {sellmeier_line(b, [root**2 for root in roots])} }}' for name in names]
+        counts["copied"] = counts.get("copied", 0) + len(names)
     print(
         "\n".join(
             [
                 "# Glass catalogue, written by tools/make_glass_catalogue.py; do not edit by hand.",
                 "# Indices relative to air at 20 to 25 C as the makers publish them; wavelengths in um in the formulas",
                 "# (n^2 = 1 + sum B l^2 / (l^2 - C), C in um^2) and nm in the tables.",
-                "# Schott and Ohara: the makers' own Sellmeier coefficients. Hoya, CDGM, Hikari, Sumita: Sellmeier",
+                "# Schott, Ohara and misc: the published Sellmeier coefficients. Hoya, CDGM, Hikari, Sumita: Sellmeier",
                 f"# formulas fitted to the makers' power series, within {FIT_TOLERANCE:g} in index from 380 to 780 nm,",
                 "# else tables of the series.",
                 "# " + ", ".join(f"{v} {k}" for k, v in sorted(counts.items())) + ".",

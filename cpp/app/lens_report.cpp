@@ -9,6 +9,7 @@
 
 #include "../camera/field_of_view.hpp"
 #include "../io/json_writer.hpp"
+#include "../optics/focus.hpp"
 #include "../optics/paraxial.hpp"
 #include "../optics/transmission.hpp"
 #include "values.hpp"
@@ -177,7 +178,9 @@ std::string lens_as_text(const LensSystem& lens) {
     line("effective focal length", mm(data.effective_focal_length));
     line("back focal distance", mm(data.back_focal_distance));
     line("front focal distance", mm(data.front_focal_distance));
-    line("f-number", std::string(7, ' ') + "f/" + short_number(data.f_number));
+    // The ring's, and beside it that of a lens whose focusing group has moved.
+    const std::string f_number = short_number(f_number_at_infinity(lens)), focused = short_number(data.f_number);
+    line("f-number", std::string(7, ' ') + "f/" + f_number + (f_number == focused ? "" : ", as focused f/" + focused));
     line("T-stop", std::string(7, ' ') + t_stop_text(lens));
     const std::string assumptions = coating_assumptions(lens);
     line("coatings", "     " + (assumptions.empty() ? std::string("as stated") : assumptions));
@@ -251,6 +254,7 @@ std::string lens_as_json(const LensSystem& lens) {
     add("back_focal_distance_mm", data.back_focal_distance);
     add("front_focal_distance_mm", data.front_focal_distance);
     add("f_number", data.f_number);
+    add("f_number_at_infinity", f_number_at_infinity(lens));
     std::string why;
     add("t_stop", known_t_stop(lens, why).value_or(std::numeric_limits<double>::quiet_NaN()));
     if (!why.empty()) json.key("t_stop_unknown").text(why);

@@ -402,7 +402,9 @@ void bind_lens(py::module_& m) {
             "aperture\n"
             "make their smallest spot. Raises InputError where the lens cannot.")
         .def("stopped_down", &stopped_down, "f_number"_a,
-             "The lens with its diaphragm closed to an f-number. Raises InputError where it does not open that far.")
+             "The lens with its diaphragm closed to an f-number: that of the lens focused at infinity, as it is "
+             "engraved,\n"
+             "whatever the lens is focused on. Raises InputError where it does not open that far.")
         .def(
             "best_focus_mm",
             [](const LensSystem& lens, std::optional<double> object_m, std::optional<double> nm) {

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "../optics/focus.hpp"
 #include "../render/effect_names.hpp"
 
 namespace realcam::io {
@@ -51,7 +52,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.lens = camera.lens.name;
     metadata.model = name_of(camera.model);
     metadata.focal_length_mm = data.effective_focal_length;
-    metadata.f_number = data.f_number;
+    metadata.f_number = f_number_at_infinity(camera.lens);
     metadata.iris = camera.lens.iris;
     metadata.focus_distance_m = camera.lens.focus_distance / 1000;
     metadata.film_width_mm = camera.film.width_mm;

@@ -66,7 +66,7 @@ private:
 
     std::string glass(const Glass& glass) {
         if (const auto known = catalogue_name_of(glass))
-            return bare_glass_name(known->name) + '_' + upper_case(known->maker);
+            return bare_glass_name(known->name) + '_' + (known->maker == "misc" ? "SPECIAL" : upper_case(known->maker));
         for (std::size_t i = 0; i < private_.size(); ++i)
             if (private_[i] == glass) return private_name(i);
         private_.push_back(glass);

@@ -12,6 +12,8 @@
 #include "regular_file.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 namespace realcam::io {
 namespace {
@@ -268,6 +270,23 @@ std::string text_of_file(const std::string& path) {
     }
 }
 
+/// In capital letters, with its point; empty where there is none.
+std::string suffix_of(std::string_view path) {
+    const std::string_view name = path.substr(path.find_last_of('/') == path.npos ? 0 : path.find_last_of('/') + 1);
+    const std::size_t point = name.find_last_of('.');
+    return upper_case(point == name.npos ? std::string_view() : name.substr(point));
+}
+
+/// TOML for all that is no other program's.
+LensFormat format_of_suffix(const std::string& suffix) {
+    if (suffix == ".ZMX") return LensFormat::zemax;
+    if (suffix == ".SEQ") return LensFormat::code_v;
+    if (suffix == ".DAT") return LensFormat::pbrt;
+    if (suffix == ".JSON") return LensFormat::optiland;
+    if (suffix == ".ROA") return LensFormat::ray_optics;
+    return LensFormat::toml;
+}
+
 }  // namespace
 
 std::vector<std::string> lens_names() {
@@ -281,7 +300,16 @@ std::string_view bundled_lens_text(const std::string& name) {
     for (const BundledFile& file : bundled_lens_files())
         if (file.name == name) return file.text;
     throw LensFileError("unknown lens " + in_quotes(name) + did_you_mean(name, lens_names()) +
-                        "; a bundled lens (`realcam lens list` names them) or the path of a .toml file is wanted");
+                        "; a bundled lens (`realcam lens list` names them) or the path of a lens file is wanted");
+}
+
+bool is_lens_path(const std::string& name, const std::string& path) {
+    for (const BundledFile& file : bundled_lens_files())
+        if (file.name == name) return false;
+    const std::string suffix = suffix_of(name);
+    std::error_code nothing;  // what cannot be looked at is no file of that name
+    return name.find('/') != name.npos || suffix == ".TOML" || format_of_suffix(suffix) != LensFormat::toml ||
+           std::filesystem::is_regular_file(path, nothing);
 }
 
 LensSystem parse_lens(std::string_view text, const std::string& file) {
@@ -294,15 +322,7 @@ LensSystem parse_lens(std::string_view text, const std::string& file) {
 }
 
 LensFormat lens_format_of(std::string_view path) {
-    const std::string_view name = path.substr(path.find_last_of('/') == path.npos ? 0 : path.find_last_of('/') + 1);
-    const std::size_t point = name.find_last_of('.');
-    const std::string suffix = upper_case(point == name.npos ? std::string_view() : name.substr(point));
-    if (suffix == ".ZMX") return LensFormat::zemax;
-    if (suffix == ".SEQ") return LensFormat::code_v;
-    if (suffix == ".DAT") return LensFormat::pbrt;
-    if (suffix == ".JSON") return LensFormat::optiland;
-    if (suffix == ".ROA") return LensFormat::ray_optics;
-    return LensFormat::toml;
+    return format_of_suffix(suffix_of(path));
 }
 
 LensSystem parse_lens_file(std::string_view bytes, const std::string& file, const LensReadOptions& options) {
@@ -324,7 +344,7 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
 }
 
 LensSystem read_lens(const std::string& name_or_path, const LensReadOptions& options) {
-    if (name_or_path.find_first_of("/.") == std::string::npos) {
+    if (!is_lens_path(name_or_path, name_or_path)) {
         LensSystem lens = parse_lens(bundled_lens_text(name_or_path), name_or_path);
         LensGlasses(options).check_all_used();
         return lens;

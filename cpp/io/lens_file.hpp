@@ -29,12 +29,14 @@ struct LensReadOptions {
     std::function<void(const std::string&)> warn;
 };
 
-/// Reads a lens: a bundled one by name, or a file by its path (anything with a '/' or a '.'). The suffix says how to
-/// read it: .zmx (Zemax), .seq (CODE V), .dat (pbrt), .json (Optiland) or .roa (ray-optics), in any case; anything else
-/// is a lens file of realcam, TOML.
-/// The lens is focused at infinity, or as its file says, and wide open.
-/// Throws LensFileError, naming file, line and surface, and InputError where the options name a glass that the file
-/// does not have.
+/// Whether `name` means a file: it is no bundled lens, and has a '/' or the suffix of a lens file, or there is a file
+/// at `path`, which is the name itself or where another file's folder leads.
+bool is_lens_path(const std::string& name, const std::string& path);
+
+/// Reads a lens: a bundled one by name, or a file by its path (see is_lens_path). The suffix says how to read it: .zmx
+/// (Zemax), .seq (CODE V), .dat (pbrt), .json (Optiland) or .roa (ray-optics), in any case; anything else is a lens
+/// file of realcam, TOML. The lens is focused at infinity, or as its file says, and wide open. Throws LensFileError,
+/// naming file, line and surface, and InputError where the options name a glass that the file does not have.
 LensSystem read_lens(const std::string& name_or_path, const LensReadOptions& options = {});
 
 /// Reads a lens from the text of a lens file of realcam (format 1, described in lenses/README.md).

@@ -7,37 +7,13 @@
 
 #include "../optics/focus.hpp"
 #include "lens_asphere_terms.hpp"
+#include "lens_foreign.hpp"
 #include "lens_rims.hpp"
+#include "lens_states.hpp"
 #include "printable.hpp"
 
 namespace realcam::io {
 namespace {
-
-/// Which rows of the file became surfaces of the lens. One that is a stop and bends light is two of them.
-struct Kept {
-    std::size_t row;
-    SurfaceType type;
-};
-
-/// The lens's surfaces: what bends or blocks light. The others, with one medium on both sides, only add their thickness
-/// to what stands before them.
-std::vector<Kept> kept_rows(const Prescription& p) {
-    std::vector<Kept> kept;
-    const Glass* before = nullptr;
-    const Glass air = Glass::air();
-    before = &air;
-    for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
-        const PrescriptionSurface& row = p.surfaces[i];
-        const bool bends = row.is_mirror || !(row.material == *before);
-        if (row.is_stop) kept.push_back({i, SurfaceType::stop});
-        if (bends)
-            kept.push_back({i, row.is_mirror ? SurfaceType::mirror : SurfaceType::refracting});
-        else if (!row.is_stop && row.blocks)
-            kept.push_back({i, SurfaceType::aperture});
-        if (!row.is_mirror) before = &row.material;
-    }
-    return kept;
-}
 
 class Builder {
 public:
@@ -57,10 +33,10 @@ public:
         if (!(lens_.wavelength_nm >= 100 && lens_.wavelength_nm <= 20000))
             fail("the wavelength is " + std::to_string(lens_.wavelength_nm) + " nm; 100 to 20000 nm is wanted");
         const std::size_t count = std::max<std::size_t>(1, p_.zoom_names.size());
-        for (std::size_t k = 0; k < count; ++k) states_.push_back(state_at(k));
+        for (std::size_t k = 0; k < count; ++k) states_.push_back(lens_state(p_, kept_, lens_, k));
         set_rims();
         set_film_size();
-        join_states();
+        lens_ = joined_states(p_, states_);
         finish();
         return lens_;
     }
@@ -75,7 +51,7 @@ private:
     const PrescriptionSurface& row_of(std::size_t surface) const { return p_.surfaces[kept_[surface].row]; }
 
     void check_table() const {
-        const auto bends = [](const Kept& k) {
+        const auto bends = [](const KeptRow& k) {
             return k.type == SurfaceType::refracting || k.type == SurfaceType::mirror;
         };
         if (std::none_of(kept_.begin(), kept_.end(), bends)) fail("no surface bends light; a lens is wanted");
@@ -83,14 +59,14 @@ private:
             fail("the lens has " + std::to_string(kept_.size()) + " surfaces; at most " + std::to_string(kMaxSurfaces) +
                  " are supported");
         const auto stops =
-            std::count_if(kept_.begin(), kept_.end(), [](const Kept& k) { return k.type == SurfaceType::stop; });
+            std::count_if(kept_.begin(), kept_.end(), [](const KeptRow& k) { return k.type == SurfaceType::stop; });
         if (stops != 1)
             fail(stops == 0 ? "no surface is the aperture stop; one has to be"
                             : "several surfaces are aperture stops; one has to be");
     }
 
     void make_surfaces() {
-        for (const Kept& kept : kept_) {
+        for (const KeptRow& kept : kept_) {
             const PrescriptionSurface& row = p_.surfaces[kept.row];
             Surface surface;
             surface.type = kept.type;
@@ -117,104 +93,13 @@ private:
             const std::string what = set_aspheric_terms(row, rim, lens_.surfaces[i]);
             if (!what.empty()) foreign_.push_back({what, row.line, row.number});
         }
-        if (foreign_.empty()) return;
-        const auto place = [](const ForeignFeature& f) {
-            return std::string(f.surface > 0 ? "surface " + std::to_string(f.surface) : "") +
-                   (f.line > 0 ? (f.surface > 0 ? " (line " : "(line ") + std::to_string(f.line) + ")" : "");
-        };
-        constexpr std::size_t kMostNamed = 8;
-        if (options_.force) {
-            for (const ForeignFeature& f : foreign_)
-                warn((place(f).empty() ? "" : place(f) + ": ") + "left out: " + f.what);
-            return;
-        }
-        std::string also;
-        for (std::size_t i = 1; i < std::min(foreign_.size(), kMostNamed); ++i)
-            also += (i == 1 ? "; also " : ", ") + foreign_[i].what +
-                    (place(foreign_[i]).empty() ? "" : " at " + place(foreign_[i]));
-        if (foreign_.size() > kMostNamed) also += ", and " + std::to_string(foreign_.size() - kMostNamed) + " more";
-        const ForeignFeature& first = foreign_.front();
-        throw LensFileError(
-            "has " + first.what + also + ", of which realcam has no model; --force (force=True) leaves it out", p_.file,
-            first.line, first.surface);
+        realcam::io::refuse_foreign(foreign_, p_.file, options_);
     }
 
     /// A rim that is not known yet is guessed from the entrance pupil's diameter, until rays tell.
     static constexpr double kGuess = 0.5;
     double known_aperture() const {
         return p_.aperture_kind == ApertureKind::entrance_pupil_diameter ? p_.aperture : 0.0;
-    }
-
-    double thickness(int row, std::size_t state) const {
-        const auto zoomed = p_.zoom_thicknesses.find(row);
-        if (zoomed != p_.zoom_thicknesses.end()) return zoomed->second[state];
-        return row < 0 ? p_.object_distance : p_.surfaces[static_cast<std::size_t>(row)].thickness;
-    }
-
-    /// Thicknesses, film and stop of one zoom position; the lens's rims are not known yet.
-    LensSystem state_at(std::size_t state) {
-        LensSystem lens = lens_;
-        double object = thickness(-1, state);
-        std::size_t next = 0;
-        double* gap = &object;
-        for (std::size_t row = 0; row < p_.surfaces.size(); ++row) {
-            for (; next < kept_.size() && kept_[next].row == row; ++next) gap = &lens.surfaces[next].thickness;
-            *gap += thickness(static_cast<int>(row), state);
-        }
-        double& last = lens.surfaces.back().thickness;
-        lens.film_distance = last + p_.defocus;
-        last = 0;
-        if (std::isfinite(object) && object <= 0)
-            fail("the object lies " + std::to_string(-object) + " mm behind the first surface; one in front is wanted");
-        set_stop(lens, object, state);
-        if (p_.paraxial_image && lens.film_distance == p_.defocus)
-            lens.film_distance = p_.defocus + paraxial_image_distance(lens, lens.wavelength_nm, object);
-        if (std::isfinite(object)) lens.focus_distance = object + lens.film_position();
-        objects_.push_back(object);
-        return lens;
-    }
-
-    /// By first-order optics, as lens-design programs do it.
-    void set_stop(LensSystem& lens, double object, std::size_t state) const {
-        const int stop = lens.stop_index(), count = static_cast<int>(lens.surfaces.size());
-        Surface& surface = lens.surfaces[static_cast<std::size_t>(stop)];
-        const double aperture = p_.zoom_apertures.empty() ? p_.aperture : p_.zoom_apertures[state];
-        const auto trace = [&](ParaxialRay ray, int last) {
-            return trace_paraxial(lens, lens.wavelength_nm, ray, 0, last);
-        };
-        const ParaxialRay start = std::isinf(object) ? ParaxialRay{1, 0} : ParaxialRay{object, 1};
-        const double at_stop = std::fabs(trace(start, stop + 1).height);
-        const double pupil = std::fabs(trace({1, 0}, stop + 1).height);  // height at the stop over that in the pupil
-        const auto slope_of = [&](double numerical) {
-            if (!(numerical > 0 && numerical < 1)) fail("the numerical aperture must lie between 0 and 1");
-            return std::tan(std::asin(numerical));
-        };
-        double radius = 0;
-        switch (p_.aperture_kind) {
-            case ApertureKind::stop_size: radius = aperture > 0 ? aperture : surface.clear_semi_diameter; break;
-            case ApertureKind::entrance_pupil_diameter: radius = 0.5 * aperture * pupil; break;
-            case ApertureKind::f_number:
-                radius = 0.5 / (aperture * std::fabs(trace({1, 0}, count).slope)) * pupil;
-                break;
-            case ApertureKind::working_f_number:
-                radius = 0.5 / (aperture * std::fabs(trace(start, count).slope)) * at_stop;
-                break;
-            case ApertureKind::image_aperture:
-                radius = slope_of(aperture) / std::fabs(trace(start, count).slope) * at_stop;
-                break;
-            case ApertureKind::object_aperture:
-                if (std::isinf(object))
-                    fail("a numerical aperture of the object's side belongs to an object at a finite distance");
-                radius = slope_of(aperture) * at_stop;
-                break;
-        }
-        if (!(radius > 0) || !std::isfinite(radius))
-            fail(
-                "the size of the aperture stop follows from nothing that the file says; "
-                "an entrance pupil diameter, an f-number or the stop's semi-diameter is wanted",
-                &row_of(static_cast<std::size_t>(stop)));
-        surface.clear_semi_diameter = radius;
-        lens.stop_semi_diameter = radius;
     }
 
     /// Rims that the file leaves out: those of the real rays, of whichever zoom position has the largest.
@@ -227,13 +112,13 @@ private:
         std::vector<double> rims(kept_.size(), 0.0);
         bool all = true;
         for (std::size_t k = 0; k < states_.size(); ++k) {
-            const RayRims found = rims_of_rays(states_[k], objects_[k], p_.field_kind, p_.fields);
+            const RayRims found = rims_of_rays(states_[k].lens, states_[k].object_distance, p_.field_kind, p_.fields);
             all = all && found.all_rays_pass;
             for (std::size_t i = 0; i < rims.size(); ++i) rims[i] = std::max(rims[i], found.semi_diameters[i]);
         }
         std::string names;
         for (const std::size_t i : wanted) {
-            for (LensSystem& state : states_) state.surfaces[i].clear_semi_diameter = rims[i];
+            for (LensState& state : states_) state.lens.surfaces[i].clear_semi_diameter = rims[i];
             lens_.surfaces[i].clear_semi_diameter = rims[i];
             fold_again(i, rims[i]);
             names += (names.empty() ? "" : ", ") + std::to_string(row_of(i).number);
@@ -249,7 +134,7 @@ private:
         if (!row.aspheric.contains(2) || !lens_.surfaces[i].bends_light()) return;
         const std::string what = set_aspheric_terms(row, rim, lens_.surfaces[i]);
         if (!what.empty() && !options_.force) fail("has " + what + ", of which realcam has no model", &row);
-        for (LensSystem& state : states_) {
+        for (auto& [state, distance] : states_) {
             state.surfaces[i].curvature = lens_.surfaces[i].curvature;
             state.surfaces[i].conic = lens_.surfaces[i].conic;
             state.surfaces[i].aspheric = lens_.surfaces[i].aspheric;
@@ -260,44 +145,16 @@ private:
         // A film of 3:2, as 36 x 24 mm is, whose corners lie at the largest image height.
         double height = 0;
         for (std::size_t k = 0; k < states_.size(); ++k)
-            height = std::max(height, largest_image_height(states_[k], objects_[k], p_.field_kind, p_.fields));
-        const double focal = std::fabs(first_order(states_.front(), lens_.wavelength_nm).effective_focal_length);
+            height = std::max(
+                height, largest_image_height(states_[k].lens, states_[k].object_distance, p_.field_kind, p_.fields));
+        const double focal = std::fabs(first_order(states_.front().lens, lens_.wavelength_nm).effective_focal_length);
         if (!(height > 0) || !std::isfinite(height)) {
             height = std::isfinite(focal) ? 0.5 * focal : std::hypot(18.0, 12.0);
             warn("states no field: the film's diagonal is taken to be the focal length");
         }
-        for (LensSystem& state : states_) {
+        for (auto& [state, distance] : states_) {
             state.film_width = 2 * height * 3 / std::sqrt(13.0);
             state.film_height = 2 * height * 2 / std::sqrt(13.0);
-        }
-    }
-
-    void join_states() {
-        const std::vector<std::string>& names = p_.zoom_names;
-        if (names.empty()) {
-            lens_ = states_.front();
-            return;
-        }
-        lens_ = states_[static_cast<std::size_t>(p_.zoom_current)];
-        lens_.zoom.current = p_.zoom_current;
-        const auto differs = [&](auto value) {
-            return std::any_of(states_.begin(), states_.end(),
-                               [&](const LensSystem& state) { return value(state) != value(states_.front()); });
-        };
-        for (int i = 0; i + 1 < static_cast<int>(lens_.surfaces.size()); ++i)
-            if (differs([i](const LensSystem& s) { return s.surfaces[static_cast<std::size_t>(i)].thickness; }))
-                lens_.zoom.surfaces.push_back(i);
-        const bool stop_changes = differs([](const LensSystem& s) { return s.stop_semi_diameter; });
-        for (std::size_t k = 0; k < states_.size(); ++k) {
-            const LensSystem& state = states_[k];
-            ZoomPosition position{printable(names[k]),
-                                  {},
-                                  state.film_distance,
-                                  state.focus_distance,
-                                  stop_changes ? state.stop_semi_diameter : 0.0};
-            for (const int i : lens_.zoom.surfaces)
-                position.thicknesses.push_back(state.surfaces[static_cast<std::size_t>(i)].thickness);
-            lens_.zoom.positions.push_back(std::move(position));
         }
     }
 
@@ -358,10 +215,9 @@ private:
     const Prescription& p_;
     const LensReadOptions& options_;
     std::vector<ForeignFeature> foreign_;
-    std::vector<Kept> kept_;
+    std::vector<KeptRow> kept_;
     LensSystem lens_;
-    std::vector<LensSystem> states_;
-    std::vector<double> objects_;
+    std::vector<LensState> states_;
     int stop_on_surface_ = 0;
     std::set<int> curved_planes_;
 };

@@ -12,11 +12,14 @@
 namespace realcam::io {
 namespace {
 
-/// The maker whose catalogue a file means: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI"; empty for one that is not known.
+/// The catalogue that a file means: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI", "MISC"; empty for one that is not
+/// known.
 std::string maker_of(const std::string& catalogue) {
     const std::string word = upper_case(catalogue);
     for (const char* maker : {"schott", "ohara", "hoya", "cdgm", "hikari", "sumita"})
         if (word.find(upper_case(maker)) != std::string::npos) return maker;
+    // Zemax's and CODE V's catalogues of what no glass maker lists.
+    if (word == "MISC" || word == "SPECIAL") return "misc";
     return {};
 }
 
@@ -137,7 +140,7 @@ std::pair<std::string, Glass> named_glass(const std::string& text) {
     }
     if (!rest.empty() || !std::isfinite(*n_d) || !std::isfinite(v_d))
         throw InputError("--glass: " + in_quotes(text) +
-                         ": NAME=n_d,V_d is wanted, as in SILICA=1.4585,67.8, or NAME=n where it has no dispersion");
+                         ": NAME=n_d,V_d is wanted, as in CAF2=1.4338,95.1, or NAME=n where it has no dispersion");
     return {name, glass_of_pair(*n_d, v_d)};
 }
 

@@ -7,7 +7,9 @@ namespace realcam::io {
 
 std::string number_label(double value) {
     std::string text = std::to_string(value);
-    return text.substr(0, text.find_last_not_of('0') + 1);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
 }
 
 Glass read_material(const TomlTable& table, const std::optional<TomlTable>& glasses) {

@@ -151,20 +151,33 @@ inline LensSystem focused(const LensSystem& lens, double focus_distance) {
     return result;
 }
 
-/// The lens with its diaphragm closed to an f-number (of the lens at infinity; exact for paraxial rays).
-/// Throws InputError where the lens is not as fast, or has no f-number. A number 0.5% below the lens's own counts as
-/// wide open: f-numbers are engraved with two digits.
+/// The f-number as it is engraved: of the lens focused at infinity, with the diaphragm as it stands. A group that moves
+/// to focus changes focal length and pupil, and the ring of the diaphragm does not turn with it. A lens that cannot be
+/// focused at infinity has the f-number that it has as it stands.
+inline double f_number_at_infinity(const LensSystem& lens) {
+    if (lens.focusing.moves_group() && std::isfinite(lens.focus_distance)) {
+        try {
+            return first_order(focused(lens, kInfinity), lens.wavelength_nm).f_number;
+        } catch (const InputError&) {  // no position of the group images infinity on the film
+        }
+    }
+    return first_order(lens, lens.wavelength_nm).f_number;
+}
+
+/// The lens with its diaphragm closed to an f-number, of the lens at infinity (exact for paraxial rays), whatever it is
+/// focused on: closing the diaphragm and focusing commute. Throws InputError where the lens is not as fast, or has no
+/// f-number. A number 0.5% below the lens's own counts as wide open: f-numbers are engraved with two digits.
 inline LensSystem stopped_down(LensSystem lens, double f_number) {
     const double full = lens.stop().clear_semi_diameter;
     lens.stop_semi_diameter = full;
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    const double fastest = data.f_number;
+    const double fastest = f_number_at_infinity(lens);
     if (!(f_number > 0) || !std::isfinite(f_number))
         throw InputError("the f-number is " + std::to_string(f_number) + "; a positive number is wanted");
     if (!(fastest > 0) || !std::isfinite(fastest))
         throw InputError("lens \"" + lens.name + "\" has no f-number: " +
-                         (data.is_afocal() ? "it is afocal, parallel light leaves it parallel"
-                                           : "its entrance pupil lies at infinity"));
+                         (first_order(lens, lens.wavelength_nm).is_afocal()
+                              ? "it is afocal, parallel light leaves it parallel"
+                              : "its entrance pupil lies at infinity"));
     if (f_number < 0.995 * fastest) {
         char text[160];
         std::snprintf(text, sizeof text, "f/%.4g is faster than lens \"%s\", which opens to f/%.4g", f_number,

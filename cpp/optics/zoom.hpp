@@ -30,8 +30,7 @@ inline LensSystem zoomed(const LensSystem& lens, int position) {
     LensSystem result = at_zoom_position(lens, position);
     if (lens.focus_distance != rest) result = focused(result, lens.focus_distance);
     if (lens.is_wide_open()) return result;
-    const double f_number = first_order(lens, lens.wavelength_nm).f_number;
-    return stopped_down(result, std::max(f_number, first_order(result, lens.wavelength_nm).f_number));
+    return stopped_down(result, std::max(f_number_at_infinity(lens), f_number_at_infinity(result)));
 }
 
 /// The same by name.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "../error.hpp"
+#include "../io/lens_file.hpp"
 #include "../io/printable.hpp"
 #include "../io/readable_file.hpp"
 #include "../render/effect_names.hpp"
@@ -96,7 +97,7 @@ private:
 
     void read_camera(ShotRequest& shot) const {
         if (const std::string lens = table_.name("lens"); !lens.empty())
-            shot.lens = lens.find_first_of("/.") == std::string::npos ? lens : table_.path("lens");
+            shot.lens = io::is_lens_path(lens, table_.path("lens")) ? table_.path("lens") : lens;
         shot.zoom = table_.text("zoom");
         if (shot.zoom.empty() && table_.find("zoom"))
             table_.fail("\"zoom\" is empty; the name of a zoom position of the lens is wanted", table_.find("zoom"));

@@ -20,13 +20,17 @@ from .figure_files import check_figure_target, save_figure
 CELL_INCHES = (2.6, 2.0)
 
 
-def save_gallery(path: str | os.PathLike[str], lenses: Sequence[Lens] | None = None, columns: int = 6) -> None:
+def save_gallery(
+    path: str | os.PathLike[str], lenses: Sequence[Lens] | None = None, columns: int = 6, *, theme: str = "light"
+) -> None:
     """Writes cross-sections of lenses, each with name, focal length in mm and f-number, as .png, .svg or .pdf.
 
-    lenses: the bundled ones, by name, if None. columns: of the grid; its rows follow.
+    lenses: the bundled ones, by name, if None. columns: of the grid; its rows follow. theme: light or dark.
     Each drawing has its own scale. A film far behind the glass is left out, so that the glass is large enough to see.
-    Raises ImageFileError for a name that cannot be written, InputError for no lenses or no columns.
+    Raises ImageFileError for a name that cannot be written, InputError for no lenses, no columns or an
+    unknown theme.
     """
+    style = Style(theme_named(theme))
     target = check_figure_target(path)
     if columns < 1:
         raise InputError(f"columns: {columns} is too few; 1 or more is wanted")
@@ -37,18 +41,17 @@ def save_gallery(path: str | os.PathLike[str], lenses: Sequence[Lens] | None = N
     columns = min(columns, len(lenses))
     rows = math.ceil(len(lenses) / columns)
     figure = matplotlib.figure.Figure(
-        figsize=(columns * CELL_INCHES[0], rows * CELL_INCHES[1]), facecolor="white", layout="constrained"
+        figsize=(columns * CELL_INCHES[0], rows * CELL_INCHES[1]), facecolor=style.theme.page, layout="constrained"
     )
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     for lens, axes in zip(lenses, grid, strict=False):
-        _draw_cell(lens, axes)
+        _draw_cell(lens, axes, style)
     for axes in grid[len(lenses) :]:
         axes.set_axis_off()
     save_figure(figure, target, dpi=150)
 
 
-def _draw_cell(lens: Lens, axes: Axes) -> None:
-    style = Style(theme_named("light"))
+def _draw_cell(lens: Lens, axes: Axes, style: Style) -> None:
     section = replace(cross_section(lens), focus_group=None)  # its note is wider than a cell
     prepare_axes(axes, extent_of(section, style), style)
     draw_section(section, axes, style)
@@ -56,7 +59,10 @@ def _draw_cell(lens: Lens, axes: Axes) -> None:
     # Names are text, and a dollar sign in one begins no formula.
     name = "".join(c for c in lens.name if c.isprintable())
     axes.set_title(
-        f"{name}\n{data.effective_focal_length_mm:.4g} mm  f/{data.f_number:.3g}", fontsize=7, parse_math=False
+        f"{name}\n{data.effective_focal_length_mm:.4g} mm  f/{data.f_number:.3g}",
+        fontsize=7,
+        color=style.theme.text,
+        parse_math=False,
     )
     left, right, half_height = _window(lens)
     axes.set_xlim(left, right)

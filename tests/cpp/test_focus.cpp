@@ -161,6 +161,18 @@ TEST_CASE("stopping down divides the entrance pupil by the f-number") {
     }
 }
 
+TEST_CASE("focusing and stopping down commute: an f-number is that of the lens at infinity") {
+    const LensSystem far = io::read_lens("telephoto-200mm-inner-focus");
+    const LensSystem near = focused(far, 3000);
+    // The group that moves changes the lens: what it is as focused differs from what is engraved on it.
+    CHECK(first_order(near, kLineD_nm).f_number < 0.99 * first_order(far, kLineD_nm).f_number);
+    CHECK(f_number_at_infinity(near) == about(first_order(far, kLineD_nm).f_number, 1e-6));
+    const LensSystem a = stopped_down(near, 4), b = focused(stopped_down(far, 4), 3000);
+    CHECK(a.stop_semi_diameter == about(b.stop_semi_diameter, 1e-6));
+    CHECK(f_number_at_infinity(a) == about(4.0, 1e-6));
+    CHECK(stopped_down(near, f_number_at_infinity(far)).is_wide_open());
+}
+
 TEST_CASE("an f-number faster than the lens, or none at all, is refused") {
     const LensSystem lens = io::read_lens("double-gauss-50mm");  // f/2.03
     const std::string fast = message_of([&] { stopped_down(lens, 1.4); });

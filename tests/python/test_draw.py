@@ -140,11 +140,30 @@ def test_a_lens_file_is_not_drawn_over(tmp_path: Path) -> None:
     file = lens_file(tmp_path / "mine.svg")
     before = file.read_text()
     (tmp_path / "link.svg").symlink_to(file)
-    for output in (file, tmp_path / "link.svg"):
-        result = CliRunner().invoke(cli.app, ["lens", "draw", str(file), "-o", str(output)])
-        assert isinstance(result.exception, rc.InputError)
-        assert "is the lens file itself" in str(result.exception)
+    commands = [
+        ["draw", file, file],
+        ["draw", file, tmp_path / "link.svg"],
+        ["compare", file, "tessar-50mm", file],
+        ["compare", "tessar-50mm", file, file],
+        ["gallery", "tessar-50mm", file, file],
+        ["plot", "distortion", file, file],
+        ["convert", file, file],
+        ["report", file, file],
+    ]
+    for *command, output in commands:
+        result = CliRunner().invoke(cli.app, ["lens", *map(str, command), "-o", str(output)])
+        assert isinstance(result.exception, rc.InputError), command
+        assert str(result.exception) == f"{output}: is the lens file itself; another name is wanted"
     assert file.read_text() == before
+
+
+def test_the_output_is_named_after_the_lens_without_its_suffix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    rc.Lens.load("singlet-100mm").save("mine.v2.zmx")
+    for command in ("draw", "report"):
+        result = CliRunner().invoke(cli.app, ["lens", command, "mine.v2.zmx"])
+        assert result.exit_code == 0, result.output
+    assert {path.name for path in tmp_path.iterdir()} == {"mine.v2.zmx", "mine.v2.svg", "mine.v2.pdf"}
 
 
 def words_in(path: Path) -> str:

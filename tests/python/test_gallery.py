@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import realcam as rc
 from realcam import cli
+from realcam.drawing.themes import theme_named
 from realcam.gallery import save_gallery
 from typer.testing import CliRunner
 
@@ -54,3 +55,13 @@ def test_the_command_draws_those_named(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     assert {"tessar-50mm", "sonnar-50mm"} <= words_of(target)
     assert "singlet-100mm" not in words_of(target)
+
+
+def test_a_sheet_for_a_dark_page(tmp_path: Path) -> None:
+    target = tmp_path / "dark.svg"
+    result = CliRunner().invoke(cli.app, ["lens", "gallery", "tessar-50mm", "--theme", "dark", "-o", str(target)])
+    assert result.exit_code == 0, result.output
+    drawn = target.read_text(encoding="utf-8")
+    assert theme_named("dark").page in drawn
+    assert theme_named("dark").text in drawn
+    assert "fill: #ffffff" not in drawn

@@ -97,6 +97,39 @@ def test_unknown_lens_names_the_nearest() -> None:
         rc.Lens.load(5)  # type: ignore[arg-type]
 
 
+def test_a_name_with_a_point_is_a_file_where_there_is_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(rc.LensFileError, match=r'unknown lens "tesar-50mm\.5" \(did you mean "tessar-50mm"'):
+        rc.Lens.load("tesar-50mm.5")
+    for missing in ("tessar-50mm.toml", "mine.ZMX", "./mine"):
+        with pytest.raises(rc.LensFileError, match="no such file"):
+            rc.Lens.load(missing)
+    rc.Lens.load("singlet-100mm").save("own.toml")
+    text = Path("own.toml").read_bytes()
+    for name in ("own.v2", "own"):  # a file of realcam under any name
+        Path(name).write_bytes(text)
+        assert rc.Lens.load(name) == rc.Lens.load("own.toml")
+    Path("tessar-50mm").write_bytes(text)  # a bundled lens is a bundled lens
+    assert rc.Lens.load("tessar-50mm").first_order().effective_focal_length_mm == pytest.approx(49.94, abs=0.01)
+
+
+def test_glasses_are_called_by_their_numbers() -> None:
+    labels = [surface.material.label for name in rc.lens_names() for surface in rc.Lens.load(name).surfaces]
+    assert "1.658 / 57" in labels
+    assert not [label for label in labels if label.endswith(".") or ". " in label]
+
+
+def test_an_f_number_is_that_of_the_lens_at_infinity() -> None:
+    lens = rc.Lens.load("telephoto-200mm-inner-focus")
+    near = lens.focused(3.0)
+    assert near.stopped_down(4).stop_semi_diameter_mm == pytest.approx(
+        lens.stopped_down(4).focused(3.0).stop_semi_diameter_mm, rel=1e-6
+    )
+    # The lens of which it is counted has moved glass.
+    assert near.stopped_down(4).first_order().f_number < 3.97
+    assert near.stopped_down(4).focused(math.inf).first_order().f_number == pytest.approx(4, rel=1e-6)
+
+
 def test_lenses_are_values() -> None:
     lens = rc.Lens.load("double-gauss-50mm")
     before = lens.film_distance_mm, lens.stop_semi_diameter_mm, lens.focus_distance_m

@@ -195,7 +195,7 @@ CLAIMS = {
     "CODV_65564.seq": ({}, False, 1.5, 0.01),  # stock number 65564, EPD 1, f/1.5
     "HoO-V2C18Ex03.zmx": ({}, False, 80.0, 0.1),  # its f-number is 4, its first mirror 20 mm wide
     "US05331467-1.zmx": ({"E-LAFH3": "hikari:J-LAFH3"}, False, 1000.0, 1.0),  # the same glass without lead
-    "US05831776-1.zmx": ({"SILICA": (1.458464, 67.82)}, True, None, 0),  # fused silica; its rims cross
+    "US05831776-1.zmx": ({}, True, None, 0),  # fused silica; its rims cross
     "US08427765-1.ZMX": ({"L-TIM28_MOLD": "ohara:S-TIM28"}, False, None, 0),
     "thorlabs-354710-C.zmx": ({"D-ZK3M": "cdgm:D-ZK3"}, False, 1.49, 0.005),  # "f=1.49mm, D-ZK3 Asphere"
     "HoO-V2C18Ex46.zmx": ({}, True, None, 0),  # tilted

@@ -45,7 +45,8 @@ def _aperture(row: Row):
     return Annulus(radius=row.semi_diameter)
 
 
-def _model(prescription: Prescription):
+def model_of(prescription: Prescription, object_distance: float = OBJECT_DISTANCE, image_distance: float = GAP):
+    """ray-optics' OpticalModel. Distances in mm: object to first vertex, last vertex to the image surface."""
     from rayoptics.optical.opticalmodel import OpticalModel
     from rayoptics.raytr.opticalspec import FieldSpec, PupilSpec, WvlSpec
 
@@ -54,10 +55,10 @@ def _model(prescription: Prescription):
     spec["pupil"] = PupilSpec(spec, key=["object", "epd"], value=PUPIL_DIAMETER)
     spec["fov"] = FieldSpec(spec, key=["object", "angle"], value=1.0, flds=[0.0])
     spec["wvls"] = WvlSpec([(WAVELENGTH_NM, 1.0)], ref_wl=0)
-    sequence.gaps[0].thi = OBJECT_DISTANCE
+    sequence.gaps[0].thi = object_distance
     sequence.do_apertures = False
     for i, row in enumerate(prescription.rows):
-        thickness = row.thickness if i + 1 < len(prescription.rows) else GAP
+        thickness = row.thickness if i + 1 < len(prescription.rows) else image_distance
         medium = "REFL" if row.type == "mirror" else row.index
         sequence.add_surface([0.0, thickness, medium])
         surface = sequence.ifcs[sequence.cur_surface]
@@ -72,7 +73,7 @@ def _model(prescription: Prescription):
 def trace(prescription: Prescription, rays: Rays) -> Traced:
     from rayoptics.raytr import raytrace, traceerror
 
-    sequence = _model(prescription)["seq_model"]
+    sequence = model_of(prescription)["seq_model"]
     out = Traced.none_yet(len(rays), len(prescription.rows))
     last = len(prescription.rows)  # ray-optics counts its object surface
     indices = [index[0] for index in sequence.rndx]
@@ -110,7 +111,7 @@ def trace(prescription: Prescription, rays: Rays) -> Traced:
 
 def first_order(prescription: Prescription) -> dict[str, float]:
     """Named and measured as realcam does: positions from the first vertex."""
-    parax = _model(prescription)["analysis_results"]["parax_data"]
+    parax = model_of(prescription)["analysis_results"]["parax_data"]
     data = parax.fod
     # ray-optics is told a pupil and not a stop: its pupils are scaled with its own marginal ray at the stop.
     scale = prescription.rows[prescription.stop].semi_diameter / abs(parax.ax_ray[prescription.stop + 1][0])

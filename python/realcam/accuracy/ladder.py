@@ -13,7 +13,7 @@ from .._core import Camera, Film, InputError, Scene
 from ..image import Image
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
-from .rungs import Level, can_be_taken, known_effects, levels_of, ways_to_sample
+from .rungs import Level, known_effects, levels_of, ways_to_sample
 
 
 @dataclass(frozen=True)
@@ -153,18 +153,18 @@ def accuracy_cost(
     if samplings:
         without_effects = Reference(scene, camera, (), reference_spp, seed, settings)
         climbs += [(level, without_effects) for level in ways_to_sample()]
-    possible = [can_be_taken(scene, camera, level, **settings) for level, _ in climbs]
     done: list[tuple[bool, Rung]] = []
-    missing = [level.name for (level, _), is_possible in zip(climbs, possible, strict=True) if is_possible]
+    missing = [level.name for level, _ in climbs]
+    impossible: list[str] = []
     try:
         for number, (level, against) in enumerate(climbs):
             tell((1 + number) / (1 + len(climbs)))
-            if not possible[number]:
-                continue
             try:
                 rung = _climb(level, scene, camera, against, most_spp, seed, settings)
-            except InputError:  # the reference was taken, so that it is this level that cannot show the whole film
-                possible[number] = False
+            except InputError:
+                # The reference was taken, so that it is this level that cannot: an ideal lens sees nothing at 90
+                # degrees to the side, a GPU has no double precision, and an exit pupil may lie behind the film.
+                impossible.append(level.name)
             else:
                 done.append((number < rung_count, rung))
             missing.remove(level.name)
@@ -178,9 +178,7 @@ def accuracy_cost(
         rungs=tuple(rung for is_level, rung in done if is_level),
         samplings=tuple(rung for is_level, rung in done if not is_level),
         missing=tuple(missing),
-        impossible=tuple(
-            level.name for (level, _), is_possible in zip(climbs, possible, strict=True) if not is_possible
-        ),
+        impossible=tuple(impossible),
         reference_codes=reference.codes,
     )
 

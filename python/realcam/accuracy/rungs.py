@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .._core import Camera, InputError, Scene
+from .._core import Camera, Scene
 from ..image import Image
 from ..planning import plan
 from ..render import render
@@ -108,15 +108,3 @@ def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings
     decided = plan(scene, camera, **settings)  # type: ignore[arg-type]
     levels.append(Level("planned", decided.model, tuple(decided.effects)))
     return levels
-
-
-def can_be_taken(scene: Scene, camera: Camera, level: Level, **settings: object) -> bool:
-    """An ideal lens sees nothing at 90 degrees to the side, a GPU has no double precision, and an exit pupil may lie
-    behind the film."""
-    film = camera.film
-    small = camera.replace(film=type(film)(film.width_mm, film.height_mm, (4, 4)))
-    try:
-        level.image(scene, small, spp=1, seed=0, **settings)
-    except InputError:
-        return False
-    return True

@@ -48,7 +48,7 @@ def distortion(
     wavelength_nm: float | None = None,
     projection: str | None = None,
     film_distance_mm: float | None = None,
-    samples: int = 15,
+    samples: int = 81,
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Distortion:
@@ -110,7 +110,7 @@ def distortion_grid(
     Raises InputError where the film's corner is at 80 degrees or more: no plane grid fills its picture.
     """
     source = bundles_of(lens, object_distance_m, bundles)
-    curve = distortion(lens, wavelength_nm=wavelength_nm, bundles=source)
+    curve = distortion(lens, wavelength_nm=wavelength_nm, samples=15, bundles=source)
     if curve.fields_deg.max() >= 80:
         raise InputError("no plane grid fills the picture of a lens that sees 80 deg and more from the axis")
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
@@ -131,12 +131,10 @@ def distortion_grid(
 
 def plot_distortion(data: Distortion, axes: Axes) -> None:
     axes.plot(data.percent, data.fields_deg, color=style.GREEN)
-    style.zero_lines(axes, y=False)
+    style.field_upwards(axes, data.fields_deg)
     against = "f tan θ" if data.projection == "tangent" else "f θ"
     axes.set_xlabel(f"distortion against {against} / %")
-    axes.set_ylabel("field / °")
     axes.set_title("Distortion")
-    axes.set_ylim(0, max(float(data.fields_deg.max()), 1e-9))
     largest = float(np.nanmax(np.abs(data.percent)))
     axes.set_xlim(-1.15 * largest - 1e-3, 1.15 * largest + 1e-3)
 

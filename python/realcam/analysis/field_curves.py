@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
 from . import style
-from .fields import Bundles, Doubles, bundles_of, fields_of, texts_of, wavelengths_of
+from .fields import Bundles, Doubles, light_of
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,13 @@ def field_curves(
     fields_deg: ArrayLike | None = None,
     wavelengths_nm: ArrayLike | None = None,
     *,
-    samples: int = 15,
+    samples: int = 81,
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> FieldCurves:
     """None: `samples` fields up to the corner of the film; the design wavelength; the plane in focus."""
-    source = bundles_of(lens, object_distance_m, bundles)
-    fields = fields_of(lens, fields_deg, samples, source)
-    colours = wavelengths_of(lens, lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm)
+    wanted = lens.wavelength_nm if wavelengths_nm is None else wavelengths_nm
+    source, fields, colours = light_of(lens, fields_deg, wanted, object_distance_m, bundles, samples)
     light = [[source.chief(float(field), float(colour)) for field in fields] for colour in colours]
     return FieldCurves(
         fields,
@@ -65,20 +64,16 @@ def _petzval_mm(source: Bundles, field_deg: float) -> float:
 
 
 def plot_field_curves(curves: FieldCurves, axes: Axes) -> None:
-    colours = style.wavelength_colours(curves.wavelengths_nm)
-    labels = texts_of(curves.wavelengths_nm, "nm") if len(curves.wavelengths_nm) > 1 else [""]
-    for w, (colour, label) in enumerate(zip(colours, labels, strict=True)):
-        beside = f", {label}" if label else ""
+    for w, (colour, label) in enumerate(style.coloured(curves.wavelengths_nm)):
+        beside = f", {label}" if len(curves.wavelengths_nm) > 1 else ""
         axes.plot(curves.tangential_mm[w], curves.fields_deg, color=colour, label=f"tangential{beside}")
         axes.plot(curves.sagittal_mm[w], curves.fields_deg, "--", color=colour, label=f"sagittal{beside}")
     axes.plot(curves.petzval_mm, curves.fields_deg, ":", color=style.GREY, label="Petzval")
-    style.zero_lines(axes, y=False)
+    style.field_upwards(axes, curves.fields_deg)
     shown = np.concatenate([curves.tangential_mm.ravel(), curves.sagittal_mm.ravel()])
     low, high = min(np.nanmin(shown), 0.0), max(np.nanmax(shown), 0.0)
     margin = 0.15 * (high - low) or 1.0
     axes.set_xlim(low - margin, high + margin)  # Petzval's surface may leave it
-    axes.set_ylim(0, max(float(curves.fields_deg.max()), 1e-9))
     axes.set_xlabel("focus behind the film / mm")
-    axes.set_ylabel("field / °")
     axes.set_title("Field curves")
     axes.legend(loc="best")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,6 +42,11 @@ class Bundles:
     def chief(self, field_deg: float, wavelength_nm: float) -> RayBundle:
         """Few rays: enough for what is asked of the chief ray alone."""
         return self.at(field_deg, wavelength_nm, 8, 2)
+
+    @cached_property
+    def largest_field_deg(self) -> float:
+        """Where the chief ray lands in the film's corner, or nearly where the light ends if that is nearer."""
+        return _largest_field_deg(self.lens, self)
 
 
 def bundles_of(lens: Lens, object_distance_m: float | None, bundles: Bundles | None) -> Bundles:
@@ -81,6 +87,23 @@ def three_fields(lens: Lens, fields_deg: ArrayLike | None, bundles: Bundles) -> 
     return field_angles_deg(lens, [0, 0.7, 1], bundles) if fields_deg is None else numbers_of(fields_deg, "fields_deg")
 
 
+def light_of(
+    lens: Lens,
+    fields_deg: ArrayLike | None,
+    wavelengths_nm: ArrayLike | None,
+    object_distance_m: float | None,
+    bundles: Bundles | None,
+    samples: int | None = None,
+) -> tuple[Bundles, Doubles, Doubles]:
+    """What most subjects begin with: light, (F,) fields, (W,) wavelengths; the caller's or those of this module.
+
+    samples: so many fields where the caller names none; None is the axis, 0.7 and all of the image height.
+    """
+    source = bundles_of(lens, object_distance_m, bundles)
+    fields = three_fields(lens, fields_deg, source) if samples is None else fields_of(lens, fields_deg, samples, source)
+    return source, fields, wavelengths_of(lens, wavelengths_nm)
+
+
 def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = None) -> Doubles:
     """(F,): angles at which the chief ray lands at shares of the largest image height.
 
@@ -88,7 +111,7 @@ def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = No
     nearer to the axis: at the very end it is a sliver that few rays find.
     """
     source = bundles or Bundles(lens)
-    largest = _largest_field_deg(lens, source)
+    largest = source.largest_field_deg
     top = _height_mm(source, largest)
     shares_array = numbers_of(shares, "shares")
     # The chief ray's height is a smooth function of the angle: a few of its values tell the rest.

@@ -39,7 +39,7 @@ def film_pupils(
     fields_deg: ArrayLike | None = None,
     *,
     wavelength_nm: float | None = None,
-    samples: int = 11,
+    samples: int = 31,
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> FilmPupils:
@@ -136,12 +136,15 @@ def plot_pupil_shapes(data: FilmPupils, axes: Axes) -> None:
     widest = max(float((high - low).max()) for low, high in boxes)
     for k, (outline, (low, high)) in enumerate(zip(data.outlines, boxes, strict=True)):
         away = np.array([1.15 * widest * k, 0.0]) - 0.5 * (low + high)
-        axes.add_collection(LineCollection(list(outline + away), colors=style.field_colour(k), linewidths=1.2))
+        axes.add_collection(
+            LineCollection(list(outline + away), colors=style.field_colour(k), linewidths=1.2, capstyle="round")
+        )
         axes.annotate(f"{data.fields_deg[k]:.3g}°", (1.15 * widest * k, -0.62 * widest), ha="center", va="top")
     axes.set_xlim(-0.65 * widest, (1.15 * len(boxes) - 0.5) * widest)
     axes.set_ylim(-0.85 * widest, 0.6 * widest)
     axes.set_aspect("equal")
     axes.grid(visible=False)
-    axes.set_xlabel("direction cosine x, each about its own middle")
+    axes.set_xticks([])
+    axes.set_xlabel("side by side, at the scale of direction cosine y")
     axes.set_ylabel("direction cosine y")
     axes.set_title("Pupil seen from the film")

@@ -44,6 +44,7 @@ class Asked:
     fields_deg: Doubles | None = None
     wavelengths_nm: Doubles | None = None
     frequencies_per_mm: Doubles | None = None
+    method: str | None = None
 
     def one_field(self, share: float) -> float:
         if self.fields_deg is None:
@@ -83,6 +84,7 @@ class Kind:
     shape: Callable[[Any], tuple[int, int]]
     plot: Callable[[Any, np.ndarray], None]
     square: bool = False
+    height: float = 1.0  #: of a figure, as a share of what `style.SIZES_IN` has
 
 
 def _single(plot: Callable[[Any, Axes], None]) -> dict[str, Any]:
@@ -123,15 +125,16 @@ def _spots_shape(data: Any) -> tuple[int, int]:
 
 
 def _mtf(asked: Asked, compute: Callable[..., Any]) -> Any:
+    given = {**asked.curves, "method": asked.method or "diffraction"}
     if compute is mtf_over_field:
-        return compute(asked.lens, asked.frequencies_per_mm, **asked.curves)
+        return compute(asked.lens, asked.frequencies_per_mm, **given)
     if compute is mtf_through_focus:
         frequencies = asked.frequencies_per_mm
         if frequencies is not None and len(frequencies) != 1:
             raise InputError(f"this plot is of one frequency; {len(frequencies)} are given")
-        return compute(asked.lens, None if frequencies is None else float(frequencies[0]), **asked.curves)
+        return compute(asked.lens, None if frequencies is None else float(frequencies[0]), **given)
     highest = None if asked.frequencies_per_mm is None else float(asked.frequencies_per_mm.max())
-    return compute(asked.lens, highest_per_mm=highest, **asked.curves)
+    return compute(asked.lens, highest_per_mm=highest, **given)
 
 
 def _design_only(asked: Asked) -> dict[str, Any]:
@@ -142,6 +145,7 @@ def _design_only(asked: Asked) -> dict[str, Any]:
     }
 
 
+KINDS_WITH_METHODS = ("mtf", "mtf-field", "mtf-focus", "psf")
 KINDS: dict[str, Kind] = {
     "ray-fan": Kind(
         "where rays land, by where they cross the stop",
@@ -197,7 +201,12 @@ KINDS: dict[str, Kind] = {
     "psf": Kind(
         "the light of a point on the film, with diffraction",
         lambda a: point_spread(
-            a.lens, a.one_field(0), a.wavelengths_nm, size=128, object_distance_m=a.bundles.object_distance_m
+            a.lens,
+            a.one_field(0),
+            a.wavelengths_nm,
+            method=a.method or "direct",
+            size=128,
+            object_distance_m=a.bundles.object_distance_m,
         ),
         **_single(plot_point_spread),
     ),
@@ -215,6 +224,7 @@ KINDS: dict[str, Kind] = {
         "the pupil's outline over the field: cat's eyes",
         lambda a: film_pupils(a.lens, a.fields_deg, samples=5, **_design_only(a)),
         **_single(plot_pupil_shapes),
+        height=0.5,
     ),
     "bokeh": Kind(
         "points out of focus",
@@ -230,6 +240,8 @@ def compute(kind: str, asked: Asked) -> Any:
     """The data of a plot. Raises InputError for an unknown kind."""
     if kind not in KINDS:
         raise InputError(f'unknown plot "{kind}"; one of {", ".join(KINDS)} is wanted')
+    if asked.method is not None and kind not in KINDS_WITH_METHODS:
+        raise InputError(f"--method goes with {', '.join(KINDS_WITH_METHODS)}; {kind} has one way alone")
     return KINDS[kind].compute(asked)
 
 
@@ -240,11 +252,12 @@ def plot_figure(
     if size not in style.SIZES_IN:
         raise InputError(f'unknown size "{size}"; small or large is wanted')
     width, height = style.SIZES_IN[size]
+    height *= KINDS[kind].height
     rows, columns = KINDS[kind].shape(data)
     if rows * columns > 1:  # each of several plots as large as it can be read at
         width = max(width, (1.4 if size == "small" else 2.5) * columns + 0.8)
         each = (0.9 if KINDS[kind].square else 0.8) * width / columns
-        height = each * rows + (0.4 if title else 0)
+        height = each * rows + (0.5 if title else 0)
     font = 8.0 if size == "small" else 10.0
     if rows * columns > 1:
         font *= 0.8

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .._core import Lens
 from . import style
-from .fields import Bundles, Doubles, bundles_of, fields_of, texts_of, wavelengths_of
+from .fields import Bundles, Doubles, light_of
 
 
 @dataclass(frozen=True)
@@ -31,14 +31,12 @@ def lateral_colour(
     fields_deg: ArrayLike | None = None,
     wavelengths_nm: ArrayLike | None = None,
     *,
-    samples: int = 15,
+    samples: int = 81,
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> LateralColour:
     """None: `samples` fields up to the corner of the film; F line, design wavelength, C line; the plane in focus."""
-    source = bundles_of(lens, object_distance_m, bundles)
-    fields = fields_of(lens, fields_deg, samples, source)
-    colours = wavelengths_of(lens, wavelengths_nm)
+    source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles, samples)
     design = [source.chief(float(field), lens.wavelength_nm) for field in fields]
     heights = np.array([[source.chief(float(f), float(c)).chief_ray_mm[1] for f in fields] for c in colours])
     airy = [1.22e-6 * b.wavelength_nm / b.index / np.ptp(b.edge_slopes[..., 1]) for b in design]
@@ -46,8 +44,7 @@ def lateral_colour(
 
 
 def plot_lateral_colour(data: LateralColour, axes: Axes) -> None:
-    colours = style.wavelength_colours(data.wavelengths_nm)
-    for curve, colour, label in zip(data.shift_mm, colours, texts_of(data.wavelengths_nm, "nm"), strict=True):
+    for curve, (colour, label) in zip(data.shift_mm, style.coloured(data.wavelengths_nm), strict=True):
         axes.plot(1e3 * curve, data.fields_deg, color=colour, label=label)
     for side in (-1, 1):
         axes.plot(
@@ -58,9 +55,7 @@ def plot_lateral_colour(data: LateralColour, axes: Axes) -> None:
             linewidth=0.8,
             label="Airy radius" if side > 0 else "_nolegend_",
         )
-    style.zero_lines(axes, y=False)
+    style.field_upwards(axes, data.fields_deg)
     axes.set_xlabel("chief ray's shift on the film / µm")
-    axes.set_ylabel("field / °")
     axes.set_title("Lateral colour")
-    axes.set_ylim(0, max(float(data.fields_deg.max()), 1e-9))
     axes.legend(loc="best")

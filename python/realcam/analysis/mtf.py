@@ -16,10 +16,9 @@ from .fields import (
     bundles_of,
     default_frequencies_per_mm,
     fields_of,
+    light_of,
     numbers_of,
     texts_of,
-    three_fields,
-    wavelengths_of,
 )
 from .pupil_function import lines_of, pupil_function, transfer, transfer_limit
 
@@ -70,8 +69,7 @@ def mtf(
     """
     if method not in METHODS:
         raise InputError(f'unknown method "{method}"; diffraction or geometric is wanted')
-    source = bundles_of(lens, object_distance_m, bundles)
-    fields = three_fields(lens, fields_deg, source)
+    source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     frequencies = (
         default_frequencies_per_mm(lens)
         if frequencies_per_mm is None
@@ -79,7 +77,6 @@ def mtf(
     )
     if (frequencies < 0).any():
         raise InputError("frequencies_per_mm must not be negative")
-    colours = wavelengths_of(lens, wavelengths_nm)
     share = _shares(weights, len(colours))
     planes = numbers_of(defocus_mm, "defocus_mm")
     result = np.zeros((2, len(planes), len(fields), len(frequencies)))
@@ -212,10 +209,10 @@ def mtf_through_focus(
     )
 
 
-def _finish(axes: Axes, title: str) -> None:
+def _finish(axes: Axes, title: str, data: Mtf) -> None:
     axes.set_ylim(0, 1.02)
     axes.set_ylabel("contrast")
-    axes.set_title(title)
+    axes.set_title(title if data.method == "diffraction" else f"{title}{'' if title == 'MTF' else ','} of rays alone")
     axes.plot([], [], color=style.GREY, label="tangential")
     axes.plot([], [], "--", color=style.GREY, label="sagittal")
     style.legend_beside(axes)
@@ -230,7 +227,7 @@ def plot_mtf_over_frequency(data: Mtf, axes: Axes) -> None:
         axes.plot(data.frequencies_per_mm, data.limit_tangential[0], ":", color=style.text_colour(), label="limit")
     axes.set_xlim(0, float(data.frequencies_per_mm.max()))
     axes.set_xlabel("periods per mm")
-    _finish(axes, "MTF")
+    _finish(axes, "MTF", data)
 
 
 def plot_mtf_over_field(data: Mtf, axes: Axes) -> None:
@@ -249,7 +246,7 @@ def plot_mtf_over_field(data: Mtf, axes: Axes) -> None:
             )
     axes.set_xlim(0, max(float(data.fields_deg.max()), 1e-9))
     axes.set_xlabel("field / °")
-    _finish(axes, "MTF over the field")
+    _finish(axes, "MTF over the field", data)
 
 
 def plot_mtf_through_focus(data: Mtf, axes: Axes) -> None:
@@ -261,4 +258,4 @@ def plot_mtf_through_focus(data: Mtf, axes: Axes) -> None:
     style.zero_lines(axes, y=False)
     axes.set_xlim(float(data.defocus_mm.min()), float(data.defocus_mm.max()))
     axes.set_xlabel("plane behind the film / mm")
-    _finish(axes, f"MTF at {data.frequencies_per_mm[0]:.4g}/mm through focus")
+    _finish(axes, f"MTF at {data.frequencies_per_mm[0]:.4g}/mm through focus", data)

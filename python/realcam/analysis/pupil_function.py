@@ -20,6 +20,10 @@ LINES = 28
 LINES_WITH_HOLE = 120  # lengths of lines have a kink where a line touches an inner edge
 
 
+class UnevenWavefrontError(InputError):
+    """No polynomial follows the wavefront: there is no transfer function, but that of rays alone."""
+
+
 @dataclass(frozen=True)
 class PupilFunction:
     """Amplitude and path over slopes (RayBundle.slopes), as polynomials of Chebyshev's in slopes scaled to -1 ... 1.
@@ -52,7 +56,7 @@ def pupil_function(bundles: Bundles, field_deg: float, wavelength_nm: float) -> 
     # A tenth of a wave changes the contrast of what is left of so strong aberrations by less than can be seen.
     if fitted.fit_error_waves < 0.1:
         return fitted
-    raise InputError(
+    raise UnevenWavefrontError(
         f"the wavefront at {field_deg:.6g} deg is too uneven for a transfer function "
         f"(a polynomial is {fitted.fit_error_waves:.2g} waves off); the method geometric takes rays alone"
     )

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._core import Lens
 from . import style
 from .exit_rays import exit_rays
-from .fields import Bundles, Doubles, bundles_of, texts_of, three_fields, wavelengths_of
+from .fields import Bundles, Doubles, light_of
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,7 @@ def ray_fan(
     bundles: Bundles | None = None,
 ) -> RayFan:
     """Fans of real rays. None: the axis, 0.7 and all of the image height; F line, design wavelength, C line."""
-    source = bundles_of(lens, object_distance_m, bundles)
-    fields = three_fields(lens, fields_deg, source)
-    colours = wavelengths_of(lens, wavelengths_nm)
+    source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     pupil = np.linspace(-1, 1, samples)
     zero = np.zeros(samples)
     places = np.concatenate([np.column_stack([zero, pupil]), np.column_stack([pupil, zero])])
@@ -59,8 +57,7 @@ def ray_fan(
 def plot_ray_fan(fan: RayFan, axes: Axes, field: int = 0, *, sagittal: bool = False) -> None:
     """Draws the fan of one field, the number of its row, on the axes."""
     curves = 1e3 * (fan.sagittal_mm if sagittal else fan.tangential_mm)[field]
-    colours = style.wavelength_colours(fan.wavelengths_nm)
-    for curve, colour, label in zip(curves, colours, texts_of(fan.wavelengths_nm, "nm"), strict=True):
+    for curve, (colour, label) in zip(curves, style.coloured(fan.wavelengths_nm), strict=True):
         axes.plot(fan.pupil, curve, color=colour, label=label)
     style.zero_lines(axes)
     across = "x" if sagittal else "y"

@@ -6,6 +6,7 @@ import html
 import io
 import math
 import os
+import textwrap
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -30,6 +31,7 @@ from .fields import Bundles, Doubles, bundles_of, field_angles_deg, three_fields
 from .film_pupil import film_pupils, plot_pupil_shapes, plot_relative_illumination
 from .lateral_colour import lateral_colour, plot_lateral_colour
 from .mtf import (
+    Mtf,
     mtf_over_field,
     mtf_over_frequency,
     mtf_through_focus,
@@ -38,6 +40,7 @@ from .mtf import (
     plot_mtf_through_focus,
 )
 from .point_spread import plot_point_spread, point_spread
+from .pupil_function import UnevenWavefrontError
 from .ray_fan import plot_ray_fan, ray_fan
 from .seidel_bars import plot_seidel_bars, seidel_bars
 from .spherical_aberration import longitudinal_aberration, plot_longitudinal_aberration
@@ -96,6 +99,7 @@ def report_pages(source: Bundles, fields: Doubles, colours: Doubles) -> tuple[li
 class _Report:
     def __init__(self, source: Bundles, fields: Doubles, colours: Doubles) -> None:
         self.lens, self.source, self.fields, self.colours = source.lens, source, fields, colours
+        self.mtf_method = "diffraction"
         self.common: dict[str, Any] = {"object_distance_m": source.object_distance_m, "bundles": source}
         self.three: dict[str, Any] = {**self.common, "fields_deg": fields, "wavelengths_nm": colours}
         # One set of fields for all curves over the field.
@@ -129,9 +133,9 @@ class _Report:
         grid = figure.add_gridspec(3, 2, top=0.885, bottom=0.095, hspace=0.3, wspace=0.5, left=0.085, right=0.86)
         over = {**self.over_field, "wavelengths_nm": self.colours}
         for place, compute, plot in (
-            (grid[0, 0], lambda: mtf_over_frequency(self.lens, **self.three), plot_mtf_over_frequency),
-            (grid[0, 1], lambda: mtf_through_focus(self.lens, **self.three), plot_mtf_through_focus),
-            (grid[1, 0], lambda: mtf_over_field(self.lens, **over), plot_mtf_over_field),
+            (grid[0, 0], lambda: self._mtf(mtf_over_frequency, **self.three), plot_mtf_over_frequency),
+            (grid[0, 1], lambda: self._mtf(mtf_through_focus, **self.three), plot_mtf_through_focus),
+            (grid[1, 0], lambda: self._mtf(mtf_over_field, **over), plot_mtf_over_field),
             (grid[1, 1], lambda: lateral_colour(self.lens, **{**over, **self.chief_rays}), plot_lateral_colour),
             (grid[2, :], self._seidel, plot_seidel_bars),
         ):
@@ -211,7 +215,11 @@ class _Report:
             plot(compute(), axes)
         except InputError as error:
             axes.set_axis_off()
-            axes.text(0.5, 0.5, str(error), ha="center", va="center", wrap=True, parse_math=False)
+            # In lines of the place's width: matplotlib's own wrap is by the page. A letter is about half its size wide.
+            width_in = axes.get_position().width * figure.get_size_inches()[0]
+            letters = max(int(72 * width_in / (0.55 * matplotlib.rcParams["font.size"])), 12)
+            reason = textwrap.fill(str(error), letters)
+            axes.text(0.5, 0.5, reason, ha="center", va="center", parse_math=False)
 
     def _longitudinal(self) -> Any:
         return longitudinal_aberration(
@@ -220,6 +228,14 @@ class _Report:
 
     def _seidel(self) -> Any:
         return seidel_bars(self.lens, min(float(np.abs(self.fields).max()), 60.0), **self.common)
+
+    def _mtf(self, compute: Callable[..., Mtf], **given: Any) -> Mtf:
+        """Of rays alone, on all of the page, where the wavefront of a field is too uneven for a transfer function."""
+        try:
+            return compute(self.lens, method=self.mtf_method, **given)
+        except UnevenWavefrontError:
+            self.mtf_method = "geometric"
+            return compute(self.lens, method=self.mtf_method, **given)
 
     def _psf(self, field: float) -> Any:
         """Of rays alone where waves would take seconds: where the spot is many of their details wide."""

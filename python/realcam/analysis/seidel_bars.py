@@ -16,7 +16,7 @@ NAMES = ("spherical", "coma", "astigmatism", "Petzval", "distortion", "axial col
 
 @dataclass(frozen=True)
 class SeidelBars:
-    """names: of the 7 aberrations. surfaces: (S,), their numbers, from 0.
+    """names: of the 7 aberrations. surfaces: (S,), their indices in `lens.surfaces`, from 0.
     sums_mm: (S, 7), Seidel's sums S_I to S_V and of colour C_I and C_II.
     waves: (S, 7), coefficients of the wavefront at the edge of pupil and field: S_I / 8, S_II / 2, S_III / 2,
       S_IV / 4, S_V / 2, C_I / 2, C_II over the wavelength.
@@ -46,7 +46,7 @@ def seidel_bars(
 
 
 def plot_seidel_bars(data: SeidelBars, axes: Axes) -> None:
-    """Groups of bars by surface, numbered from 0 as in lens tables, and their sum."""
+    """Groups of bars by surface, numbered from 1 as in lens tables and files, and their sum."""
     width = 0.8 / len(data.names)
     places = np.arange(len(data.surfaces) + 1)
     values = np.concatenate([data.waves, data.waves.sum(axis=0)[None]])
@@ -55,7 +55,7 @@ def plot_seidel_bars(data: SeidelBars, axes: Axes) -> None:
         axes.bar(places + offset, values[:, k], width, color=style.field_colour(k), label=name, linewidth=0)
     style.zero_lines(axes, x=False)
     axes.axvline(len(data.surfaces) - 0.5, color=style.GREY, linewidth=0.6)
-    axes.set_xticks(places, [*map(str, data.surfaces), "sum"])
+    axes.set_xticks(places, [*map(str, data.surfaces + 1), "sum"])
     axes.set_xlabel("surface")
     axes.set_ylabel("wavefront / waves")
     axes.set_title(f"Third order at {data.field_deg:.3g}°")

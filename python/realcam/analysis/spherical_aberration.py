@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._core import Lens
 from . import style
 from .exit_rays import exit_rays
-from .fields import Doubles, texts_of, wavelengths_of
+from .fields import Doubles, wavelengths_of
 
 
 @dataclass(frozen=True)
@@ -47,11 +47,11 @@ def longitudinal_aberration(
 
 
 def plot_longitudinal_aberration(data: LongitudinalAberration, axes: Axes) -> None:
-    colours = style.wavelength_colours(data.wavelengths_nm)
-    for curve, colour, label in zip(data.focus_mm, colours, texts_of(data.wavelengths_nm, "nm"), strict=True):
+    for curve, (colour, label) in zip(data.focus_mm, style.coloured(data.wavelengths_nm), strict=True):
         axes.plot(curve, data.pupil, color=colour, label=label)
     style.zero_lines(axes, y=False)
     axes.set_xlabel("focus behind the film / mm")
     axes.set_ylabel("height in the stop / its radius")
     axes.set_title("Longitudinal aberration")
     axes.set_ylim(0, 1.02)
+    axes.legend(loc="best")

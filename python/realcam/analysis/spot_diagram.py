@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from .._core import InputError, Lens
 from . import style
 from .exit_rays import exit_rays, hexapolar
-from .fields import Bundles, Doubles, bundles_of, numbers_of, texts_of, three_fields, wavelengths_of
+from .fields import Bundles, Doubles, light_of, numbers_of
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,7 @@ def spot_diagram(
     defocus_mm: (D,), of the planes, positive behind the film. None: the axis, 0.7 and all of the image height; F line,
     design wavelength, C line. Raises InputError where no light passes.
     """
-    source = bundles_of(lens, object_distance_m, bundles)
-    fields = three_fields(lens, fields_deg, source)
-    colours = wavelengths_of(lens, wavelengths_nm)
+    source, fields, colours = light_of(lens, fields_deg, wavelengths_nm, object_distance_m, bundles)
     planes = numbers_of(defocus_mm, "defocus_mm")
     places = hexapolar(rings)
     points = np.empty((len(planes), len(fields), len(colours), len(places), 2))
@@ -94,15 +92,14 @@ def _chief_line(source: Bundles, field: float) -> tuple[Doubles, Doubles]:
 def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int = 0, half_mm: float = 0.0) -> None:
     """Draws one spot: all colours, and the Airy disc's first dark ring. half_mm: half the side of the square shown;
     0: as large as the spot."""
-    colours = style.wavelength_colours(spots.wavelengths_nm)
     marks = ("o", "s", "^")
-    for w, label in enumerate(texts_of(spots.wavelengths_nm, "nm")):
+    for w, (colour, label) in enumerate(style.coloured(spots.wavelengths_nm)):
         at = 1e3 * spots.points_mm[plane, field, w]
         axes.plot(
             at[:, 0],
             at[:, 1],
             marks[w % len(marks)],
-            color=colours[w],
+            color=colour,
             markersize=1.6,
             markeredgewidth=0,
             alpha=0.8,
@@ -125,7 +122,8 @@ def plot_spot_diagram(spots: SpotDiagram, axes: Axes, field: int = 0, plane: int
     axes.set_xlabel("x / µm")
     axes.set_ylabel("y / µm")
     beside = f", {1e3 * spots.defocus_mm[plane]:+.3g} µm" if len(spots.defocus_mm) > 1 else ""
-    axes.set_title(f"{spots.fields_deg[field]:.3g}°{beside}, RMS {1e3 * spots.rms_radius_mm[plane, field]:.3g} µm")
+    title = f"{spots.fields_deg[field]:.3g}°{beside}, RMS {1e3 * spots.rms_radius_mm[plane, field]:.3g} µm"
+    axes.set_title(title.replace("-", "−"))  # the minus sign of the axes' numbers
 
 
 def half_side_mm(spots: SpotDiagram, field: int | None = None) -> float:

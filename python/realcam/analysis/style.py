@@ -14,6 +14,7 @@ from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
 from ..drawing.themes import theme_named
+from .fields import texts_of
 
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}
 # Colours that stand out from a white and from a dark page alike (a contrast of 3 and more to either).
@@ -81,6 +82,18 @@ def text_colour() -> str:
 
 def new_figure(width_in: float, height_in: float) -> matplotlib.figure.Figure:
     return matplotlib.figure.Figure(figsize=(width_in, height_in), layout="constrained")
+
+
+def coloured(wavelengths_nm: NDArray[np.float64]) -> list[tuple[str, str]]:
+    """For each wavelength its colour and what the legend calls it."""
+    return list(zip(wavelength_colours(wavelengths_nm), texts_of(wavelengths_nm, "nm"), strict=True))
+
+
+def field_upwards(axes: Axes, fields_deg: NDArray[np.float64]) -> None:
+    """The y axis is the field, from the axis up, beside a line through 0."""
+    zero_lines(axes, y=False)
+    axes.set_ylim(0, max(float(fields_deg.max()), 1e-9))
+    axes.set_ylabel("field / °")
 
 
 def zero_lines(axes: Axes, x: bool = True, y: bool = True) -> None:

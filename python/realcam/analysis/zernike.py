@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -70,6 +70,7 @@ class ZernikeFit:
       edge are larger by the root of (n + 1) (m = 0) or 2 (n + 1).
     residual_waves: root mean square of what is left.
     pupil: (N, 2); residuals_waves: (N,), nan where no ray passes.
+    field_deg: of the lens's wavefront; nan of a fit to numbers.
     """
 
     order: str
@@ -80,6 +81,7 @@ class ZernikeFit:
     residual_waves: float
     pupil: Doubles
     residuals_waves: Doubles
+    field_deg: float = math.nan
 
     def at(self, pupil: ArrayLike) -> Doubles:
         """(N,): the sum at places (N, 2)."""
@@ -134,7 +136,8 @@ def zernike_fit(
 ) -> ZernikeFit:
     """Of a lens's wavefront over its real stop, whose radius is 1."""
     front = lens.wavefront(field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, samples=samples)
-    return fit_zernike(front.pupil, front.opd_waves, weights=front.weights, order=order, terms=terms)
+    fit = fit_zernike(front.pupil, front.opd_waves, weights=front.weights, order=order, terms=terms)
+    return replace(fit, field_deg=field_deg)
 
 
 def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
@@ -144,5 +147,6 @@ def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
     style.zero_lines(axes, x=False)
     axes.set_xlabel(f"{'Noll' if fit.order == 'noll' else 'fringe'} index")
     axes.set_ylabel("coefficient / waves RMS")
-    axes.set_title(f"Zernike polynomials, {fit.residual_waves:.2g} waves left")
+    field = "" if math.isnan(fit.field_deg) else f"{fit.field_deg:.3g}°, "
+    axes.set_title(f"{field}Zernike polynomials, {fit.residual_waves:.2g} waves left")
     axes.grid(visible=False, axis="x")

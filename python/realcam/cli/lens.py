@@ -66,8 +66,7 @@ def draw(
             "--fields-deg do not go with it"
         )
     lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
-    # By what the user called the lens: the name in a file may be any text.
-    target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.svg")
+    target = output or lens_options.output_of(name, ".svg")
     lens_options.check_not_the_lens(target, name)
     places = lens_options.numbers(fields, "--fields") or []
     colours = lens_options.numbers(wavelengths, "--wavelengths")
@@ -123,12 +122,13 @@ def photo(
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
     as_json: AsJson = False,
 ) -> None:
     """Print photographers' figures: depth of field, angle of view, breathing, T-stop, exposure value."""
     from ..photography import photographic_figures
 
-    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force)
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
     figures = photographic_figures(
         lens,
         circle_of_confusion_mm=circle,
@@ -160,14 +160,19 @@ def compare(
     marks: lens_options.Marks = False,
     theme: lens_options.ThemeName = "light",
     width: lens_options.Width = 1600,
+    zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
     as_json: AsJson = False,
 ) -> None:
     """Print figures of two lenses side by side, at the same focus and stop if these are given, and draw both."""
     from ..photography import lens_summary
 
-    lenses = [options.lens(name, focus, f_number, glass=glass, force=force) for name in (first, second)]
+    lenses = [
+        options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
+        for name in (first, second)
+    ]
     colours = lens_options.numbers(wavelengths, "--wavelengths")
     if output is not None:
         from ..figure_files import check_figure_target
@@ -208,8 +213,7 @@ def convert(
     pbrt_thickness: lens_options.PbrtThickness = None,
 ) -> None:
     """Write a lens as a file of realcam (.toml), Zemax (.zmx) or CODE V (.seq)."""
-    if Path(name).is_file() and output.exists() and output.samefile(name):
-        raise InputError(f"{output}: is the lens file itself; another name is wanted")
+    lens_options.check_not_the_lens(output, name)
     options.lens(name, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness).save(output)
     typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")
 
@@ -222,13 +226,17 @@ def gallery(
     ] = None,
     output: Annotated[Path, typer.Option("--output", "-o", help="A .png, .svg or .pdf file.")] = Path("lenses.png"),
     columns: Annotated[int, typer.Option(help="Drawings side by side.", min=1, max=50)] = 6,
+    theme: lens_options.ThemeName = "light",
+    glass: lens_options.Glasses = None,
+    force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
 ) -> None:
     """Write a contact sheet: the cross-sections of all bundled lenses, or of those named."""
     from ..gallery import save_gallery
 
-    lenses = [options.lens(name, None, None) for name in names] if names else None
-    for name in names or []:
-        if Path(name).is_file() and output.exists() and output.samefile(name):
-            raise InputError(f"{output}: is one of the lens files; the contact sheet needs another name")
-    save_gallery(output, lenses, columns)
+    lens_options.check_not_the_lens(output, *(names or []))
+    lenses = [
+        options.lens(name, glass=glass, force=force, pbrt_thickness=pbrt_thickness) for name in names or []
+    ]  # fmt: skip
+    save_gallery(output, lenses or None, columns, theme=theme)
     typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")

@@ -62,11 +62,21 @@ ThemeName = Annotated[str, typer.Option("--theme", help="light or dark.")]
 Width = Annotated[int, typer.Option("--width", help="Of the picture, in pixels.", min=200, max=20000)]
 
 
+SUFFIXES = (".toml", ".zmx", ".seq", ".dat", ".json", ".roa")  # of lens files
+
+
+def output_of(name: str, suffix: str) -> Path:
+    """A file here, by what the user called the lens: the name that stands in a lens's file may be any text."""
+    file = Path(name)
+    stem = file.stem if file.suffix.lower() in SUFFIXES else file.name
+    return Path(f"{stem or 'lens'}{suffix}")
+
+
 def check_not_the_lens(target: Path, *names: str) -> None:
-    """Raises InputError where a drawing would go over the file of a lens that it shows."""
+    """Raises InputError where what is written would go over the file of a lens that it is about."""
     for name in names:
         if Path(name).is_file() and target.exists() and target.samefile(name):
-            raise InputError(f"{target}: is the lens file itself; the drawing needs another name")
+            raise InputError(f"{target}: is the lens file itself; another name is wanted")
 
 
 def numbers(text: str | None, option: str) -> list[float] | None:

@@ -48,11 +48,19 @@ def plot(
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     frequencies: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option("--frequencies", help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest."),
+    ] = None,
+    method: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option(
+            "--method",
+            help="mtf, mtf-field, mtf-focus: diffraction or geometric (rays alone). psf: direct, fft or geometric.",
+        ),
     ] = None,
     object_distance: ObjectDistance = None,
     theme: lens_options.ThemeName = "light",
@@ -78,7 +86,8 @@ def plot(
             numbers.check_numbers_target(target)
         else:
             check_figure_target(target)
-    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force)
+        lens_options.check_not_the_lens(target, name)
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
     bundles = analysis.Bundles(lens, _distance(object_distance))
     asked = kinds.Asked(
         lens,
@@ -86,6 +95,7 @@ def plot(
         _numbers(fields, "--fields-deg"),
         _numbers(wavelengths, "--wavelengths"),
         _numbers(frequencies, "--frequencies"),
+        method,
     )
     data = kinds.compute(kind, asked)
     for target in targets:
@@ -111,6 +121,7 @@ def report(
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
+    pbrt_thickness: lens_options.PbrtThickness = None,
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     object_distance: ObjectDistance = None,
@@ -119,8 +130,9 @@ def report(
     """Write all about a lens on three pages: rays, contrast and colour, waves and light."""
     from ..analysis import save_report
 
-    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force)
-    target = output or Path(f"{Path(name).name.removesuffix('.toml') or 'lens'}.pdf")
+    lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
+    target = output or lens_options.output_of(name, ".pdf")
+    lens_options.check_not_the_lens(target, name)
     save_report(
         lens,
         target,

@@ -15,11 +15,13 @@ def experiment(device: str) -> Experiment:
     rows = []
     for number, surface in enumerate(lens.surfaces, 1):
         radius = "plane" if math.isinf(surface.radius_of_curvature_mm) else f"{surface.radius_of_curvature_mm:g} mm"
-        glass = surface.material.label or "air"
+        # The film follows the last surface, whose own thickness is 0.
+        thickness = surface.thickness_mm if number < len(lens.surfaces) else lens.film_distance_mm
+        words = [radius, f"{thickness:g} mm", surface.material.label or "air"]
         if surface.type == "stop":
-            radius, glass = "aperture stop", ""
-        clear = 2 * surface.clear_semi_diameter_mm
-        rows.append(Row(f"surface {number}", "", f"{radius}, {surface.thickness_mm:g} mm, {glass}, clear {clear:g} mm"))
+            words = ["aperture stop", f"{thickness:g} mm"]
+        words.append(f"clear {2 * surface.clear_semi_diameter_mm:g} mm")
+        rows.append(Row(f"surface {number}", "", ", ".join(words)))
     rows.append(
         Row("focal length, f-number", "50 mm, f/2", f"{data.effective_focal_length_mm:.3f} mm, f/{data.f_number:.3f}")
     )
