@@ -9,9 +9,21 @@ namespace REALCAM_NAMESPACE {
 template <class T>
 struct Sag {
     T height;      ///< z of the surface, mm
-    T size;        ///< of the conic's part and the polynomial's, which may cancel: what roundings scale with, mm
+    T size;  ///< of the conic's part and of each term, added up: they may cancel, but their roundings do not, mm
     T derivative;  ///< d height / d (r^2)
 };
+
+/// An upper bound of |a4| + |a6| u + |a8| u^2 + ... for u from 0 to 1, with three coefficients that are the same for
+/// all rays. The sum itself would take every ray a second pass through the terms.
+template <class T>
+REALCAM_INLINE T term_sizes(const SurfaceView<T>& surface, T u) {
+    static_assert(kMaxAsphericTerms > 3);
+    T high = 0;
+    REALCAM_UNROLL
+    for (int i = 3; i < kMaxAsphericTerms; ++i) high += std::fabs(surface.aspheric[i]);
+    const T middle = std::fabs(surface.aspheric[1]) + std::fabs(surface.aspheric[2]);
+    return std::fabs(surface.aspheric[0]) + u * (middle + u * u * high);
+}
 
 /// Even asphere: z(r) = c r^2 / (1 + sqrt(1 - (1+k) c^2 r^2)) + a4 r^4 + a6 r^6 + ...
 /// Outside the search radius the sag goes on as a constant, so that a search never meets a square root of a
@@ -31,7 +43,7 @@ REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_square
     const T base = quotient(surface.curvature * r2, T(1) + root), departure = u * u * polynomial;
     const T derivative =
         surface.curvature / (T(2) * root) + surface.inverse_search_squared * u * (T(2) * polynomial + u * slope);
-    return {base + departure, std::fabs(base) + std::fabs(departure),
+    return {base + departure, std::fabs(base) + u * u * term_sizes(surface, u),
             select(radius_squared <= surface.search_squared, derivative, T(0))};
 }
 
