@@ -13,18 +13,6 @@ struct Sag {
     T derivative;  ///< d height / d (r^2)
 };
 
-/// An upper bound of |a4| + |a6| u + |a8| u^2 + ... for u from 0 to 1, with three coefficients that are the same for
-/// all rays. The sum itself would take every ray a second pass through the terms.
-template <class T>
-REALCAM_INLINE T term_sizes(const SurfaceView<T>& surface, T u) {
-    static_assert(kMaxAsphericTerms > 3);
-    T high = 0;
-    REALCAM_UNROLL
-    for (int i = 3; i < kMaxAsphericTerms; ++i) high += std::fabs(surface.aspheric[i]);
-    const T middle = std::fabs(surface.aspheric[1]) + std::fabs(surface.aspheric[2]);
-    return std::fabs(surface.aspheric[0]) + u * (middle + u * u * high);
-}
-
 /// Even asphere: z(r) = c r^2 / (1 + sqrt(1 - (1+k) c^2 r^2)) + a4 r^4 + a6 r^6 + ...
 /// Outside the search radius the sag goes on as a constant, so that a search never meets a square root of a
 /// negative number or a polynomial run wild.
@@ -32,18 +20,19 @@ template <class T>
 REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_squared) {
     const T r2 = select(radius_squared < surface.search_squared, radius_squared, surface.search_squared);
     const T root = sqrt_or_zero(T(1) - surface.conic_factor * surface.curvature * surface.curvature * r2);
-    const T u = r2 * surface.inverse_search_squared;
-    T polynomial = 0, slope = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative
+    const T u = r2 * surface.inverse_search_squared, from_middle = u - T(0.5);
+    T polynomial = 0, slope = 0, sizes = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative; sizes of its terms
     // Always all terms, zeros too: a constant count unrolls, and the loop over the lanes becomes vector code.
     REALCAM_UNROLL
     for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
-        slope = slope * u + polynomial;
-        polynomial = polynomial * u + surface.aspheric[i];
+        slope = slope * from_middle + polynomial;
+        polynomial = polynomial * from_middle + surface.aspheric[i];
+        sizes = sizes * T(0.5) + std::fabs(surface.aspheric[i]);  // at the axis and the rim; the same for all rays
     }
     const T base = quotient(surface.curvature * r2, T(1) + root), departure = u * u * polynomial;
     const T derivative =
         surface.curvature / (T(2) * root) + surface.inverse_search_squared * u * (T(2) * polynomial + u * slope);
-    return {base + departure, std::fabs(base) + u * u * term_sizes(surface, u),
+    return {base + departure, std::fabs(base) + u * u * sizes,
             select(radius_squared <= surface.search_squared, derivative, T(0))};
 }
 
