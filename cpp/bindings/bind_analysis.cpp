@@ -56,14 +56,10 @@ AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const std::vector<PupilPoint> pattern = pattern_from("", 1, pupil);
     const RayAimer aimer(lens, wavelength, field_from(field_deg, object_distance_m));
-    const double reach = stop_reach(lens);
-    std::vector<AimedRay> rays;
-    {
+    const std::vector<AimedRay> rays = [&] {
         const Unlocked unlocked;
-        parallel_ray_loop(heed_signals).append_all(rays, pattern.size(), [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) rays[i] = aimer({reach * pattern[i].x, reach * pattern[i].y});
-        });
-    }
+        return aim_all(aimer, pattern, stop_reach(lens), parallel_ray_loop(heed_signals));
+    }();
     const auto component = [](const Vec3d& v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; };
     const auto of_entry = [&](auto&& f) {
         return table_of(rays.size(), 3, [&](std::size_t i, std::size_t k) {

@@ -7,6 +7,7 @@
 
 #include "../camera/ray_request.hpp"
 #include "../camera/sensor_request.hpp"
+#include "../optics/aim_request.hpp"
 #include "../optics/film_points_request.hpp"
 #include "../optics/trace_request.hpp"
 #include "../render/gather_ghosts.hpp"
@@ -272,6 +273,10 @@ void film_points(void* request) {
         find_film_points<LensKind::any, kLanes>(points);
 }
 
+void aim_all(const void* request) {
+    aim_rays<64>(*static_cast<const AimRequest*>(request));
+}
+
 void trace_block(const void* lens_view, void* rays) {
     trace_lens(*static_cast<const LensView<float>*>(lens_view), *static_cast<LensRays<float, kLanes>*>(rays));
 }
@@ -285,10 +290,16 @@ void trace_block(const void* lens_view, void* rays) {
 #define REALCAM_TEXT(a) REALCAM_TEXT2(a)
 
 extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA);
-extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
-    REALCAM_TEXT(REALCAM_ISA),   realcam::render_tile,
-    realcam::see_layers_of_tile, realcam::see_middle_surfaces_of_tile,
-    realcam::splat_ghosts_of,    realcam::generate_all,
-    realcam::trace_block,        realcam::trace_all<double>,
-    realcam::trace_all<float>,   realcam::expose_sensor,
-    realcam::film_points<float>, realcam::film_points<double>};
+extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {REALCAM_TEXT(REALCAM_ISA),
+                                                                                realcam::render_tile,
+                                                                                realcam::see_layers_of_tile,
+                                                                                realcam::see_middle_surfaces_of_tile,
+                                                                                realcam::splat_ghosts_of,
+                                                                                realcam::generate_all,
+                                                                                realcam::trace_block,
+                                                                                realcam::trace_all<double>,
+                                                                                realcam::trace_all<float>,
+                                                                                realcam::expose_sensor,
+                                                                                realcam::film_points<float>,
+                                                                                realcam::film_points<double>,
+                                                                                realcam::aim_all};

@@ -51,6 +51,7 @@ struct realcam_kernels {
     void (*expose_sensor)(const void* request);              // SensorRequest
     void (*film_points_f32)(void* request);                  // FilmPointsRequest<float>
     void (*film_points_f64)(void* request);                  // FilmPointsRequest<double>
+    void (*aim_rays)(const void* request);                   // AimRequest
 };
 }
 

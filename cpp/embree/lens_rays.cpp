@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../camera/ray_request.hpp"
+#include "../optics/aim_request.hpp"
 
 namespace realcam {
 namespace {
@@ -119,11 +120,13 @@ void generate_camera_rays(const CameraSetup& setup, std::uint32_t spp, std::uint
 }
 
 RayLoop parallel_ray_loop(KeepGoing keep_going) {
-    return {std::move(keep_going), [](std::size_t first, std::size_t last, const RayTask& task) {
+    return {std::move(keep_going),
+            [](std::size_t first, std::size_t last, const RayTask& task) {
                 tbb::parallel_for(
                     tbb::blocked_range<std::size_t>(first, last, 64),
                     [&](const tbb::blocked_range<std::size_t>& range) { task(range.begin(), range.end()); });
-            }};
+            },
+            [](const AimRequest& request) { kernels().aim_rays(&request); }};
 }
 
 }  // namespace realcam

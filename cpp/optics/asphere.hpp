@@ -9,7 +9,7 @@ namespace REALCAM_NAMESPACE {
 template <class T>
 struct Sag {
     T height;      ///< z of the surface, mm
-    T size;        ///< of the conic's part and the polynomial's, which may cancel: what roundings scale with, mm
+    T size;  ///< of the conic's part and of each term, added up: they may cancel, but their roundings do not, mm
     T derivative;  ///< d height / d (r^2)
 };
 
@@ -20,18 +20,19 @@ template <class T>
 REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_squared) {
     const T r2 = select(radius_squared < surface.search_squared, radius_squared, surface.search_squared);
     const T root = sqrt_or_zero(T(1) - surface.conic_factor * surface.curvature * surface.curvature * r2);
-    const T u = r2 * surface.inverse_search_squared;
-    T polynomial = 0, slope = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative
+    const T u = r2 * surface.inverse_search_squared, from_middle = u - T(0.5);
+    T polynomial = 0, slope = 0, sizes = 0;  // Horner, of p(u) = a4 + a6 u + ... and its derivative; sizes of its terms
     // Always all terms, zeros too: a constant count unrolls, and the loop over the lanes becomes vector code.
     REALCAM_UNROLL
     for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
-        slope = slope * u + polynomial;
-        polynomial = polynomial * u + surface.aspheric[i];
+        slope = slope * from_middle + polynomial;
+        polynomial = polynomial * from_middle + surface.aspheric[i];
+        sizes = sizes * T(0.5) + std::fabs(surface.aspheric[i]);  // at the axis and the rim; the same for all rays
     }
     const T base = quotient(surface.curvature * r2, T(1) + root), departure = u * u * polynomial;
     const T derivative =
         surface.curvature / (T(2) * root) + surface.inverse_search_squared * u * (T(2) * polynomial + u * slope);
-    return {base + departure, std::fabs(base) + std::fabs(departure),
+    return {base + departure, std::fabs(base) + u * u * sizes,
             select(radius_squared <= surface.search_squared, derivative, T(0))};
 }
 

@@ -1,7 +1,5 @@
 #pragma once
-#include "pupil_pattern.hpp"
-#include "ray_aiming.hpp"
-#include "ray_loop.hpp"
+#include "aim_all.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -26,16 +24,12 @@ inline Vec3d crossing(const AimedRay& ray, double z) {
 inline FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
                             std::vector<PupilPoint> pattern, const RayLoop& loop = {}) {
     const RayAimer aim(lens, wavelength_nm, field);
-    const double reach = stop_reach(lens);
     FieldRays result{field.angle_rad, std::move(pattern), {}, aim.chief_ray()};
     const std::string where = "at a field angle of " + object_point_detail::degrees(field.angle_rad);
     if (result.chief.status != RayStatus::ok)
         throw InputError("the ray " + where + " through the middle of the stop does not leave lens \"" + lens.name +
                          "\"");
-    loop.append_all(result.rays, result.pattern.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i)
-            result.rays[i] = aim({reach * result.pattern[i].x, reach * result.pattern[i].y});
-    });
+    result.rays = aim_all(aim, result.pattern, stop_reach(lens), loop);
     if (std::none_of(result.rays.begin(), result.rays.end(),
                      [](const AimedRay& ray) { return ray.status == RayStatus::ok; }))
         throw InputError("none of " + std::to_string(result.rays.size()) + " rays " + where + " passes lens \"" +

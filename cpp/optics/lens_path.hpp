@@ -95,11 +95,13 @@ private:
         view.sag_edge = static_cast<T>(surface.sag(reach));
         view.search_squared = static_cast<T>(reach * reach);
         view.inverse_search_squared = static_cast<T>(1 / (reach * reach));
+        std::vector<double> terms;
         for (std::size_t i = 0; i < surface.aspheric.size(); ++i)
-            view.aspheric[i] = static_cast<T>(surface.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
+            terms.push_back(surface.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
+        set_terms(view, terms);
         view.sag_min = static_cast<T>(low - margin);
         view.sag_max = static_cast<T>(high + margin);
-        set_start(view, surface);
+        set_start(view, surface, terms);
     }
 
     static void set_media(SurfaceView<T>& view, double before, double after, double direction_sign_in,

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "aim_request.hpp"
 #include "lens_path.hpp"
 #include "object_point.hpp"
 #include "pupil_pattern.hpp"
@@ -33,15 +34,6 @@ private:
     }
     std::vector<SurfaceView<double>> steps_;
     Iris<double> iris_;
-};
-
-/// A ray of one object point that was aimed at a place on the stop, behind the lens.
-struct AimedRay {
-    RayStatus status;  ///< no_convergence: no ray was found that meets this place
-    ObjectPoint::Entry entry;  ///< where it crosses the entry plane, mm; NaN where there is no ray
-    Vec3d origin;  ///< on the last surface met, relative to the last vertex
-    Vec3d direction;  ///< optical: unit times the index behind the lens
-    double path;  ///< optical path up to there, mm, less that from the object to the middle of the entry plane
 };
 
 /// Finds the rays of one object point that meet given places on the real aperture stop.
@@ -84,6 +76,30 @@ public:
         return through(real_.view(), *entry);
     }
 
+    /// Where a place on the stop, mm, is aimed at.
+    Vec2<double> off_the_edge(Vec2<double> place) const {
+        const double share = std::hypot(place.x, place.y) / reach_;
+        const double inwards = std::fabs(share - 1) < kEdge ? (1 - kEdge) / share : 1.0;
+        return {inwards * place.x, inwards * place.y};
+    }
+
+    /// For rays that are aimed together, as nearly as one by one. Valid as long as this and the map; without places.
+    AimRequest request(const StopMap& map) const {
+        LensView<double> to_stop = open_.view();
+        to_stop.count = stop_ + 1;
+        return {to_stop,
+                real_.view(),
+                object.centre - Vec3d{0, 0, path_.entry_position},
+                object.towards,
+                object.inverse_distance,
+                path_.entry_index,
+                kMiss * stop_radius_,
+                &map,
+                0,
+                nullptr,
+                nullptr};
+    }
+
     ObjectPoint object;
 
 private:
@@ -93,12 +109,6 @@ private:
     };
     static constexpr int kMaxSteps = 40, kMaxHalvings = 24;
     static constexpr double kMiss = 2.5e-11, kEdge = 2 * kMiss;  ///< shares of the stop's radius
-
-    Vec2<double> off_the_edge(Vec2<double> place) const {
-        const double share = std::hypot(place.x, place.y) / reach_;
-        const double inwards = std::fabs(share - 1) < kEdge ? (1 - kEdge) / share : 1.0;
-        return {inwards * place.x, inwards * place.y};
-    }
 
     AimedRay through(LensView<double> view, Entry entry) const {
         LensRays<double, 1> ray;

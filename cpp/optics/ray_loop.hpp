@@ -13,6 +13,8 @@ namespace REALCAM_NAMESPACE {
 /// Work on the rays [first, last).
 using RayTask = std::function<void(std::size_t first, std::size_t last)>;
 
+struct AimRequest;
+
 /// How an analysis goes through its rays: on the calling thread, and not to be stopped. A program that has threads
 /// brings a loop that uses them, and one whose user may lose patience asks him in `keep_going`.
 struct RayLoop {
@@ -20,6 +22,8 @@ struct RayLoop {
     /// Calls the task for all of [first, last), in parts of any size and on any threads.
     std::function<void(std::size_t first, std::size_t last, const RayTask& task)> run =
         [](std::size_t first, std::size_t last, const RayTask& task) { task(first, last); };
+    /// aim_rays on the calling thread, built for the vectors that the machine has; none: as the caller is built.
+    std::function<void(const AimRequest&)> aim_rays = {};
 
     /// Throws Cancelled where the caller wants to stop.
     void heed() const {

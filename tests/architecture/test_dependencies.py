@@ -75,6 +75,7 @@ HOST_ONLY = {
     "math/motion.hpp",
     "math/odd_curve.hpp",
     "math/uniform_keys.hpp",
+    "optics/aim_all.hpp",
     "optics/aperture_diffraction.hpp",
     "optics/asphere_start.hpp",
     "optics/axial_share.hpp",

@@ -105,14 +105,15 @@ private:
     };
     Profile profile_at(long double r2) const {
         const long double c = c_, root = std::sqrt(std::max(0.0L, 1 - q_ * c * c * r2)), r = std::sqrt(r2);
-        const long double inverse = step_.inverse_search_squared, u = r2 * inverse;
+        const long double inverse = step_.inverse_search_squared, u = r2 * inverse, from_middle = u - 0.5L;
         long double polynomial = 0, derivative = 0, sizes = 0, slope_sizes = 0;
         for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
             const long double term = step_.aspheric[i];
-            derivative = derivative * u + polynomial;
-            polynomial = polynomial * u + term;
-            slope_sizes = slope_sizes * u + (i + 2) * std::fabs(term);
-            sizes = sizes * u + std::fabs(term);
+            derivative = derivative * from_middle + polynomial;
+            polynomial = polynomial * from_middle + term;
+            // At most: |u - 1/2| is 1/2 at the rim.
+            slope_sizes = slope_sizes / 2 + (2 + 2 * i) * std::fabs(term);
+            sizes = sizes / 2 + std::fabs(term);
         }
         const long double slope = c * r / root + 2 * r * inverse * u * (2 * polynomial + u * derivative);
         return {static_cast<double>(c * r2 / (1 + root) + u * u * polynomial), static_cast<double>(slope),

@@ -38,6 +38,7 @@ CLAIMS = {
     "machine-vision-25mm": Claim(25, 1.4, 14.4975, 27),
     "macro-105mm": Claim(105, 2.8, None, 23.25),
     "petzval-50mm": Claim(None, 1.4, 0.3921 * 25.4, 14),
+    "phone-4mm-seven-elements": Claim(4.361, 1.65, 0.581, 80.3),
     "phone-4mm-three-elements": Claim(None, 2.8053, None, 60),
     "planar-50mm-1897": Claim(None, 4.5, 42.3517, 48),
     "projection-24mm-160deg": Claim(None, 2, 2.2376 * 25.4, 160),

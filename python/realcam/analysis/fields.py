@@ -124,6 +124,12 @@ def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = No
 def _height_mm(bundles: Bundles, field_deg: float) -> float:
     """Of the chief ray on the film; nan where no light comes."""
     try:
+        # The one ray tells that there is light, unless something blocks it: then a bundle has to look for some.
+        spot = bundles.lens.spot(field_deg, object_distance_m=bundles.object_distance_m, pupil=[[0.0, 0.0]])
+        return math.hypot(*spot.chief_ray_mm)
+    except InputError:
+        pass
+    try:
         return math.hypot(*bundles.chief(field_deg, bundles.lens.wavelength_nm).chief_ray_mm)
     except InputError:
         return math.nan

@@ -124,8 +124,9 @@ def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles,
     chief = np.array(bundle.chief_ray_mm)
     slopes = bundle.directions[:, :2] / bundle.directions[:, 2:]
     places = bundle.points_mm - chief + planes[:, None, None] * slopes  # (D, N, 2)
-    turns = np.exp(-2j * np.pi * frequencies[:, None] * places.transpose(2, 0, 1)[:, :, None, :])
-    return _Transfer((turns @ bundle.energy)[::-1], np.ones((2, len(frequencies))), chief)
+    turns = 2 * np.pi * frequencies[:, None] * places.transpose(2, 0, 1)[:, :, None, :]
+    otf = np.cos(turns) @ bundle.energy - 1j * (np.sin(turns) @ bundle.energy)  # faster than a complex exponential
+    return _Transfer(otf[::-1], np.ones((2, len(frequencies))), chief)
 
 
 def mtf_over_frequency(
