@@ -370,9 +370,7 @@ def test_pictures_of_all_kinds(bench: LensBench, tmp_path: Path) -> None:
     png = oiio.ImageBuf(str(tmp_path / "picture.png")).get_pixels(oiio.UINT8)[..., :3]
     assert np.array_equal(png, rc._core.develop(image.pixels, image.camera.iso))
     exr = oiio.ImageBuf(str(tmp_path / "picture.exr")).get_pixels(oiio.FLOAT)[..., :3]
-    assert np.allclose(exr, image.pixels, rtol=2e-3) or np.allclose(
-        exr / exr.max(), image.pixels / image.pixels.max(), rtol=2e-3
-    )
+    np.testing.assert_allclose(exr, image.pixels, rtol=1e-3)  # half floats have 11 bits
     rawpy = pytest.importorskip("rawpy")
     with rawpy.imread(str(tmp_path / "picture.dng")) as raw:
         assert raw.raw_image_visible.shape == image.pixels.shape[:2]
