@@ -14,6 +14,7 @@ from ..accuracy import accuracy_cost
 from ..image import Image
 from ..photography import SharpRange, depth_of_field
 from ..shot import Shot
+from .bench_state import restored, state_of
 from .camera_controls import CameraControls
 from .lens_edits import LensHistory
 from .lens_view import lens_view
@@ -47,6 +48,7 @@ class Listeners:
     problem: Callable[[Problem | None], None] = lambda problem: None
     plan: Callable[[Plan | None, str], None] = lambda plan, note: None
     rungs: Callable[[list[dict[str, Any]], str], None] = lambda rungs, note: None
+    state: Callable[[dict[str, Any]], None] = lambda state: None
     sharp_range: Callable[[SharpRange], None] = lambda sharp: None
 
 
@@ -99,11 +101,12 @@ class LensBench:
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
         self._measuring_rungs = NewestTask("realcam-rungs")
         self._measuring = NewestTask("realcam-depth-of-field", quiet_s=0.1)
+        self._keeping = NewestTask("realcam-state", quiet_s=0.5)
 
     def close(self) -> None:
         """Ends all threads of the window."""
         self.listeners = Listeners()
-        for task in (self._drawing, self._planning, self._measuring, self._measuring_rungs):
+        for task in (self._drawing, self._planning, self._measuring, self._measuring_rungs, self._keeping):
             task.close()
         for loop in self._loops.values():
             loop.close()
@@ -174,6 +177,17 @@ class LensBench:
         height = max(1, round(width * film.height_mm / film.width_mm))
         return self._take(lambda: replace(self.controls, film=film.replace(resolution=(width, height))))
 
+    def restore(self, state: dict[str, Any]) -> bool:
+        """What a page has kept of the bench that it had before; see bench_state."""
+        switches = state.get("switches")
+        if not self._take(lambda: restored(self.controls, state)):
+            return False
+        self.history = LensHistory(self.controls.lens)
+        for effect, setting in (switches if isinstance(switches, dict) else {}).items():
+            self.switch(effect, setting)
+        self.listeners.controls()
+        return True
+
     # The lens.
 
     def set_lens(self, lens: Lens) -> bool:
@@ -231,6 +245,7 @@ class LensBench:
         if effect not in EFFECTS or state not in ("auto", "on", "off"):
             raise InputError(f'there is no switch "{effect:.40}" that could be "{state:.10}"')
         self.switches.of[effect] = state
+        self._keep()
         self._photograph()
         self._ask_for_plan()
 
@@ -351,6 +366,7 @@ class LensBench:
             self._draw()
             self._measure()
         self._ask_for_plan()
+        self._keep()
         if replace(before, pose=controls.pose) != controls:
             self.listeners.controls()
         return True
@@ -400,6 +416,10 @@ class LensBench:
     def _draw(self) -> None:
         lens, fields = self.controls.set_lens, self._fields()
         self._drawing.submit(lambda: self.listeners.lens(lens_view(lens, fields)))
+
+    def _keep(self) -> None:
+        controls, switches = self.controls, dict(self.switches.of)
+        self._keeping.submit(lambda: self.listeners.state(state_of(controls, switches)))
 
     def _measure(self) -> None:
         lens = self.controls.set_lens

@@ -122,6 +122,13 @@ def _turn(message: Message, bench: LensBench) -> None:
         raise BadMessage(str(error)) from None
 
 
+def _restore(message: Message, bench: LensBench) -> None:
+    state = message.get("state")
+    if not isinstance(state, dict):
+        raise BadMessage('"state" is to be an object')
+    bench.restore(state)
+
+
 def _switch(message: Message, bench: LensBench) -> None:
     try:
         bench.switch(_text(message, "effect"), _text(message, "state"))
@@ -143,6 +150,7 @@ _ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {
     "undo": lambda m, bench: bench.undo(),
     "redo": lambda m, bench: bench.redo(),
     "turn": _turn,
+    "restore": _restore,
     "rungs": lambda m, bench: bench.measure_rungs(),
     "switch": _switch,
 }

@@ -48,6 +48,7 @@ class PictureStream:
         bench.listeners.lens = lambda view: self._offer_text("lens", view)
         bench.listeners.problem = self._offer_problem
         bench.listeners.plan = self._offer_plan
+        bench.listeners.state = lambda state: self._offer_text("state", {"state": state})
         bench.listeners.rungs = lambda rungs, note: self._offer_text("rungs", {"rungs": rungs, "note": note})
 
     async def serve(self, socket: WebSocket) -> None:

@@ -1,6 +1,7 @@
 // The WebSocket to the window's bench, shared by all components of the page. See stream.py for what it carries.
 
 const FIRST_WAIT_MS = 250;
+const KEPT = "realcam: what the window had";
 const LONGEST_WAIT_MS = 4000;
 
 class Stream {
@@ -20,13 +21,19 @@ class Stream {
     this.socket.onopen = () => {
       this.wait = FIRST_WAIT_MS;
       this.tell("connection", { isOpen: true });
+      const kept = sessionStorage.getItem(KEPT);
+      sessionStorage.removeItem(KEPT);
+      if (kept) this.send({ type: "restore", state: JSON.parse(kept) });
     };
     this.socket.onmessage = (event) =>
       typeof event.data === "string" ? this.takeText(event.data) : this.takeFrame(event.data);
     this.socket.onclose = (event) => {
       this.tell("connection", { isOpen: false });
       if (event.code === 4404) {
-        location.reload(); // the server was started anew and does not know this window
+        // The server was started anew and does not know this window; the next one brings back what this one had.
+        const state = this.latest.get("state");
+        if (state) sessionStorage.setItem(KEPT, JSON.stringify(state.state));
+        location.reload();
         return;
       }
       setTimeout(() => this.connect(), this.wait);

@@ -1,0 +1,86 @@
+"""What a page keeps of its bench, to bring it back when the server was started anew."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from .._core import Film, InputError, Lens
+from .camera_controls import CameraControls
+from .pose import Pose
+
+_MOST_PIXELS = 4096  # each way
+
+
+def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, Any]:
+    """As JSON can say it. The lens is the text of its file."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{controls.lens.name or 'lens'}.toml"
+        controls.lens.save(path)
+        lens = path.read_text(encoding="utf-8")
+    return {
+        "name": path.stem,
+        "lens": lens,
+        "zoom": controls.zoom,
+        "f_number": controls.f_number,
+        "focus_m": None if math.isinf(controls.focus_m) else controls.focus_m,
+        "film": [controls.film.width_mm, controls.film.height_mm, *controls.film.resolution],
+        "pose": [*controls.pose.position_m, *controls.pose.look_at_m, *controls.pose.up],
+        "model": controls.model,
+        "is_automatic": controls.is_automatic,
+        "switches": switches,
+        "exposure_time_s": controls.exposure_time_s,
+        "iso": controls.iso,
+        "compensation_ev": controls.compensation_ev,
+    }
+
+
+def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
+    """Raises InputError and LensFileError for what no state_of has written."""
+    with tempfile.TemporaryDirectory() as folder:
+        name = "".join(c for c in _text(state, "name") if c.isalnum() or c in "-_. ")[:60] or "lens"
+        path = Path(folder) / f"{name}.toml"
+        path.write_text(_text(state, "lens"), encoding="utf-8")
+        lens = Lens.load(path)
+    width_mm, height_mm, columns, rows = _numbers(state, "film", 4)
+    if not (1 <= columns <= _MOST_PIXELS and 1 <= rows <= _MOST_PIXELS):
+        raise InputError("the state that the page has kept has no film of so many pixels")
+    x, y, z, u, v, w, *up = _numbers(state, "pose", 9)
+    controls = replace(
+        before.with_lens(lens),
+        film=Film(width_mm, height_mm, (int(columns), int(rows))),
+        pose=Pose((x, y, z), (u, v, w), (up[0], up[1], up[2])),
+        f_number=None if state.get("f_number") is None else _number(state, "f_number"),
+        focus_m=math.inf if state.get("focus_m") is None else _number(state, "focus_m"),
+        model=_text(state, "model"),
+        is_automatic=state.get("is_automatic") is True,
+        exposure_time_s=_number(state, "exposure_time_s"),
+        iso=_number(state, "iso"),
+        compensation_ev=_number(state, "compensation_ev"),
+    )
+    zoom = state.get("zoom")
+    return replace(controls, zoom=zoom) if zoom in lens.zoom_positions else controls
+
+
+def _text(state: dict[str, Any], key: str) -> str:
+    value = state.get(key)
+    if not isinstance(value, str):
+        raise InputError(f'the state that the page has kept has no text "{key}"')
+    return value
+
+
+def _number(state: dict[str, Any], key: str) -> float:
+    value = state.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise InputError(f'the state that the page has kept has no number "{key}"')
+    return float(value)
+
+
+def _numbers(state: dict[str, Any], key: str, count: int) -> list[float]:
+    values = state.get(key)
+    if not isinstance(values, list) or len(values) != count:
+        raise InputError(f'the state that the page has kept has no {count} numbers "{key}"')
+    return [_number({key: value}, key) for value in values]

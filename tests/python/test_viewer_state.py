@@ -1,0 +1,68 @@
+"""What a page keeps of its bench, and brings back after the server was started anew."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+import realcam as rc
+from realcam.viewer.bench_state import restored, state_of
+from realcam.viewer.camera_controls import CameraControls
+from realcam.viewer.pose import Pose
+
+CAMERA = rc.Camera(rc.Lens.load("tessar-50mm").focused(2.0), film=rc.Film(36, 24, (90, 60)))
+FRESH = CameraControls.of(CAMERA)
+
+
+@pytest.mark.parametrize("focus_m", [1.5, math.inf])
+def test_all_that_was_set_comes_back(focus_m: float) -> None:
+    lens = rc.Lens.load("zoom-11-24mm").with_surface(0, radius_of_curvature_mm=50.0)
+    before = replace(
+        FRESH.with_lens(lens),
+        zoom="17mm",
+        f_number=5.6,
+        focus_m=focus_m,
+        pose=Pose((1, 2, 3), (0, 0.5, 0), (0, 0, 1)),
+        film=rc.Film(20, 10, (100, 50)),
+        exposure_time_s=0.5,
+        iso=400.0,
+        compensation_ev=-1.0,
+        is_automatic=True,
+        model="thin",
+    )
+    text = json.dumps(state_of(before, {"ghosts": "on"}), allow_nan=False)
+    after = restored(FRESH, json.loads(text))
+    assert after == replace(before, lens=after.lens)
+    # The file's numbers are those of the lens: its rays are the same.
+    assert [s.radius_of_curvature_mm for s in after.lens.surfaces] == [s.radius_of_curvature_mm for s in lens.surfaces]
+    assert after.camera.lens.first_order().effective_focal_length_mm == pytest.approx(
+        before.camera.lens.first_order().effective_focal_length_mm, rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("lens", 5),
+        ("lens", "this is no lens"),
+        ("name", None),
+        ("pose", [0.0] * 8),
+        ("pose", [math.inf] * 9),
+        ("film", [36, 24, 1e9, 1]),
+        ("film", [36, 24, 10, 0.5]),
+        ("f_number", "wide"),
+        ("iso", True),
+        ("model", 3),
+    ],
+)
+def test_what_nobody_has_kept_is_refused(key: str, value: object) -> None:
+    state = state_of(FRESH, {}) | {key: value}
+    with pytest.raises(rc.RealcamError):
+        restored(FRESH, state)
+
+
+def test_a_name_leads_to_no_other_folder() -> None:
+    state = state_of(FRESH, {}) | {"name": "../../etc/passwd"}
+    assert "/" not in restored(FRESH, state).lens.name
