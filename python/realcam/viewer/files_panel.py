@@ -110,9 +110,7 @@ class FilesPanel:
             return
 
         def saved() -> None:
-            if path == self._source:
-                save_shot(self._source, bench.controls, bench.effect_words(), path)
-            elif what == "picture":
+            if what == "picture":
                 save_picture(bench.image(), path, bench.shot.tone)
             elif what == "shot":
                 save_shot(self._source, bench.controls, bench.effect_words(), path)

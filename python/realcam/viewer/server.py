@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from fastapi import Response, WebSocket
 from nicegui import app, ui
 from nicegui.client import Client
 
-from .._core import LensFileError
+from .._core import DeviceError, LensFileError
 from ..shot import Shot
 from .access import BodyLimit, Folders, Gate, is_local
 from .files_panel import MOST_UPLOADED, lens_preview
@@ -66,7 +67,13 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
         if len(windows) >= _MOST_WINDOWS:
             ui.label("Too many windows are open; close one and load this page again.")
             return
-        window = Window(LensBench(shot, device=settings.device, make_loop=make_loop))
+        try:
+            # On another thread, because the scene is made ready in the meantime.
+            bench = await asyncio.to_thread(LensBench, shot, device=settings.device, make_loop=make_loop)
+        except DeviceError as error:
+            ui.label(str(error))
+            return
+        window = Window(bench)
         windows[window.key] = window
         client.on_delete(lambda: windows.pop(window.key, None))
         build_page(client, window, folders, settings.source.resolve())
