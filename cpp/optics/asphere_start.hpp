@@ -13,8 +13,8 @@ namespace REALCAM_NAMESPACE {
 /// Sets the polynomial a4 + a6 u + ..., given by its terms at the search radius, mm. In long double, because sums
 /// cancel where the terms do.
 template <class T>
-void set_terms(SurfaceView<T>& view, const std::vector<double>& terms) {
-    std::vector<long double> about_middle(terms.begin(), terms.end());
+void set_terms(SurfaceView<T>& view, const std::vector<long double>& terms) {
+    std::vector<long double> about_middle = terms;
     // Horner's scheme again and again, each time for the next power of u - 1/2.
     for (std::size_t power = 0; power < terms.size(); ++power)
         for (std::size_t i = terms.size() - 1; i-- > power;) about_middle[i] += 0.5L * about_middle[i + 1];
@@ -27,7 +27,7 @@ void set_terms(SurfaceView<T>& view, const std::vector<double>& terms) {
 /// those at both, and so do those of the terms that rise and of those that fall. The conic's numbers are the view's,
 /// whose roundings move an edge.
 template <class T>
-double steepest_slope(const SurfaceView<T>& view, const std::vector<double>& terms, double share_of_radius) {
+double steepest_slope(const SurfaceView<T>& view, const std::vector<long double>& terms, double share_of_radius) {
     constexpr int kSteps = 1024;
     const double reach = std::sqrt(static_cast<double>(view.search_squared)), c = static_cast<double>(view.curvature);
     struct Slopes {
@@ -40,7 +40,7 @@ double steepest_slope(const SurfaceView<T>& view, const std::vector<double>& ter
         Slopes slopes{c * r / std::sqrt(radicand), 0, 0};
         double power = share * share * share / reach;
         for (std::size_t i = 0; i < terms.size(); ++i, power *= share * share) {
-            const double slope = (4 + 2 * static_cast<double>(i)) * terms[i] * power;
+            const double slope = (4 + 2 * static_cast<double>(i)) * static_cast<double>(terms[i]) * power;
             (slope > 0 ? slopes.rising : slopes.falling) += slope;
         }
         return slopes;
@@ -60,7 +60,7 @@ double steepest_slope(const SurfaceView<T>& view, const std::vector<double>& ter
 
 /// Where Newton's method starts, and for which rays it needs no bracket.
 template <class T>
-void set_start(SurfaceView<T>& view, const Surface& surface, const std::vector<double>& terms) {
+void set_start(SurfaceView<T>& view, const Surface& surface, const std::vector<long double>& terms) {
     const double search_squared = static_cast<double>(view.search_squared), reach = std::sqrt(search_squared);
     constexpr double kInnerRadius = 0.9;
     // Less than 3 degrees from the vertex plane, a ray is no function of the height.

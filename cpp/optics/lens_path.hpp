@@ -95,9 +95,11 @@ private:
         view.sag_edge = static_cast<T>(surface.sag(reach));
         view.search_squared = static_cast<T>(reach * reach);
         view.inverse_search_squared = static_cast<T>(1 / (reach * reach));
-        std::vector<double> terms;
-        for (std::size_t i = 0; i < surface.aspheric.size(); ++i)
-            terms.push_back(surface.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
+        // Not by std::pow, which would round the powers of a reach and of twice the reach differently.
+        std::vector<long double> terms;
+        long double power = static_cast<long double>(reach) * reach;
+        for (const double coefficient : surface.aspheric)
+            terms.push_back(coefficient * (power *= static_cast<long double>(reach) * reach));
         set_terms(view, terms);
         view.sag_min = static_cast<T>(low - margin);
         view.sag_max = static_cast<T>(high + margin);

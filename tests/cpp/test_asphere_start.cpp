@@ -51,7 +51,7 @@ TEST_CASE("no place of an asphere is steeper than its bound, which is not far ab
         const LensPath<double> path(lens_of({wavy}), LightDirection::to_film, kLineD_nm);
         const SurfaceView<double>& surface = path.view().surfaces[0];
         const double reach = std::sqrt(surface.search_squared);
-        std::vector<double> terms;
+        std::vector<long double> terms;
         for (std::size_t i = 0; i < wavy.aspheric.size(); ++i)
             terms.push_back(wavy.aspheric[i] * std::pow(reach, 4 + 2 * static_cast<double>(i)));
         for (const double share : {0.5, 1.0}) {
