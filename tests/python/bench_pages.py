@@ -1,0 +1,226 @@
+"""The lens bench as its users have it: a server in a process of its own, and a browser that shows its page."""
+
+from __future__ import annotations
+
+import base64
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+T = TypeVar("T")
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+WAIT_S = 25.0  # for what takes a second on a quiet machine
+
+
+def free_port() -> int:
+    with socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        return int(listening.getsockname()[1])
+
+
+def until(get: Callable[[], T], is_right: Callable[[T], object], what: str, seconds: float = WAIT_S) -> T:
+    """What `get` gives as soon as it is right."""
+    deadline = time.monotonic() + seconds
+    while True:
+        value = get()
+        if is_right(value):
+            return value
+        if time.monotonic() > deadline:
+            raise AssertionError(f"{what}: after {seconds:g} s still {value!r:.400}")
+        time.sleep(0.1)
+
+
+class Server:
+    """`realcam view` on a shot, in the shot's folder."""
+
+    def __init__(self, shot: Path, *options: str, port: int | None = None) -> None:
+        self.shot, self.options = shot, options
+        self.port = port or free_port()
+        self.log = shot.parent / f"server-{self.port}.log"
+        self.start()
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.port}/"
+
+    @property
+    def said(self) -> str:
+        return self.log.read_text()
+
+    def start(self) -> None:
+        command = [sys.executable, "-m", "realcam", "view", self.shot.name, "--no-browser", "--port", str(self.port)]
+        # NiceGUI has a mode for tests that are run within it, which this variable turns on.
+        environment = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
+        # Appended to, so that a server that is started anew hides no traceback of the first.
+        with self.log.open("a") as log:
+            self.process = subprocess.Popen(
+                [*command, *self.options],
+                cwd=self.shot.parent,
+                env=environment,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
+        until(self.answers, bool, "the server does not answer", 120)
+
+    def answers(self) -> bool:
+        assert self.process.poll() is None, self.said
+        try:
+            urllib.request.urlopen(f"{self.url}realcam/page.css", timeout=5).close()
+        except urllib.error.HTTPError:
+            return True  # that a token is wanted is an answer, too
+        except OSError:
+            return False
+        return True
+
+    def kill(self) -> None:
+        """As a crash would."""
+        self.process.kill()
+        self.process.wait()
+
+    def stop(self, seconds: float = 60.0) -> None:
+        """As Ctrl-C does."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+            try:
+                self.process.wait(seconds)
+            except subprocess.TimeoutExpired:
+                self.kill()
+                raise AssertionError(f"the server does not end:\n{self.said[-3000:]}") from None
+
+    def cpu_s(self) -> float:
+        """Processor time, of all threads and of its own processes."""
+        total = 0.0
+        for line in subprocess.check_output(["ps", "-e", "-o", "pid=,ppid="], text=True).splitlines():
+            pid, parent = map(int, line.split())
+            if self.process.pid in (pid, parent):
+                try:
+                    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+                except FileNotFoundError:
+                    continue
+                total += (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        return total
+
+    def memory_mb(self) -> float:
+        status = Path(f"/proc/{self.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
+
+    def complaints(self) -> list[str]:
+        return [line for line in self.said.splitlines() if re.search(r"Traceback|ERROR|CRITICAL|Exception|Error:", line)]
+
+
+class BenchPage:
+    """A window on a server. Refuses to be left with an exception in the page's scripts."""
+
+    def __init__(self, browser: Any, url: str, **settings: Any) -> None:
+        self.context = browser.new_context(viewport={"width": 1400, "height": 1000}, **settings)
+        self.page = self.context.new_page()
+        self.complaints: list[str] = []
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.on("console", self._hear)
+        self.open(url)
+
+    def _hear(self, message: Any) -> None:
+        if message.type == "error":
+            self.complaints.append(message.text)
+
+    def open(self, url: str) -> None:
+        for _ in range(30):  # each window is held for some time after its page has gone, and their number is bounded
+            self.page.goto(url)
+            if not self.page.get_by_text("Too many windows").is_visible():
+                break
+            time.sleep(2)
+        until(lambda: self.status, lambda text: "pixels" in text, "no picture comes")
+
+    def close(self) -> None:
+        self.context.close()
+        assert self.complaints == []
+
+    # What is seen.
+
+    def test_id(self, name: str) -> Any:
+        return self.page.locator(f'[data-testid="{name}"]')
+
+    def text(self, name: str) -> str:
+        return self.test_id(name).text_content() or ""
+
+    @property
+    def status(self) -> str:
+        found = self.test_id("status")
+        return (found.text_content() or "") if found.count() else ""
+
+    def picture(self) -> np.ndarray:
+        """The pixels of the canvas, (H, W, 3) codes."""
+        width, height, content = self.page.evaluate(
+            """() => {
+                const c = document.querySelector('.rc-canvas');
+                const data = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+                let text = '';
+                for (let i = 0; i < data.length; i += 8192) text += String.fromCharCode(...data.subarray(i, i + 8192));
+                return [c.width, c.height, btoa(text)];
+            }"""
+        )
+        return np.frombuffer(base64.b64decode(content), np.uint8).reshape(height, width, 4)[..., :3]
+
+    def until_picture(self, is_right: Callable[[np.ndarray], object], what: str) -> np.ndarray:
+        """The picture as soon as it is right and done."""
+
+        def seen() -> tuple[np.ndarray, str]:
+            return self.picture(), self.status
+
+        return until(seen, lambda s: s[1].endswith("done") and is_right(s[0]), what)[0]
+
+    def figure(self, name: str) -> float:
+        text = self.text(name).split()[0]
+        return float("nan") if text == "-" else float(text)
+
+    def until_text(self, name: str, is_right: Callable[[str], object]) -> str:
+        return until(lambda: self.text(name), is_right, name)
+
+    # What is done.
+
+    @property
+    def canvas(self) -> Any:
+        return self.page.locator(".rc-canvas")
+
+    def click_picture(self, u: float, v: float) -> None:
+        box = self.canvas.bounding_box()
+        self.canvas.click(position={"x": u * box["width"], "y": v * box["height"]})
+
+    def turn(self, name: str, key: str, times: int = 1) -> None:
+        """A ring, by the keyboard."""
+        inner = self.test_id(name).locator("[tabindex]")
+        inner.focus()
+        for _ in range(times):
+            inner.press(key)
+
+    def choose(self, name: str, text: str) -> None:
+        """An entry of a list."""
+        self.page.locator(f'.q-field:has([data-testid="{name}"])').click()
+        option = self.page.locator(".q-menu .q-item").filter(has_text=re.compile(rf"^\s*{re.escape(text)}\s*$"))
+        option.click()
+        self.page.locator(".q-menu").wait_for(state="detached")
+
+    def cell(self, surface: int, field: str) -> Any:
+        return self.page.locator(f'[data-cell="{surface}-{field}"]')
+
+    def edit(self, surface: int, field: str, value: str) -> None:
+        self.cell(surface, field).fill(value)
+        self.cell(surface, field).press("Enter")
+
+    def send(self, message: Any) -> None:
+        """Over the page's own WebSocket, as its components do."""
+        self.page.evaluate("m => [...window.realcamStreams.values()][0].send(m)", message)
