@@ -22,7 +22,7 @@ import numpy as np
 T = TypeVar("T")
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-WAIT_S = 25.0  # for what takes a second on a quiet machine
+WAIT_S = 60.0  # for what takes a second on a quiet machine
 
 
 def free_port() -> int:
@@ -119,7 +119,9 @@ class Server:
         return int(re.search(r"VmRSS:\s+(\d+)", status).group(1)) / 1024
 
     def complaints(self) -> list[str]:
-        return [line for line in self.said.splitlines() if re.search(r"Traceback|ERROR|CRITICAL|Exception|Error:", line)]
+        return [
+            line for line in self.said.splitlines() if re.search(r"Traceback|ERROR|CRITICAL|Exception|Error:", line)
+        ]
 
 
 class BenchPage:

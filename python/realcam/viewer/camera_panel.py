@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
 import math
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -24,6 +26,7 @@ MODELS = {
 }
 WIDTHS = (320, 480, 640, 960, 1280, 1920)
 NOISES = {4.0: "4 codes (draft)", 2.0: "2 codes", 1.0: "1 code", 0.5: "half a code (fine)"}
+_HELD_S = 1.0  # after the last turn of a ring by its user
 _FOCUS_STEPS = 400  # of the slider, even in the inverse distance, as the travel of a focusing lens is
 
 
@@ -33,6 +36,8 @@ class CameraPanel:
     def __init__(self, window: Window, run: Callable[..., Awaitable[Any]]) -> None:
         self._window, self._bench, self._run = window, window.bench, run
         self._sharp = SharpRange(math.nan, math.nan)
+        self._held: tuple[ui.slider, asyncio.TimerHandle] | None = None
+        self._turns = 0  # of rings, that are not done yet
         self._build()
         self.update()
 
@@ -59,7 +64,7 @@ class CameraPanel:
                 self._automatic = ui.switch("Automatic exposure").props('data-testid="automatic"')
                 self._automatic.on("update:model-value", lambda e: self._change(is_automatic=bool(_value(e))))
                 self._automatic.tooltip("The exposure time follows the mean brightness of the picture")
-                self._compensation = ui.number("Correction (EV)", min=-5, max=5, step=1 / 3, format="%.2f")
+                self._compensation = ui.number("Correction (EV)", value=0, min=-5, max=5, step=1 / 3, format="%.2f")
                 self._compensation.on("update:model-value", self._set_compensation, throttle=0.1)
                 self._compensation.tooltip("Brighter (+) or darker (-) than metered, in stops").classes("w-32")
             self._model = self._choice(
@@ -87,15 +92,15 @@ class CameraPanel:
         apertures = self._bench.apertures
         f_number = max(now.f_number or 0.0, apertures.values[0])
         step = apertures.step_of(f_number)
-        _set(self._aperture, step, len(apertures.values) - 1)
+        self._set(self._aperture, step, len(apertures.values) - 1)
         self._aperture_text.set_text(f"Aperture f/{apertures.text_of(f_number)}")
-        _set(self._shutter, SHUTTER_S.step_of(now.exposure_time_s))
+        self._set(self._shutter, SHUTTER_S.step_of(now.exposure_time_s))
         automatic = " (automatic)" if now.is_automatic else ""
         self._shutter_text.set_text(f"Shutter {_seconds(SHUTTER_S, now.exposure_time_s)}{automatic}")
-        _set(self._iso, ISO.step_of(now.iso))
+        self._set(self._iso, ISO.step_of(now.iso))
         self._iso_text.set_text(f"ISO {ISO.text_of(now.iso)}")
         nearest = self._nearest_m
-        _set(self._focus, round(_FOCUS_STEPS * (1 - nearest / now.focus_m)) if now.focus_m > nearest else 0)
+        self._set(self._focus, round(_FOCUS_STEPS * (1 - nearest / now.focus_m)) if now.focus_m > nearest else 0)
         self._focus_text.set_text(f"Focus {_distance(now.focus_m)}")
         self._show_scale()
         self._automatic.set_value(now.is_automatic)
@@ -141,9 +146,10 @@ class CameraPanel:
         return self._change(iso=ISO.values[int(step)])
 
     async def _set_compensation(self, event: GenericEventArguments) -> None:
-        value = _value(event)
-        if isinstance(value, int | float) and math.isfinite(value) and abs(value) <= 10:
-            await self._change(compensation_ev=float(value))
+        with contextlib.suppress(ValueError):  # what is not typed to its end
+            value = float(str(_value(event)))  # a field of text, even where numbers are wanted
+            if abs(value) <= 10:
+                await self._change(compensation_ev=value)
 
     def _change(self, **changes: Any) -> Awaitable[Any]:
         return self._run(self._bench.change, **changes)
@@ -155,10 +161,36 @@ class CameraPanel:
         async def turned(event: GenericEventArguments) -> None:
             value = _value(event)
             if isinstance(value, int | float):
-                await act(value)
+                self._hold(slider)
+                self._turns += 1
+                try:
+                    await act(value)
+                finally:
+                    self._turns -= 1
 
         slider.on("update:model-value", turned, throttle=0.03)
         return slider
+
+    def _hold(self, slider: ui.slider) -> None:
+        """Leaves a ring to the hand that turns it: what comes of an earlier step must not turn it back meanwhile."""
+        loop = asyncio.get_running_loop()
+        if self._held is not None:
+            self._held[1].cancel()
+        self._held = slider, loop.call_later(_HELD_S, self._let_go)
+
+    def _let_go(self) -> None:
+        if self._held is not None and self._turns:
+            self._hold(self._held[0])  # until the last of them is done
+            return
+        self._held = None
+        self.update()
+
+    def _set(self, slider: ui.slider, step: int, last: int | None = None) -> None:
+        if last is not None and slider.props.get("max") != last:
+            slider.props["max"] = last
+            slider.update()
+        if self._held is None or self._held[0] is not slider:
+            slider.set_value(step)
 
     def _choice(self, name: str, options: dict[Any, str], act: Callable[[Any], Awaitable[Any]], help: str) -> ui.select:
         choice = ui.select(options, label=name).classes("w-full").props(f'data-testid="{name.lower()}"')
@@ -169,12 +201,6 @@ class CameraPanel:
 
         choice.on("update:model-value", chosen)
         return choice
-
-
-def _set(slider: ui.slider, step: int, last: int | None = None) -> None:
-    if last is not None:
-        slider.props(f"max={last}")
-    slider.set_value(step)
 
 
 def _value(event: GenericEventArguments) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 
 from nicegui import events, ui
 
-from .._core import Lens, LensFileError, RealcamError, lens_names
+from .._core import InputError, Lens, LensFileError, RealcamError, lens_names
 from ..gallery import save_gallery
 from .access import Folders
 from .lens_bench import COMPARISONS
@@ -93,8 +93,13 @@ class FilesPanel:
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder) / f"{Path(event.file.name).stem[:60]}{suffix}"
                 path.write_bytes(content)
-                lens = Lens.load(path)
-            self._bench.set_lens(lens)
+                try:
+                    lens = Lens.load(path)
+                except RealcamError as error:  # whose file the user does not know under that path
+                    raise InputError(str(error).replace(str(path), event.file.name)) from None
+            if not self._bench.set_lens(lens):
+                problem = self._bench.problem
+                raise InputError(problem.message if problem else "the lens does not fit the camera")
 
         await self._try(opened, f"Opened {event.file.name}")
 
