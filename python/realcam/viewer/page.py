@@ -26,6 +26,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
     loop, bench = asyncio.get_running_loop(), window.bench
     ui.add_head_html('<link rel="stylesheet" href="/realcam/page.css">')
     dark = ui.dark_mode(None)
+    ui.colors(primary="#0b5cad")  # with white letters on it, and as letters on the light page, a contrast of 6 and more
 
     async def run(action: Callable[..., Any], *arguments: Any, **named: Any) -> None:
         try:

@@ -11,7 +11,7 @@ export default {
   props: { path: String },
   template: `
 <section class="rc-picture" aria-label="Picture">
-  <div class="rc-stage" ref="stage">
+  <div class="rc-stage" ref="stage" :style="stageStyle">
     <canvas ref="canvas" class="rc-canvas" tabindex="0" role="img" :aria-label="description"
       aria-describedby="rc-picture-keys"
       @pointerdown="press" @pointermove="move" @pointerup="release" @pointercancel="release"
@@ -53,6 +53,11 @@ export default {
       const done = h.is_final ? ", done" : h.is_preview ? ", preview" : "";
       const clipped = this.clipped > 0.0005 ? `, ${(100 * this.clipped).toFixed(1)}% clipped` : "";
       return `${h.width} × ${h.height} pixels, ${h.samples} samples${noise}${clipped}${done}`;
+    },
+    /// As wide as the column, but no higher than most of the window.
+    stageStyle() {
+      const h = this.header;
+      return h ? { width: `min(100%, ${(70 * h.whole_width) / h.whole_height}vh)` } : {};
     },
     description() {
       return `The picture through the lens. ${this.status}`;
