@@ -173,9 +173,12 @@ def test_the_mean_of_s_and_p_at_each_surface_is_near_the_truth() -> None:
                 lens.transmission(field, object_distance_m=math.inf, polarisation=how) for how in ("traced", "averaged")
             )
             errors[name] = max(errors.get(name, 0.0), abs(averaged - exact))
+    phone = "phone-4mm-seven-elements"  # its last faces are as steep as the fisheye's first
+    others = max(error for name, error in errors.items() if name not in (fisheye, phone))
     for tried, worst, limit in (
         (f"{fisheye}, to 112 degrees", errors[fisheye], 0.05),
-        ("the other bundled lenses", max(error for name, error in errors.items() if name != fisheye), 0.025),
+        (f"{phone}, to its film's corners", errors[phone], 0.07),
+        ("the other bundled lenses", others, 0.025),
     ):
         what = "mean of s and p at each bare surface"
         hold(Measurement("Effects", what, tried, "core", "float64", worst, limit, "of the light"))
