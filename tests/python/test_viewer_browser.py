@@ -16,8 +16,8 @@ import realcam as rc
 pytest.importorskip("nicegui")
 playwright = pytest.importorskip("playwright.sync_api")
 
-from . import bench_shots
-from .bench_pages import CHROMIUM, BenchPage, Server, until
+from . import bench_shots  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, until  # noqa: E402
 
 pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
@@ -174,8 +174,12 @@ def test_a_wipe_between_two_cameras(bench: BenchPage) -> None:
 def test_peaking_clipping_and_the_histogram(bench: BenchPage) -> None:
     def marked() -> int:
         return bench.page.evaluate(
-            "() => { const c = document.querySelector('.rc-marks'); if (!c.width) return 0;"
-            " return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.filter((x, i) => i % 4 == 3 && x).length }"
+            """() => {
+                const c = document.querySelector('.rc-marks');
+                if (!c.width) return 0;
+                const data = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+                return data.filter((x, i) => i % 4 == 3 && x).length;
+            }"""
         )
 
     bench.page.get_by_label("Peaking").check()
@@ -255,10 +259,9 @@ def test_dragging_in_the_drawing(bench: BenchPage, field: str) -> None:
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     bench.page.mouse.move(x, y)
     bench.page.mouse.down()
+    across, up = (0, 3) if field == "semi_diameter_mm" else (0.8, 0)  # pixels
     for step in range(1, 6):
-        bench.page.mouse.move(
-            x + (0.8 * step if field != "semi_diameter_mm" else 0), y + (3 * step if "semi" in field else 0)
-        )
+        bench.page.mouse.move(x + across * step, y + up * step)
     bench.page.mouse.up()
     until(lambda: bench.cell(changed, field).input_value(), lambda value: value != before, "dragged")
     assert bench.page.locator("svg.rc-section").inner_html() != drawn

@@ -314,6 +314,10 @@ class LensBench:
         """The picture with all its samples; waits for it."""
         return self._loops[slot].image().result()
 
+    def show_again(self) -> None:
+        """Sends the picture as it is once more."""
+        self._photograph()
+
     def set_jpeg_quality(self, quality: int) -> None:
         for loop in self._loops.values():
             loop.jpeg_quality = quality

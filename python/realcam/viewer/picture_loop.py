@@ -442,6 +442,7 @@ class PictureLoop:
         frame = Frame(
             serial=picture.serial,
             jpeg=b"",
+            jpeg_quality=0,
             width=codes.shape[1],
             height=codes.shape[0],
             whole_width=whole[0],
@@ -461,8 +462,9 @@ class PictureLoop:
         self._encoding = self._encoder.submit(self._encode, frame, codes)
 
     def _encode(self, frame: Frame, codes: NDArray[np.uint8]) -> None:
-        jpeg = simplejpeg.encode_jpeg(codes, quality=self.jpeg_quality, colorsubsampling="420")
-        self._on_frame(replace(frame, jpeg=jpeg))
+        quality = self.jpeg_quality
+        jpeg = simplejpeg.encode_jpeg(codes, quality=quality, colorsubsampling="420")
+        self._on_frame(replace(frame, jpeg=jpeg, jpeg_quality=quality))
 
 
 def _costs(stats: RenderStats, seconds: float) -> Costs:

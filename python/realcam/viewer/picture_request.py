@@ -48,6 +48,7 @@ class Frame:
 
     serial: int  #: of the request that it shows
     jpeg: bytes
+    jpeg_quality: int
     width: int
     height: int
     whole_width: int  #: of the picture that was asked for

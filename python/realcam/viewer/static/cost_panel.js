@@ -94,8 +94,11 @@ export default {
     take(header) {
       if (header.slot !== "a") return;
       if (header.costs) this.costs = header.costs;
+      const isAgain = header.is_final && header.samples === this.samples; // as another JPEG
+      this.samples = header.samples;
       if (header.serial !== this.serial) {
         this.serial = header.serial;
+        if (isAgain) return;
         this.points = [];
       }
       const last = this.points[this.points.length - 1];
