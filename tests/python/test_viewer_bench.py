@@ -237,16 +237,16 @@ def test_every_bundled_lens_can_be_put_on_the_camera(bench: LensBench, name: str
 
 def test_switches_name_the_effects(bench: LensBench) -> None:
     told = Told(bench)
-    assert bench.effect_words() == []
+    assert bench.switches.as_words() == []
     bench.show()
     told.until(lambda: told.plans)  # how the switches stand, where nothing is left to the planner
     bench.switch("dispersion", "on")
-    assert bench.effect_words() == ["dispersion"]
+    assert bench.switches.as_words() == ["dispersion"]
     for effect in EFFECTS:
         bench.switch(effect, "auto")
-    assert bench.effect_words() == ["auto"]
+    assert bench.switches.as_words() == ["auto"]
     bench.switch("dispersion", "off")
-    assert bench.effect_words() == ["auto", "-dispersion"]
+    assert bench.switches.as_words() == ["auto", "-dispersion"]
     with pytest.raises(rc.InputError):
         bench.switch("gravity", "on")
 
@@ -271,7 +271,7 @@ def test_a_second_picture_to_compare_with(bench: LensBench) -> None:
 
 
 def saved_again(bench: LensBench, source: Path, path: Path) -> rc.Shot:
-    saving.save_shot(source, bench.controls, bench.effect_words(), path)
+    saving.save_shot(source, bench.controls, bench.switches.as_words(), path)
     return rc.Shot.load(path)
 
 
@@ -310,7 +310,7 @@ def test_a_saved_shot_is_the_same_camera(bench: LensBench, shot_path: Path, tmp_
     other.mkdir()
     again = saved_again(bench, shot_path, other / "saved.toml")
     assert_same_camera(again.camera, bench.controls.camera)
-    assert list(again.effects) == bench.effect_words()
+    assert list(again.effects) == bench.switches.as_words()
     # And once more, from what was saved: nothing drifts, and no lens is written anew.
     bench_of_it = LensBench(again, device="cpu")
     try:

@@ -10,6 +10,7 @@ import pytest
 import realcam as rc
 from realcam.viewer.bench_state import restored, state_of
 from realcam.viewer.camera_controls import CameraControls
+from realcam.viewer.lens_bench import Switches
 from realcam.viewer.pose import Pose
 
 CAMERA = rc.Camera(rc.Lens.load("tessar-50mm").focused(2.0), film=rc.Film(36, 24, (90, 60)))
@@ -66,3 +67,14 @@ def test_what_nobody_has_kept_is_refused(key: str, value: object) -> None:
 def test_a_name_leads_to_no_other_folder() -> None:
     state = state_of(FRESH, {}) | {"name": "../../etc/passwd"}
     assert "/" not in restored(FRESH, state).lens.name
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["auto"], ["auto", "ghosts=1e-08", "-dispersion"], ["coatings", "film_reflection=0.1"], []],
+)
+def test_effects_are_those_that_the_shot_names(words: list[str]) -> None:
+    switches = Switches.of_shot(words)
+    assert sorted(switches.as_words()) == sorted(words)
+    named = [word for word in words if word != "auto" and not word.startswith("-")]
+    assert sorted(switches.named(None)) == sorted(named)

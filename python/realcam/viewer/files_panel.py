@@ -118,7 +118,7 @@ class FilesPanel:
             if what == "picture":
                 save_picture(bench.image(), path, bench.shot.tone)
             elif what == "shot":
-                save_shot(self._source, bench.controls, bench.effect_words(), path)
+                save_shot(self._source, bench.controls, bench.switches.as_words(), path)
             else:
                 save_lens(bench.controls.set_lens, path)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -57,15 +57,36 @@ class Switches:
     """How effects are chosen: each "auto", "on" or "off"."""
 
     of: dict[str, str] = field(default_factory=lambda: dict.fromkeys(EFFECTS, "auto"))
+    words: dict[str, str] = field(default_factory=dict)  #: of those that the shot gives a number, "ghosts=1e-8"
+
+    @classmethod
+    def of_shot(cls, words: Iterable[str]) -> Switches:
+        """As a shot file names effects: without "auto" all that it does not name are off."""
+        words = tuple(words)
+        switches = cls(dict.fromkeys(EFFECTS, "auto" if "auto" in words else "off"))
+        for word in words:
+            name = word.removeprefix("-").partition("=")[0]
+            if name in EFFECTS:
+                switches.of[name] = "off" if word.startswith("-") else "on"
+                if "=" in word:
+                    switches.words[name] = word
+        return switches
 
     def named(self, plan: Plan | None) -> tuple[str, ...]:
         """What is simulated: what is on, and what the plan keeps of the others."""
-        kept = plan.effects if plan else ()
+        kept = {effect.partition("=")[0]: effect for effect in plan.effects} if plan else {}
+        chosen = {name: self.words.get(name, name) for name, state in self.of.items() if state == "on"}
         return tuple(
-            name
+            chosen.get(name) or kept[name]
             for name, state in self.of.items()
-            if state == "on" or (state == "auto" and any(effect.partition("=")[0] == name for effect in kept))
+            if name in chosen or (state == "auto" and name in kept)
         )
+
+    def as_words(self) -> list[str]:
+        """As shot files name them."""
+        automatic = ["auto"] if "auto" in self.of.values() else []
+        on = [self.words.get(name, name) for name, state in self.of.items() if state == "on"]
+        return [*automatic, *on, *(f"-{name}" for name, state in self.of.items() if state == "off" and automatic)]
 
 
 class LensBench:
@@ -81,12 +102,7 @@ class LensBench:
         self.listeners = Listeners()
         self.controls = CameraControls.of(shot.camera)
         self.history = LensHistory(self.controls.lens)
-        self.switches = Switches()
-        for name in shot.effects:
-            if (plain := name.partition("=")[0]) in EFFECTS:
-                self.switches.of[plain] = "on"
-        if "auto" not in shot.effects:
-            self.switches.of = {name: "off" if state == "auto" else state for name, state in self.switches.of.items()}
+        self.switches = Switches.of_shot(shot.effects)
         self.plan: Plan | None = None
         self.problem: Problem | None = None
         self.noise_codes = 1.0
@@ -280,13 +296,6 @@ class LensBench:
             raise InputError(f'there is nothing like "{with_what:.40}" to compare with')
         return None
 
-    def effect_words(self) -> list[str]:
-        """As shot files name them."""
-        states = self.switches.of
-        automatic = ["auto"] if "auto" in states.values() else []
-        left_out = [f"-{name}" for name, state in states.items() if state == "off" and automatic]
-        return [*automatic, *(name for name, state in states.items() if state == "on"), *left_out]
-
     def measure_rungs(self) -> None:
         """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
         camera = self.controls.camera
@@ -453,7 +462,7 @@ class LensBench:
             self._planning.submit(lambda: self.listeners.plan(None, ""))  # how the switches stand
             return
         controls = self.controls
-        named = [("-" if state == "off" else "") + name for name, state in self.switches.of.items() if state != "auto"]
+        words = self.switches.as_words()
 
         def plan() -> None:
             note = ""
@@ -465,7 +474,7 @@ class LensBench:
                     device=self._device,
                     seed=self.shot.seed,
                     max_bounces=self.shot.max_bounces,
-                    effects=["auto", *named],
+                    effects=words,
                 )
             except NothingToPlan as nothing:
                 note = str(nothing)
