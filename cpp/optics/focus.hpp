@@ -155,13 +155,17 @@ inline LensSystem focused(const LensSystem& lens, double focus_distance) {
 /// to focus changes focal length and pupil, and the ring of the diaphragm does not turn with it. A lens that cannot be
 /// focused at infinity has the f-number that it has as it stands.
 inline double f_number_at_infinity(const LensSystem& lens) {
+    const double as_it_stands = first_order(lens, lens.wavelength_nm).f_number;
     if (lens.focusing.moves_group() && std::isfinite(lens.focus_distance)) {
         try {
-            return first_order(focused(lens, kInfinity), lens.wavelength_nm).f_number;
+            const double far = first_order(focused(lens, kInfinity), lens.wavelength_nm).f_number;
+            // Some groups image infinity at a second place, nearer than the one that they came from, where the lens is
+            // quite another one (zoom-80-200mm: f/108). Focusing changes an f-number by less than two stops.
+            if (std::fabs(std::log2(far / as_it_stands)) <= 2) return far;
         } catch (const InputError&) {  // no position of the group images infinity on the film
         }
     }
-    return first_order(lens, lens.wavelength_nm).f_number;
+    return as_it_stands;
 }
 
 /// The lens with its diaphragm closed to an f-number, of the lens at infinity (exact for paraxial rays), whatever it is

@@ -121,7 +121,8 @@ double irradiance_over_last_surface(const LensSystem& lens, double film_x, doubl
         if (left > right) {
             // A surface close to the film has its light on a speck of it, smaller than a cell: look where the
             // lines to the exit pupil cross it, with room on all sides.
-            if (level > 0 || film.z > 0.1 * rim) return 0;
+            // At f/22 it is as small as that where the film is nearer than 22 / 128 of the rim.
+            if (level > 0 || film.z > 0.2 * rim) return 0;
             const FirstOrder data = first_order(lens, lens.wavelength_nm);
             const double share = film.z / (lens.film_position() - data.exit_pupil_position);
             const double room = 1.5 * share * data.exit_pupil_diameter, x = film_x * (1 - share),
