@@ -43,6 +43,17 @@ def until(get: Callable[[], T], is_right: Callable[[T], object], what: str, seco
         time.sleep(0.1)
 
 
+def fetch(request: str | urllib.request.Request, seconds: float = 30.0) -> bytes:
+    """Raises HTTPError and OSError. Asks no proxy, whatever the environment says."""
+    with urllib.request.build_opener(urllib.request.ProxyHandler({})).open(request, timeout=seconds) as answer:
+        return bytes(answer.read())
+
+
+def launched(driver: Any) -> Any:
+    """Debian's Chromium."""
+    return driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--no-proxy-server"])
+
+
 class Server:
     """`realcam view` on a shot, in the shot's folder."""
 
@@ -79,7 +90,7 @@ class Server:
     def answers(self) -> bool:
         assert self.process.poll() is None, self.said
         try:
-            urllib.request.urlopen(f"{self.url}realcam/page.css", timeout=5).close()
+            fetch(f"{self.url}realcam/page.css", 5)
         except urllib.error.HTTPError:
             return True  # that a token is wanted is an answer, too
         except OSError:

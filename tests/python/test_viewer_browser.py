@@ -17,7 +17,7 @@ pytest.importorskip("nicegui")
 playwright = pytest.importorskip("playwright.sync_api")
 
 from . import bench_shots  # noqa: E402
-from .bench_pages import CHROMIUM, BenchPage, Server, until  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, launched, until  # noqa: E402
 
 pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
@@ -34,7 +34,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 @pytest.fixture(scope="module")
 def browser() -> Iterator[playwright.Browser]:
     with playwright.sync_playwright() as driver:
-        started = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        started = launched(driver)
         yield started
         started.close()
 
@@ -229,6 +229,17 @@ def test_an_impossible_edit_and_back(bench: BenchPage) -> None:
     until(bench.test_id("problem").count, lambda count: count == 0, "over")
     until(lambda: bench.figure("effective_focal_length_mm"), lambda f: f != figure, "edited")
     assert bench.page.locator(".rc-table tr.rc-bad").count() == 0
+
+
+def test_what_is_being_typed_stays_while_the_lens_changes(bench: BenchPage) -> None:
+    cell = bench.cell(0, "radius_mm")
+    cell.fill("27.")
+    bench.send({"type": "edit", "surface": 1, "field": "thickness_mm", "value": 0.2})
+    until(lambda: bench.cell(1, "thickness_mm").input_value(), lambda v: v == "0.2", "another surface")
+    assert cell.input_value() == "27."
+    cell.press_sequentially("5")
+    cell.press("Enter")
+    until(lambda: bench.cell(0, "radius_mm").input_value(), lambda v: v == "27.5", "edited")
 
 
 def test_undo_and_redo(bench: BenchPage) -> None:

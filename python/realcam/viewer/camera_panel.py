@@ -30,13 +30,19 @@ _HELD_S = 1.0  # after the last turn of a ring by its user
 _FOCUS_STEPS = 400  # of the slider, even in the inverse distance, as the travel of a focusing lens is
 
 
+class _Ring(ui.slider):
+    """A slider to which the server does not send back what it has been told, older than where the hand is by now."""
+
+    LOOPBACK = False
+
+
 class CameraPanel:
     """Shows how the camera stands, and turns it. update() brings it up to date after changes from elsewhere."""
 
     def __init__(self, window: Window, run: Callable[..., Awaitable[Any]]) -> None:
         self._window, self._bench, self._run = window, window.bench, run
         self._sharp = SharpRange(math.nan, math.nan)
-        self._held: tuple[ui.slider, asyncio.TimerHandle] | None = None
+        self._held: tuple[_Ring, asyncio.TimerHandle] | None = None
         self._turns = 0  # of rings, that are not done yet
         self._build()
         self.update()
@@ -154,8 +160,8 @@ class CameraPanel:
     def _change(self, **changes: Any) -> Awaitable[Any]:
         return self._run(self._bench.change, **changes)
 
-    def _slider(self, name: str, last: int, act: Callable[[float], Awaitable[Any]], help: str) -> ui.slider:
-        slider = ui.slider(min=0, max=last, step=1).props(f'aria-label="{name}" data-testid="{name.lower()}"')
+    def _slider(self, name: str, last: int, act: Callable[[float], Awaitable[Any]], help: str) -> _Ring:
+        slider = _Ring(min=0, max=last, step=1).props(f'aria-label="{name}" data-testid="{name.lower()}"')
         slider.tooltip(help)
 
         async def turned(event: GenericEventArguments) -> None:
@@ -171,7 +177,7 @@ class CameraPanel:
         slider.on("update:model-value", turned, throttle=0.03)
         return slider
 
-    def _hold(self, slider: ui.slider) -> None:
+    def _hold(self, slider: _Ring) -> None:
         """Leaves a ring to the hand that turns it: what comes of an earlier step must not turn it back meanwhile."""
         loop = asyncio.get_running_loop()
         if self._held is not None:
@@ -185,7 +191,7 @@ class CameraPanel:
         self._held = None
         self.update()
 
-    def _set(self, slider: ui.slider, step: int, last: int | None = None) -> None:
+    def _set(self, slider: _Ring, step: int, last: int | None = None) -> None:
         if last is not None and slider.props.get("max") != last:
             slider.props["max"] = last
             slider.update()

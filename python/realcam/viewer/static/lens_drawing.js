@@ -82,7 +82,8 @@ export default {
           @focusin="chosen = s">
         <th scope="row">{{ s + 1 }}<small v-if="row.type !== 'refracting'"> {{ row.type }}</small></th>
         <td v-for="[key, label, unit] in columns" :key="key">
-          <input v-if="has(row, key)" :value="shown(row, key)" :aria-label="label + ' of surface ' + (s + 1)" :data-cell="s + '-' + key"
+          <input v-if="has(row, key)" :value="typed?.cell === `${s}-${key}` ? typed.text : shown(row, key)"
+            @input="typed = { cell: `${s}-${key}`, text: $event.target.value }" @blur="typed = null" :aria-label="label + ' of surface ' + (s + 1)" :data-cell="s + '-' + key"
             :list="key === 'glass' ? 'rc-glasses' : null" :readonly="key === 'thickness_mm' && s + 1 === view.surfaces.length"
             @change="edit(s, key, $event.target.value)">
         </td>
@@ -99,7 +100,7 @@ export default {
   </div>
 </section>`,
   data: () => ({
-    view: null, problem: null, chosen: null, dragged: null, box: [0, 0, 1, 1], colours: false, showsMarks: false,
+    view: null, problem: null, chosen: null, typed: null, dragged: null, box: [0, 0, 1, 1], colours: false, showsMarks: false,
     history: { can_undo: false, can_redo: false }, figures: FIGURES,
   }),
   computed: {
@@ -174,6 +175,7 @@ export default {
       this.stream.send({ type, ...more });
     },
     edit(surface, field, text) {
+      this.typed = null;
       const isNumber = field !== "glass" && text.trim() !== "" && !Number.isNaN(Number(text));
       this.send("edit", { surface, field, value: isNumber ? Number(text) : text });
     },
