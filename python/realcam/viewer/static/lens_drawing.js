@@ -82,8 +82,8 @@ export default {
           @focusin="chosen = s">
         <th scope="row">{{ s + 1 }}<small v-if="row.type !== 'refracting'"> {{ row.type }}</small></th>
         <td v-for="[key, label, unit] in columns" :key="key">
-          <input v-if="has(row, key)" :value="typed?.cell === `${s}-${key}` ? typed.text : shown(row, key)"
-            @input="typed = { cell: `${s}-${key}`, text: $event.target.value }" @blur="typed = null" :aria-label="label + ' of surface ' + (s + 1)" :data-cell="s + '-' + key"
+          <input v-if="has(row, key)" :value="typed?.cell === s + '-' + key ? typed.text : shown(row, key)"
+            @input="typed = { cell: s + '-' + key, text: $event.target.value }" @blur="typed = null" :aria-label="label + ' of surface ' + (s + 1)" :data-cell="s + '-' + key"
             :list="key === 'glass' ? 'rc-glasses' : null" :readonly="key === 'thickness_mm' && s + 1 === view.surfaces.length"
             @change="edit(s, key, $event.target.value)">
         </td>
