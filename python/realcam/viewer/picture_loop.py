@@ -459,7 +459,10 @@ class PictureLoop:
         before, self._encoding = self._encoding, None
         if before:
             before.result()
-        self._encoding = self._encoder.submit(self._encode, frame, codes)
+        try:
+            self._encoding = self._encoder.submit(self._encode, frame, codes)
+        except RuntimeError:  # the program is ending, and takes no more work
+            self._is_closed = True
 
     def _encode(self, frame: Frame, codes: NDArray[np.uint8]) -> None:
         quality = self.jpeg_quality

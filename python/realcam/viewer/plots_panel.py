@@ -60,6 +60,8 @@ class PlotsPanel:
     def _draw(self, look: Look) -> None:
         try:
             content = plotting_process().submit(plot_svg, look).result()
+        except RuntimeError:  # the program is ending, and takes no more work
+            return
         except RealcamError as error:
             content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
         with suppress(RuntimeError):  # the server is going down
