@@ -156,7 +156,7 @@ class BenchPage:
             if not self.page.get_by_text("Too many windows").is_visible():
                 break
             time.sleep(2)
-        until(lambda: self.status, lambda text: "pixels" in text, "no picture comes")
+        until(lambda: (self.status, self.complaints), lambda seen: "pixels" in seen[0], "no picture comes")
 
     def close(self) -> None:
         self.context.close()
