@@ -6,7 +6,7 @@ import asyncio
 import html
 import multiprocessing
 import os
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import suppress
 from functools import cache
 
@@ -59,9 +59,13 @@ class PlotsPanel:
 
     def _draw(self, look: Look) -> None:
         try:
-            content = plotting_process().submit(plot_svg, look).result()
-        except RuntimeError:  # the program is ending, and takes no more work
+            drawn = plotting_process().submit(plot_svg, look)
+        except BrokenExecutor:
+            raise
+        except RuntimeError:  # the server is going down
             return
+        try:
+            content = drawn.result()
         except RealcamError as error:
             content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
         with suppress(RuntimeError):  # the server is going down
