@@ -13,11 +13,13 @@ import sys
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+
+from .bench_shots import write_panels_shot
 
 T = TypeVar("T")
 
@@ -49,9 +51,11 @@ def fetch(request: str | urllib.request.Request, seconds: float = 30.0) -> bytes
         return bytes(answer.read())
 
 
-def launched(driver: Any) -> Any:
-    """Debian's Chromium."""
-    return driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--no-proxy-server"])
+def launched(driver: Any) -> Iterator[Any]:
+    """Debian's Chromium, as long as a fixture lasts."""
+    started = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--no-proxy-server"])
+    yield started
+    started.close()
 
 
 class Server:
@@ -237,3 +241,18 @@ class BenchPage:
     def send(self, message: Any) -> None:
         """Over the page's own WebSocket, as its components do."""
         self.page.evaluate("m => [...window.realcamStreams.values()][0].send(m)", message)
+
+
+def served_panels(folder: Path) -> Iterator[Server]:
+    """A server of the shot of three panels, as long as a fixture lasts; nothing may have gone wrong in it."""
+    started = Server(write_panels_shot(folder))
+    yield started
+    started.stop()
+    assert started.complaints() == []
+
+
+def opened(browser: Any, server: Server) -> Iterator[BenchPage]:
+    """A page of it, as long as a fixture lasts."""
+    page = BenchPage(browser, server.url)
+    yield page
+    page.close()

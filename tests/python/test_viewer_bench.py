@@ -17,7 +17,9 @@ pytest.importorskip("simplejpeg")
 
 from realcam.viewer import lens_edits, saving
 from realcam.viewer.camera_controls import CameraControls
-from realcam.viewer.lens_bench import EFFECTS, LensBench, Problem
+from realcam.viewer.effect_switches import EFFECTS
+from realcam.viewer.lens_bench import LensBench
+from realcam.viewer.listeners import Problem
 
 from . import bench_shots
 

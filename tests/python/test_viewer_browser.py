@@ -17,34 +17,25 @@ pytest.importorskip("nicegui")
 playwright = pytest.importorskip("playwright.sync_api")
 
 from . import bench_shots  # noqa: E402
-from .bench_pages import CHROMIUM, BenchPage, Server, launched, until  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, launched, opened, served_panels, until  # noqa: E402
 
 pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    folder = tmp_path_factory.mktemp("bench")
-    started = Server(bench_shots.write_panels_shot(folder))
-    yield started
-    started.stop()
-    assert started.complaints() == []
+    yield from served_panels(tmp_path_factory.mktemp("bench"))
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[playwright.Browser]:
     with playwright.sync_playwright() as driver:
-        started = launched(driver)
-        yield started
-        started.close()
+        yield from launched(driver)
 
 
 @pytest.fixture
 def bench(browser: playwright.Browser, server: Server) -> Iterator[BenchPage]:
-    opened = BenchPage(browser, server.url)
-    # What is shown of a surface is to be refined soon; tests of noise ask for less of it.
-    yield opened
-    opened.close()
+    yield from opened(browser, server)
 
 
 def sharp(picture: np.ndarray) -> tuple[float, float, float]:

@@ -21,32 +21,25 @@ websockets = pytest.importorskip("websockets.sync.client")
 from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
 
 from . import bench_shots  # noqa: E402
-from .bench_pages import CHROMIUM, BenchPage, Server, fetch, launched, until  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, fetch, launched, opened, served_panels, until  # noqa: E402
 
 pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    started = Server(bench_shots.write_panels_shot(tmp_path_factory.mktemp("bench")))
-    yield started
-    started.stop()
-    assert started.complaints() == []
+    yield from served_panels(tmp_path_factory.mktemp("bench"))
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[playwright.Browser]:
     with playwright.sync_playwright() as driver:
-        started = launched(driver)
-        yield started
-        started.close()
+        yield from launched(driver)
 
 
 @pytest.fixture
 def bench(browser: playwright.Browser, server: Server) -> Iterator[BenchPage]:
-    opened = BenchPage(browser, server.url)
-    yield opened
-    opened.close()
+    yield from opened(browser, server)
 
 
 def done(bench: BenchPage) -> None:

@@ -10,7 +10,7 @@ import pytest
 import realcam as rc
 from realcam.viewer.bench_state import restored, state_of
 from realcam.viewer.camera_controls import CameraControls
-from realcam.viewer.lens_bench import Switches
+from realcam.viewer.effect_switches import Switches
 from realcam.viewer.pose import Pose
 
 CAMERA = rc.Camera(rc.Lens.load("tessar-50mm").focused(2.0), film=rc.Film(36, 24, (90, 60)))

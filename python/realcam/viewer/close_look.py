@@ -35,15 +35,14 @@ class Look:
     kind: str
     lens: Lens
     height_mm: float
-    object_distance_m: float | None
 
 
 def plot_svg(look: Look) -> str:
     """An SVG of the plot, whose text has the colour of the page's. Raises InputError where there is nothing to plot."""
     fields = None
     if look.kind in _OF_ONE_FIELD:
-        fields = np.array([angle_of_height(look.lens, look.height_mm, look.object_distance_m)[0]])
-    bundles = Bundles(look.lens, look.object_distance_m)
+        fields = np.array([angle_of_height(look.lens, look.height_mm)[0]])
+    bundles = Bundles(look.lens)
     data = kinds.compute(look.kind, kinds.Asked(look.lens, bundles, fields))
     figure = analysis.plot_figure(look.kind, data, size="small")
     content = io.StringIO()

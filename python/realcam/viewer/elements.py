@@ -7,7 +7,7 @@ from typing import Any
 from nicegui.element import Element
 
 from .._core import effects, glass_names
-from .lens_bench import EFFECTS
+from .effect_switches import EFFECTS
 
 
 class PictureCanvas(Element, component="static/picture_canvas.js"):

@@ -4,89 +4,31 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from .. import planning
-from .._core import Film, InputError, Lens, LensFileError, NothingToPlan, Plan, RealcamError, effects
+from .._core import Film, InputError, Lens, LensFileError, NothingToPlan, Plan, RealcamError
 from ..accuracy import accuracy_cost
 from ..image import Image
 from ..photography import SharpRange, depth_of_field
 from ..shot import Shot
 from .bench_state import restored, state_of
 from .camera_controls import CameraControls
+from .effect_switches import EFFECTS, Switches
 from .lens_edits import LensHistory
 from .lens_view import lens_view
+from .listeners import Listeners, Problem
 from .newest_task import NewestTask
 from .picture_loop import PictureLoop
-from .picture_request import Frame, PictureRequest
+from .picture_request import Frame, PictureRequest, middle_grey_lx_s
 from .remote import RemotePictureLoop
 from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
 
 AnyPictureLoop = PictureLoop | RemotePictureLoop
-EFFECTS = tuple(line.partition(":")[0] for line in effects() if "on unless left out" not in line)
 _RUNGS: dict[str, Any] = {"size": 120, "most_spp": 16, "reference_spp": 256}  # some seconds on two cores
 COMPARISONS = ("nothing", "thin lens", "these settings", "another lens")
-
-
-@dataclass(frozen=True)
-class Problem:
-    """Why what was asked for last is not shown. surface: index of the lens's surface that is to blame, if one is."""
-
-    message: str
-    surface: int | None = None
-
-
-@dataclass
-class Listeners:
-    """What a window is told, on any thread. Each replaces what was told before of the same."""
-
-    frame: Callable[[str, Frame], None] = lambda slot, frame: None
-    controls: Callable[[], None] = lambda: None
-    lens: Callable[[dict[str, Any]], None] = lambda view: None
-    problem: Callable[[Problem | None], None] = lambda problem: None
-    plan: Callable[[Plan | None, str], None] = lambda plan, note: None
-    rungs: Callable[[list[dict[str, Any]], str], None] = lambda rungs, note: None
-    state: Callable[[dict[str, Any]], None] = lambda state: None
-    sharp_range: Callable[[SharpRange], None] = lambda sharp: None
-
-
-@dataclass
-class Switches:
-    """How effects are chosen: each "auto", "on" or "off"."""
-
-    of: dict[str, str] = field(default_factory=lambda: dict.fromkeys(EFFECTS, "auto"))
-    words: dict[str, str] = field(default_factory=dict)  #: of those that the shot gives a number, "ghosts=1e-8"
-
-    @classmethod
-    def of_shot(cls, words: Iterable[str]) -> Switches:
-        """As a shot file names effects: without "auto" all that it does not name are off."""
-        words = tuple(words)
-        switches = cls(dict.fromkeys(EFFECTS, "auto" if "auto" in words else "off"))
-        for word in words:
-            name = word.removeprefix("-").partition("=")[0]
-            if name in EFFECTS:
-                switches.of[name] = "off" if word.startswith("-") else "on"
-                if "=" in word:
-                    switches.words[name] = word
-        return switches
-
-    def named(self, plan: Plan | None) -> tuple[str, ...]:
-        """What is simulated: what is on, and what the plan keeps of the others."""
-        kept = {effect.partition("=")[0]: effect for effect in plan.effects} if plan else {}
-        chosen = {name: self.words.get(name, name) for name, state in self.of.items() if state == "on"}
-        return tuple(
-            chosen.get(name) or kept[name]
-            for name, state in self.of.items()
-            if name in chosen or (state == "auto" and name in kept)
-        )
-
-    def as_words(self) -> list[str]:
-        """As shot files name them."""
-        automatic = ["auto"] if "auto" in self.of.values() else []
-        on = [self.words.get(name, name) for name, state in self.of.items() if state == "on"]
-        return [*automatic, *on, *(f"-{name}" for name, state in self.of.items() if state == "off" and automatic)]
 
 
 class LensBench:
@@ -184,7 +126,7 @@ class LensBench:
             self._set_problem(Problem("there is no light where the meter looks"))
             return False
         now = self.controls
-        wanted = 10 * 2**now.compensation_ev / now.iso
+        wanted = middle_grey_lx_s(now.iso, now.compensation_ev)
         return self.change(exposure_time_s=wanted / illuminance, is_automatic=False)
 
     def set_resolution(self, width: int) -> bool:

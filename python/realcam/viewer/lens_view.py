@@ -15,23 +15,19 @@ from ..drawing.outlines import Points
 _RAYS = 9
 
 
-def lens_view(
-    lens: Lens, fields: Sequence[float] = (0.0, 0.7), object_distance_m: float | None = None
-) -> dict[str, Any]:
+def lens_view(lens: Lens, fields: Sequence[float] = (0.0, 0.7)) -> dict[str, Any]:
     """Lengths in mm, lens frame. fields: shares of the height of the film's corner. Where no light passes there are no
     rays, and `note` says why.
     """
     note = ""
     try:
-        section = cross_section(lens, rays=_RAYS, fields=fields, object_distance_m=object_distance_m)
+        section = cross_section(lens, rays=_RAYS, fields=fields)
     except InputError as error:
         section, note = cross_section(lens, rays=0), str(error)
     return {
         "name": lens.name,
         "title": lens.title,
         "surfaces": [_row(lens, index) for index in range(len(lens.surfaces))],
-        "stop": lens.stop_index,
-        "stop_semi_diameter_mm": lens.stop_semi_diameter_mm,
         "film": {"z": lens.film_position_mm, "half": section.film_semi_diagonal_mm},
         "figures": _figures(lens),
         "note": note,
@@ -73,14 +69,12 @@ def _shapes(section: CrossSection) -> dict[str, Any]:
                 "z": b.z_mm,
                 "opening": b.opening_mm,
                 "outer": b.outer_mm,
-                "obstruction": b.obstruction_mm,
             }
             for b in section.blockers
         ],
         "crossings": [_points(zone) for crossing in section.crossings for zone in crossing.zones],
         "marks": [{"kind": m.kind, "label": m.label, "z": m.z_mm, "half": m.semi_diameter_mm} for m in section.marks],
         "bundles": [[_points(path[:, [2, 1]]) for path in bundle.paths_mm] for bundle in section.bundles],
-        "focus_group": None if section.focus_group is None else [section.focus_group.first, section.focus_group.last],
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from functools import wraps
 from typing import Any
 
 from .._core import InputError
@@ -115,11 +116,22 @@ def _swap(message: Message, bench: LensBench) -> None:
     bench.edit(lambda lens: lens_edits.swapped(lens, surface, other))
 
 
+def _known(action: Callable[[Message, LensBench], Any]) -> Callable[[Message, LensBench], Any]:
+    """Of an action whose InputErrors tell what no page of ours asks for."""
+
+    @wraps(action)
+    def checked(message: Message, bench: LensBench) -> Any:
+        try:
+            return action(message, bench)
+        except InputError as error:
+            raise BadMessage(str(error)) from None
+
+    return checked
+
+
+@_known
 def _turn(message: Message, bench: LensBench) -> None:
-    try:
-        bench.turn(_text(message, "ring"), max(-100, min(100, _index(message, "steps"))))
-    except InputError as error:
-        raise BadMessage(str(error)) from None
+    bench.turn(_text(message, "ring"), max(-100, min(100, _index(message, "steps"))))
 
 
 def _restore(message: Message, bench: LensBench) -> None:
@@ -129,11 +141,9 @@ def _restore(message: Message, bench: LensBench) -> None:
     bench.restore(state)
 
 
+@_known
 def _switch(message: Message, bench: LensBench) -> None:
-    try:
-        bench.switch(_text(message, "effect"), _text(message, "state"))
-    except InputError as error:
-        raise BadMessage(str(error)) from None
+    bench.switch(_text(message, "effect"), _text(message, "state"))
 
 
 _ACTIONS: dict[str, Callable[[Message, LensBench], Any]] = {

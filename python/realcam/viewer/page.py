@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from .camera_panel import CameraPanel
 from .elements import CostPanel, LensDrawing, PictureCanvas
 from .files_panel import FilesPanel
 from .plots_panel import PlotsPanel
+from .server_loop import call_on_loop
 from .window import Window
 
 
@@ -53,14 +53,6 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
     files.update()
     canvas.on("picked", lambda event: _pick(event, plots))
 
-    def update() -> None:
-        with client:
-            camera.update()
-            files.update()
-            plots.update()
-            drawing.run_method("setHistory", bench.history.can_undo, bench.history.can_redo)
-            canvas.run_method("setComparison", bench.comparison != "nothing")
-
     waiting = False
 
     def update_soon() -> None:
@@ -68,27 +60,26 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
         nonlocal waiting
         if not waiting:
             waiting = True
-            loop.call_later(0.05, update_now)
+            loop.call_later(0.05, update)
 
-    def update_now() -> None:
+    def update() -> None:
         nonlocal waiting
         waiting = False
-        update()
+        with client:
+            camera.update()
+            files.update()
+            plots.update()
+            drawing.run_method("setHistory", bench.history.can_undo, bench.history.can_redo)
+            canvas.run_method("setComparison", bench.comparison != "nothing")
 
-    bench.listeners.controls = lambda: _on_loop(loop, update_soon)
-    bench.listeners.sharp_range = lambda sharp: _on_loop(loop, camera.show_sharp_range, sharp)
+    bench.listeners.controls = lambda: call_on_loop(loop, update_soon)
+    bench.listeners.sharp_range = lambda sharp: call_on_loop(loop, camera.show_sharp_range, sharp)
 
     async def close() -> None:
         plots.close()
         await asyncio.to_thread(window.close)
 
     client.on_delete(close)
-
-
-def _on_loop(loop: asyncio.AbstractEventLoop, function: Callable[..., None], *arguments: Any) -> None:
-    """From any thread, also while the server is going down."""
-    with suppress(RuntimeError):
-        loop.call_soon_threadsafe(function, *arguments)
 
 
 def _pick(event: GenericEventArguments, plots: PlotsPanel) -> None:

@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 from .. import _core
 from .._core import Camera, Cancelled, InputError, LiveFrame, LiveView, RealcamError, RenderStats, Scene, develop
 from ..image import Image, image_of
-from .picture_request import Costs, Frame, PictureRequest, Point
+from .picture_request import Costs, Frame, PictureRequest, Point, middle_grey_lx_s
 
 T = TypeVar("T")
 _log = logging.getLogger(__name__)
@@ -308,15 +309,15 @@ class PictureLoop:
         while not frame.ready:
             with self._wake:
                 self._wake.wait(0.005)
-                pending = self._pending
-                if pending and picture.can_be(pending.request):
+                pending = self._pending if self._pending and picture.can_be(self._pending.request) else None
+                if pending:
                     self._pending = None
                 quick = [question for question in self._questions if not question.needs_samples]
                 for question in quick:
                     self._questions.remove(question)
             for question in quick:
                 self._answer(question)
-            if pending and picture.can_be(pending.request):
+            if pending:
                 self._develop_for(picture, pending)
 
     def _camera(self, picture: _Growing) -> Camera:
@@ -341,7 +342,7 @@ class PictureLoop:
         if not (mean > 0 and math.isfinite(mean)):
             return False
         before = picture.exposure_time_s
-        wanted = 10 * 2**picture.request.compensation_ev / picture.request.camera.iso  # lux seconds: middle grey
+        wanted = middle_grey_lx_s(picture.request.camera.iso, picture.request.compensation_ev)
         self._exposure_time_s = min(max(before * wanted / mean, 1e-6), 1e4)
         return abs(math.log2(self._exposure_time_s / before)) > 0.02
 
@@ -439,10 +440,9 @@ class PictureLoop:
 
     def _show(self, picture: _Growing, codes: NDArray[np.uint8]) -> None:
         whole = picture.request.camera.film.resolution
-        frame = Frame(
+        frame_of = partial(
+            Frame,
             serial=picture.serial,
-            jpeg=b"",
-            jpeg_quality=0,
             width=codes.shape[1],
             height=codes.shape[0],
             whole_width=whole[0],
@@ -460,14 +460,14 @@ class PictureLoop:
         if before:
             before.result()
         try:
-            self._encoding = self._encoder.submit(self._encode, frame, codes)
+            self._encoding = self._encoder.submit(self._encode, frame_of, codes)
         except RuntimeError:  # the program is ending, and takes no more work
             self._is_closed = True
 
-    def _encode(self, frame: Frame, codes: NDArray[np.uint8]) -> None:
+    def _encode(self, frame_of: Callable[..., Frame], codes: NDArray[np.uint8]) -> None:
         quality = self.jpeg_quality
         jpeg = simplejpeg.encode_jpeg(codes, quality=quality, colorsubsampling="420")
-        self._on_frame(replace(frame, jpeg=jpeg, jpeg_quality=quality))
+        self._on_frame(frame_of(jpeg=jpeg, jpeg_quality=quality))
 
 
 def _costs(stats: RenderStats, seconds: float) -> Costs:

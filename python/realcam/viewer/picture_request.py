@@ -7,6 +7,11 @@ from dataclasses import dataclass
 from .._core import Camera
 
 
+def middle_grey_lx_s(iso: float, compensation_ev: float) -> float:
+    """The exposure that is developed to middle grey (see realcam.develop), or brighter or darker by so many stops."""
+    return 10 * 2**compensation_ev / iso
+
+
 @dataclass(frozen=True)
 class PictureRequest:
     """camera: of the whole resolution. The others are as the user has set them."""

@@ -7,7 +7,6 @@ import html
 import multiprocessing
 import os
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from contextlib import suppress
 from functools import cache
 
 from nicegui import ui
@@ -15,6 +14,7 @@ from nicegui import ui
 from .._core import RealcamError
 from .close_look import PLOTS, Look, height_of, plot_svg
 from .newest_task import NewestTask
+from .server_loop import call_on_loop
 from .window import Window
 
 
@@ -54,7 +54,7 @@ class PlotsPanel:
         self._help.set_text(PLOTS[kind][1])
         height = height_of(*self._at, (controls.film.width_mm, controls.film.height_mm))
         self._place.set_text(f"{height:.3g} mm from the middle of the film; in the plane in focus")
-        look = Look(kind, controls.set_lens, height, None)
+        look = Look(kind, controls.set_lens, height)
         self._task.submit(lambda: self._draw(look))
 
     def _draw(self, look: Look) -> None:
@@ -68,5 +68,4 @@ class PlotsPanel:
             content = drawn.result()
         except RealcamError as error:
             content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
-        with suppress(RuntimeError):  # the server is going down
-            self._loop.call_soon_threadsafe(self._plot.set_content, content)
+        call_on_loop(self._loop, self._plot.set_content, content)

@@ -20,9 +20,11 @@ from typing import Any
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .._core import Plan, RealcamError
-from .lens_bench import LensBench, Problem
+from .lens_bench import LensBench
+from .listeners import Problem
 from .messages import BadMessage, Message, merged, parsed, perform
 from .picture_request import Frame
+from .server_loop import call_on_loop
 
 _log = logging.getLogger(__name__)
 
@@ -46,7 +48,6 @@ class PictureStream:
         self._sent: tuple[str, float] | None = None  #: the frame that is not acknowledged, and when it was sent
         self._sent_frame: Frame | None = None  #: the last one
         self._quality = _QUALITIES[1]
-        self.frames_sent = 0
         bench.listeners.frame = self._offer_frame
         bench.listeners.lens = lambda view: self._offer_text("lens", view)
         bench.listeners.problem = self._offer_problem
@@ -63,7 +64,7 @@ class PictureStream:
         self._inbox.clear()
         tasks = [
             asyncio.create_task(part)
-            for part in (self._receive(socket), self._send(socket), self._work(socket), self._begin())
+            for part in (self._receive(socket), self._send(socket), self._work(), self._begin())
         ]
         self._serving = tasks
         try:
@@ -100,7 +101,7 @@ class PictureStream:
                 self._inbox.append(message)
             self._mail.set()
 
-    async def _work(self, socket: WebSocket) -> None:
+    async def _work(self) -> None:
         while True:
             await self._mail.wait()
             self._mail.clear()
@@ -130,7 +131,6 @@ class PictureStream:
                 self._sent = f"{slot} {frame.serial}", time.perf_counter()
                 self._sent_frame = frame
                 await socket.send_bytes(_packed(slot, frame))
-                self.frames_sent += 1
 
     def _acknowledge(self, name: str) -> None:
         if self._sent is None or self._sent[0] != name:
@@ -156,7 +156,7 @@ class PictureStream:
     # On any thread.
 
     def _offer_frame(self, slot: str, frame: Frame) -> None:
-        self._call(self._put_frame, slot, frame)
+        call_on_loop(self._loop, self._put_frame, slot, frame)
 
     def _offer_problem(self, problem: Problem | None) -> None:
         self._offer_text("problem", {"problem": asdict(problem) if problem else None})
@@ -176,13 +176,7 @@ class PictureStream:
         self._offer_text("plan", {"rows": rows, "note": note, "states": dict(self._bench.switches.of)})
 
     def _offer_text(self, kind: str, content: dict[str, Any]) -> None:
-        self._call(self._put_text, kind, json.dumps({"type": kind, **content}))
-
-    def _call(self, function: Any, *arguments: Any) -> None:
-        try:
-            self._loop.call_soon_threadsafe(function, *arguments)
-        except RuntimeError:  # the server is going down
-            _log.debug("the server's loop is closed")
+        call_on_loop(self._loop, self._put_text, kind, json.dumps({"type": kind, **content}))
 
     def _put_frame(self, slot: str, frame: Frame) -> None:
         self._frames[slot] = frame

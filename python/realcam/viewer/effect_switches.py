@@ -1,0 +1,47 @@
+"""Which effects a window simulates: those that are switched on, and those that the planner keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from .._core import Plan, effects
+
+EFFECTS = tuple(line.partition(":")[0] for line in effects() if "on unless left out" not in line)
+
+
+@dataclass
+class Switches:
+    """How effects are chosen: each "auto", "on" or "off"."""
+
+    of: dict[str, str] = field(default_factory=lambda: dict.fromkeys(EFFECTS, "auto"))
+    words: dict[str, str] = field(default_factory=dict)  #: of those that the shot gives a number, "ghosts=1e-8"
+
+    @classmethod
+    def of_shot(cls, words: Iterable[str]) -> Switches:
+        """As a shot file names effects: without "auto" all that it does not name are off."""
+        words = tuple(words)
+        switches = cls(dict.fromkeys(EFFECTS, "auto" if "auto" in words else "off"))
+        for word in words:
+            name = word.removeprefix("-").partition("=")[0]
+            if name in EFFECTS:
+                switches.of[name] = "off" if word.startswith("-") else "on"
+                if "=" in word:
+                    switches.words[name] = word
+        return switches
+
+    def named(self, plan: Plan | None) -> tuple[str, ...]:
+        """What is simulated: what is on, and what the plan keeps of the others."""
+        kept = {effect.partition("=")[0]: effect for effect in plan.effects} if plan else {}
+        chosen = {name: self.words.get(name, name) for name, state in self.of.items() if state == "on"}
+        return tuple(
+            chosen.get(name) or kept[name]
+            for name, state in self.of.items()
+            if name in chosen or (state == "auto" and name in kept)
+        )
+
+    def as_words(self) -> list[str]:
+        """As shot files name them."""
+        automatic = ["auto"] if "auto" in self.of.values() else []
+        on = [self.words.get(name, name) for name, state in self.of.items() if state == "on"]
+        return [*automatic, *on, *(f"-{name}" for name, state in self.of.items() if state == "off" and automatic)]
