@@ -143,5 +143,6 @@ class FilesPanel:
         with ui.dialog() as dialog, ui.card().classes("max-w-5xl"), ui.row().classes("rc-gallery"):
             for name in lens_names():
                 with ui.button(on_click=lambda name=name: choose(name)).props("flat no-caps"):
-                    ui.element("img").props(f'src="/realcam-lenses/{name}.svg" alt="{name}" loading="lazy" width="190"')
+                    preview = ui.element("img").props(f'src="/realcam-lenses/{name}.svg" alt="{name}" loading="lazy"')
+                    preview.props('width="190" height="146"')  # or the buttons would move while the previews come
         dialog.open()
