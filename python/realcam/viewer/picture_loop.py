@@ -352,9 +352,14 @@ class PictureLoop:
         picture.request, picture.serial, picture.begun = request, pending.serial, pending.begun
         if request.is_automatic:
             self._meter(picture)
-        picture.noise_codes = self._noise_of(picture)
+        # The picture first: its noise takes two pictures more to be developed.
+        picture.noise_codes = None
         picture.is_final = self._is_good_enough(picture)
         self._develop(picture)
+        picture.noise_codes = self._noise_of(picture)
+        if self._is_good_enough(picture) and not picture.is_final:
+            picture.is_final = True
+            self._develop(picture)
 
     def _develop(self, picture: _Growing) -> None:
         """Shows the samples that are there with another exposure."""
