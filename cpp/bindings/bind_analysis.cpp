@@ -56,20 +56,27 @@ AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const std::vector<PupilPoint> pattern = pattern_from("", 1, pupil);
     const RayAimer aimer(lens, wavelength, field_from(field_deg, object_distance_m));
-    const std::vector<AimedRay> rays = [&] {
+    const auto count = static_cast<py::ssize_t>(pattern.size());
+    AimedRays aimed{Array({count, py::ssize_t{3}}), Array({count, py::ssize_t{3}}), py::array_t<int>(count)};
+    double* origins = aimed.origins_mm.mutable_data();
+    double* directions = aimed.directions.mutable_data();
+    int* status = aimed.status.mutable_data();
+    {
         const Unlocked unlocked;
-        return aim_all(aimer, pattern, stop_reach(lens), parallel_ray_loop(heed_signals));
-    }();
-    const auto component = [](const Vec3d& v, std::size_t k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; };
-    const auto of_entry = [&](auto&& f) {
-        return table_of(rays.size(), 3, [&](std::size_t i, std::size_t k) {
-            return rays[i].status == RayStatus::ok ? component(f(rays[i].entry), k)
-                                                   : std::numeric_limits<double>::quiet_NaN();
+        const RayLoop loop = parallel_ray_loop(heed_signals);
+        const std::vector<AimedRay> rays = aim_all(aimer, pattern, stop_reach(lens), loop);
+        loop.for_all(rays.size(), [&](std::size_t first, std::size_t last) {
+            constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+            const auto write = [](Vec3d v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; };
+            for (std::size_t i = first; i < last; ++i) {
+                const bool passes = rays[i].status == RayStatus::ok;
+                write(passes ? aimer.object.at(rays[i].entry) : Vec3d{kNone, kNone, kNone}, origins + 3 * i);
+                write(passes ? aimer.object.direction(rays[i].entry) : Vec3d{kNone, kNone, kNone}, directions + 3 * i);
+                status[i] = static_cast<int>(rays[i].status);
+            }
         });
-    };
-    return {of_entry([&](ObjectPoint::Entry e) { return aimer.object.at(e); }),
-            of_entry([&](ObjectPoint::Entry e) { return aimer.object.direction(e); }),
-            status_of({{}, pattern, rays, {}})};
+    }
+    return aimed;
 }
 
 struct PythonWavefront {
