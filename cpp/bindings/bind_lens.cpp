@@ -224,12 +224,27 @@ LensSystem load_lens(const py::object& name, const std::optional<std::map<std::s
     return io::read_lens(path_from(name), options);
 }
 
+/// Of a file, and what of it was computed or assumed.
+std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const py::object& path) {
+    std::vector<std::string> notes;
+    io::LensReadOptions options;
+    options.warn = [&](const std::string& note) { notes.push_back(note); };
+    LensSystem lens = io::read_lens(path_from(path), options);
+    return {std::move(lens), std::move(notes)};
+}
+
+/// The content of its file, and what a file with that suffix cannot say.
+std::pair<py::bytes, std::vector<std::string>> file_content(const LensSystem& lens, const py::object& path) {
+    io::LensText text = io::lens_text_for(lens, path_from(path));
+    return {py::bytes(text.text), std::move(text.warnings)};
+}
+
 void save_lens(const LensSystem& lens, const py::object& path) {
     const py::module_ files = py::module_::import("realcam.files");
     files.attr("check_target")(path);
-    const io::LensText text = io::lens_text_for(lens, path_from(path));
-    files.attr("write_whole")(path, py::bytes(text.text));
-    for (const std::string& left_out : text.warnings) warn("not in the file: " + left_out);
+    const auto [content, warnings] = file_content(lens, path);
+    files.attr("write_whole")(path, content);
+    for (const std::string& left_out : warnings) warn("not in the file: " + left_out);
 }
 
 std::vector<std::string> zoom_position_names(const LensSystem& lens) {
@@ -382,6 +397,8 @@ void bind_lens(py::module_& m) {
              "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx or .seq, with a\n"
              "UserWarning for all that these cannot say. Raises InputError, and ImageFileError where no file can be "
              "made.")
+        .def_static("_load_with_notes", &read_lens_with_notes, "path"_a)
+        .def("_file_content", &file_content, "path"_a)
         .def_property_readonly("zoom_positions", &zoom_position_names,
                                "Names of the zoom positions; empty: the focal length is fixed.")
         .def_property_readonly("zoom_position", &zoom_position_of, "The current one; None: the lens does not zoom.")

@@ -248,6 +248,17 @@ def test_what_a_pixel_shows(watched: Watched) -> None:
         watched.loop.point(u, v).result(10)
 
 
+def test_who_asks_means_the_picture_that_was_wanted_last(watched: Watched) -> None:
+    """Not the one that is still shown: a click may come right after a move."""
+    watched.photograph(PictureRequest(camera(), noise_codes=8.0))
+    for z in (6.0, 3.0, 9.0):
+        watched.loop.submit(PictureRequest(camera().replace(position=(0, 1, z)), noise_codes=8.0))
+        point = watched.loop.point(0.5, 0.7).result(60)
+        image = watched.loop.image().result(60)
+        assert image.camera.position == (0, 1, z)
+        assert point.distance_m == pytest.approx(float(image.depth[56, 60]), rel=0.05)
+
+
 def test_the_light_of_a_point_does_not_depend_on_the_exposure(watched: Watched) -> None:
     """It is metered in the samples that are there, which another exposure time has collected."""
     request = PictureRequest(camera(), noise_codes=4.0)

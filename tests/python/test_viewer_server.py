@@ -115,6 +115,26 @@ IMPOSSIBLE = [
 ]
 
 
+def test_no_message_is_lost_however_many_come(bench: BenchPage) -> None:
+    """More than are kept waiting, of a kind of which each one counts."""
+    bench.page.evaluate(
+        """() => {
+            const stream = [...window.realcamStreams.values()][0];
+            for (let k = 0; k < 300; ++k) stream.send({ type: "turn", ring: "shutter", steps: k % 2 ? -1 : 1 });
+            stream.send({ type: "turn", ring: "iso", steps: 3 });
+        }"""
+    )
+    bench.until_text("iso-text", lambda text: text == "ISO 200")
+
+
+def test_a_page_can_be_loaded_again_and_again(bench: BenchPage, server: Server) -> None:
+    """Oftener than windows are kept at once: those whose page has gone make room."""
+    for _ in range(20):
+        bench.page.goto(server.url)
+        assert not bench.page.get_by_text("Too many windows").is_visible()
+    done(bench)
+
+
 def test_what_cannot_be_is_told_on_the_page(bench: BenchPage) -> None:
     for k, message in enumerate(IMPOSSIBLE):
         bench.send(message)
@@ -377,7 +397,7 @@ def test_a_thousand_random_edits_and_moves(browser: playwright.Browser, tmp_path
         done(bench)
         for k in range(1000):
             bench.send(random_message(chance))
-            if k % 5 == 4:  # the server keeps so many messages that wait, and drops others
+            if k % 5 == 4:
                 bench.page.wait_for_timeout(60)
             if k % 100 == 99:
                 bench.page.wait_for_timeout(500)

@@ -71,10 +71,18 @@ def test_a_name_leads_to_no_other_folder() -> None:
 
 @pytest.mark.parametrize(
     "words",
-    [["auto"], ["auto", "ghosts=1e-08", "-dispersion"], ["coatings", "film_reflection=0.1"], []],
+    [
+        ["auto"],
+        ["auto", "ghosts=1e-08", "-dispersion"],
+        ["coatings", "film_reflection=0.1"],
+        [],
+        ["auto", "-motion_blur"],
+        ["-rolling_shutter", "dispersion"],
+    ],
 )
 def test_effects_are_those_that_the_shot_names(words: list[str]) -> None:
     switches = Switches.of_shot(words)
     assert sorted(switches.as_words()) == sorted(words)
-    named = [word for word in words if word != "auto" and not word.startswith("-")]
+    # What moves and has no switch is left out by its name; a switch that is off is not named.
+    named = [word for word in words if word not in ("auto", "-dispersion")]
     assert sorted(switches.named(None)) == sorted(named)

@@ -17,13 +17,10 @@ _MOST_PIXELS = 4096  # each way
 
 def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, Any]:
     """As JSON can say it. The lens is the text of its file."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"{controls.lens.name or 'lens'}.toml"
-        controls.lens.save(path)
-        lens = path.read_text(encoding="utf-8")
+    content, _ = controls.lens._file_content("lens.toml")
     return {
-        "name": path.stem,
-        "lens": lens,
+        "name": controls.lens.name or "lens",
+        "lens": content.decode(),
         "zoom": controls.zoom,
         "f_number": controls.f_number,
         "focus_m": None if math.isinf(controls.focus_m) else controls.focus_m,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import math
 from collections.abc import Awaitable, Callable
@@ -12,6 +11,7 @@ from nicegui import ui
 from nicegui.events import GenericEventArguments
 
 from ..photography import SharpRange
+from .elements import RingSlider
 from .focus_scale import focus_scale_svg
 from .ring_scales import ISO, SHUTTER_S, Ring
 from .window import Window
@@ -26,14 +26,7 @@ MODELS = {
 }
 WIDTHS = (320, 480, 640, 960, 1280, 1920)
 NOISES = {4.0: "4 codes (draft)", 2.0: "2 codes", 1.0: "1 code", 0.5: "half a code (fine)"}
-_HELD_S = 1.0  # after the last turn of a ring by its user
 _FOCUS_STEPS = 400  # of the slider, even in the inverse distance, as the travel of a focusing lens is
-
-
-class _Ring(ui.slider):
-    """A slider to which the server does not send back what it has been told, older than where the hand is by now."""
-
-    LOOPBACK = False
 
 
 class CameraPanel:
@@ -42,8 +35,6 @@ class CameraPanel:
     def __init__(self, window: Window, run: Callable[..., Awaitable[Any]]) -> None:
         self._window, self._bench, self._run = window, window.bench, run
         self._sharp = SharpRange(math.nan, math.nan)
-        self._held: tuple[_Ring, asyncio.TimerHandle] | None = None
-        self._turns = 0  # of rings, that are not done yet
         self._build()
         self.update()
 
@@ -51,21 +42,17 @@ class CameraPanel:
         with ui.element("section").classes("rc-controls").props('aria-label="Camera"'):
             self._zoom = self._choice("Zoom", {}, lambda value: self._change(zoom=value), "Position of the zoom ring")
             self._focus_text = ui.label().props('data-testid="focus-text"')
-            self._focus = self._slider(
-                "Focus", _FOCUS_STEPS, self._set_focus, "Distance from the film to the plane that is sharp"
-            )
+            self._focus = self._ring("Focus", "Distance from the film to the plane that is sharp", self._set_focus)
             self._scale = ui.html("", sanitize=False).classes("rc-scale")
             self._sharp_text = ui.label().classes("rc-note").props('data-testid="sharp-text"')
             self._aperture_text = ui.label().props('data-testid="aperture-text"')
-            self._aperture = self._slider(
-                "Aperture", 1, self._set_aperture, "A smaller opening is a larger f-number: darker, and sharp over more"
+            self._aperture = self._ring(
+                "Aperture", "A smaller opening is a larger f-number: darker, and sharp over more", self._set_aperture
             )
             self._shutter_text = ui.label().props('data-testid="shutter-text"')
-            self._shutter = self._slider(
-                "Shutter", len(SHUTTER_S.values) - 1, self._set_shutter, "How long the film is exposed"
-            )
+            self._shutter = self._ring("Shutter", "How long the film is exposed", self._set_shutter)
             self._iso_text = ui.label().props('data-testid="iso-text"')
-            self._iso = self._slider("ISO", len(ISO.values) - 1, self._set_iso, "How little light makes middle grey")
+            self._iso = self._ring("ISO", "How little light makes middle grey", self._set_iso)
             with ui.row().classes("items-center w-full"):
                 self._automatic = ui.switch("Automatic exposure").props('data-testid="automatic"')
                 self._automatic.on("update:model-value", lambda e: self._change(is_automatic=bool(_value(e))))
@@ -97,16 +84,16 @@ class CameraPanel:
         self._zoom.set_options({name: name for name in positions}, value=now.zoom)
         apertures = self._bench.apertures
         f_number = max(now.f_number or 0.0, apertures.values[0])
-        step = apertures.step_of(f_number)
-        self._set(self._aperture, step, len(apertures.values) - 1)
+        self._show(self._aperture, apertures, f_number, f"f/{apertures.text_of(f_number)}")
         self._aperture_text.set_text(f"Aperture f/{apertures.text_of(f_number)}")
-        self._set(self._shutter, SHUTTER_S.step_of(now.exposure_time_s))
-        automatic = " (automatic)" if now.is_automatic else ""
-        self._shutter_text.set_text(f"Shutter {_seconds(SHUTTER_S, now.exposure_time_s)}{automatic}")
-        self._set(self._iso, ISO.step_of(now.iso))
+        shutter = _seconds(SHUTTER_S, now.exposure_time_s)
+        self._show(self._shutter, SHUTTER_S, now.exposure_time_s, shutter)
+        self._shutter_text.set_text(f"Shutter {shutter}{' (automatic)' if now.is_automatic else ''}")
+        self._show(self._iso, ISO, now.iso, ISO.text_of(now.iso))
         self._iso_text.set_text(f"ISO {ISO.text_of(now.iso)}")
         nearest = self._nearest_m
-        self._set(self._focus, round(_FOCUS_STEPS * (1 - nearest / now.focus_m)) if now.focus_m > nearest else 0)
+        step = round(_FOCUS_STEPS * (1 - nearest / now.focus_m)) if now.focus_m > nearest else 0
+        self._focus.set(step, _FOCUS_STEPS, _distance(now.focus_m))
         self._focus_text.set_text(f"Focus {_distance(now.focus_m)}")
         self._show_scale()
         self._automatic.set_value(now.is_automatic)
@@ -137,19 +124,19 @@ class CameraPanel:
             return body.nearest_focus_m
         return 0.01 * abs(body.first_order().effective_focal_length_mm)
 
-    def _set_focus(self, step: float) -> Awaitable[Any]:
+    def _set_focus(self, step: int) -> Awaitable[Any]:
         share = step / _FOCUS_STEPS
         return self._change(focus_m=math.inf if share >= 1 else self._nearest_m / (1 - share))
 
-    def _set_aperture(self, step: float) -> Awaitable[Any]:
+    def _set_aperture(self, step: int) -> Awaitable[Any]:
         values = self._bench.apertures.values
-        return self._change(f_number=values[min(int(step), len(values) - 1)])
+        return self._change(f_number=values[min(step, len(values) - 1)])
 
-    def _set_shutter(self, step: float) -> Awaitable[Any]:
-        return self._change(exposure_time_s=SHUTTER_S.values[int(step)], is_automatic=False)
+    def _set_shutter(self, step: int) -> Awaitable[Any]:
+        return self._change(exposure_time_s=SHUTTER_S.values[step], is_automatic=False)
 
-    def _set_iso(self, step: float) -> Awaitable[Any]:
-        return self._change(iso=ISO.values[int(step)])
+    def _set_iso(self, step: int) -> Awaitable[Any]:
+        return self._change(iso=ISO.values[step])
 
     async def _set_compensation(self, event: GenericEventArguments) -> None:
         with contextlib.suppress(ValueError):  # what is not typed to its end
@@ -160,43 +147,15 @@ class CameraPanel:
     def _change(self, **changes: Any) -> Awaitable[Any]:
         return self._run(self._bench.change, **changes)
 
-    def _slider(self, name: str, last: int, act: Callable[[float], Awaitable[Any]], help: str) -> _Ring:
-        slider = _Ring(min=0, max=last, step=1).props(f'aria-label="{name}" data-testid="{name.lower()}"')
-        slider.tooltip(help)
+    def _ring(self, name: str, help: str, act: Callable[[int], Awaitable[Any]]) -> RingSlider:
+        async def turned(step: int) -> None:
+            await act(step)
+            self.update()
 
-        async def turned(event: GenericEventArguments) -> None:
-            value = _value(event)
-            if isinstance(value, int | float):
-                self._hold(slider)
-                self._turns += 1
-                try:
-                    await act(value)
-                finally:
-                    self._turns -= 1
+        return RingSlider(name, help, turned).props(f'data-testid="{name.lower()}"')
 
-        slider.on("update:model-value", turned, throttle=0.03)
-        return slider
-
-    def _hold(self, slider: _Ring) -> None:
-        """Leaves a ring to the hand that turns it: what comes of an earlier step must not turn it back meanwhile."""
-        loop = asyncio.get_running_loop()
-        if self._held is not None:
-            self._held[1].cancel()
-        self._held = slider, loop.call_later(_HELD_S, self._let_go)
-
-    def _let_go(self) -> None:
-        if self._held is not None and self._turns:
-            self._hold(self._held[0])  # until the last of them is done
-            return
-        self._held = None
-        self.update()
-
-    def _set(self, slider: _Ring, step: int, last: int | None = None) -> None:
-        if last is not None and slider.props.get("max") != last:
-            slider.props["max"] = last
-            slider.update()
-        if self._held is None or self._held[0] is not slider:
-            slider.set_value(step)
+    def _show(self, slider: RingSlider, ring: Ring, value: float, text: str) -> None:
+        slider.set(ring.step_of(value), len(ring.values) - 1, text)
 
     def _choice(self, name: str, options: dict[Any, str], act: Callable[[Any], Awaitable[Any]], help: str) -> ui.select:
         choice = ui.select(options, label=name).classes("w-full").props(f'data-testid="{name.lower()}"')

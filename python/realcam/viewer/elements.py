@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 from nicegui.element import Element
+from nicegui.events import GenericEventArguments
 
 from .._core import effects, glass_names
 from .effect_switches import EFFECTS
@@ -25,6 +27,32 @@ class LensDrawing(Element, component="static/lens_drawing.js"):
         super().__init__()
         self._props["path"] = path
         self._props["glasses"] = glass_names()
+
+
+class RingSlider(Element, component="static/ring.js"):
+    """A slider of whole steps. What it shows while it is turned is where the hand is; else what set() has said."""
+
+    def __init__(self, label: str, help: str, turned: Callable[[int], Awaitable[None]]) -> None:
+        """turned: does what a turn to that step means, after which set() has said how the ring stands."""
+        super().__init__()
+        self._props |= {"label": label, "help": help, "last": 0, "step": 0, "text": "", "answered": 0}
+
+        async def take(event: GenericEventArguments) -> None:
+            asked = event.args if isinstance(event.args, dict) else {}
+            step, turn = asked.get("step"), asked.get("turn")
+            if isinstance(step, int) and 0 <= step <= self._props["last"]:
+                await turned(step)
+            self._props["answered"] = turn
+            self.update()
+
+        self.on("turned", take, throttle=0.03)
+
+    def set(self, step: int, last: int, text: str) -> None:
+        """text: what is engraved there."""
+        state = {"step": step, "last": last, "text": text}
+        if any(self._props[key] != value for key, value in state.items()):
+            self._props |= state
+            self.update()
 
 
 class CostPanel(Element, component="static/cost_panel.js"):

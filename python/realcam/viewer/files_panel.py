@@ -89,19 +89,22 @@ class FilesPanel:
             return
         content = await event.file.read()
 
-        def opened() -> None:
+        def opened() -> str:
             with tempfile.TemporaryDirectory() as folder:
                 path = Path(folder) / f"{Path(event.file.name).stem[:60]}{suffix}"
                 path.write_bytes(content)
                 try:
-                    lens = Lens.load(path)
+                    lens, notes = Lens._load_with_notes(path)
                 except RealcamError as error:  # whose file the user does not know under that path
                     raise InputError(str(error).replace(str(path), event.file.name)) from None
             if not self._bench.set_lens(lens):
                 problem = self._bench.problem
                 raise InputError(problem.message if problem else "the lens does not fit the camera")
+            return "; ".join(
+                [f"Opened {event.file.name}", *(note.replace(str(path), event.file.name) for note in notes)]
+            )
 
-        await self._try(opened, f"Opened {event.file.name}")
+        await self._try(opened)
 
     def _propose(self) -> None:
         self._name.set_value({"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}[self._what.value])
@@ -114,23 +117,24 @@ class FilesPanel:
             self._say(str(error))
             return
 
-        def saved() -> None:
+        def saved() -> str:
             if what == "picture":
                 save_picture(bench.image(), path, bench.shot.tone)
-            elif what == "shot":
-                save_shot(self._source, bench.controls, bench.switches.as_words(), path)
-            else:
-                save_lens(bench.controls.set_lens, path)
+                return f"Wrote {path.name}"
+            if what == "shot":
+                written = save_shot(self._source, bench.controls, bench.switches.as_words(), path)
+                return f"Wrote {' and '.join(file.name for file in written)}"
+            left_out = save_lens(bench.controls.set_lens, path)
+            return "; ".join([f"Wrote {path.name}", *(f"not in it: {what}" for what in left_out)])
 
-        await self._try(saved, f"Wrote {path.name}")
+        await self._try(saved)
 
-    async def _try(self, action: Callable[[], None], done: str) -> None:
+    async def _try(self, action: Callable[[], str]) -> None:
+        """Says what the action returns, or why it could not be done."""
         try:
-            await self._window.do(action)
+            self._say(await self._window.do(action))
         except (RealcamError, OSError) as error:
             self._say(str(error))
-        else:
-            self._say(done)
 
     def _say(self, text: str) -> None:
         self._said.set_text(text)

@@ -18,7 +18,7 @@ from .bench_state import restored, state_of
 from .camera_controls import CameraControls
 from .effect_switches import EFFECTS, Switches
 from .lens_edits import LensHistory
-from .lens_view import lens_view
+from .lens_view import lens_view, ray_view
 from .listeners import Listeners, Problem
 from .newest_task import NewestTask
 from .picture_loop import PictureLoop
@@ -54,7 +54,9 @@ class LensBench:
         self._make_loop = make_loop
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
         self._loops = {"a": self._new_loop("a")}
-        self._drawing = NewestTask("realcam-drawing", delay_s=0.02)  # after the picture's first frame
+        # After the picture's first frame.
+        self._drawing = NewestTask("realcam-drawing", delay_s=0.02)
+        self._tracing = NewestTask("realcam-rays", delay_s=0.02)
         # Both take as long as some frames of the picture.
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
         self._measuring_rungs = NewestTask("realcam-rungs")
@@ -64,7 +66,8 @@ class LensBench:
     def close(self) -> None:
         """Ends all threads of the window."""
         self.listeners = Listeners()
-        for task in (self._drawing, self._planning, self._measuring, self._measuring_rungs, self._keeping):
+        tasks = self._drawing, self._tracing, self._planning, self._measuring, self._measuring_rungs, self._keeping
+        for task in tasks:
             task.close()
         for loop in self._loops.values():
             loop.close()
@@ -194,7 +197,7 @@ class LensBench:
     def hover(self, u: float, v: float) -> None:
         """Draws the rays of what is at u, v of the picture."""
         self.hovered = u, v
-        self._draw()
+        self._trace()
 
     # Effects, and what the picture is compared with.
 
@@ -332,11 +335,13 @@ class LensBench:
             self.listeners.problem(problem)
 
     def _request(self, controls: CameraControls) -> PictureRequest:
-        is_full = controls.model == "full"
         names = self.switches.named(self.plan)
+        if controls.model != "full":
+            of_all_models = ("diffraction", *self.switches.others)
+            names = tuple(name for name in names if name in of_all_models)
         return PictureRequest(
             camera=controls.camera,
-            effects=tuple(name for name in names if is_full or name == "diffraction"),
+            effects=names,
             tone=self.shot.tone,
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,
@@ -369,8 +374,13 @@ class LensBench:
             self._loops["b"].submit(request)
 
     def _draw(self) -> None:
+        lens = self.controls.set_lens
+        self._drawing.submit(lambda: self.listeners.lens(lens_view(lens)))
+        self._trace()
+
+    def _trace(self) -> None:
         lens, fields = self.controls.set_lens, self._fields()
-        self._drawing.submit(lambda: self.listeners.lens(lens_view(lens, fields)))
+        self._tracing.submit(lambda: self.listeners.rays(ray_view(lens, fields)))
 
     def _keep(self) -> None:
         controls, switches = self.controls, dict(self.switches.of)

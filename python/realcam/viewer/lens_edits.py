@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from .._core import Glass, InputError, Lens, Surface
@@ -10,6 +14,7 @@ from .._core import Glass, InputError, Lens, Surface
 _MOST_STEPS = 200
 _PLATE_GLASS = "schott:N-BK7"
 _BETWEEN_NUMBERS = str.maketrans(",/()", "    ")  # as labels of glasses have them: "1.67 / 47.1" and "(1.67, 47.1)"
+_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 
 
 def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
@@ -37,23 +42,82 @@ def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
 
 
 def with_plate(lens: Lens, index: int) -> Lens:
-    """With a thin plate of glass before surface `index` (or behind the last one), in the middle of the air there."""
+    """With a thin plate of glass before surface `index` (or behind the last one), in the middle of the air there.
+
+    What lies behind it stays in its place. Where curved faces leave no room for flat ones, those of the plate are bent
+    as the surface before it. In glass it is one surface, which has no effect until it is edited. Raises InputError.
+    """
     surfaces = lens.surfaces
     if not 0 <= index <= len(surfaces):
         raise InputError(f"there is no place {index + 1} in a lens of {len(surfaces)} surfaces")
-    beside = surfaces[min(index, len(surfaces) - 1)].clear_semi_diameter_mm
-    thickness = 0.2 * beside
-    plate = [
-        Surface(thickness_mm=thickness, material=_PLATE_GLASS, clear_semi_diameter_mm=beside),
-        Surface(clear_semi_diameter_mm=beside),
-    ]
     if index == 0:
-        return lens.inserted(0, [plate[0], plate[1].replace(thickness_mm=0.1 * beside)])
-    room = lens.film_distance_mm if index == len(surfaces) else surfaces[index - 1].thickness_mm
-    gap = 0.5 * (room - thickness)
-    if gap <= 0:
-        raise InputError(f"there is no room for a plate of {thickness:.3g} mm before surface {index + 1}")
-    return lens.inserted(index, plate, gap_mm=gap)
+        rim = surfaces[0].clear_semi_diameter_mm
+        back = Surface(thickness_mm=0.1 * rim, clear_semi_diameter_mm=rim)
+        return lens.inserted(0, [back.replace(thickness_mm=0.2 * rim, material=_PLATE_GLASS), back])
+    gap = _Gap.before(lens, index)
+    if not gap.narrowest > 0.01:
+        raise InputError(f"there is no room before surface {index + 1}, which the one before it touches")
+    medium = next((s.material for s in surfaces[index - 1 :: -1] if s.type == "refracting"), None)
+    if medium is not None and medium.index(lens.wavelength_nm) != 1:
+        place = 0.5 * gap.narrowest
+        return lens.inserted(index, [gap.bent(place, 1, medium)], gap_mm=place * gap.length_mm)
+    place, end, face = gap.flat_plate() or (gap.narrowest / 3, 2 * gap.narrowest / 3, gap.bent)
+    glass = Glass.named(_PLATE_GLASS)
+    return lens.inserted(index, [face(place, end, glass), face(end, 1, None)], gap_mm=place * gap.length_mm)
+
+
+@dataclass(frozen=True)
+class _Gap:
+    """What lies between two surfaces. Places in it are shares of its length on the axis."""
+
+    front: Surface
+    back: Surface
+    length_mm: float  #: negative where a mirror sends the light back
+
+    @classmethod
+    def before(cls, lens: Lens, index: int) -> _Gap:
+        """Before a surface, or before the film."""
+        front = lens.surfaces[index - 1]
+        if index < len(lens.surfaces):
+            return cls(front, lens.surfaces[index], front.thickness_mm)
+        return cls(front, Surface(clear_semi_diameter_mm=front.clear_semi_diameter_mm), lens.film_distance_mm)
+
+    @property
+    def rim_mm(self) -> float:
+        return min(self.front.clear_semi_diameter_mm, self.back.clear_semi_diameter_mm)
+
+    @cached_property
+    def _ends(self) -> list[tuple[float, float]]:
+        """Of the gap, at distances from the axis."""
+        if self.length_mm == 0:
+            return [(0.0, 0.0)]
+        heights = (self.rim_mm * k / 16 for k in range(17))
+        return [(self.front.sag_mm(h) / self.length_mm, 1 + self.back.sag_mm(h) / self.length_mm) for h in heights]
+
+    @property
+    def narrowest(self) -> float:
+        return min(end - start for start, end in self._ends)
+
+    def bent(self, place: float, end: float, material: Glass | None) -> Surface:
+        """A face of the front's shape, which reaches neither the front nor what is `narrowest` behind it."""
+        return self.flat(place, end, material).replace(
+            radius_of_curvature_mm=self.front.radius_of_curvature_mm,
+            conic=self.front.conic,
+            aspheric_coefficients=self.front.aspheric_coefficients,
+        )
+
+    def flat(self, place: float, end: float, material: Glass | None) -> Surface:
+        return Surface(
+            thickness_mm=(end - place) * self.length_mm, material=material, clear_semi_diameter_mm=self.rim_mm
+        )
+
+    def flat_plate(self) -> tuple[float, float, Callable[[float, float, Glass | None], Surface]] | None:
+        """From where to where, where flat faces have room for one."""
+        start, end = max(start for start, _ in self._ends), min(end for _, end in self._ends)
+        rim = self.rim_mm / abs(self.length_mm)
+        thickness = min(0.2 * rim, 0.5 * (end - start))
+        middle = 0.5 * (start + end)
+        return (middle - 0.5 * thickness, middle + 0.5 * thickness, self.flat) if thickness > 0.05 * rim else None
 
 
 def without(lens: Lens, index: int) -> Lens:
@@ -68,8 +132,14 @@ def swapped(lens: Lens, index: int, other: int) -> Lens:
 
 
 def glass_of(text: Any) -> float | tuple[float, float] | Glass | None:
-    """A glass as the table has it: air, 1.5168, "1.5168 / 64.2" or "schott:N-BK7". Raises InputError."""
-    words = [word for word in str("" if text is None else text).translate(_BETWEEN_NUMBERS).split() if word]
+    """A glass as the table has it: air, 1.5168, "1.5168 / 64.2" or "schott:N-BK7". Raises InputError.
+
+    "1,5168" is a number with a decimal comma, where no point says that commas stand between numbers.
+    """
+    typed = str("" if text is None else text)
+    if "." not in typed:
+        typed = _DECIMAL_COMMA.sub(".", typed)
+    words = typed.translate(_BETWEEN_NUMBERS).split()
     if not words or words == ["air"]:
         return None
     if words[0][0].isdigit():

@@ -1,4 +1,4 @@
-"""What the browser draws of a lens: its section, its rays, its table and its first-order data, as JSON."""
+"""What the browser draws of a lens as JSON: its section, its table and its first-order data; and its rays."""
 
 from __future__ import annotations
 
@@ -15,23 +15,30 @@ from ..drawing.outlines import Points
 _RAYS = 9
 
 
-def lens_view(lens: Lens, fields: Sequence[float] = (0.0, 0.7)) -> dict[str, Any]:
-    """Lengths in mm, lens frame. fields: shares of the height of the film's corner. Where no light passes there are no
-    rays, and `note` says why.
-    """
-    note = ""
-    try:
-        section = cross_section(lens, rays=_RAYS, fields=fields)
-    except InputError as error:
-        section, note = cross_section(lens, rays=0), str(error)
+def lens_view(lens: Lens) -> dict[str, Any]:
+    """Lengths in mm, lens frame."""
+    section = cross_section(lens, rays=0)
     return {
         "name": lens.name,
         "title": lens.title,
         "surfaces": [_row(lens, index) for index in range(len(lens.surfaces))],
         "film": {"z": lens.film_position_mm, "half": section.film_semi_diagonal_mm},
         "figures": _figures(lens),
-        "note": note,
         **_shapes(section),
+    }
+
+
+def ray_view(lens: Lens, fields: Sequence[float]) -> dict[str, Any]:
+    """Bundles of rays as paths of (z, y). fields: shares of the height of the film's corner. Where no light passes
+    there are none, and `note` says why.
+    """
+    try:
+        section = cross_section(lens, rays=_RAYS, fields=fields)
+    except InputError as error:
+        return {"bundles": [], "note": str(error)}
+    return {
+        "bundles": [[_points(path[:, [2, 1]]) for path in bundle.paths_mm] for bundle in section.bundles],
+        "note": "",
     }
 
 
@@ -69,12 +76,12 @@ def _shapes(section: CrossSection) -> dict[str, Any]:
                 "z": b.z_mm,
                 "opening": b.opening_mm,
                 "outer": b.outer_mm,
+                "obstruction": b.obstruction_mm,
             }
             for b in section.blockers
         ],
         "crossings": [_points(zone) for crossing in section.crossings for zone in crossing.zones],
         "marks": [{"kind": m.kind, "label": m.label, "z": m.z_mm, "half": m.semi_diameter_mm} for m in section.marks],
-        "bundles": [[_points(path[:, [2, 1]]) for path in bundle.paths_mm] for bundle in section.bundles],
     }
 
 

@@ -26,6 +26,7 @@ class Listeners:
     frame: Callable[[str, Frame], None] = lambda slot, frame: None
     controls: Callable[[], None] = lambda: None
     lens: Callable[[dict[str, Any]], None] = lambda view: None
+    rays: Callable[[dict[str, Any]], None] = lambda view: None
     problem: Callable[[Problem | None], None] = lambda problem: None
     plan: Callable[[Plan | None, str], None] = lambda plan, note: None
     rungs: Callable[[list[dict[str, Any]], str], None] = lambda rungs, note: None

@@ -203,9 +203,9 @@ class PictureLoop:
         return False
 
     def _answerable(self) -> list[_Question]:
-        """Takes the questions that can be answered now. Who asks for a picture means the one that was wanted last."""
+        """Takes the questions that can be answered now. Who asks means the picture that was wanted last."""
         with self._wake:
-            now = [question for question in self._questions if not (question.needs_samples and self._pending)]
+            now = [] if self._pending else list(self._questions)
             for question in now:
                 self._questions.remove(question)
         return now
@@ -312,7 +312,7 @@ class PictureLoop:
                 pending = self._pending if self._pending and picture.can_be(self._pending.request) else None
                 if pending:
                     self._pending = None
-                quick = [question for question in self._questions if not question.needs_samples]
+                quick = [] if self._pending else [q for q in self._questions if not q.needs_samples]
                 for question in quick:
                     self._questions.remove(question)
             for question in quick:

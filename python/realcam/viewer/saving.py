@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import Any
@@ -29,11 +30,13 @@ def save_picture(image: Image, path: Path, tone: str) -> None:
         image.save(path, tone)
 
 
-def save_lens(lens: Lens, path: Path) -> None:
-    """Writes .toml, .zmx or .seq. Raises InputError and LensFileError."""
+def save_lens(lens: Lens, path: Path) -> list[str]:
+    """Writes .toml, .zmx or .seq; returns what such a file cannot say. Raises InputError and ImageFileError."""
     if path.suffix.lower() not in (".toml", ".zmx", ".seq"):
         raise InputError(f'"{path.name}": .toml, .zmx or .seq is wanted')
-    lens.save(path)
+    content, left_out = lens._file_content(path)
+    write_whole(path, content)
+    return left_out
 
 
 def save_shot(source: Path, controls: CameraControls, effects: list[str], path: Path) -> list[Path]:
@@ -78,4 +81,19 @@ def save_shot(source: Path, controls: CameraControls, effects: list[str], path: 
 
 def _is_bundled(lens: Lens) -> bool:
     """Not one that was edited under its old name; nor one with another diaphragm, which the shot file had."""
-    return opened(Lens.load(lens.name)) == lens
+    bundled = opened(Lens.load(lens.name))
+    if bundled == lens:
+        return True
+    # One that a shot has focused has come back to infinity: there to the last digits, and its file may say a place
+    # beside that.
+    bundled, lens = bundled.focused(math.inf), lens.focused(math.inf)
+    if len(lens.surfaces) != len(bundled.surfaces):
+        return False
+    pairs = zip(lens.surfaces, bundled.surfaces, strict=True)
+    if not all(math.isclose(a.thickness_mm, b.thickness_mm, rel_tol=1e-9, abs_tol=1e-9) for a, b in pairs):
+        return False
+    same = {
+        index: mine.replace(thickness_mm=bundled.surfaces[index].thickness_mm)
+        for index, mine in enumerate(lens.surfaces)
+    }
+    return lens.with_surfaces(same) == bundled

@@ -52,7 +52,7 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
     folders = Folders(settings.folders)
     is_open = is_local(settings.host) and (settings.connect is not None or not settings.token)
     token = None if is_open else settings.token or secrets.token_urlsafe(24)
-    windows: dict[str, Window] = {}
+    windows: dict[str, tuple[Client, Window]] = {}
     make_loop: Callable[..., AnyPictureLoop] = PictureLoop
     if settings.connect is not None:
         make_loop = partial(RemotePictureLoop, address=settings.connect, token=settings.token)
@@ -64,7 +64,7 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
 
     @ui.page("/", title="realcam", response_timeout=30)
     async def page(client: Client) -> None:
-        if len(windows) >= _MOST_WINDOWS:
+        if len(windows) >= _MOST_WINDOWS and not await _close_left_window(windows):
             ui.label("Too many windows are open; close one and load this page again.")
             return
         try:
@@ -74,7 +74,7 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
             ui.label(str(error))
             return
         window = Window(bench)
-        windows[window.key] = window
+        windows[window.key] = client, window
         client.on_delete(lambda: windows.pop(window.key, None))
         build_page(client, window, folders, settings.source.resolve())
 
@@ -88,11 +88,11 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
 
     @app.websocket("/realcam/stream/{key}")
     async def stream(socket: WebSocket, key: str) -> None:
-        window = windows.get(key)
-        if window is None:
+        if key not in windows:
             await socket.accept()
             await socket.close(_UNKNOWN_WINDOW, "the server does not know this window any more")
             return
+        _, window = windows[key]
         await window.stream.serve(socket)
 
     address = f"http://{_shown(settings.host)}:{settings.port}/" + (f"?token={token}" if token else "")
@@ -109,6 +109,16 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
         ws_max_size=_MOST_MESSAGE,
         tailwind=True,
     )
+
+
+async def _close_left_window(windows: dict[str, tuple[Client, Window]]) -> bool:
+    """The oldest one whose page has gone, if any has; it would have been kept for some time yet."""
+    for key, (client, window) in windows.items():
+        if not client.has_socket_connection:
+            del windows[key]
+            await asyncio.to_thread(window.close)
+            return True
+    return False
 
 
 def _shown(host: str) -> str:

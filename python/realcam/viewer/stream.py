@@ -43,13 +43,14 @@ class PictureStream:
         self._texts: dict[str, str] = {}
         self._news = asyncio.Event()
         self._inbox: deque[Message] = deque()
-        self._mail = asyncio.Event()
+        self._mail, self._room = asyncio.Event(), asyncio.Event()
         self._serving: list[asyncio.Task[None]] = []  #: of the newest connection
         self._sent: tuple[str, float] | None = None  #: the frame that is not acknowledged, and when it was sent
         self._sent_frame: Frame | None = None  #: the last one
         self._quality = _QUALITIES[1]
         bench.listeners.frame = self._offer_frame
         bench.listeners.lens = lambda view: self._offer_text("lens", view)
+        bench.listeners.rays = lambda view: self._offer_text("rays", view)
         bench.listeners.problem = self._offer_problem
         bench.listeners.plan = self._offer_plan
         bench.listeners.state = lambda state: self._offer_text("state", {"state": state})
@@ -97,7 +98,10 @@ class PictureStream:
             one = merged(self._inbox[-1], message) if self._inbox else None
             if one is not None:
                 self._inbox[-1] = one
-            elif len(self._inbox) < _MOST_WAITING:
+            else:
+                while len(self._inbox) >= _MOST_WAITING:  # nothing more is read, so that nothing is lost
+                    self._room.clear()
+                    await self._room.wait()
                 self._inbox.append(message)
             self._mail.set()
 
@@ -107,6 +111,7 @@ class PictureStream:
             self._mail.clear()
             while self._inbox:
                 message = self._inbox.popleft()
+                self._room.set()
                 done = self._loop.run_in_executor(self._executor, perform, message, self._bench)
                 try:
                     await done

@@ -37,7 +37,7 @@ export default {
     <g transform="scale(1,-1)">
       <line class="rc-axis" :x1="box[0]" :x2="box[0] + box[2]" y1="0" y2="0" />
       <polygon v-for="(e, k) in view.elements" :key="'e' + k" class="rc-glass" :points="text(e)" />
-      <g v-for="(bundle, b) in view.bundles" :key="'b' + b" :class="'rc-rays rc-rays-' + b">
+      <g v-for="(bundle, b) in rays.bundles" :key="'b' + b" :class="'rc-rays rc-rays-' + b">
         <polyline v-for="(path, k) in bundle" :key="k" :points="text(path)" />
       </g>
       <polygon v-for="(c, k) in view.crossings" :key="'c' + k" class="rc-crossing" :points="text(c)" />
@@ -48,6 +48,7 @@ export default {
       </g>
       <g v-for="b in view.blockers" :key="'s' + b.surface" :class="b.is_stop ? 'rc-stop' : 'rc-blocker'">
         <line :x1="b.z" :x2="b.z" :y1="b.opening" :y2="b.outer" /><line :x1="b.z" :x2="b.z" :y1="-b.opening" :y2="-b.outer" />
+        <line v-if="b.obstruction" :x1="b.z" :x2="b.z" :y1="-b.obstruction" :y2="b.obstruction" />
       </g>
       <line class="rc-film" :x1="view.film.z" :x2="view.film.z" :y1="-view.film.half" :y2="view.film.half" />
       <g v-if="showsMarks">
@@ -66,7 +67,7 @@ export default {
     </g>
   </svg>
   <p v-if="problem" class="rc-problem" role="alert" data-testid="problem">{{ problem.message }}</p>
-  <p v-else-if="view && view.note" class="rc-problem">{{ view.note }}</p>
+  <p v-else-if="rays.note" class="rc-problem">{{ rays.note }}</p>
   <dl v-if="view" class="rc-figures">
     <div v-for="[key, label, unit, help] in figures" :key="key" :title="help"><dt>{{ label }}</dt>
       <dd :data-testid="key">{{ number(view.figures[key], 4) }} {{ unit }}</dd></div>
@@ -100,7 +101,7 @@ export default {
   </div>
 </section>`,
   data: () => ({
-    view: null, problem: null, chosen: null, typed: null, dragged: null, box: [0, 0, 1, 1], colours: false, showsMarks: false,
+    view: null, rays: { bundles: [], note: "" }, problem: null, chosen: null, typed: null, dragged: null, box: [0, 0, 1, 1], colours: false, showsMarks: false,
     history: { can_undo: false, can_redo: false }, figures: FIGURES,
   }),
   computed: {
@@ -128,6 +129,7 @@ export default {
     this.stream = streamAt(this.path);
     this.ends = [
       this.stream.on("lens", (view) => this.show(view)),
+      this.stream.on("rays", (rays) => { this.rays = rays; }),
       this.stream.on("problem", ({ problem }) => { this.problem = problem; }),
     ];
     this.sendDrag = oncePerFrame((message) => this.stream.send(message));

@@ -1,0 +1,24 @@
+// A ring or dial of the camera: a slider that says what is engraved where it stands.
+
+export default {
+  props: { label: String, help: String, last: Number, step: Number, text: String, answered: Number },
+  template: `
+<input class="rc-ring" type="range" min="0" :max="last" :value="at" :aria-label="label" :aria-valuetext="text"
+  :title="help" @input="turn">`,
+  data() {
+    return { turns: this.answered, turned: this.step };
+  },
+  computed: {
+    /// Until the server has done the last turn, what it says is older than where the hand is.
+    at() {
+      return this.answered === this.turns ? this.step : this.turned;
+    },
+  },
+  methods: {
+    turn(event) {
+      this.turned = Number(event.target.value);
+      this.turns += 1;
+      this.$emit("turned", { step: this.turned, turn: this.turns });
+    },
+  },
+};
