@@ -11,12 +11,16 @@ import contextlib
 import io
 import itertools
 import logging
+import os
 import pickle
+import socket
+import struct
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
+from dataclasses import replace
 from multiprocessing import AuthenticationError
-from multiprocessing.connection import Client, Connection, Listener
+from multiprocessing.connection import Connection, answer_challenge, deliver_challenge
 from typing import Any
 
 from .._core import Cancelled, DeviceError, InputError, RealcamError, Scene
@@ -27,6 +31,8 @@ from .picture_request import Frame, PictureRequest, Point
 _log = logging.getLogger(__name__)
 
 _MOST_BYTES = 1 << 31  # a scene with its textures
+_PATIENCE_S = 10  # with a machine that has not yet said who it is
+_PAUSE_S = 2.0  # between two attempts to reach a machine that has gone
 _ALLOWED = {
     ("realcam.pickling", "restored"),
     ("realcam.image", "Image"),
@@ -51,11 +57,30 @@ class _Unpickler(pickle.Unpickler):
 
 
 class _Line:
-    """A connection on which threads take turns to send."""
+    """A connection on which threads take turns to send, and one thread receives."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
+    def __init__(self, line: socket.socket) -> None:
+        line.settimeout(None)
+        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # a frame's end need not wait for an answer
+        line.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)  # a machine that is switched off says no word
+        self._socket = line
+        self._connection = Connection(os.dup(line.fileno()))
         self._sending = threading.Lock()
+
+    def prove(self, token: str, *, is_first: bool) -> None:
+        """Both ends show that they know the token. Raises AuthenticationError, EOFError and OSError."""
+        steps = (deliver_challenge, answer_challenge) if is_first else (answer_challenge, deliver_challenge)
+        self._wait_at_most(_PATIENCE_S)
+        try:
+            for step in steps:
+                step(self._connection, token.encode())
+        except BlockingIOError:
+            raise TimeoutError("it says nothing") from None
+        self._wait_at_most(0)
+
+    def _wait_at_most(self, seconds: int) -> None:
+        """For the next bytes; 0: for ever. A timeout of Python's socket would not hold for the Connection."""
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, struct.pack("ll", seconds, 0))
 
     def send(self, *message: Any) -> None:
         """Raises OSError where the other end is gone."""
@@ -74,13 +99,23 @@ class _Line:
             raise InputError("the other end has sent no message")
         return message
 
-    def close(self) -> None:
+    def end(self) -> None:
+        """From any thread: the one that receives finds the end."""
         with contextlib.suppress(OSError):
-            self._connection.close()
+            self._socket.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """From the thread that receives."""
+        self.end()
+        self._socket.close()
+        self._connection.close()
 
 
 class RemotePictureLoop:
-    """What PictureLoop is, on the machine at `address`. Raises DeviceError where nobody there knows the token."""
+    """What PictureLoop is, on the machine at `address`. Raises DeviceError where nobody there knows the token.
+
+    When that machine has gone, it is looked for until it is there again, and the newest picture is asked for once more.
+    """
 
     def __init__(
         self,
@@ -95,25 +130,25 @@ class RemotePictureLoop:
         device: str = "",
     ) -> None:
         self._on_frame, self._on_error = on_frame, on_error
-        try:
-            self._line = _Line(Client(address, authkey=token.encode()))
-        except AuthenticationError:
-            raise DeviceError(f"{address[0]}:{address[1]} does not take the token") from None
-        except (OSError, EOFError) as error:
-            raise DeviceError(f"{address[0]}:{address[1]} does not answer: {error}") from None
-        self._serials = itertools.count(1)
+        self._address, self._token = address, token
+        self._scene = scene, max_bounces, seed
+        self._lock = threading.Lock()  # of all below
+        self._serial = self._serials_before = 0  #: the other end counts what it is asked for on one line from 1
+        self._wanted: PictureRequest | None = None
+        self._quality = 85
         self._questions: dict[int, Future[Any]] = {}
         self._numbers = itertools.count()
-        self._is_closed = False
-        self._quality = 85
-        self._line.send("scene", scene, max_bounces, seed)
+        self._closing = threading.Event()
+        self._line: _Line | None = self._connected()
         self._thread = threading.Thread(target=self._listen, name="realcam-remote-picture", daemon=True)
         self._thread.start()
 
     def submit(self, request: PictureRequest) -> int:
-        serial = next(self._serials)
-        self._send("submit", request, serial)
-        return serial
+        with self._lock:
+            self._serial += 1
+            self._wanted = request
+            self._send("submit", request)
+            return self._serial
 
     def image(self) -> Future[Image]:
         return self._ask("image")
@@ -127,37 +162,78 @@ class RemotePictureLoop:
 
     @jpeg_quality.setter
     def jpeg_quality(self, quality: int) -> None:
-        if quality != self._quality:
-            self._quality = quality
-            self._send("quality", quality)
+        with self._lock:
+            if quality != self._quality:
+                self._quality = quality
+                self._send("quality", quality)
 
     def close(self) -> None:
-        self._is_closed = True
-        with contextlib.suppress(OSError):
-            self._line.send("close")
-        self._line.close()
+        self._closing.set()
+        with self._lock:
+            if self._line:
+                self._line.end()
         self._thread.join()
 
     def _ask(self, kind: str, *arguments: Any) -> Future[Any]:
-        number, answer = next(self._numbers), Future[Any]()
-        self._questions[number] = answer
-        self._send("ask", number, kind, *arguments)
+        answer: Future[Any] = Future()
+        with self._lock:
+            if self._line is None:
+                answer.set_exception(Cancelled(self._gone))
+            else:
+                number = next(self._numbers)
+                self._questions[number] = answer
+                self._send("ask", number, kind, *arguments)
         return answer
 
+    @property
+    def _gone(self) -> str:
+        return f"{_named(self._address)}, the machine that photographs, is gone; it is looked for"
+
     def _send(self, *message: Any) -> None:
+        if self._line:
+            with contextlib.suppress(OSError):  # the thread that receives finds the end
+                self._line.send(*message)
+
+    def _connected(self) -> _Line:
+        """A line on which the scene is under way. Raises DeviceError."""
+        name = _named(self._address)
         try:
-            self._line.send(*message)
+            line = _Line(socket.create_connection(self._address, timeout=_PATIENCE_S))
         except OSError as error:
-            self._on_error(0, f"the machine that photographs is gone: {error}")
+            raise DeviceError(f"{name} does not answer: {error}") from None
+        try:
+            line.prove(self._token, is_first=False)
+            line.send("scene", *self._scene)
+        except AuthenticationError:
+            line.close()
+            raise DeviceError(f"{name} does not take the token") from None
+        except (OSError, EOFError) as error:
+            line.close()
+            raise DeviceError(f"{name} is no machine that photographs: {error or 'it has hung up'}") from None
+        return line
 
     def _listen(self) -> None:
-        reason = "the machine that photographs is gone"
+        while self._line:
+            reason = self._receive(self._line)
+            with self._lock:
+                self._line.close()
+                self._line = None
+                questions, self._questions = self._questions, {}
+            for answer in questions.values():
+                answer.set_exception(Cancelled(reason))
+            if self._closing.is_set():
+                return
+            self._on_error(0, reason)
+            self._connect_again()
+
+    def _receive(self, line: _Line) -> str:
+        """Until the line is gone; returns why."""
         try:
             while True:
-                kind, *rest = self._line.receive()
+                kind, *rest = line.receive()
                 if kind == "frame":
-                    self._on_frame(rest[0])
-                    self._line.send("shown")
+                    self._on_frame(replace(rest[0], serial=rest[0].serial + self._serials_before))
+                    line.send("shown")
                 elif kind == "error":
                     self._on_error(rest[0], rest[1])
                 elif kind == "answer" and rest[0] in self._questions:
@@ -165,25 +241,40 @@ class RemotePictureLoop:
                 elif kind == "refusal" and rest[0] in self._questions:
                     self._questions.pop(rest[0]).set_exception(InputError(rest[1]))
         except (EOFError, OSError):
-            pass
+            return self._gone
         except InputError as error:
-            reason = str(error)
-        for answer in self._questions.values():
-            answer.set_exception(Cancelled(reason))
-        if not self._is_closed:
-            self._on_error(0, reason)
+            return str(error)
+
+    def _connect_again(self) -> None:
+        while not self._closing.wait(_PAUSE_S):
+            with contextlib.suppress(DeviceError):
+                line = self._connected()
+                with self._lock:
+                    if self._closing.is_set():
+                        line.close()
+                        return
+                    self._line = line
+                    self._send("quality", self._quality)
+                    if self._wanted:
+                        self._serials_before = self._serial - 1
+                        self._send("submit", self._wanted)
+                return
 
 
 def serve_pictures(host: str, port: int, token: str, device: str) -> None:
     """Photographs for other machines until Ctrl-C, each on a thread of its own. Raises OSError for a port in use."""
-    with Listener((host, port), authkey=token.encode()) as listener:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.create_server((host, port), family=family) as listening:
         while True:
-            try:
-                connection = listener.accept()
-            except (AuthenticationError, EOFError, ConnectionError) as error:
-                _log.warning("refused a connection: %s", error)
-                continue
-            threading.Thread(target=_photograph_for, args=(_Line(connection), device), daemon=True).start()
+            connection, address = listening.accept()
+            threading.Thread(
+                target=_photograph_for, args=(_Line(connection), _named(address), token, device), daemon=True
+            ).start()
+
+
+def _named(address: tuple[Any, ...]) -> str:
+    host, port, *_ = address
+    return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
 
 class _Outbox:
@@ -214,7 +305,13 @@ class _Outbox:
             self._line.send("frame", frame)
 
 
-def _photograph_for(line: _Line, device: str) -> None:
+def _photograph_for(line: _Line, address: str, token: str, device: str) -> None:
+    try:
+        line.prove(token, is_first=True)
+    except (AuthenticationError, EOFError, OSError) as error:
+        _log.warning("refused %s: %s", address, error or "it has hung up")
+        line.close()
+        return
     loop: PictureLoop | None = None
     try:
         kind, *rest = line.receive()
