@@ -7,13 +7,14 @@ from unittest.mock import Mock
 
 import pytest
 import realcam as rc
+from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.lens_bench import LensBench
 from realcam.viewer.messages import MOST_BYTES, BadMessage, merged, parsed, perform
 
 
 def bench() -> Mock:
     made = Mock(spec=LensBench)
-    made.controls = None
+    made.controls = CameraControls.of(rc.Camera(rc.Lens.load("double-gauss-50mm")))
     made.turn.side_effect = lambda ring, steps: LensBench.turn(made, ring, steps) if ring == "barrel" else True
     made.switch.side_effect = lambda effect, state: LensBench.switch(made, effect, state)
     return made

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from .._core import Camera, Film, InputError, Lens
 from .pose import Pose
+from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,27 @@ class CameraControls:
             iso=self.iso,
             model=self.model,
         )
+
+    @property
+    def apertures(self) -> Ring:
+        """The aperture ring of the lens."""
+        return aperture_ring(self.body.first_order().f_number)
+
+    @property
+    def seen_height_m(self) -> float:
+        """What the picture's height shows at the distance of what is looked at."""
+        return self.pose.distance_m * self.film.height_mm / abs(self.body.first_order().effective_focal_length_mm)
+
+    def turned(self, ring: str, steps: int) -> CameraControls:
+        """Turns "aperture" (closes), "shutter" (longer) or "iso" by thirds of a stop. Raises InputError."""
+        if ring == "aperture":
+            widest = self.apertures.values[0]
+            return replace(self, f_number=self.apertures.turned(max(self.f_number or 0.0, widest), steps))
+        if ring == "shutter":
+            return replace(self, exposure_time_s=SHUTTER_S.turned(self.exposure_time_s, steps), is_automatic=False)
+        if ring == "iso":
+            return replace(self, iso=ISO.turned(self.iso, steps))
+        raise InputError(f'there is no ring "{ring:.40}"')
 
     def with_lens(self, lens: Lens) -> CameraControls:
         """Another lens or an edited one; its zoom position stays where it has one of that name."""

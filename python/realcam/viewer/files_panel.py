@@ -13,7 +13,7 @@ from nicegui import events, ui
 from .._core import InputError, Lens, LensFileError, RealcamError, lens_names
 from ..gallery import save_gallery
 from .access import Folders
-from .lens_bench import COMPARISONS
+from .comparison import COMPARISONS, NOTHING
 from .saving import save_lens, save_picture, save_shot
 from .window import Window
 
@@ -44,7 +44,7 @@ class FilesPanel:
                 self._lens.props('data-testid="lens"').on("update:model-value", self._choose)
                 self._lens.tooltip("One of the bundled lenses")
                 ui.button("Gallery", on_click=self._open_gallery).props("flat no-caps")
-            self._compare = ui.select(list(COMPARISONS), label="Compare with", value="nothing").classes("w-full")
+            self._compare = ui.select(list(COMPARISONS), label="Compare with", value=NOTHING).classes("w-full")
             self._compare.props('data-testid="compare"').on("update:model-value", self._compare_with)
             self._compare.tooltip("A second picture behind a wipe")
             self._other = ui.select(lens_names(), label="Other lens").classes("w-full")

@@ -4,31 +4,31 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from .. import planning
 from .._core import Film, InputError, Lens, LensFileError, NothingToPlan, Plan, RealcamError
-from ..accuracy import accuracy_cost
 from ..image import Image
 from ..photography import SharpRange, depth_of_field
 from ..shot import Shot
 from .bench_state import restored, state_of
 from .camera_controls import CameraControls
+from .comparison import Comparison
 from .effect_switches import EFFECTS, Switches
 from .lens_edits import LensHistory
-from .lens_view import lens_view, ray_view
+from .lens_view import drawn_fields, lens_view, ray_view
+from .level_costs import measured_levels
+from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
 from .newest_task import NewestTask
 from .picture_loop import PictureLoop
-from .picture_request import Frame, PictureRequest, middle_grey_lx_s
+from .picture_request import Frame, PictureRequest
 from .remote import RemotePictureLoop
-from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
+from .ring_scales import Ring
 
 AnyPictureLoop = PictureLoop | RemotePictureLoop
-_RUNGS: dict[str, Any] = {"size": 120, "most_spp": 16, "reference_spp": 256}  # some seconds on two cores
-COMPARISONS = ("nothing", "thin lens", "these settings", "another lens")
 
 
 class LensBench:
@@ -49,8 +49,7 @@ class LensBench:
         self.problem: Problem | None = None
         self.noise_codes = 1.0
         self.hovered: tuple[float, float] | None = None
-        self._other: CameraControls | None = None  # what the picture is compared with
-        self.comparison = "nothing"
+        self.comparison = Comparison()
         self._make_loop = make_loop
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
         self._loops = {"a": self._new_loop("a")}
@@ -89,19 +88,12 @@ class LensBench:
 
     @property
     def apertures(self) -> Ring:
-        return aperture_ring(self.controls.body.first_order().f_number)
+        return self.controls.apertures
 
     def turn(self, ring: str, steps: int) -> bool:
-        """Turns a ring or dial by thirds of a stop: "aperture" (closes), "shutter" (longer) or "iso"."""
-        now = self.controls
-        if ring == "aperture":
-            scale, value = self.apertures, now.f_number or 0.0
-            return self.change(f_number=_turned(scale, max(value, scale.values[0]), steps))
-        if ring == "shutter":
-            return self.change(exposure_time_s=_turned(SHUTTER_S, now.exposure_time_s, steps), is_automatic=False)
-        if ring == "iso":
-            return self.change(iso=_turned(ISO, now.iso, steps))
-        raise InputError(f'there is no ring "{ring:.40}"')
+        """Turns a ring or dial by thirds of a stop; see CameraControls.turned. Raises InputError."""
+        turned = self.controls.turned(ring, steps)
+        return self._take(lambda: turned)
 
     def orbit(self, right: float, up: float) -> bool:
         """By shares of the picture's height: that much of it is about a radian."""
@@ -109,9 +101,8 @@ class LensBench:
 
     def pan(self, right: float, up: float) -> bool:
         """By shares of the picture's height, so that what is looked at follows the mouse."""
-        pose, lens = self.controls.pose, self.controls.lens
-        height = pose.distance_m * self.controls.film.height_mm / abs(lens.first_order().effective_focal_length_mm)
-        return self.change(pose=pose.panned(-right * height, up * height))
+        height = self.controls.seen_height_m
+        return self.change(pose=self.controls.pose.panned(-right * height, up * height))
 
     def dolly(self, steps: float) -> bool:
         """Nearer by a tenth of the distance for each step."""
@@ -216,11 +207,12 @@ class LensBench:
         self._photograph()
 
     def compare(self, with_what: str, lens: Lens | None = None) -> None:
-        """Shows a second picture: one of COMPARISONS. Raises InputError where its camera makes none."""
-        other = self._compared(with_what, lens)
+        """Shows a second picture; see Comparison. Raises InputError where its camera makes none."""
+        comparison = Comparison.of(with_what, self.controls, lens)
+        other = comparison.beside(self.controls)
         if other is not None:
             other.camera  # noqa: B018
-        self.comparison, self._other = with_what, other
+        self.comparison = comparison
         if other is None:
             loop = self._loops.pop("b", None)
             if loop:
@@ -230,35 +222,13 @@ class LensBench:
         self._photograph()
         self.listeners.controls()
 
-    def _compared(self, with_what: str, lens: Lens | None) -> CameraControls | None:
-        if with_what == "thin lens":
-            return replace(self.controls, model="thin")
-        if with_what == "these settings":
-            return self.controls
-        if with_what == "another lens" and lens is not None:
-            return self.controls.with_lens(lens).focused_within_reach()
-        if with_what != "nothing":
-            raise InputError(f'there is nothing like "{with_what:.40}" to compare with')
-        return None
-
     def measure_rungs(self) -> None:
         """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
         camera = self.controls.camera
 
         def measure() -> None:
             self.listeners.rungs([], "measuring ...")
-            try:
-                cost = accuracy_cost(self.shot.scene, camera, **_RUNGS, device=self._device, samplings=False)
-            except RealcamError as error:
-                self.listeners.rungs([], str(error))
-                return
-            # As long as a picture of all pixels takes.
-            pixels = math.prod(camera.film.resolution) / math.prod(cost.size)
-            rungs = [
-                {"name": rung.name, "points": [[pixels * p.seconds, p.rmse] for p in rung.pictures]}
-                for rung in cost.rungs
-            ]
-            self.listeners.rungs(rungs, f"against a reference with noise of {cost.reference_noise_codes:.2g} codes")
+            self.listeners.rungs(*measured_levels(self.shot.scene, camera, self._device))
 
         self._measuring_rungs.submit(measure)
 
@@ -350,28 +320,12 @@ class LensBench:
 
     def _photograph(self) -> None:
         self._loops["a"].submit(self._request(self.controls))
-        if self._other is not None and "b" in self._loops:
-            now, other = self.controls, self._other
-            # The second camera stands where the first one does, and has its exposure but for its own settings.
-            other = replace(other, pose=now.pose)
-            if self.comparison != "these settings":
-                other = replace(
-                    other,
-                    focus_m=now.focus_m,
-                    f_number=now.f_number,
-                    exposure_time_s=now.exposure_time_s,
-                    iso=now.iso,
-                    is_automatic=now.is_automatic,
-                    compensation_ev=now.compensation_ev,
-                    lens=now.lens if self.comparison == "thin lens" else other.lens,
-                    zoom=now.zoom if self.comparison == "thin lens" else other.zoom,
-                )
-            try:
-                request = self._request(other.focused_within_reach())
-            except RealcamError as error:
-                self._set_problem(Problem(f"the picture to compare with: {error}"))
-                return
-            self._loops["b"].submit(request)
+        try:
+            other = self.comparison.beside(self.controls)
+            if other is not None:
+                self._loops["b"].submit(self._request(other))
+        except RealcamError as error:
+            self._set_problem(Problem(f"the picture to compare with: {error}"))
 
     def _draw(self) -> None:
         lens = self.controls.set_lens
@@ -379,7 +333,7 @@ class LensBench:
         self._trace()
 
     def _trace(self) -> None:
-        lens, fields = self.controls.set_lens, self._fields()
+        lens, fields = self.controls.set_lens, drawn_fields(self.controls.film, self.hovered)
         self._tracing.submit(lambda: self.listeners.rays(ray_view(lens, fields)))
 
     def _keep(self) -> None:
@@ -397,16 +351,6 @@ class LensBench:
             self.listeners.sharp_range(sharp)
 
         self._measuring.submit(measure)
-
-    def _fields(self) -> Sequence[float]:
-        """Of the drawn rays: shares of the height of the film's corner."""
-        if self.hovered is None:
-            return (0.0, 0.7)
-        film = self.controls.film
-        u, v = self.hovered
-        height = math.hypot((u - 0.5) * film.width_mm, (v - 0.5) * film.height_mm)
-        share = min(1.0, height / (0.5 * math.hypot(film.width_mm, film.height_mm)))
-        return (0.0, share) if share > 1e-3 else (0.0,)
 
     def _ask_for_plan(self) -> None:
         if "auto" not in self.switches.of.values():
@@ -439,8 +383,3 @@ class LensBench:
                 self._photograph()
 
         self._planning.submit(plan)
-
-
-def _turned(ring: Ring, value: float, steps: int) -> float:
-    step = min(max(ring.step_of(value) + steps, 0), len(ring.values) - 1)
-    return ring.values[step]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import InputError, Lens
+from .._core import Film, InputError, Lens
 from ..drawing import CrossSection, cross_section
 from ..drawing.outlines import Points
 
@@ -26,6 +26,16 @@ def lens_view(lens: Lens) -> dict[str, Any]:
         "figures": _figures(lens),
         **_shapes(section),
     }
+
+
+def drawn_fields(film: Film, place: tuple[float, float] | None) -> tuple[float, ...]:
+    """Of the middle and of that place of the picture (u and v, 0 to 1), as ray_view takes them."""
+    if place is None:
+        return (0.0, 0.7)
+    u, v = place
+    height = math.hypot((u - 0.5) * film.width_mm, (v - 0.5) * film.height_mm)
+    share = min(1.0, height / (0.5 * math.hypot(film.width_mm, film.height_mm)))
+    return (0.0, share) if share > 1e-3 else (0.0,)
 
 
 def ray_view(lens: Lens, fields: Sequence[float]) -> dict[str, Any]:

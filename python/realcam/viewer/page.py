@@ -14,6 +14,7 @@ from nicegui.events import GenericEventArguments
 from .._core import RealcamError
 from .access import Folders
 from .camera_panel import CameraPanel
+from .comparison import NOTHING
 from .elements import CostPanel, LensDrawing, PictureCanvas
 from .files_panel import FilesPanel
 from .plots_panel import PlotsPanel
@@ -70,7 +71,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
             files.update()
             plots.update()
             drawing.run_method("setHistory", bench.history.can_undo, bench.history.can_redo)
-            canvas.run_method("setComparison", bench.comparison != "nothing")
+            canvas.run_method("setComparison", bench.comparison.kind != NOTHING)
 
     bench.listeners.controls = lambda: call_on_loop(loop, update_soon)
     bench.listeners.sharp_range = lambda sharp: call_on_loop(loop, camera.show_sharp_range, sharp)

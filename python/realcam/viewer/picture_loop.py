@@ -4,40 +4,31 @@ from __future__ import annotations
 
 import logging
 import math
-import statistics
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
-import simplejpeg
 from numpy.typing import NDArray
 
-from .. import _core
-from .._core import Camera, Cancelled, InputError, LiveFrame, LiveView, RealcamError, RenderStats, Scene, develop
+from .._core import Camera, Cancelled, InputError, LiveFrame, LiveView, RealcamError, Scene, develop
 from ..image import Image, image_of
-from .picture_request import Costs, Frame, PictureRequest, Point, middle_grey_lx_s
+from .frame_encoder import FrameEncoder
+from .light_meter import metered_exposure_lx_s, middle_grey_lx_s, point_at
+from .noise_measurement import NoiseMeasurement
+from .pace import Pace, Size
+from .picture_request import Costs, Frame, PictureRequest, Point
 
 T = TypeVar("T")
 _log = logging.getLogger(__name__)
 
-_PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
-_QUICK_S = 0.008  # for so long it takes more than one sample, on a GPU: 60 frames a second remain
-_REFINING_S = 0.040  # what a frame may take that only refines, as long as it is more than a sample
 _RESTING_S = 0.025  # after the first frame of a change: moves come so often, and what refines would be given up
 _FEW_PIXELS = 50_000  # are developed here sooner than one more sample of them is taken
-_SLOW_S = 0.050  # a frame that takes longer must not keep the user waiting for what needs no new samples
-_MOST_SPP = 64  # of one frame, so that a fast GPU shows how a picture grows
-_DIVISORS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)  # of the width: few, because each size is prepared anew
-_METERED_PIXELS = 96  # width of the picture that the light is metered on, as Camera.metered does
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # of linear Rec. 709
-_ROUNDING = 1 / 6  # variance of the difference of two 8-bit codes that are rounded
-
 
 _Arrays = tuple[NDArray[np.float32], NDArray[np.float32]]  # exposure and depth
 
@@ -49,7 +40,7 @@ class _Growing:
     request: PictureRequest
     serial: int
     begun: float
-    size: tuple[int, int]
+    size: Size
     samples: int = 0
     spent_s: float = 0.0  #: by these
     exposure_time_s: float = 0.0  #: with which the samples were developed last
@@ -58,8 +49,7 @@ class _Growing:
     is_given_up: bool = False  #: and its samples with it
     noise_codes: float | None = None
     costs: Costs | None = None
-    #: Samples and illuminance (lx) of the last two pictures between which the noise is measured, whatever the exposure.
-    measured: deque[tuple[int, NDArray[np.float32]]] = field(default_factory=lambda: deque(maxlen=2))
+    noise: NoiseMeasurement = field(default_factory=NoiseMeasurement)
     kept: _Arrays | None = None  #: of the last frame, where the next one is slow
 
     def can_be(self, request: PictureRequest) -> bool:
@@ -101,7 +91,7 @@ class PictureLoop:
     ) -> None:
         self._live = LiveView(scene, device=device, seed=seed, max_bounces=max_bounces)
         self._seed = seed
-        self._on_frame, self._on_error = on_frame, on_error
+        self._on_error = on_error
         self._wake = threading.Condition()
         self._pending: _Pending | None = None
         self._questions: deque[_Question] = deque()
@@ -110,13 +100,8 @@ class PictureLoop:
         self._serial = 0
         self._picture: _Growing | None = None
         self._exposure_time_s = 0.0  # that was metered last
-        # Samples a second of the last frames: several, so that one that was slow for another reason makes nothing
-        # coarse. Those that begin a picture have rates of their own, because the lens is prepared in their time.
-        self._first_rates: deque[float] = deque([1e6], maxlen=5)
-        self._rates: deque[float] = deque([1e6], maxlen=5)
-        self.jpeg_quality = 85
-        self._encoder = ThreadPoolExecutor(1, "realcam-jpeg")
-        self._encoding: Future[None] | None = None
+        self._pace = Pace()
+        self._encoder = FrameEncoder(on_frame)
         self._thread = threading.Thread(target=self._run, name="realcam-picture", daemon=True)
         self._thread.start()
 
@@ -133,13 +118,21 @@ class PictureLoop:
                 self._live.cancel()  # while the lock holds the other thread in the frame that is meant
         return serial
 
+    @property
+    def jpeg_quality(self) -> int:
+        return self._encoder.quality
+
+    @jpeg_quality.setter
+    def jpeg_quality(self, quality: int) -> None:
+        self._encoder.quality = quality
+
     def image(self) -> Future[Image]:
         """The picture as it stands, at its whole resolution with all its samples."""
         return self._ask(self._image, True)
 
-    def point(self, u: float, v: float, spot: float = 0.03) -> Future[Point]:
-        """What is at u, v (0 to 1, from the upper left corner). spot: width of what is metered, of the picture's."""
-        return self._ask(lambda: self._point(u, v, spot), False)
+    def point(self, u: float, v: float) -> Future[Point]:
+        """What is at u, v (0 to 1, from the upper left corner)."""
+        return self._ask(lambda: self._point(u, v), False)
 
     def close(self) -> None:
         """Ends the thread, from any other."""
@@ -148,7 +141,7 @@ class PictureLoop:
             self._wake.notify()
         self._live.cancel()
         self._thread.join()
-        self._encoder.shutdown()
+        self._encoder.close()
 
     def _ask(self, question: Callable[[], T], needs_samples: bool) -> Future[T]:
         answer: Future[T] = Future()
@@ -240,10 +233,9 @@ class PictureLoop:
         if picture and picture.samples and picture.can_be(request):
             self._develop_for(picture, pending)
             return
-        self._picture = picture = _Growing(request, pending.serial, pending.begun, self._preview_size(request))
-        affordable = _QUICK_S * statistics.median(self._first_rates)
-        spp = max(1, min(_MOST_SPP, int(affordable / math.prod(picture.size))))
-        codes = self._shoot(picture, spp)
+        size = self._pace.preview_size(request.camera.film.resolution)
+        self._picture = picture = _Growing(request, pending.serial, pending.begun, size)
+        codes = self._shoot(picture, self._pace.first_spp(size))
         picture.refines_from = time.perf_counter() + _RESTING_S
         if request.is_automatic and self._meter(picture):
             self._develop(picture)
@@ -252,17 +244,13 @@ class PictureLoop:
 
     def _refine(self, picture: _Growing) -> None:
         """Once more of its samples, after as few steps as the whole resolution takes."""
-        whole = picture.request.camera.film.resolution
-        rate = statistics.median(self._rates)
+        request = picture.request
+        whole = request.camera.film.resolution
         is_new_size = picture.size != whole
         if is_new_size:
-            one_sample_s = math.prod(whole) / rate
-            coarse = (min(2 * picture.size[0], whole[0]), min(2 * picture.size[1], whole[1]))
-            picture.size = whole if one_sample_s < 8 * _PREVIEW_S or coarse[0] > 0.7 * whole[0] else coarse
-        spp = max(1, min(_MOST_SPP, int(_REFINING_S * rate / math.prod(picture.size))))
-        request = picture.request
-        spp = min(spp, max(1, request.max_spp - picture.samples))
-        if picture.kept is None and spp * math.prod(picture.size) / rate > _SLOW_S:
+            picture.size = self._pace.next_size(picture.size, whole)
+        spp = min(self._pace.refining_spp(picture.size), max(1, request.max_spp - picture.samples))
+        if picture.kept is None and self._pace.is_slow(spp, picture.size):
             picture.kept = self._live_arrays()
         with self._wake:
             if self._pending:
@@ -292,11 +280,10 @@ class PictureLoop:
             self._wait_for(frame, picture)
         codes = frame.codes
         seconds = max(time.perf_counter() - start, 1e-6)
-        rate = spp * math.prod(picture.size) / seconds
-        (self._rates if picture.samples else self._first_rates).append(rate)
+        self._pace.took(spp * math.prod(picture.size), seconds, is_first=picture.samples == 0)
         picture.spent_s += seconds
         picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
-        picture.kept = self._live_arrays() if seconds > _SLOW_S else None
+        picture.kept = self._live_arrays() if self._pace.was_slow(seconds) else None
         return codes
 
     def _effects(self, picture: _Growing) -> list[str]:
@@ -326,19 +313,10 @@ class PictureLoop:
         time_s = self._exposure_time_s if picture.request.is_automatic else camera.exposure_time_s
         return camera.replace(film=film, exposure_time_s=time_s)
 
-    def _preview_size(self, request: PictureRequest) -> tuple[int, int]:
-        width, height = request.camera.film.resolution
-        for divisor in _DIVISORS:
-            size = max(1, round(width / divisor)), max(1, round(height / divisor))
-            if math.prod(size) <= _PREVIEW_S * statistics.median(self._first_rates):
-                break
-        return size
-
     def _meter(self, picture: _Growing) -> bool:
         """Sets the exposure time by the light of the picture. Whether it has changed so that it is seen."""
         exposure, _ = self._arrays(picture)
-        step = max(1, exposure.shape[1] // _METERED_PIXELS)
-        mean = _core._metered_exposure(exposure[::step, ::step])
+        mean = metered_exposure_lx_s(exposure)
         if not (mean > 0 and math.isfinite(mean)):
             return False
         before = picture.exposure_time_s
@@ -356,7 +334,7 @@ class PictureLoop:
         picture.noise_codes = None
         picture.is_final = self._is_good_enough(picture)
         self._develop(picture)
-        picture.noise_codes = self._noise_of(picture)
+        picture.noise_codes = self._noise_codes(picture)
         if self._is_good_enough(picture) and not picture.is_final:
             picture.is_final = True
             self._develop(picture)
@@ -395,48 +373,23 @@ class PictureLoop:
         ratio = np.float32(time_s / image.camera.exposure_time_s)
         return replace(image, pixels=image.pixels * ratio, camera=image.camera.replace(exposure_time_s=time_s))
 
-    def _point(self, u: float, v: float, spot: float) -> Point:
+    def _point(self, u: float, v: float) -> Point:
         if self._picture is None or not self._picture.samples:
             raise InputError("there is no picture yet")
-        exposure, depth = self._arrays(self._picture)
-        height, width = depth.shape
-        row, column = min(int(v * height), height - 1), min(int(u * width), width - 1)
-        reach = max(1, round(0.5 * spot * width))
-        around = np.s_[max(0, row - reach) : row + reach + 1, max(0, column - reach) : column + reach + 1]
-        near = depth[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
-        met = near[np.isfinite(near)]
-        return Point(
-            distance_m=float(np.median(met)) if met.size else math.inf,
-            illuminance_lx=float(np.mean(exposure[around] @ LUMINANCE)) / self._picture.exposure_time_s,
-        )
+        return point_at(u, v, *self._arrays(self._picture), self._picture.exposure_time_s)
 
     def _measure_noise(self, picture: _Growing) -> None:
-        """Whenever there are twice as many samples."""
-        if not picture.measured or picture.samples >= 2 * picture.measured[-1][0]:
+        if picture.noise.is_due(picture.samples):
             exposure, _ = self._arrays(picture)
-            picture.measured.append((picture.samples, exposure / np.float32(picture.exposure_time_s)))
-            picture.noise_codes = self._noise_of(picture)
+            picture.noise.add(picture.samples, exposure / np.float32(picture.exposure_time_s))
+            picture.noise_codes = self._noise_codes(picture)
             if picture.noise_codes is not None:
-                picture.costs = _costs(self._collected(picture).stats, picture.spent_s)
+                picture.costs = Costs.of(self._collected(picture).stats, picture.spent_s)
         picture.is_final = self._is_good_enough(picture)
 
-    def _noise_of(self, picture: _Growing) -> float | None:
-        """From the difference of two pictures of which the second has the samples of the first and as many more.
-
-        The variance of the mean of n samples is s^2 / n, and that of the difference between the means of the first m
-        and of all n of them s^2 (1/m - 1/n). So it is n/m - 1 times the variance of the later mean. In codes of the
-        picture as it is developed now: a longer exposure shows more noise.
-        """
-        if len(picture.measured) < 2:
-            return None
-        time_s, request = np.float32(self._camera(picture).exposure_time_s), picture.request
-        (samples, before), (all_samples, after) = picture.measured
-        codes = [
-            develop(illuminance * time_s, request.camera.iso, request.tone).astype(np.float32)
-            for illuminance in (before, after)
-        ]
-        variance = max(0.0, float(np.mean((codes[1] - codes[0]) ** 2)) - _ROUNDING)
-        return math.sqrt(variance * samples / (all_samples - samples))
+    def _noise_codes(self, picture: _Growing) -> float | None:
+        request = picture.request
+        return picture.noise.codes(self._camera(picture).exposure_time_s, request.camera.iso, request.tone)
 
     def _is_good_enough(self, picture: _Growing) -> bool:
         request = picture.request
@@ -460,29 +413,7 @@ class PictureLoop:
             exposure_time_s=self._camera(picture).exposure_time_s,
             costs=picture.costs,
         )
-        # While the next frame is taken; one at a time, so that they stay in their order.
-        before, self._encoding = self._encoding, None
-        if before:
-            before.result()
         try:
-            self._encoding = self._encoder.submit(self._encode, frame_of, codes)
+            self._encoder.submit(codes, frame_of)
         except RuntimeError:  # the program is ending, and takes no more work
             self._is_closed = True
-
-    def _encode(self, frame_of: Callable[..., Frame], codes: NDArray[np.uint8]) -> None:
-        quality = self.jpeg_quality
-        jpeg = simplejpeg.encode_jpeg(codes, quality=quality, colorsubsampling="420")
-        self._on_frame(frame_of(jpeg=jpeg, jpeg_quality=quality))
-
-
-def _costs(stats: RenderStats, seconds: float) -> Costs:
-    stages = stats.lens_seconds, stats.scene_seconds, stats.other_seconds
-    all_stages = sum(stages) or 1.0
-    return Costs(
-        lens_share=stages[0] / all_stages,
-        scene_share=stages[1] / all_stages,
-        other_share=stages[2] / all_stages,
-        samples_per_s=stats.sampled_rays / seconds,
-        rays_per_s=stats.scene_rays / seconds,
-        passing_share=stats.passed_rays / max(stats.sampled_rays, 1),
-    )

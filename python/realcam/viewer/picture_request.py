@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .._core import Camera
-
-
-def middle_grey_lx_s(iso: float, compensation_ev: float) -> float:
-    """The exposure that is developed to middle grey (see realcam.develop), or brighter or darker by so many stops."""
-    return 10 * 2**compensation_ev / iso
+from .._core import Camera, RenderStats
 
 
 @dataclass(frozen=True)
@@ -45,6 +40,20 @@ class Costs:
     samples_per_s: float
     rays_per_s: float
     passing_share: float  #: of the rays that are sent into the lens
+
+    @classmethod
+    def of(cls, stats: RenderStats, seconds: float) -> Costs:
+        """Of samples that were taken in so many seconds."""
+        stages = stats.lens_seconds, stats.scene_seconds, stats.other_seconds
+        all_stages = sum(stages) or 1.0
+        return cls(
+            lens_share=stages[0] / all_stages,
+            scene_share=stages[1] / all_stages,
+            other_share=stages[2] / all_stages,
+            samples_per_s=stats.sampled_rays / seconds,
+            rays_per_s=stats.scene_rays / seconds,
+            passing_share=stats.passed_rays / max(stats.sampled_rays, 1),
+        )
 
 
 @dataclass(frozen=True)

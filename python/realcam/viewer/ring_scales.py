@@ -38,6 +38,11 @@ class Ring:
         """The nearest step, by ratio."""
         return min(range(len(self.values)), key=lambda step: abs(math.log(self.values[step] / value)))
 
+    def turned(self, value: float, steps: int) -> float:
+        """The value so many steps after the nearest one, or the last there is."""
+        step = min(max(self.step_of(value) + steps, 0), len(self.values) - 1)
+        return self.values[step]
+
     def text_of(self, value: float) -> str:
         """What is engraved, where the ring stands on a step; the value to three digits between two."""
         step = self.step_of(value)

@@ -1,0 +1,40 @@
+"""Frames as JPEG, encoded while the next one is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import numpy as np
+import simplejpeg
+from numpy.typing import NDArray
+
+from .picture_request import Frame
+
+
+class FrameEncoder:
+    """Encodes on a thread of its own, one frame at a time, so that they stay in their order."""
+
+    def __init__(self, on_frame: Callable[[Frame], None]) -> None:
+        self._on_frame = on_frame
+        self._executor = ThreadPoolExecutor(1, "realcam-jpeg")
+        self._encoding: Future[None] | None = None
+        self.quality = 85
+
+    def submit(self, codes: NDArray[np.uint8], frame_of: Callable[..., Frame]) -> None:
+        """Waits for the frame before. frame_of: makes the Frame of its fields jpeg and jpeg_quality.
+
+        Raises RuntimeError where the program is ending.
+        """
+        before, self._encoding = self._encoding, None
+        if before:
+            before.result()
+        self._encoding = self._executor.submit(self._encode, codes, frame_of)
+
+    def close(self) -> None:
+        self._executor.shutdown()
+
+    def _encode(self, codes: NDArray[np.uint8], frame_of: Callable[..., Frame]) -> None:
+        quality = self.quality
+        jpeg = simplejpeg.encode_jpeg(codes, quality=quality, colorsubsampling="420")
+        self._on_frame(frame_of(jpeg=jpeg, jpeg_quality=quality))

@@ -1,0 +1,24 @@
+"""What the levels of simulation cost for the camera as it stands; see docs/accuracy.md."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .._core import Camera, RealcamError, Scene
+from ..accuracy import accuracy_cost
+
+_FEW: dict[str, Any] = {"size": 120, "most_spp": 16, "reference_spp": 256}  # some seconds on two cores
+
+
+def measured_levels(scene: Scene, camera: Camera, device: str) -> tuple[list[dict[str, Any]], str]:
+    """Each level's name and points of seconds and error, as long as a picture of all pixels takes; and a note."""
+    try:
+        cost = accuracy_cost(scene, camera, **_FEW, device=device, samplings=False)
+    except RealcamError as error:
+        return [], str(error)
+    pixels = math.prod(camera.film.resolution) / math.prod(cost.size)
+    levels = [
+        {"name": rung.name, "points": [[pixels * p.seconds, p.rmse] for p in rung.pictures]} for rung in cost.rungs
+    ]
+    return levels, f"against a reference with noise of {cost.reference_noise_codes:.2g} codes"

@@ -1,0 +1,64 @@
+"""How many pixels and samples the next frame may have, by the time that the last ones took."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections import deque
+
+_PREVIEW_S = 0.032  # what the first frame of a change may take, so that 25 of them fit into a second
+_QUICK_S = 0.008  # for so long it takes more than one sample, on a GPU: 60 frames a second remain
+_REFINING_S = 0.040  # what a frame may take that only refines, as long as it is more than a sample
+_SLOW_S = 0.050  # a frame that takes longer must not keep the user waiting for what needs no new samples
+_MOST_SPP = 64  # of one frame, so that a fast GPU shows how a picture grows
+_DIVISORS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)  # of the width: few, because each size is prepared anew
+
+Size = tuple[int, int]
+
+
+class Pace:
+    """Remembers samples a second of several frames, so that one that was slow for another reason makes nothing coarse.
+
+    Frames that begin a picture have rates of their own, because the lens is prepared in their time.
+    """
+
+    def __init__(self) -> None:
+        self._first_rates: deque[float] = deque([1e6], maxlen=5)
+        self._rates: deque[float] = deque([1e6], maxlen=5)
+
+    def took(self, samples: int, seconds: float, *, is_first: bool) -> None:
+        """A frame has taken so many samples of all its pixels together in that time."""
+        (self._first_rates if is_first else self._rates).append(samples / seconds)
+
+    def preview_size(self, whole: Size) -> Size:
+        """Pixels of the first frame of a picture."""
+        for divisor in _DIVISORS:
+            size = max(1, round(whole[0] / divisor)), max(1, round(whole[1] / divisor))
+            if math.prod(size) <= _PREVIEW_S * statistics.median(self._first_rates):
+                break
+        return size
+
+    def first_spp(self, size: Size) -> int:
+        return self._affordable_spp(_QUICK_S * statistics.median(self._first_rates), size)
+
+    def next_size(self, size: Size, whole: Size) -> Size:
+        """Of a picture that has begun with fewer pixels: as few steps as the whole resolution takes."""
+        coarse = (min(2 * size[0], whole[0]), min(2 * size[1], whole[1]))
+        is_nearly_whole = coarse[0] > 0.7 * whole[0]
+        return whole if is_nearly_whole or self._seconds(1, whole) < 8 * _PREVIEW_S else coarse
+
+    def refining_spp(self, size: Size) -> int:
+        return self._affordable_spp(_REFINING_S * statistics.median(self._rates), size)
+
+    def is_slow(self, spp: int, size: Size) -> bool:
+        """Whether a frame that refines is foreseen to keep the user waiting."""
+        return self._seconds(spp, size) > _SLOW_S
+
+    def was_slow(self, seconds: float) -> bool:
+        return seconds > _SLOW_S
+
+    def _seconds(self, spp: int, size: Size) -> float:
+        return spp * math.prod(size) / statistics.median(self._rates)
+
+    def _affordable_spp(self, samples: float, size: Size) -> int:
+        return max(1, min(_MOST_SPP, int(samples / math.prod(size))))

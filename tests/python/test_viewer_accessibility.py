@@ -1,0 +1,78 @@
+"""The lens bench against the rules of WCAG 2.2, levels A and AA, that axe-core can look at: contrast, names, roles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("nicegui")
+playwright = pytest.importorskip("playwright.sync_api")
+axe = pytest.importorskip("axe_playwright_python.sync_playwright")
+
+from .bench_pages import CHROMIUM, BenchPage, Server, launched, opened, served_panels, until  # noqa: E402
+
+pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
+
+RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"], "resultTypes": ["violations"]}
+THEMES = ("Light", "Dark")
+SIZES = ((1400, 1000), (390, 800))  # of a desktop and of a telephone
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    yield from served_panels(tmp_path_factory.mktemp("bench"))
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[playwright.Browser]:
+    with playwright.sync_playwright() as driver:
+        yield from launched(driver)
+
+
+@pytest.fixture
+def bench(browser: playwright.Browser, server: Server) -> Iterator[BenchPage]:
+    yield from opened(browser, server)
+
+
+def violations(bench: BenchPage) -> list[str]:
+    return [
+        f"{rule['id']}: {node['target']} {node['failureSummary']}"
+        for rule in axe.Axe().run(bench.page, options=RULES).response["violations"]
+        for node in rule["nodes"]
+    ]
+
+
+def use(bench: BenchPage, theme: str) -> None:
+    bench.test_id("theme").get_by_text(theme).click()
+    until(
+        lambda: "body--dark" in (bench.page.locator("body").get_attribute("class") or ""),
+        lambda is_dark: is_dark == (theme == "Dark"),
+        f"the {theme} page",
+    )
+    bench.page.wait_for_timeout(500)  # colours change by and by
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("theme", THEMES)
+def test_the_page_follows_the_rules(bench: BenchPage, theme: str, size: tuple[int, int]) -> None:
+    bench.page.set_viewport_size({"width": size[0], "height": size[1]})
+    use(bench, theme)
+    assert violations(bench) == []
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_so_does_a_page_that_tells_of_a_problem(bench: BenchPage, theme: str) -> None:
+    use(bench, theme)
+    bench.edit(1, "radius_mm", "1")
+    bench.test_id("problem").wait_for()
+    assert violations(bench) == []
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_so_does_the_gallery(bench: BenchPage, theme: str) -> None:
+    use(bench, theme)
+    bench.page.get_by_role("button", name="Gallery").click()
+    bench.page.locator(".rc-gallery img").first.wait_for()
+    bench.page.wait_for_timeout(500)  # it is faded in
+    assert violations(bench) == []
