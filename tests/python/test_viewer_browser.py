@@ -367,6 +367,18 @@ def test_a_lens_file_is_opened(bench: BenchPage, tmp_path: Path, suffix: str) ->
     until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - focal) < 0.1, "the Heliar")
 
 
+def test_the_button_asks_for_a_lens_file(bench: BenchPage, tmp_path: Path) -> None:
+    rc.Lens.load("heliar-100mm").save(tmp_path / "mine.toml")
+    (tmp_path / "mine.jpg").write_text("nonsense\n")
+    for name in ("mine.jpg", "mine.toml"):
+        with bench.page.expect_file_chooser() as asked:
+            bench.page.get_by_role("button", name="Open a lens file").click()
+        asked.value.set_files(tmp_path / name)
+        if name == "mine.jpg":
+            bench.page.get_by_text("Not opened: a lens file").wait_for()
+    bench.until_text("said", lambda text: text == "Opened mine.toml")
+
+
 def test_what_is_no_lens_file_is_told(bench: BenchPage, tmp_path: Path) -> None:
     before = bench.figure("effective_focal_length_mm")
     (tmp_path / "mine.zmx").write_text("nonsense\n")

@@ -19,6 +19,7 @@ from .window import Window
 
 LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".dat", ".json", ".roa")
 MOST_UPLOADED = 2 * 1024 * 1024  # bytes
+_WANTED = f"a lens file ({' '.join(LENS_SUFFIXES)}) of at most {MOST_UPLOADED >> 20} MiB"
 
 
 @cache
@@ -43,20 +44,26 @@ class FilesPanel:
                 self._lens = ui.select(lens_names(), label="Lens", with_input=True).classes("grow")
                 self._lens.props('data-testid="lens"').on("update:model-value", self._choose)
                 self._lens.tooltip("One of the bundled lenses")
-                ui.button("Gallery", on_click=self._open_gallery).props("flat no-caps")
+                # Its colour is that of the page's accents: the server's would be too dark on the dark page.
+                gallery = ui.button("Gallery", on_click=self._open_gallery, color=None)
+                gallery.props("flat no-caps").classes("rc-flat")
             self._compare = ui.select(list(COMPARISONS), label="Compare with", value=NOTHING).classes("w-full")
             self._compare.props('data-testid="compare"').on("update:model-value", self._compare_with)
             self._compare.tooltip("A second picture behind a wipe")
             self._other = ui.select(lens_names(), label="Other lens").classes("w-full")
             self._other.on("update:model-value", self._compare_with)
             self._other.bind_visibility_from(self._compare, "value", lambda value: value == "another lens")
-            ui.upload(
-                label="Open a lens file (.toml .zmx .seq .dat .json .roa)",
+            # Quasar's own face of an upload has buttons without names, one within another.
+            upload = ui.upload(
                 max_file_size=MOST_UPLOADED,
                 auto_upload=True,
                 on_upload=self._upload,
-                on_rejected=lambda: ui.notify("That file is too large to be a lens", type="negative"),
-            ).classes("w-full").props('flat bordered data-testid="upload"')
+                on_rejected=lambda: ui.notify(f"Not opened: {_WANTED} is wanted", type="negative"),
+            )
+            upload.classes("hidden").props(f'accept="{",".join(LENS_SUFFIXES)}" data-testid="upload"')
+            opens = ui.button("Open a lens file", color=None).props("flat no-caps").classes("rc-flat")
+            opens.on("click", js_handler=f"() => getElement({upload.id}).$refs.qRef.pickFiles()")
+            opens.tooltip(f"Of this or another program: {' '.join(LENS_SUFFIXES)}")
             with ui.row().classes("items-end w-full"):
                 self._name = ui.input("Save as", value="picture.png").classes("grow").props('data-testid="save-name"')
                 self._name.tooltip("picture.png, .exr or .dng; shot.toml; lens.toml, .zmx or .seq")
@@ -85,7 +92,7 @@ class FilesPanel:
     async def _upload(self, event: events.UploadEventArguments) -> None:
         suffix = Path(event.file.name).suffix.lower()
         if suffix not in LENS_SUFFIXES:
-            self._say(f'"{event.file.name}": one of {" ".join(LENS_SUFFIXES)} is wanted')
+            self._say(f'"{event.file.name}" is not opened: {_WANTED} is wanted')
             return
         content = await event.file.read()
 

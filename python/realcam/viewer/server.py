@@ -101,6 +101,7 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
         host=settings.host,
         port=settings.port,
         title="realcam",
+        language="en-US",
         show=address if settings.shows_browser else False,
         reload=False,
         show_welcome_message=False,
