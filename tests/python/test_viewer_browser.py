@@ -346,14 +346,28 @@ def test_saving(bench: BenchPage, server: Server) -> None:
     shot = rc.Shot.load(server.shot.parent / "saved.toml")
     assert shot.camera.lens.first_order().f_number == pytest.approx(4, rel=0.05)
     bench.choose("save-what", "picture")
-    for name in ("../outside.png", "/tmp/outside.png", "saved.jpg", ""):
+    for k, name in enumerate(("../outside.png", "/tmp/outside.png", "saved.jpg", "")):
         bench.test_id("save-name").fill(name)
         bench.test_id("save").click()
         bench.until_text("said", lambda text: "wanted" in text or "outside the folders" in text)
-        bench.test_id("save-name").fill("a.png")
-        bench.test_id("save").click()
-        bench.until_text("said", lambda text: text == "Wrote a.png")
+        save(bench, "picture", f"saved-{k}.png")
     assert not (server.shot.parent.parent / "outside.png").exists()
+
+
+def test_no_file_is_replaced_without_a_word(bench: BenchPage, server: Server) -> None:
+    file = server.shot.parent / "mine.toml"
+    file.write_text("of some worth")
+    for answer, is_kept in (("Keep it", True), ("Replace it", False)):
+        bench.choose("save-what", "lens")
+        bench.test_id("save-name").fill(file.name)
+        bench.test_id("save").click()
+        bench.page.get_by_text("mine.toml is there already").wait_for()
+        bench.page.get_by_role("button", name=answer).click()
+        bench.page.locator(".q-dialog").wait_for(state="detached")
+        if not is_kept:
+            bench.until_text("said", lambda text: text == "Wrote mine.toml")
+        assert (file.read_text() == "of some worth") == is_kept
+    assert rc.Lens.load(file).name == "double-gauss-50mm"
 
 
 @pytest.mark.filterwarnings("ignore:not in the file")

@@ -123,6 +123,8 @@ class FilesPanel:
         except RealcamError as error:
             self._say(str(error))
             return
+        if path.exists() and not await _agreed(f"{path.name} is there already."):
+            return
 
         def saved() -> str:
             if what == "picture":
@@ -157,3 +159,15 @@ class FilesPanel:
                     preview = ui.element("img").props(f'src="/realcam-lenses/{name}.svg" alt="{name}" loading="lazy"')
                     preview.props('width="190" height="146"')  # or the buttons would move while the previews come
         dialog.open()
+
+
+async def _agreed(question: str) -> bool:
+    """Asks whether a file may be replaced."""
+    with ui.dialog() as dialog, ui.card():
+        ui.label(question)
+        with ui.row():
+            ui.button("Replace it", on_click=lambda: dialog.submit(True)).props("no-caps")
+            ui.button("Keep it", on_click=lambda: dialog.submit(False), color=None).props("no-caps flat autofocus")
+    answer = await dialog
+    dialog.delete()
+    return bool(answer)
