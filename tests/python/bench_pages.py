@@ -160,7 +160,7 @@ class BenchPage:
 
     def close(self) -> None:
         self.context.close()
-        assert self.complaints == []
+        assert self.complaints == [], self.complaints
 
     # What is seen.
 
@@ -242,7 +242,7 @@ def served_panels(folder: Path) -> Iterator[Server]:
     started = Server(write_panels_shot(folder))
     yield started
     started.stop()
-    assert started.complaints() == []
+    assert started.complaints() == [], started.complaints()
 
 
 def opened(browser: Any, server: Server) -> Iterator[BenchPage]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from unittest.mock import Mock
 
 import pytest
 import realcam as rc
 from realcam.viewer.camera_controls import CameraControls
 from realcam.viewer.lens_bench import LensBench
-from realcam.viewer.messages import MOST_BYTES, BadMessage, merged, parsed, perform
+from realcam.viewer.messages import MOST_BYTES, BadMessage, json_text, merged, parsed, perform
 
 
 def bench() -> Mock:
@@ -120,3 +121,10 @@ def test_what_the_user_cannot_have_is_no_bad_message() -> None:
         perform({"type": "remove", "surface": 99}, made)
     with pytest.raises(rc.RealcamError):
         perform({"type": "edit", "surface": 0, "field": "glass", "value": "no such glass"}, made)
+
+
+def test_the_browser_gets_json_whatever_the_numbers() -> None:
+    content = {"size": math.inf, "rows": [{"a": math.nan, "b": (1.5, -math.inf)}], "text": "Infinity", "none": None}
+    expected = {"size": None, "rows": [{"a": None, "b": [1.5, None]}], "text": "Infinity", "none": None}
+    assert json.loads(json_text(content), parse_constant=pytest.fail) == expected
+    assert json.loads(json_text(expected)) == expected

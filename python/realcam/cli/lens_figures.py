@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
 from typing import Any
 
-import numpy as np
 import typer
 
-from .._core import FieldOfView, Lens
+from .._core import FieldOfView
+from ..json_values import json_value
 from ..photography import DepthOfField, LensSummary, PhotographicFigures, SharpRange
 
 Rows = list[tuple[str, str]]
@@ -18,7 +17,7 @@ Rows = list[tuple[str, str]]
 
 def as_json(value: Any) -> str:
     """Numbers that are not finite become null, as in the executable's JSON."""
-    return json.dumps(_plain(value), indent=2, ensure_ascii=False)
+    return json.dumps(json_value(value), indent=2, ensure_ascii=False)
 
 
 def photo_rows(figures: PhotographicFigures) -> Rows:
@@ -99,20 +98,6 @@ def print_columns(titles: list[str], rows: list[Rows]) -> None:
     widths = [max(map(len, ["", *names])), *(max(map(len, column)) for column in columns)]
     for line in zip(["", *names], *columns, strict=True):
         typer.echo("  ".join(f"{text:{width}}" for text, width in zip(line, widths, strict=True)).rstrip())
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Lens):
-        return value.name
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {field.name: _plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
-    if isinstance(value, FieldOfView):
-        return {name: _plain(angle) for name, angle in value._asdict().items()}
-    if isinstance(value, (tuple, list, np.ndarray)):
-        return [_plain(item) for item in value]
-    if isinstance(value, (float, np.floating)):
-        return float(value) if math.isfinite(value) else None
-    return value
 
 
 def _focal_length(figures: PhotographicFigures) -> str:

@@ -1,4 +1,4 @@
-"""What a browser may ask for over the stream: small JSON texts, looked at before anything is done."""
+"""What goes over the stream as JSON. What a browser asks for is looked at before anything is done."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from functools import wraps
 from typing import Any
 
 from .._core import InputError
+from ..json_values import json_value
 from . import lens_edits
 from .lens_bench import LensBench
 
@@ -17,6 +18,14 @@ _SUMMED = ("orbit", "pan")  # of several that wait, the sum is done
 _REPLACED = ("hover",)  # of several that wait, the last one is done
 
 Message = dict[str, Any]
+
+
+def json_text(content: dict[str, Any]) -> str:
+    """For the browser, whose JSON has no infinity: numbers that are infinite or undefined become null."""
+    try:
+        return json.dumps(content, allow_nan=False)
+    except ValueError:
+        return json.dumps(json_value(content), allow_nan=False)
 
 
 class BadMessage(Exception):  # noqa: N818

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import logging
 import struct
 import time
@@ -22,7 +21,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from .._core import Plan, RealcamError
 from .lens_bench import LensBench
 from .listeners import Problem
-from .messages import BadMessage, Message, merged, parsed, perform
+from .messages import BadMessage, Message, json_text, merged, parsed, perform
 from .picture_request import Frame
 from .server_loop import call_on_loop
 
@@ -181,7 +180,7 @@ class PictureStream:
         self._offer_text("plan", {"rows": rows, "note": note, "states": dict(self._bench.switches.of)})
 
     def _offer_text(self, kind: str, content: dict[str, Any]) -> None:
-        call_on_loop(self._loop, self._put_text, kind, json.dumps({"type": kind, **content}))
+        call_on_loop(self._loop, self._put_text, kind, json_text({"type": kind, **content}))
 
     def _put_frame(self, slot: str, frame: Frame) -> None:
         self._frames[slot] = frame
@@ -195,5 +194,5 @@ class PictureStream:
 def _packed(slot: str, frame: Frame) -> bytes:
     header = {key: value for key, value in vars(frame).items() if key not in ("jpeg", "costs")}
     header |= {"slot": slot, "costs": vars(frame.costs) if frame.costs else None}
-    text = json.dumps(header).encode()
+    text = json_text(header).encode()
     return struct.pack("<I", len(text)) + text + frame.jpeg

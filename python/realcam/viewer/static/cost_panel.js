@@ -110,8 +110,8 @@ export default {
     },
     colour: (k) => COLOURS[k % COLOURS.length],
     size(name) {
-      const row = this.rows[name];
-      return row ? `${Number(row.size.toPrecision(2))} ${row.unit} of ${Number(row.threshold.toPrecision(2))}` : "";
+      const row = this.rows[name], short = (x) => (x === null ? "∞" : Number(x.toPrecision(2))); // JSON has no infinity
+      return row ? `${short(row.size)} ${row.unit} of ${short(row.threshold)}` : "";
     },
     choose(effect, state) {
       this.states = { ...this.states, [effect]: state };

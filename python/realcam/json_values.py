@@ -1,0 +1,28 @@
+"""Results as JSON can say them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+
+from ._core import FieldOfView, Lens
+
+
+def json_value(value: Any) -> Any:
+    """Numbers that are not finite become None, as in the executable's JSON; a lens is its name."""
+    if isinstance(value, Lens):
+        return value.name
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {field.name: json_value(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, FieldOfView):
+        return json_value(value._asdict())
+    if isinstance(value, dict):
+        return {key: json_value(entry) for key, entry in value.items()}
+    if isinstance(value, tuple | list | np.ndarray):
+        return [json_value(item) for item in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    return value
