@@ -11,7 +11,7 @@ from nicegui import ui
 from nicegui.events import GenericEventArguments
 
 from ..photography import SharpRange
-from .elements import RingSlider
+from .elements import RingSlider, show_choice
 from .focus_scale import focus_scale_svg
 from .ring_scales import ISO, SHUTTER_S, Ring
 from .window import Window
@@ -81,7 +81,7 @@ class CameraPanel:
         now = self._bench.controls
         positions = now.lens.zoom_positions
         self._zoom.set_visibility(bool(positions))
-        self._zoom.set_options({name: name for name in positions}, value=now.zoom)
+        show_choice(self._zoom, {name: name for name in positions}, now.zoom)
         apertures = self._bench.apertures
         f_number = max(now.f_number or 0.0, apertures.values[0])
         self._show(self._aperture, apertures, f_number, f"f/{apertures.text_of(f_number)}")
@@ -99,7 +99,7 @@ class CameraPanel:
         self._automatic.set_value(now.is_automatic)
         self._model.set_value(now.model)
         width = now.film.resolution[0]
-        self._width.set_options({w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, value=width)
+        show_choice(self._width, {w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, width)
         self._noise.set_value(self._bench.noise_codes)
 
     def show_sharp_range(self, sharp: SharpRange) -> None:

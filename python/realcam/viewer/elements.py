@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from typing import Any
 
+from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
@@ -53,6 +54,14 @@ class RingSlider(Element, component="static/ring.js"):
         if any(self._props[key] != value for key, value in state.items()):
             self._props |= state
             self.update()
+
+
+def show_choice(choice: ui.select, options: dict[Any, str] | list[str], value: Any) -> None:
+    """Nothing is sent where all is as it was: a list that is set anew is drawn anew."""
+    if choice.options != options:
+        choice.set_options(options, value=value)
+    else:
+        choice.set_value(value)
 
 
 class CostPanel(Element, component="static/cost_panel.js"):

@@ -14,6 +14,7 @@ from .._core import InputError, Lens, LensFileError, RealcamError, lens_names
 from ..gallery import save_gallery
 from .access import Folders
 from .comparison import COMPARISONS, NOTHING
+from .elements import show_choice
 from .saving import save_lens, save_picture, save_shot
 from .window import Window
 
@@ -76,7 +77,7 @@ class FilesPanel:
         """On the server's loop."""
         name = self._bench.controls.lens.name
         options = [*lens_names(), *([] if name in lens_names() else [name])]
-        self._lens.set_options(options, value=name)
+        show_choice(self._lens, options, name)
 
     async def _choose(self) -> None:
         if self._lens.value in lens_names():

@@ -19,6 +19,8 @@ const COLUMNS = [
   ["conic", "Conic", "", "0 for a sphere, -1 for a paraboloid"],
 ];
 
+const text = (points) => points.map(([z, y]) => `${z},${y}`).join(" ");
+
 let gestures = Math.floor(Math.random() * 2 ** 30);
 
 export default {
@@ -36,14 +38,14 @@ export default {
       role="img" :aria-label="'Section of ' + view.name" @pointermove="drag" @pointerup="drop" @pointercancel="drop">
     <g transform="scale(1,-1)">
       <line class="rc-axis" :x1="box[0]" :x2="box[0] + box[2]" y1="0" y2="0" />
-      <polygon v-for="(e, k) in view.elements" :key="'e' + k" class="rc-glass" :points="text(e)" />
-      <g v-for="(bundle, b) in rays.bundles" :key="'b' + b" :class="'rc-rays rc-rays-' + b">
-        <polyline v-for="(path, k) in bundle" :key="k" :points="text(path)" />
+      <polygon v-for="(e, k) in shapes.elements" :key="'e' + k" class="rc-glass" :points="e" />
+      <g v-for="(bundle, b) in paths" :key="'b' + b" :class="'rc-rays rc-rays-' + b">
+        <polyline v-for="(path, k) in bundle" :key="k" :points="path" />
       </g>
-      <polygon v-for="(c, k) in view.crossings" :key="'c' + k" class="rc-crossing" :points="text(c)" />
-      <g v-for="face in view.faces" :key="'f' + face.surface" :class="faceClass(face)">
-        <polyline v-for="(part, k) in face.parts" :key="k" :points="text(part)" />
-        <polyline v-for="(part, k) in face.parts" :key="'hit' + k" class="rc-hit" :points="text(part)"
+      <polygon v-for="(c, k) in shapes.crossings" :key="'c' + k" class="rc-crossing" :points="c" />
+      <g v-for="(face, f) in view.faces" :key="'f' + face.surface" :class="faceClass(face)">
+        <polyline v-for="(part, k) in shapes.faces[f]" :key="k" :points="part" />
+        <polyline v-for="(part, k) in shapes.faces[f]" :key="'hit' + k" class="rc-hit" :points="part"
           :data-surface="face.surface" @pointerdown.stop="choose(face.surface)" />
       </g>
       <g v-for="b in view.blockers" :key="'s' + b.surface" :class="b.is_stop ? 'rc-stop' : 'rc-blocker'">
@@ -56,7 +58,7 @@ export default {
           <line :x1="m.z" :x2="m.z" :y1="-(m.half || 0.04 * box[3])" :y2="m.half || 0.04 * box[3]" />
         </g>
       </g>
-      <polyline v-if="dragged" :class="['rc-dragged', problem ? 'rc-impossible' : '']" :points="text(dragged)" />
+      <polyline v-if="dragged" :class="['rc-dragged', problem ? 'rc-impossible' : '']" :points="dragged" />
       <g v-if="surface && handles.length">
         <circle v-for="h in handles" :key="h.field" class="rc-handle" :cx="h.at[0]" :cy="h.at[1]" :r="0.022 * box[3]"
           :data-handle="h.field" @pointerdown.stop="take($event, h)"><title>{{ h.title }}</title></circle>
@@ -79,7 +81,7 @@ export default {
       <th v-for="[key, label, unit, help] in columns" :key="key" scope="col" :title="help">{{ label }}<small v-if="unit"> ({{ unit }})</small></th>
       <th scope="col"><span class="rc-hidden">Changes</span></th></tr></thead>
     <tbody>
-      <tr v-for="(row, s) in view.surfaces" :key="s" :class="{ 'rc-chosen': s === chosen, 'rc-bad': problem && problem.surface === s }"
+      <tr v-for="(row, s) in view.surfaces" :key="s" v-memo="[view, chosen, typed, problem]" :class="{ 'rc-chosen': s === chosen, 'rc-bad': problem && problem.surface === s }"
           @focusin="chosen = s">
         <th scope="row">{{ s + 1 }}<small v-if="row.type !== 'refracting'"> {{ row.type }}</small></th>
         <td v-for="[key, label, unit] in columns" :key="key">
@@ -97,7 +99,7 @@ export default {
       </tr>
     </tbody>
   </table>
-  <datalist id="rc-glasses"><option v-for="name in glasses" :key="name" :value="name"></option></datalist>
+  <datalist v-once id="rc-glasses"><option v-for="name in glasses" :key="name" :value="name"></option></datalist>
   </div>
 </section>`,
   data: () => ({
@@ -105,6 +107,14 @@ export default {
     history: { can_undo: false, can_redo: false }, figures: FIGURES,
   }),
   computed: {
+    // As SVG wants them, once for each lens and not for each step of a drag.
+    shapes() {
+      const { elements, crossings, faces } = this.view;
+      return { elements: elements.map(text), crossings: crossings.map(text), faces: faces.map((f) => f.parts.map(text)) };
+    },
+    paths() {
+      return this.rays.bundles.map((bundle) => bundle.map(text));
+    },
     surface() {
       return this.view && this.chosen !== null ? this.view.surfaces[this.chosen] : null;
     },
@@ -129,7 +139,7 @@ export default {
     this.stream = streamAt(this.path);
     this.ends = [
       this.stream.on("lens", (view) => this.show(view)),
-      this.stream.on("rays", (rays) => { this.rays = rays; }),
+      this.stream.on("rays", (rays) => { this.rays = Object.freeze(rays); }),
       this.stream.on("problem", ({ problem }) => { this.problem = problem; }),
     ];
     this.sendDrag = oncePerFrame((message) => this.stream.send(message));
@@ -139,7 +149,7 @@ export default {
   },
   methods: {
     show(view) {
-      this.view = view;
+      this.view = Object.freeze(view); // Vue need not watch each of its points
       if (this.chosen !== null && this.chosen >= view.surfaces.length) this.chosen = null;
       if (this.held) return; // the scale stays while something is dragged
       this.dragged = null;
@@ -158,7 +168,6 @@ export default {
       const left = front - 0.3 * length;
       this.box = [left, -half, right - left, 2 * half];
     },
-    text: (points) => points.map(([z, y]) => `${z},${y}`).join(" "),
     faceClass(face) {
       const sign = !this.colours ? "" : face.sign > 0 ? "rc-positive" : face.sign < 0 ? "rc-negative" : "rc-plane";
       const bad = this.problem?.surface === face.surface ? "rc-impossible" : "";
@@ -183,12 +192,15 @@ export default {
     },
     take(event, handle) {
       this.$refs.svg.setPointerCapture(event.pointerId);
-      this.held = { ...handle, surface: this.chosen, from: { ...this.surface }, gesture: ++gestures };
+      // The scale stays while something is held; to ask for it at each step would lay out the page each time.
+      this.held = {
+        ...handle, surface: this.chosen, from: { ...this.surface }, gesture: ++gestures, scale: this.$refs.svg.getScreenCTM(),
+      };
       event.preventDefault();
     },
     /// The mouse in mm.
     at(event) {
-      const m = this.$refs.svg.getScreenCTM();
+      const m = this.held.scale;
       return [(event.clientX - m.e) / m.a, -(event.clientY - m.f) / m.d];
     },
     drag(event) {
@@ -198,7 +210,7 @@ export default {
       if (held.field === "semi_diameter_mm") now.semi_diameter_mm = Math.max(0.01 * s.semi_diameter_mm, y);
       else if (held.field === "radius_mm") now.radius_mm = radiusOfSag(s, 0.7 * s.semi_diameter_mm, z - s.z);
       else now.z = z;
-      this.dragged = profile(now);
+      this.dragged = text(profile(now));
       const isMove = held.field === "thickness_mm";
       const before = isMove ? this.view.surfaces[held.surface - 1] : null;
       held.thickness ??= before?.thickness_mm;
