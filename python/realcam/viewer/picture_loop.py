@@ -27,7 +27,9 @@ from .picture_request import Costs, Frame, PictureRequest, Point
 T = TypeVar("T")
 _log = logging.getLogger(__name__)
 
-_RESTING_S = 0.025  # after the first frame of a change: moves come so often, and what refines would be given up
+# After the first frame of a change, before it is refined: what is begun would be given up for the next change, of a
+# movement above all.
+_RESTING_S, _MOVING_S = 0.025, 0.15
 _FEW_PIXELS = 50_000  # are developed here sooner than one more sample of them is taken
 
 _Arrays = tuple[NDArray[np.float32], NDArray[np.float32]]  # exposure and depth
@@ -100,6 +102,7 @@ class PictureLoop:
         self._serial = 0
         self._picture: _Growing | None = None
         self._exposure_time_s = 0.0  # that was metered last
+        self._begun = 0.0  # time.perf_counter() of the last request that began a picture
         self._pace = Pace()
         self._encoder = FrameEncoder(on_frame)
         self._thread = threading.Thread(target=self._run, name="realcam-picture", daemon=True)
@@ -236,7 +239,9 @@ class PictureLoop:
         size = self._pace.preview_size(request.camera.film.resolution)
         self._picture = picture = _Growing(request, pending.serial, pending.begun, size)
         codes = self._shoot(picture, self._pace.first_spp(size))
-        picture.refines_from = time.perf_counter() + _RESTING_S
+        is_moving = pending.begun - self._begun < _MOVING_S
+        self._begun = pending.begun
+        picture.refines_from = time.perf_counter() + (_MOVING_S if is_moving else _RESTING_S)
         if request.is_automatic and self._meter(picture):
             self._develop(picture)
         else:
