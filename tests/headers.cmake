@@ -1,4 +1,4 @@
-# Every header of the core compiles alone: as C++, and as CUDA where nvcc is on the machine. The checks are targets
+# Every header of the core compiles alone as C++, and as CUDA where nvcc is on the machine. The checks are targets
 # outside of `all`, which ctest builds; ninja then runs them in parallel and repeats only what a change concerns.
 set(patterns ${PROJECT_SOURCE_DIR}/cpp/*.hpp)
 foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
@@ -6,9 +6,7 @@ foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
 endforeach()
 file(GLOB headers CONFIGURE_DEPENDS ${patterns})
 
-find_program(NVCC_PROGRAM nvcc PATHS /usr/local/cuda/bin)
 set(cxx_sources "")
-set(cuda_stamps "")
 foreach(header IN LISTS headers)
   file(RELATIVE_PATH relative ${PROJECT_SOURCE_DIR}/cpp ${header})
   string(REPLACE "/" "_" name ${relative})
@@ -16,17 +14,30 @@ foreach(header IN LISTS headers)
   # Twice: a header without its guard fails too.
   file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${relative}\"\n#include \"${relative}\"\n" @ONLY)
   list(APPEND cxx_sources ${source})
-  if(NVCC_PROGRAM)
-    set(stamp ${CMAKE_CURRENT_BINARY_DIR}/headers/${name}.ptx)
+endforeach()
+
+# nvcc takes two seconds for each file, most of them for headers that all of them include. That a header includes what
+# it needs is known from C++, so that it may stand behind others here.
+find_program(NVCC_PROGRAM nvcc PATHS /usr/local/cuda/bin)
+set(cuda_stamps "")
+if(NVCC_PROGRAM)
+  list(LENGTH headers count)
+  math(EXPR last "${count} - 1")
+  foreach(begin RANGE 0 ${last} 24)
+    list(SUBLIST headers ${begin} 24 bundle)
+    list(TRANSFORM bundle REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
+    list(JOIN includes "" includes)
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/cuda_${begin}.cu)
+    set(stamp ${CMAKE_CURRENT_BINARY_DIR}/headers/cuda_${begin}.ptx)
+    file(CONFIGURE OUTPUT ${source} CONTENT "${includes}" @ONLY)
     # PTX: both passes of nvcc's front end, and neither the assembler nor the host compiler's back end.
     add_custom_command(OUTPUT ${stamp}
-      COMMAND ${NVCC_PROGRAM} -std=c++20 --expt-relaxed-constexpr -arch=sm_90 -ptx -x cu
-              -ccbin ${CMAKE_CXX_COMPILER} -I ${PROJECT_SOURCE_DIR}/cpp -MD -MF ${stamp}.d -MT ${stamp}
-              -o ${stamp} ${source}
-      DEPENDS ${source} DEPFILE ${stamp}.d COMMENT "CUDA: ${relative}" VERBATIM)
+      COMMAND ${NVCC_PROGRAM} -std=c++20 --expt-relaxed-constexpr -arch=sm_90 -ptx -ccbin ${CMAKE_CXX_COMPILER}
+              -MD -MF ${stamp}.d -MT ${stamp} -o ${stamp} ${source}
+      DEPENDS ${source} DEPFILE ${stamp}.d COMMENT "CUDA: headers from ${begin}" VERBATIM)
     list(APPEND cuda_stamps ${stamp})
-  endif()
-endforeach()
+  endforeach()
+endif()
 
 if(cxx_sources)
   add_library(realcam_headers OBJECT EXCLUDE_FROM_ALL ${cxx_sources})
