@@ -153,8 +153,8 @@ class RemotePictureLoop:
     def image(self) -> Future[Image]:
         return self._ask("image")
 
-    def point(self, u: float, v: float, spot: float = 0.03) -> Future[Point]:
-        return self._ask("point", u, v, spot)
+    def point(self, u: float, v: float) -> Future[Point]:
+        return self._ask("point", u, v)
 
     @property
     def jpeg_quality(self) -> int:
