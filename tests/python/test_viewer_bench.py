@@ -379,3 +379,32 @@ def test_pictures_of_all_kinds(bench: LensBench, tmp_path: Path) -> None:
     for name in ("picture.jpg", "picture", "picture.png.exe"):
         with pytest.raises(rc.InputError, match="wanted"):
             saving.save_picture(image, tmp_path / name, "film")
+
+
+def test_a_thickness_is_typed_as_it_is_shown(shot_path: Path) -> None:
+    """Where a focusing group has moved it, the lens grows by as much as was typed, and the group focuses again."""
+    bench = LensBench(rc.Shot.load(shot_path), device="cpu")
+    try:
+        bench.set_lens(rc.Lens.load("telephoto-200mm-inner-focus"))
+        bench.change(focus_m=2.5)
+        group = [k for k in range(len(bench.controls.body.surfaces)) if abs(bench.controls.focusing_shift_mm(k)) > 1]
+        assert group
+        for more in (0.0, 0.5):
+            before = bench.controls
+            shown = before.set_lens.surfaces[group[0]].thickness_mm
+            assert bench.edit_value(group[0], "thickness_mm", shown + more)
+            lengths = [c.body.film_position_mm for c in (before, bench.controls)]
+            assert lengths[1] - lengths[0] == pytest.approx(more, abs=1e-9)
+    finally:
+        bench.close()
+
+
+def test_that_no_pictures_come_is_told_until_they_do(bench: LensBench) -> None:
+    told = Told(bench)
+    bench.show()
+    frame = told.until_final()
+    bench._take_failure(0, "the machine is gone")
+    assert bench.change(iso=200)
+    assert bench.problem == Problem("the machine is gone")
+    bench._take_frame("a", frame)
+    assert bench.problem is None

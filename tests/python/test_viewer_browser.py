@@ -403,6 +403,44 @@ def test_what_is_no_lens_file_is_told(bench: BenchPage, tmp_path: Path) -> None:
     assert bench.figure("effective_focal_length_mm") == before
 
 
+def test_a_page_that_is_loaded_again_brings_back_what_it_had(bench: BenchPage) -> None:
+    before = bench.figure("effective_focal_length_mm")
+    bench.edit(0, "radius_mm", "27.5")
+    edited = until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - before) > 0.5, "edited")
+    until(lambda: bench.page.evaluate("JSON.stringify(sessionStorage)"), lambda kept: "27.5" in kept, "kept")
+    bench.page.reload()
+    until(lambda: bench.status, lambda status: "pixels" in status, "the page again")
+    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: f == edited, "edited as before")
+    bench.page.get_by_role("button", name="Start again").click()
+    until(lambda: bench.status, lambda status: "pixels" in status, "the page once more")
+    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: f == before, "as the shot file has it")
+
+
+def test_a_name_that_no_file_can_have_is_told(bench: BenchPage) -> None:
+    bench.test_id("save-name").fill("x" * 300 + ".png")
+    bench.test_id("save").click()
+    bench.until_text("said", lambda text: "too long" in text)
+
+
+def test_the_magnifier_enlarges_what_the_page_shows(bench: BenchPage) -> None:
+    """Four times as large as on the page: the middle of the magnifier is one colour where a pixel is that large."""
+    bench.until_picture(lambda p: True, "the first picture")
+    bench.page.get_by_label("Magnifier").check()
+    box = bench.canvas.bounding_box()
+    bench.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    shown = bench.picture()
+    # The page shows a pixel as box.width / its width pixels, the magnifier as four times as many.
+    seen = bench.page.evaluate(
+        """() => {
+            const c = document.querySelector('.rc-magnifier'), middle = c.width / 2;
+            return Array.from(c.getContext('2d').getImageData(0, middle, c.width, 1).data);
+        }"""
+    )
+    row = np.array(seen).reshape(-1, 4)[:, :3]
+    side = 4 * box["width"] / shown.shape[1]
+    assert len(np.unique(row, axis=0)) <= len(row) / side + 2
+
+
 # Without a mouse.
 
 
@@ -469,3 +507,14 @@ def test_a_narrow_window_and_both_themes(bench: BenchPage) -> None:
         time.sleep(0.3)
         colours.append(bench.page.evaluate("getComputedStyle(document.body).backgroundColor"))
     assert colours[0] != colours[1]
+
+
+def test_undo_and_redo_by_keys(bench: BenchPage) -> None:
+    before = bench.figure("effective_focal_length_mm")
+    bench.edit(0, "radius_mm", "27.5")
+    edited = until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - before) > 0.5, "edited")
+    bench.canvas.focus()
+    bench.page.keyboard.press("Control+z")
+    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: f == before, "undone")
+    bench.page.keyboard.press("Control+y")
+    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: f == edited, "done again")

@@ -9,8 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import realcam as rc
+from realcam.fields import angle_of_height
 from realcam.viewer.camera_controls import CameraControls, opened
 from realcam.viewer.focus_scale import focus_scale_svg
+from realcam.viewer.lens_view import ray_view
 from realcam.viewer.pose import Pose
 from realcam.viewer.ring_scales import ISO, SHUTTER_S, aperture_ring
 
@@ -181,3 +183,15 @@ def test_the_barrel_says_what_is_sharp() -> None:
     nowhere = focus_scale_svg(2.0, math.nan, math.nan, 0.5)
     assert "sharp nowhere" in nowhere
     assert "nan" not in nowhere
+
+
+@pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm", "mirror-telephoto-500mm"])
+def test_drawn_rays_end_where_the_mouse_is(name: str) -> None:
+    lens = rc.Lens.load(name)
+    _, last_mm = angle_of_height(lens, 0.5 * math.hypot(*lens.film_mm))  # that gets light
+    for share in (0.1, 0.3, 0.8):
+        middle, bundle = ray_view(lens, (0.0, share * last_mm))["bundles"]
+        ends = np.array([path[-1][1] for path in bundle])
+        # The chief ray ends there; the others around it, by the lens's aberrations.
+        assert np.median(ends) == pytest.approx(share * last_mm, abs=0.02 * last_mm)
+        assert np.median([path[-1][1] for path in middle]) == pytest.approx(0, abs=0.01 * last_mm)

@@ -220,3 +220,22 @@ def test_the_history_has_an_end() -> None:
         steps += 1
     assert 100 <= steps <= 300
     assert history.lens != LENS
+
+
+def test_what_the_zoom_ring_moves_is_not_edited() -> None:
+    """The lengths of its positions would take its place, and nobody would see what was typed."""
+    lens = rc.Lens.load("zoom-70-200mm")
+    moved = [
+        index
+        for index in range(len(lens.surfaces))
+        if len({lens.zoomed(name).surfaces[index].thickness_mm for name in lens.zoom_positions}) > 1
+    ]
+    assert moved
+    for index, surface in enumerate(lens.surfaces):
+        longer = surface.thickness_mm + 1e-3
+        if index in moved:
+            with pytest.raises(rc.InputError, match=f"the zoom ring moves what is behind surface {index + 1}"):
+                with_value(lens, index, "thickness_mm", longer)
+        elif index + 1 < len(lens.surfaces):
+            edited = with_value(lens, index, "thickness_mm", longer)
+            assert all(edited.zoomed(z).surfaces[index].thickness_mm == longer for z in lens.zoom_positions)

@@ -117,6 +117,7 @@ def test_what_the_user_cannot_have_is_no_bad_message() -> None:
     made = bench()
     lens = rc.Lens.load("tessar-50mm")
     made.edit.side_effect = lambda edited, gesture=None: edited(lens)
+    made.edit_value.side_effect = lambda *edit: LensBench.edit_value(made, *edit)
     with pytest.raises(rc.RealcamError):
         perform({"type": "remove", "surface": 99}, made)
     with pytest.raises(rc.RealcamError):

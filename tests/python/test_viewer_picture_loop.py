@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam.bench import frame_scene
+from realcam.viewer.pace import Pace
 from realcam.viewer.picture_loop import PictureLoop
 from realcam.viewer.picture_request import Frame, PictureRequest
 
@@ -30,6 +31,7 @@ class Watched:
     """A loop with what it has told."""
 
     def __init__(self, scene: rc.Scene, **settings: object) -> None:
+        self.scene = scene
         self.frames: list[Frame] = []
         self.errors: list[tuple[int, str]] = []
         self._news = threading.Condition()
@@ -246,6 +248,29 @@ def test_what_a_pixel_shows(watched: Watched) -> None:
     assert math.isinf(top.distance_m)  # the sky
     for u, v in ((0, 0), (1, 1), (0, 1)):
         watched.loop.point(u, v).result(10)
+
+
+def test_a_slow_frame_has_the_exposure_that_was_set_meanwhile(
+    watched: Watched, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last frame of a picture above all, after which no other comes."""
+    monkeypatch.setattr(Pace, "is_slow", lambda *_: True)
+    monkeypatch.setattr(Pace, "was_slow", lambda *_: True)
+    monkeypatch.setattr(Pace, "next_size", lambda self, size, whole: whole)
+    monkeypatch.setattr(Pace, "refining_spp", lambda *_: 400)
+    film = FILM.replace(resolution=(360, 240))
+    bright = PictureRequest(camera(film=film), noise_codes=0.0, max_spp=400)
+    dark = replace(bright, camera=camera(film=film, exposure_time_s=0.01 / 16))
+    serial = watched.loop.submit(bright)
+    watched.until(lambda: watched.frames and watched.frames[-1].serial == serial)
+    time.sleep(0.2)  # the frame that refines is under way, for a second or more
+    assert not watched.frames[-1].is_final
+    serial = watched.photograph(dark).serial
+    expected = np.mean(rc.render(watched.scene, dark.camera, spp=16, effects=()).developed())
+    frames = [frame for frame in watched.frames if frame.serial == serial]
+    assert len(frames) > 1
+    for frame in frames:
+        assert np.mean(codes_of(frame)) == pytest.approx(expected, rel=0.05)
 
 
 def test_who_asks_means_the_picture_that_was_wanted_last(watched: Watched) -> None:

@@ -85,6 +85,13 @@ class CameraControls:
         """What the picture's height shows at the distance of what is looked at."""
         return self.pose.distance_m * self.film.height_mm / abs(self.body.first_order().effective_focal_length_mm)
 
+    def focusing_shift_mm(self, surface: int) -> float:
+        """By how much the focus ring has lengthened what is behind a surface."""
+        surfaces = self.set_lens.surfaces, self.body.surfaces
+        if not 0 <= surface < len(self.body.surfaces):
+            return 0.0
+        return surfaces[0][surface].thickness_mm - surfaces[1][surface].thickness_mm
+
     def turned(self, ring: str, steps: int) -> CameraControls:
         """Turns "aperture" (closes), "shutter" (longer) or "iso" by thirds of a stop. Raises InputError."""
         if ring == "aperture":

@@ -59,7 +59,9 @@ class CameraPanel:
                 self._automatic.tooltip("The exposure time follows the mean brightness of the picture")
                 self._compensation = ui.number("Correction (EV)", value=0, min=-5, max=5, step=1 / 3, format="%.2f")
                 self._compensation.on("update:model-value", self._set_compensation, throttle=0.1)
-                self._compensation.tooltip("Brighter (+) or darker (-) than metered, in stops").classes("w-32")
+                self._compensation.tooltip(
+                    "Brighter (+) or darker (-) than metered, in stops: by automatic exposure or a click with Meter"
+                ).classes("w-32")
             self._model = self._choice(
                 "Camera model", MODELS, lambda value: self._change(model=value), "How much of the lens is simulated"
             )
@@ -111,7 +113,7 @@ class CameraPanel:
         now, sharp = self._bench.controls, self._sharp
         self._scale.set_content(focus_scale_svg(now.focus_m, sharp.near_m, sharp.far_m, self._nearest_m))
         if math.isnan(sharp.near_m):
-            text = "Nothing is sharp by the usual measure (a blur of the film's diagonal / 1500)"
+            text = "Aberrations blur more than the usual measure, the film's diagonal / 1500, whatever the distance"
         else:
             text = f"Sharp from {_distance(sharp.near_m)} to {_distance(sharp.far_m)}"
         self._sharp_text.set_text(text)
@@ -178,4 +180,4 @@ def _seconds(ring: Ring, value: float) -> str:
 
 
 def _distance(metres: float) -> str:
-    return "∞" if math.isinf(metres) else f"{metres:.3g} m"
+    return "∞" if math.isinf(metres) else f"{metres:.0f} m" if metres >= 1000 else f"{metres:.3g} m"

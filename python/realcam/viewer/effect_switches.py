@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from .._core import Plan, effects
 
 EFFECTS = tuple(line.partition(":")[0] for line in effects() if "on unless left out" not in line)
+_WITHOUT_SURFACES = ("diffraction",)  # which every camera model has
 
 
 @dataclass
@@ -45,6 +46,12 @@ class Switches:
             if name in chosen or (state == "auto" and name in kept)
         ]
         return (*switched, *self.others)
+
+    def of_model(self, model: str) -> Switches:
+        """With all effects off that the surfaces of a lens bring, where the camera's model has none."""
+        if model == "full":
+            return self
+        return replace(self, of={name: self.of[name] if name in _WITHOUT_SURFACES else "off" for name in self.of})
 
     def as_words(self) -> list[str]:
         """As shot files name them."""

@@ -121,10 +121,11 @@ class FilesPanel:
         what, bench = self._what.value, self._bench
         try:
             path = self._folders.inside(self._name.value)
-        except RealcamError as error:
+            is_there = path.exists()
+        except (RealcamError, OSError) as error:
             self._say(str(error))
             return
-        if path.exists() and not await _agreed(f"{path.name} is there already."):
+        if is_there and not await _agreed(f"{path.name} is there already."):
             return
 
         def saved() -> str:
@@ -132,7 +133,9 @@ class FilesPanel:
                 save_picture(bench.image(), path, bench.shot.tone)
                 return f"Wrote {path.name}"
             if what == "shot":
-                written = save_shot(self._source, bench.controls, bench.switches.as_words(), path)
+                written = save_shot(
+                    self._source, bench.controls, bench.switches.of_model(bench.controls.model).as_words(), path
+                )
                 return f"Wrote {' and '.join(file.name for file in written)}"
             left_out = save_lens(bench.controls.set_lens, path)
             return "; ".join([f"Wrote {path.name}", *(f"not in it: {what}" for what in left_out)])

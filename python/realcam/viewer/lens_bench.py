@@ -17,8 +17,8 @@ from .bench_state import restored, state_of
 from .camera_controls import CameraControls
 from .comparison import Comparison
 from .effect_switches import EFFECTS, Switches
-from .lens_edits import LensHistory
-from .lens_view import drawn_fields, lens_view, ray_view
+from .lens_edits import LensHistory, with_value
+from .lens_view import drawn_heights_mm, lens_view, ray_view
 from .level_costs import measured_levels
 from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
@@ -47,6 +47,7 @@ class LensBench:
         self.switches = Switches.of_shot(shot.effects)
         self.plan: Plan | None = None
         self.problem: Problem | None = None
+        self._without_pictures: Problem | None = None  # why no more come, until the next one does
         self.noise_codes = 1.0
         self.hovered: tuple[float, float] | None = None
         self.comparison = Comparison()
@@ -172,6 +173,17 @@ class LensBench:
         self.listeners.controls()
         return True
 
+    def edit_value(self, surface: int, field: str, value: Any, gesture: object = None) -> bool:
+        """Changes a number or glass of the table (see lens_edits.with_value), which shows the lens as it is focused."""
+
+        def edited(lens: Lens) -> Lens:
+            wanted = value
+            if field == "thickness_mm" and isinstance(value, int | float):
+                wanted = value - self.controls.focusing_shift_mm(surface)
+            return with_value(lens, surface, field, wanted)
+
+        return self.edit(edited, gesture)
+
     def undo(self) -> bool:
         return self.history.can_undo and self._step(self.history.undo, self.history.redo)
 
@@ -250,11 +262,16 @@ class LensBench:
         return self._make_loop(
             self.shot.scene,
             lambda frame: self._take_frame(slot, frame),
-            lambda _, message: self._set_problem(Problem(message)),
+            self._take_failure,
             device=self._device,
             max_bounces=self.shot.max_bounces,
             seed=self.shot.seed,
         )
+
+    def _take_failure(self, serial: int, message: str) -> None:
+        if serial == 0:  # it is not about a picture
+            self._without_pictures = Problem(message)
+        self._set_problem(Problem(message))
 
     def _take_frame(self, slot: str, frame: Frame) -> None:
         if slot == "a":
@@ -265,6 +282,9 @@ class LensBench:
                     self.controls = replace(before, exposure_time_s=frame.exposure_time_s)
             if before.is_automatic and abs(math.log2(frame.exposure_time_s / before.exposure_time_s)) > 0.01:
                 self.listeners.controls()
+        if self._without_pictures:
+            self._without_pictures = None
+            self._set_problem(None)
         self.listeners.frame(slot, frame)
 
     def _take(self, changed: Callable[[], CameraControls]) -> bool:
@@ -300,18 +320,15 @@ class LensBench:
         return True
 
     def _set_problem(self, problem: Problem | None) -> None:
+        problem = problem or self._without_pictures
         if problem != self.problem:
             self.problem = problem
             self.listeners.problem(problem)
 
     def _request(self, controls: CameraControls) -> PictureRequest:
-        names = self.switches.named(self.plan)
-        if controls.model != "full":
-            of_all_models = ("diffraction", *self.switches.others)
-            names = tuple(name for name in names if name in of_all_models)
         return PictureRequest(
             camera=controls.camera,
-            effects=names,
+            effects=self.switches.of_model(controls.model).named(self.plan),
             tone=self.shot.tone,
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,
@@ -333,8 +350,8 @@ class LensBench:
         self._trace()
 
     def _trace(self) -> None:
-        lens, fields = self.controls.set_lens, drawn_fields(self.controls.film, self.hovered)
-        self._tracing.submit(lambda: self.listeners.rays(ray_view(lens, fields)))
+        lens, heights = self.controls.set_lens, drawn_heights_mm(self.controls.film, self.hovered)
+        self._tracing.submit(lambda: self.listeners.rays(ray_view(lens, heights)))
 
     def _keep(self) -> None:
         controls, switches = self.controls, dict(self.switches.of)

@@ -27,6 +27,11 @@ def with_value(lens: Lens, index: int, field: str, value: Any) -> Lens:
         radius = math.inf if value in (None, "", 0, "inf", "∞") else _number(value, "the radius")
         return lens.with_surface(index, radius_of_curvature_mm=radius)
     if field == "thickness_mm":
+        if _is_moved_by_zoom(lens, index):
+            raise InputError(
+                f"the zoom ring moves what is behind surface {index + 1}: its thickness at each position stands in the "
+                "lens file",
+            )
         return lens.with_surface(index, thickness_mm=_number(value, "the thickness"))
     if field == "semi_diameter_mm":
         return lens.with_surface(index, clear_semi_diameter_mm=_number(value, "the semi-diameter"))
@@ -188,6 +193,10 @@ class LensHistory:
         self._gesture = None
         self._at = min(len(self._lenses) - 1, self._at + 1)
         return self.lens
+
+
+def _is_moved_by_zoom(lens: Lens, index: int) -> bool:
+    return len({lens.zoomed(name).surfaces[index].thickness_mm for name in lens.zoom_positions}) > 1
 
 
 def _surface(lens: Lens, index: int) -> Surface:

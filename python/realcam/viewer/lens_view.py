@@ -11,6 +11,7 @@ import numpy as np
 from .._core import Film, InputError, Lens
 from ..drawing import CrossSection, cross_section
 from ..drawing.outlines import Points
+from ..fields import angle_of_height
 
 _RAYS = 9
 
@@ -28,21 +29,20 @@ def lens_view(lens: Lens) -> dict[str, Any]:
     }
 
 
-def drawn_fields(film: Film, place: tuple[float, float] | None) -> tuple[float, ...]:
-    """Of the middle and of that place of the picture (u and v, 0 to 1), as ray_view takes them."""
-    if place is None:
-        return (0.0, 0.7)
-    u, v = place
+def drawn_heights_mm(film: Film, place: tuple[float, float] | None) -> tuple[float, ...]:
+    """On the film, of the middle and of that place of the picture (u and v, 0 to 1)."""
+    u, v = place or (0.5 + 0.35, 0.5 + 0.35)
     height = math.hypot((u - 0.5) * film.width_mm, (v - 0.5) * film.height_mm)
-    share = min(1.0, height / (0.5 * math.hypot(film.width_mm, film.height_mm)))
-    return (0.0, share) if share > 1e-3 else (0.0,)
+    return (0.0, height) if height > 5e-4 * math.hypot(film.width_mm, film.height_mm) else (0.0,)
 
 
-def ray_view(lens: Lens, fields: Sequence[float]) -> dict[str, Any]:
-    """Bundles of rays as paths of (z, y). fields: shares of the height of the film's corner. Where no light passes
-    there are none, and `note` says why.
+def ray_view(lens: Lens, heights_mm: Sequence[float]) -> dict[str, Any]:
+    """Bundles of rays to heights on the film as paths of (z, y). Beyond the last height that gets light it is drawn
+    instead. Where no light passes there are none, and `note` says why.
     """
     try:
+        _, last_mm = angle_of_height(lens, 0.5 * math.hypot(*lens.film_mm))
+        fields = [min(1.0, height / last_mm) for height in heights_mm]
         section = cross_section(lens, rays=_RAYS, fields=fields)
     except InputError as error:
         return {"bundles": [], "note": str(error)}

@@ -14,7 +14,7 @@ from . import lens_edits
 from .lens_bench import LensBench
 
 MOST_BYTES = 64 * 1024
-_SUMMED = ("orbit", "pan")  # of several that wait, the sum is done
+_SUMMED = {"orbit": ("x", "y"), "pan": ("x", "y"), "dolly": ("steps",)}  # of several that wait, the sum is done
 _REPLACED = ("hover",)  # of several that wait, the last one is done
 
 Message = dict[str, Any]
@@ -51,11 +51,7 @@ def merged(waiting: Message, newer: Message) -> Message | None:
     if waiting["type"] != kind:
         return None
     if kind in _SUMMED:
-        return {
-            "type": kind,
-            "x": _real(waiting, "x") + _real(newer, "x"),
-            "y": _real(waiting, "y") + _real(newer, "y"),
-        }
+        return {"type": kind, **{key: _real(waiting, key) + _real(newer, key) for key in _SUMMED[kind]}}
     if kind in _REPLACED:
         return newer
     same = ("surface", "field", "gesture")
@@ -107,7 +103,7 @@ def _edit(message: Message, bench: LensBench) -> None:
     gesture = message.get("gesture")
     if gesture is not None and not isinstance(gesture, int):
         raise BadMessage('"gesture" is to be an integer')
-    bench.edit(lambda lens: lens_edits.with_value(lens, surface, field, value), gesture)
+    bench.edit_value(surface, field, value, gesture)
 
 
 def _insert(message: Message, bench: LensBench) -> None:

@@ -38,6 +38,9 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
     with ui.row().classes("w-full items-center"):
         ui.label(f"realcam: {source.name}").classes("text-lg")
         ui.space()
+        again = ui.button("Start again", color=None).props("flat no-caps dense").classes("rc-flat")
+        again.on("click", js_handler="() => [...window.realcamStreams.values()][0].startAgain()")
+        again.tooltip("Camera, lens and effects as the shot file has them")
         ui.toggle({None: "Auto", False: "Light", True: "Dark"}, value=None).bind_value_to(dark, "value").props(
             'dense no-caps aria-label="Colours of the page" data-testid="theme"'
         )

@@ -289,7 +289,8 @@ class PictureLoop:
         picture.spent_s += seconds
         picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
         picture.kept = self._live_arrays() if self._pace.was_slow(seconds) else None
-        return codes
+        is_as_wanted = picture.request is request  # another exposure may have been set while this frame was taken
+        return codes if is_as_wanted else self._developed(picture)
 
     def _effects(self, picture: _Growing) -> list[str]:
         """Of fewer pixels diffraction is left out: it is smaller than they are, and its tables take 50 ms of a core."""
@@ -349,9 +350,13 @@ class PictureLoop:
         if not picture.kept and math.prod(picture.size) > _FEW_PIXELS:
             self._show(picture, self._shoot(picture, 1))  # the device takes a sample and develops in less time
             return
+        self._show(picture, self._developed(picture))
+
+    def _developed(self, picture: _Growing) -> NDArray[np.uint8]:
+        """The samples that are there as they are wanted now."""
         exposure, _ = self._arrays(picture)
         ratio = self._camera(picture).exposure_time_s / picture.exposure_time_s
-        self._show(picture, develop(exposure * np.float32(ratio), picture.request.camera.iso, picture.request.tone))
+        return develop(exposure * np.float32(ratio), picture.request.camera.iso, picture.request.tone)
 
     def _arrays(self, picture: _Growing) -> _Arrays:
         return picture.kept or self._live_arrays()

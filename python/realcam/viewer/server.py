@@ -62,7 +62,8 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
     app.add_middleware(Gate, token=token)
     app.add_static_files("/realcam", _STATIC)
 
-    @ui.page("/", title="realcam", response_timeout=30)
+    # By the title a page knows whether what it has kept is of this shot.
+    @ui.page("/", title=f"{settings.source.name} - realcam", response_timeout=30)
     async def page(client: Client) -> None:
         if len(windows) >= _MOST_WINDOWS and not await _close_left_window(windows):
             ui.label("Too many windows are open; close one and load this page again.")

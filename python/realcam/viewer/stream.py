@@ -177,7 +177,11 @@ class PictureStream:
             }
             for decision in (plan.decisions if plan else ())
         ]
-        self._offer_text("plan", {"rows": rows, "note": note, "states": dict(self._bench.switches.of)})
+        model = self._bench.controls.model
+        if model != "full":
+            note = "What glass and coatings do is seen with the camera model of all surfaces. " + note
+        states = self._bench.switches.of_model(model).of
+        self._offer_text("plan", {"rows": rows, "note": note, "states": states})
 
     def _offer_text(self, kind: str, content: dict[str, Any]) -> None:
         call_on_loop(self._loop, self._put_text, kind, json_text({"type": kind, **content}))

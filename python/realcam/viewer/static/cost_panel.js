@@ -3,7 +3,7 @@
 import { streamAt } from "/realcam/stream.js";
 
 // Which stand out from a light page and a dark one.
-const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a"];
+const COLOURS = ["#4a78d6", "#c7791a", "#2f9a58", "#d9493c", "#9467bd", "#15939f", "#b0608f", "#80803a", "#5b8f9e", "#e0709a", "#a0642d", "#8f8f8f"];
 const W = 300, H = 120, LEFT = 34, BOTTOM = 20;
 
 export default {
@@ -16,9 +16,9 @@ export default {
       <tr v-for="e in effects" :key="e.name" :title="e.help">
         <th scope="row">{{ e.name.replaceAll('_', ' ') }}</th>
         <td><select :aria-label="e.name" :data-effect="e.name" :value="states[e.name]" @change="choose(e.name, $event.target.value)">
-          <option value="auto">auto{{ rows[e.name] ? (rows[e.name].is_kept ? ' (on)' : ' (off)') : '' }}</option>
+          <option value="auto">auto{{ planned(rows[e.name]) }}</option>
           <option value="on">on</option><option value="off">off</option></select></td>
-        <td class="rc-size">{{ size(e.name) }}</td>
+        <td class="rc-size" :title="rows[e.name]?.reason">{{ size(e.name) }}</td>
       </tr>
       <tr v-for="row in others" :key="row.effect" :title="row.reason"><th scope="row">{{ row.effect }}</th><td>by the camera model</td>
         <td class="rc-size">{{ size(row.effect) }}</td></tr>
@@ -109,6 +109,7 @@ export default {
       return [LEFT + (W - LEFT) * share(t, t0, t1), (H - BOTTOM) * (1 - share(n, n0, n1))];
     },
     colour: (k) => COLOURS[k % COLOURS.length],
+    planned: (row) => (!row ? "" : row.is_kept ? " (on)" : row.size > row.threshold ? " (off: see reasons)" : " (off)"),
     size(name) {
       const row = this.rows[name], short = (x) => (x === null ? "∞" : Number(x.toPrecision(2))); // JSON has no infinity
       return row ? `${short(row.size)} ${row.unit} of ${short(row.threshold)}` : "";

@@ -29,8 +29,8 @@ export default {
 <section class="rc-lens" aria-label="Lens">
   <div class="rc-lens-head">
     <h2>{{ view ? view.title || view.name : "No lens yet" }}</h2>
-    <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last edit back">Undo</button>
-    <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Do it again">Redo</button>
+    <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last edit of the lens back (Ctrl+Z)">Undo</button>
+    <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Do it again (Ctrl+Y)">Redo</button>
     <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of radii</label>
     <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Marks</label>
   </div>
@@ -142,9 +142,12 @@ export default {
       this.stream.on("rays", (rays) => { this.rays = Object.freeze(rays); }),
       this.stream.on("problem", ({ problem }) => { this.problem = problem; }),
     ];
+    this.undoes = (event) => this.undoByKey(event);
+    window.addEventListener("keydown", this.undoes);
     this.sendDrag = oncePerFrame((message) => this.stream.send(message));
   },
   unmounted() {
+    window.removeEventListener("keydown", this.undoes);
     this.ends.forEach((end) => end());
   },
   methods: {
@@ -182,6 +185,12 @@ export default {
       return value === null ? "" : typeof value === "number" ? this.number(value, 7) : value;
     },
     number: (value, digits) => (value === null || value === undefined ? "-" : String(Number(value.toPrecision(digits)))),
+    undoByKey(event) {
+      const key = event.key.toLowerCase(), isTyping = /^(input|select|textarea)$/i.test(event.target.tagName);
+      if (!(event.ctrlKey || event.metaKey) || !["z", "y"].includes(key) || isTyping) return;
+      this.send(key === "y" || event.shiftKey ? "redo" : "undo");
+      event.preventDefault();
+    },
     send(type, more = {}) {
       this.stream.send({ type, ...more });
     },

@@ -97,6 +97,7 @@ export default {
         canvas.height = header.whole_height;
       }
       this.draw();
+      this.magnify();
       this.$emit("frame", { ...header });
     },
     setComparison(compares) {
@@ -162,7 +163,8 @@ export default {
       const [u, v] = this.place(event);
       this.sendHover(u, v);
       this.showsMagnifier = true;
-      if (this.magnifier) this.magnify(event, u, v);
+      this.mouse = { x: event.clientX, y: event.clientY, u, v };
+      this.magnify();
     },
     release(event) {
       if (this.pressed && this.pressed.moved < CLICK_PX && event.type === "pointerup") {
@@ -179,15 +181,22 @@ export default {
       this.$emit("picked", { u, v });
     },
     wheel(event) {
-      this.stream.send({ type: "dolly", steps: event.deltaY < 0 ? 0.5 : -0.5 });
+      // A mouse's wheel moves by 100 pixels or 3 lines a notch, a trackpad by a few pixels at a time.
+      const notches = event.deltaY / (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 3 : 100);
+      if (notches) this.stream.send({ type: "dolly", steps: -0.5 * Math.max(-3, Math.min(3, notches)) });
     },
-    magnify(event, u, v) {
-      const canvas = this.$refs.canvas, target = this.$refs.magnifier, size = target.width / MAGNIFIED;
-      const box = this.$refs.stage.getBoundingClientRect();
-      this.magnifierStyle = { left: `${event.clientX - box.left + 16}px`, top: `${event.clientY - box.top + 16}px` };
+    magnify() {
+      if (!this.magnifier || !this.mouse) return;
+      const { x, y, u, v } = this.mouse;
+      const canvas = this.$refs.canvas, target = this.$refs.magnifier, box = this.$refs.stage.getBoundingClientRect();
+      // The page shows the picture larger or smaller than it is; enlarged is what the page shows.
+      const size = (target.width / MAGNIFIED) * (canvas.width / box.width);
+      const side = (mouse, length) => (mouse + 16 + target.width < length ? mouse + 16 : mouse - 16 - target.width);
+      const left = side(x - box.left, box.width), top = side(y - box.top, box.height);
+      this.magnifierStyle = { left: `${left}px`, top: `${top}px` };
       const context = target.getContext("2d");
       context.imageSmoothingEnabled = false;
-      context.clearRect(0, 0, target.width, target.height);
+      context.fillRect(0, 0, target.width, target.height); // black beyond the picture's edge
       context.drawImage(canvas, u * canvas.width - size / 2, v * canvas.height - size / 2, size, size,
         0, 0, target.width, target.height);
     },
@@ -195,7 +204,8 @@ export default {
       const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       const turn = { "[": ["aperture", -1], "]": ["aperture", 1], ",": ["shutter", -1], ".": ["shutter", 1],
         i: ["iso", 1], I: ["iso", -1] }[event.key];
-      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      // Many keyboards have brackets on a third level, which is reached by these keys.
+      if ((event.ctrlKey || event.metaKey || event.altKey) && !"[]".includes(event.key)) return;
       if (way) {
         this.stream.send({ type: event.shiftKey ? "pan" : "orbit", x: -KEY_STEP * way[0], y: -KEY_STEP * way[1] });
       } else if (turn) this.stream.send({ type: "turn", ring: turn[0], steps: turn[1] });

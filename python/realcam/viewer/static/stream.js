@@ -1,7 +1,7 @@
 // The WebSocket to the window's bench, shared by all components of the page. See stream.py for what it carries.
 
 const FIRST_WAIT_MS = 250;
-const KEPT = "realcam: what the window had";
+const KEPT = `what the window had: ${document.title}`; // which names the shot
 const LONGEST_WAIT_MS = 4000;
 
 class Stream {
@@ -11,7 +11,22 @@ class Stream {
     this.latest = new Map(); // for components that are mounted later
     this.wait = FIRST_WAIT_MS;
     this.framesShown = 0;
+    this.isNew = true;
+    this.on("state", ({ state }) => sessionStorage.setItem(KEPT, JSON.stringify(state)));
     this.connect();
+  }
+
+  /// What the page had before it was loaded again, by its user or because the server was started anew.
+  restore() {
+    const kept = sessionStorage.getItem(KEPT);
+    if (kept) this.send({ type: "restore", state: JSON.parse(kept) });
+  }
+
+  /// The shot as it is in its file.
+  startAgain() {
+    this.on("state", () => sessionStorage.removeItem(KEPT));
+    sessionStorage.removeItem(KEPT);
+    location.reload();
   }
 
   connect() {
@@ -21,19 +36,15 @@ class Stream {
     this.socket.onopen = () => {
       this.wait = FIRST_WAIT_MS;
       this.tell("connection", { isOpen: true });
-      const kept = sessionStorage.getItem(KEPT);
-      sessionStorage.removeItem(KEPT);
-      if (kept) this.send({ type: "restore", state: JSON.parse(kept) });
+      if (this.isNew) this.restore();
+      this.isNew = false;
     };
     this.socket.onmessage = (event) =>
       typeof event.data === "string" ? this.takeText(event.data) : this.takeFrame(event.data);
     this.socket.onclose = (event) => {
       this.tell("connection", { isOpen: false });
       if (event.code === 4404) {
-        // The server was started anew and does not know this window; the next one brings back what this one had.
-        const state = this.latest.get("state");
-        if (state) sessionStorage.setItem(KEPT, JSON.stringify(state.state));
-        location.reload();
+        location.reload(); // the server was started anew and does not know this window
         return;
       }
       setTimeout(() => this.connect(), this.wait);
