@@ -250,9 +250,7 @@ def test_what_a_pixel_shows(watched: Watched) -> None:
         watched.loop.point(u, v).result(10)
 
 
-def test_a_slow_frame_has_the_exposure_that_was_set_meanwhile(
-    watched: Watched, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_slow_frame_has_the_exposure_set_meanwhile(watched: Watched, monkeypatch: pytest.MonkeyPatch) -> None:
     """The last frame of a picture above all, after which no other comes."""
     monkeypatch.setattr(Pace, "is_slow", lambda *_: True)
     monkeypatch.setattr(Pace, "was_slow", lambda *_: True)

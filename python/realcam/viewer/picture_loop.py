@@ -254,7 +254,8 @@ class PictureLoop:
         is_new_size = picture.size != whole
         if is_new_size:
             picture.size = self._pace.next_size(picture.size, whole)
-        spp = min(self._pace.refining_spp(picture.size), max(1, request.max_spp - picture.samples))
+        missing = request.max_spp - (0 if is_new_size else picture.samples)
+        spp = min(self._pace.refining_spp(picture.size), max(1, missing))
         if picture.kept is None and self._pace.is_slow(spp, picture.size):
             picture.kept = self._live_arrays()
         with self._wake:

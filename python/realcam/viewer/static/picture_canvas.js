@@ -57,7 +57,7 @@ export default {
     /// As wide as the column, but no higher than most of the window.
     stageStyle() {
       const h = this.header;
-      return h ? { width: `min(100%, ${(70 * h.whole_width) / h.whole_height}vh)` } : {};
+      return h ? { width: `min(100%, ${(50 * h.whole_width) / h.whole_height}vh)` } : {};
     },
     description() {
       return `The picture through the lens. ${this.status}`;
