@@ -1,11 +1,16 @@
-"""The devices that the tests render with."""
+"""The devices that the tests render with, and signals as a terminal's programs have them."""
 
 from __future__ import annotations
 
+import signal
 from importlib.util import find_spec
 
 import pytest
 import realcam as rc
+
+# A shell's background jobs ignore Ctrl-C, and so would the programs that tests start and interrupt.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(params=sorted({line.split(":")[0] for line in rc.devices()}))

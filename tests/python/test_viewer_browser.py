@@ -225,7 +225,8 @@ def test_an_impossible_edit_and_back(bench: BenchPage) -> None:
     problem = until(lambda: bench.test_id("problem").all_text_contents(), bool, "told")[0]
     assert "surface 3" in problem
     assert bench.page.locator(".rc-table tr.rc-bad th").text_content().strip() == "3"
-    assert np.array_equal(bench.picture(), before)
+    # The same picture, though perhaps with more samples or sent again as a finer JPEG: these differ by some codes.
+    assert np.mean(np.abs(bench.picture().astype(float) - before)) < 6
     assert bench.figure("effective_focal_length_mm") == figure
     bench.edit(2, "radius_mm", "19.5")
     until(bench.test_id("problem").count, lambda count: count == 0, "over")
