@@ -84,7 +84,7 @@ def act_out(capture: Capture) -> None:
     page.mouse.move(x, y)
     page.mouse.down()
     place = iter(range(1, 100))
-    capture.each(6, lambda: page.mouse.move(x - 1.2 * next(place), y))
+    capture.each(6, lambda: page.mouse.move(x - 0.6 * next(place), y))
     page.mouse.up()
     page.get_by_role("button", name="Undo").click()
     capture.take(RESTING_MS)

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
 from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import realcam as rc
+
+if TYPE_CHECKING:
+    from .bench_pages import BenchPage, Server
 
 # A shell's background jobs ignore Ctrl-C, and so would the programs that tests start and interrupt.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
@@ -23,6 +28,35 @@ def device(request: pytest.FixtureRequest) -> str:
 def backend(device: str) -> str:
     """What a measurement calls it."""
     return {"cpu": "Embree", "cuda": "CUDA"}.get(device, device)
+
+
+# What tests of the lens bench share; those that ask for it say where nicegui, playwright or chromium is missing.
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """`realcam view` on a shot of three panels."""
+    from .bench_pages import served_panels
+
+    yield from served_panels(tmp_path_factory.mktemp("bench"))
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    from playwright.sync_api import sync_playwright
+
+    from .bench_pages import launched
+
+    with sync_playwright() as driver:
+        yield from launched(driver)
+
+
+@pytest.fixture
+def bench(browser: Any, server: Server) -> Iterator[BenchPage]:
+    """A page of it."""
+    from .bench_pages import opened
+
+    yield from opened(browser, server)
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

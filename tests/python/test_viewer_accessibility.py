@@ -2,37 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
 
 pytest.importorskip("nicegui")
 playwright = pytest.importorskip("playwright.sync_api")
 axe = pytest.importorskip("axe_playwright_python.sync_playwright")
 
-from .bench_pages import CHROMIUM, BenchPage, Server, launched, opened, served_panels, until  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, until  # noqa: E402
 
 pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
 RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"], "resultTypes": ["violations"]}
 THEMES = ("Light", "Dark")
 SIZES = ((1400, 1000), (390, 800))  # of a desktop and of a telephone
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    yield from served_panels(tmp_path_factory.mktemp("bench"))
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[playwright.Browser]:
-    with playwright.sync_playwright() as driver:
-        yield from launched(driver)
-
-
-@pytest.fixture
-def bench(browser: playwright.Browser, server: Server) -> Iterator[BenchPage]:
-    yield from opened(browser, server)
 
 
 def check(bench: BenchPage) -> None:

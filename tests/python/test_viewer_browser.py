@@ -6,7 +6,6 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,25 +16,9 @@ pytest.importorskip("nicegui")
 playwright = pytest.importorskip("playwright.sync_api")
 
 from . import bench_shots  # noqa: E402
-from .bench_pages import CHROMIUM, BenchPage, Server, launched, opened, served_panels, until  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, until  # noqa: E402
 
 pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    yield from served_panels(tmp_path_factory.mktemp("bench"))
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[playwright.Browser]:
-    with playwright.sync_playwright() as driver:
-        yield from launched(driver)
-
-
-@pytest.fixture
-def bench(browser: playwright.Browser, server: Server) -> Iterator[BenchPage]:
-    yield from opened(browser, server)
 
 
 def sharp(picture: np.ndarray) -> tuple[float, float, float]:
