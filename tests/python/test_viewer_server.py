@@ -339,7 +339,8 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
 
 def random_message(chance: random.Random) -> dict:
     kind = chance.choice(
-        ["orbit", "orbit", "pan", "dolly", "focus", "meter", "hover", "edit", "edit", "edit", "edit"]
+        # Of focus and meter few, because they wait for a picture, of lenses that take a second to be made ready.
+        [*["orbit", "orbit", "pan", "dolly", "hover", "edit", "edit", "edit", "edit"] * 3, "focus", "meter"]
         if chance.random() < 0.6
         else ["insert", "remove", "swap", "undo", "redo", "turn", "turn", "switch"]
     )
