@@ -11,7 +11,6 @@ import argparse
 import json
 import os
 import shutil
-import socket
 import subprocess
 import sys
 import time
@@ -20,6 +19,7 @@ from typing import Any
 
 from playwright.sync_api import Page, sync_playwright
 from realcam.cli.demo import scenes_folder
+from viewer_speed import free_port
 
 SECONDS = 6.0
 
@@ -75,9 +75,7 @@ def main() -> None:
     parser.add_argument("--shot", type=Path, default=scenes_folder() / "demo.toml")
     parser.add_argument("--size", type=int, nargs=2, default=(1400, 1000), help="of the window, in pixels")
     options = parser.parse_args()
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     command = [sys.executable, "-m", "realcam", "view", str(options.shot), "--no-browser", "--port", str(port)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server, sync_playwright() as driver:
         try:
