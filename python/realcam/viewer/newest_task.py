@@ -7,6 +7,8 @@ import threading
 import time
 from collections.abc import Callable
 
+from .._core import Cancelled
+
 _log = logging.getLogger(__name__)
 
 
@@ -53,5 +55,7 @@ class NewestTask:
                     return
             try:
                 task()
+            except Cancelled:
+                pass  # Python ends, and stops all work
             except Exception:
                 _log.exception("a task of thread %s failed", self._thread.name)

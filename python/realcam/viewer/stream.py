@@ -11,7 +11,6 @@ import contextlib
 import logging
 import struct
 import time
-from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from typing import Any
@@ -19,9 +18,10 @@ from typing import Any
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .._core import Plan, RealcamError
+from .inbox import Inbox
 from .lens_bench import LensBench
 from .listeners import Problem
-from .messages import BadMessage, Message, json_text, merged, parsed, perform
+from .messages import BadMessage, json_text, parsed, perform
 from .picture_request import Frame
 from .server_loop import call_on_loop
 
@@ -29,7 +29,6 @@ _log = logging.getLogger(__name__)
 
 _QUALITIES = (40, 90)  # of JPEG
 _SLOW_S, _QUICK_S = 0.120, 0.050  # from sending a frame to its acknowledgement
-_MOST_WAITING = 64  # messages of the page that are not done yet
 
 
 class PictureStream:
@@ -41,8 +40,7 @@ class PictureStream:
         self._frames: dict[str, Frame] = {}
         self._texts: dict[str, str] = {}
         self._news = asyncio.Event()
-        self._inbox: deque[Message] = deque()
-        self._mail, self._room = asyncio.Event(), asyncio.Event()
+        self._inbox = Inbox()  #: outlives a connection that is lost
         self._serving: list[asyncio.Task[None]] = []  #: of the newest connection
         self._sent: tuple[str, float] | None = None  #: the frame that is not acknowledged, and when it was sent
         self._sent_frame: Frame | None = None  #: the last one
@@ -61,7 +59,6 @@ class PictureStream:
         for task in self._serving:  # a connection that has died without a word would go on taking frames
             task.cancel()
         self._sent = None
-        self._inbox.clear()
         tasks = [
             asyncio.create_task(part)
             for part in (self._receive(socket), self._send(socket), self._work(), self._begin())
@@ -72,6 +69,7 @@ class PictureStream:
             for task in done:
                 error = None if task.cancelled() else task.exception()
                 if isinstance(error, BadMessage):
+                    self._inbox.clear()
                     await socket.close(1008, str(error)[:100])
                 elif error and not isinstance(error, WebSocketDisconnect | RuntimeError):
                     raise error
@@ -92,35 +90,21 @@ class PictureStream:
                 raise BadMessage("texts are wanted")
             if text.startswith("ack "):
                 self._acknowledge(text[4:])
-                continue
-            message = parsed(text)
-            one = merged(self._inbox[-1], message) if self._inbox else None
-            if one is not None:
-                self._inbox[-1] = one
             else:
-                while len(self._inbox) >= _MOST_WAITING:  # nothing more is read, so that nothing is lost
-                    self._room.clear()
-                    await self._room.wait()
-                self._inbox.append(message)
-            self._mail.set()
+                self._inbox.put(parsed(text), len(text))
 
     async def _work(self) -> None:
         while True:
-            await self._mail.wait()
-            self._mail.clear()
-            while self._inbox:
-                message = self._inbox.popleft()
-                self._room.set()
-                done = self._loop.run_in_executor(self._executor, perform, message, self._bench)
-                try:
-                    await done
-                except BadMessage:
-                    raise
-                except RealcamError as error:
-                    self._offer_problem(Problem(str(error)))
-                except Exception:
-                    _log.exception("%.200s could not be done", message)
-                    self._offer_problem(Problem("that could not be done; the server's log says more"))
+            message = await self._inbox.next()
+            try:
+                await self._loop.run_in_executor(self._executor, perform, message, self._bench)
+            except BadMessage:
+                raise
+            except RealcamError as error:
+                self._offer_problem(Problem(str(error)))
+            except Exception:
+                _log.exception("%.200s could not be done", message)
+                self._offer_problem(Problem("that could not be done; the server's log says more"))
 
     async def _send(self, socket: WebSocket) -> None:
         while True:

@@ -1,0 +1,58 @@
+"""Work that each change makes out of date."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Iterator
+
+import pytest
+import realcam as rc
+from realcam.viewer.newest_task import NewestTask
+
+WAIT_S = 30.0
+
+
+@pytest.fixture
+def tasks() -> Iterator[NewestTask]:
+    made = NewestTask("realcam-test")
+    yield made
+    made.close()
+
+
+def test_of_those_that_wait_the_newest_is_done(tasks: NewestTask) -> None:
+    begun, may, ended = threading.Event(), threading.Event(), threading.Event()
+    done: list[int] = []
+
+    def first() -> None:
+        begun.set()
+        assert may.wait(WAIT_S)
+        done.append(0)
+
+    tasks.submit(first)
+    assert begun.wait(WAIT_S)
+    for k in (1, 2):
+        tasks.submit(lambda k=k: done.append(k))
+    tasks.submit(lambda: (done.append(3), ended.set()))
+    may.set()
+    assert ended.wait(WAIT_S)
+    assert done == [0, 3]
+
+
+@pytest.mark.parametrize(("error", "logged"), [(ValueError("a mistake of ours"), 1), (rc.Cancelled("Python ends"), 0)])
+def test_a_task_that_fails_is_logged_and_the_next_is_done(
+    tasks: NewestTask, caplog: pytest.LogCaptureFixture, error: Exception, logged: int
+) -> None:
+    """Not one that Ctrl-C has stopped."""
+    failed, ended = threading.Event(), threading.Event()
+
+    def fails() -> None:
+        failed.set()
+        raise error
+
+    with caplog.at_level(logging.WARNING, logger="realcam"):
+        tasks.submit(fails)
+        assert failed.wait(WAIT_S)
+        tasks.submit(ended.set)
+        assert ended.wait(WAIT_S)
+    assert len(caplog.records) == logged
