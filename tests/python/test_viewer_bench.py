@@ -79,7 +79,7 @@ def codes(bench: LensBench) -> np.ndarray:
 
 
 def state(bench: LensBench) -> tuple[Any, ...]:
-    return bench.controls, bench.history.lens, bench.history.can_undo, bench.history.can_redo
+    return bench.controls, bench.history.now.lens, bench.history.can_undo, bench.history.can_redo
 
 
 def test_the_bench_begins_with_the_shot(bench: LensBench, shot_path: Path) -> None:
@@ -193,7 +193,7 @@ def test_an_undo_that_cannot_be_leaves_the_history(bench: LensBench) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(CameraControls, "camera", property(picky))
         assert not bench.undo()
-        assert (bench.controls.lens, bench.history.lens) == (edited, edited)
+        assert (bench.controls.lens, bench.history.now.lens) == (edited, edited)
         assert bench.history.can_undo
     assert bench.undo()
     assert bench.controls.lens == first
@@ -225,6 +225,24 @@ def test_another_lens_brings_its_film_and_keeps_the_rings(bench: LensBench) -> N
     bench.change(focus_m=0.45)
     assert bench.set_lens(rc.Lens.load("telephoto-200mm-inner-focus"))
     assert bench.controls.focus_m == 2.5  # its nearest
+
+
+def test_an_edited_lens_comes_back_after_another(bench: LensBench) -> None:
+    """With its film, and of the pixels that are wanted now."""
+    assert bench.edit_value(0, "radius_mm", 41.0)
+    edited, film = bench.controls.lens, bench.controls.film
+    assert bench.set_lens(rc.Lens.load("phone-4mm"))
+    phone = bench.controls.mount
+    assert bench.set_resolution(2 * bench_shots.WIDTH)
+    assert bench.undo()
+    assert bench.controls.lens == edited
+    assert bench.controls.film.width_mm == film.width_mm
+    assert bench.controls.film.resolution == (2 * film.resolution[0], 2 * film.resolution[1])
+    assert bench.redo()
+    assert bench.controls.lens == phone.lens
+    assert bench.controls.film.width_mm == phone.film.width_mm
+    assert bench.undo()
+    assert bench.undo()
     assert not bench.history.can_undo
 
 

@@ -7,7 +7,8 @@ import math
 import pytest
 import realcam as rc
 from realcam.viewer import lens_edits
-from realcam.viewer.lens_edits import LensHistory, glass_of, with_plate, with_value
+from realcam.viewer.history import History
+from realcam.viewer.lens_edits import glass_of, with_plate, with_value
 
 LENS = rc.Lens.load("double-gauss-50mm")
 
@@ -171,7 +172,7 @@ def lenses(count: int) -> list[rc.Lens]:
 
 
 def test_undo_and_redo() -> None:
-    history = LensHistory(LENS)
+    history = History(LENS)
     assert (history.can_undo, history.can_redo) == (False, False)
     assert history.undo() is LENS
     a, b, c = lenses(3)
@@ -187,7 +188,7 @@ def test_undo_and_redo() -> None:
 
 
 def test_a_drag_is_undone_in_one_step() -> None:
-    history = LensHistory(LENS)
+    history = History(LENS)
     drag = lenses(10)
     for lens in drag[:5]:
         history.push(lens, 1)
@@ -201,7 +202,7 @@ def test_a_drag_is_undone_in_one_step() -> None:
 
 
 def test_a_drag_after_an_undo_forgets_what_was_undone() -> None:
-    history = LensHistory(LENS)
+    history = History(LENS)
     a, b, c = lenses(3)
     history.push(a, 1)
     history.push(b, 2)
@@ -211,7 +212,7 @@ def test_a_drag_after_an_undo_forgets_what_was_undone() -> None:
 
 
 def test_the_history_has_an_end() -> None:
-    history = LensHistory(LENS)
+    history = History(LENS)
     for lens in lenses(300):
         history.push(lens)
     steps = 0
@@ -219,7 +220,7 @@ def test_the_history_has_an_end() -> None:
         history.undo()
         steps += 1
     assert 100 <= steps <= 300
-    assert history.lens != LENS
+    assert history.now != LENS
 
 
 def test_what_the_zoom_ring_moves_is_not_edited() -> None:

@@ -5,10 +5,23 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 from .._core import Camera, Film, InputError, Lens
 from .pose import Pose
 from .ring_scales import ISO, SHUTTER_S, Ring, aperture_ring
+
+
+class Mount(NamedTuple):
+    """A lens as edits have made it, and the film behind it."""
+
+    lens: Lens
+    film: Film
+
+
+def of_width(film: Film, width: int) -> Film:
+    """A film with so many pixels across; how many there are upwards follows from its size."""
+    return film.replace(resolution=(width, max(1, round(width * film.height_mm / film.width_mm))))
 
 
 @dataclass(frozen=True)
@@ -102,6 +115,14 @@ class CameraControls:
         if ring == "iso":
             return replace(self, iso=ISO.turned(self.iso, steps))
         raise InputError(f'there is no ring "{ring:.40}"')
+
+    @property
+    def mount(self) -> Mount:
+        return Mount(self.lens, self.film)
+
+    def with_mount(self, mount: Mount) -> CameraControls:
+        """Another lens with its film, of as many pixels across as now."""
+        return replace(self.with_lens(mount.lens), film=of_width(mount.film, self.film.resolution[0]))
 
     def with_lens(self, lens: Lens) -> CameraControls:
         """Another lens or an edited one; its zoom position stays where it has one of that name."""

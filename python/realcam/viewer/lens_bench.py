@@ -8,21 +8,19 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from .. import planning
-from .._core import Film, InputError, Lens, LensFileError, NothingToPlan, Plan, RealcamError
+from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError
 from ..image import Image
-from ..photography import SharpRange, depth_of_field
 from ..shot import Shot
-from .bench_state import restored, state_of
-from .camera_controls import CameraControls
+from .bench_state import restored
+from .camera_controls import CameraControls, Mount, of_width
 from .comparison import Comparison
 from .effect_switches import EFFECTS, Switches
-from .lens_edits import LensHistory, with_value
-from .lens_view import drawn_heights_mm, lens_view, ray_view
-from .level_costs import measured_levels
+from .follow_ups import FollowUps
+from .history import History
+from .lens_edits import with_value
+from .lens_view import drawn_heights_mm
 from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
-from .newest_task import NewestTask
 from .picture_loop import PictureLoop
 from .picture_request import Frame, PictureRequest
 from .remote import RemotePictureLoop
@@ -43,7 +41,7 @@ class LensBench:
         self.shot, self._device = shot, device
         self.listeners = Listeners()
         self.controls = CameraControls.of(shot.camera)
-        self.history = LensHistory(self.controls.lens)
+        self.history = History(self.controls.mount)
         self.switches = Switches.of_shot(shot.effects)
         self.plan: Plan | None = None
         self.problem: Problem | None = None
@@ -54,21 +52,12 @@ class LensBench:
         self._make_loop = make_loop
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
         self._loops = {"a": self._new_loop("a")}
-        # After the picture's first frame.
-        self._drawing = NewestTask("realcam-drawing", delay_s=0.02)
-        self._tracing = NewestTask("realcam-rays", delay_s=0.02)
-        # Both take as long as some frames of the picture.
-        self._planning = NewestTask("realcam-planning", quiet_s=0.4)
-        self._measuring_rungs = NewestTask("realcam-rungs")
-        self._measuring = NewestTask("realcam-depth-of-field", quiet_s=0.1)
-        self._keeping = NewestTask("realcam-state", quiet_s=0.5)
+        self._follow_ups = FollowUps(shot, device, self.listeners)
 
     def close(self) -> None:
         """Ends all threads of the window."""
-        self.listeners = Listeners()
-        tasks = self._drawing, self._tracing, self._planning, self._measuring, self._measuring_rungs, self._keeping
-        for task in tasks:
-            task.close()
+        self.listeners.leave()
+        self._follow_ups.close()
         for loop in self._loops.values():
             loop.close()
 
@@ -78,7 +67,6 @@ class LensBench:
         """Photographs and draws everything as it stands, for a page that has just been opened."""
         self._photograph()
         self._draw()
-        self._measure()
         self._ask_for_plan()
         self.listeners.controls()
         self.listeners.problem(self.problem)
@@ -126,16 +114,14 @@ class LensBench:
 
     def set_resolution(self, width: int) -> bool:
         """Pixels across; the height follows from the film."""
-        film = self.controls.film
-        height = max(1, round(width * film.height_mm / film.width_mm))
-        return self._take(lambda: replace(self.controls, film=film.replace(resolution=(width, height))))
+        return self._take(lambda: replace(self.controls, film=of_width(self.controls.film, width)))
 
     def restore(self, state: dict[str, Any]) -> bool:
         """What a page has kept of the bench that it had before; see bench_state."""
         switches = state.get("switches")
         if not self._take(lambda: restored(self.controls, state)):
             return False
-        self.history = LensHistory(self.controls.lens)
+        self.history = History(self.controls.mount)
         for effect, setting in (switches if isinstance(switches, dict) else {}).items():
             self.switch(effect, setting)
         self.listeners.controls()
@@ -145,32 +131,16 @@ class LensBench:
 
     def set_lens(self, lens: Lens) -> bool:
         """Another lens on the camera, with its own film."""
-        width = self.controls.film.resolution[0]
-        film = Film.for_lens(lens, None, (width, max(1, round(width * lens.film_mm[1] / lens.film_mm[0]))))
-
-        def controls() -> CameraControls:
-            fitted = replace(self.controls.with_lens(lens), film=film)
-            try:
-                return fitted.focused_within_reach()
-            except InputError:  # too near for it, and its file does not say what its nearest focus is
-                return replace(fitted, focus_m=math.inf)
-
-        if not self._take(controls):
+        if not self._take(lambda: self._fitted(Mount(lens, Film.for_lens(lens)))):
             return False
-        self.history = LensHistory(self.controls.lens)
-        self.listeners.controls()
+        self._push()
         return True
 
     def edit(self, edited: Callable[[Lens], Lens], gesture: object = None) -> bool:
         """Changes the lens; see lens_edits. gesture: the same for all steps of one drag."""
-
-        def controls() -> CameraControls:
-            return self.controls.with_lens(edited(self.history.lens)).focused_within_reach()
-
-        if not self._take(controls):
+        if not self._take(lambda: self.controls.with_lens(edited(self.controls.lens)).focused_within_reach()):
             return False
-        self.history.push(self.controls.lens, gesture)
-        self.listeners.controls()
+        self._push(gesture)
         return True
 
     def edit_value(self, surface: int, field: str, value: Any, gesture: object = None) -> bool:
@@ -190,12 +160,24 @@ class LensBench:
     def redo(self) -> bool:
         return self.history.can_redo and self._step(self.history.redo, self.history.undo)
 
-    def _step(self, there: Callable[[], Lens], back: Callable[[], Lens]) -> bool:
-        lens = there()
-        if self._take(lambda: self.controls.with_lens(lens).focused_within_reach()):
+    def _step(self, there: Callable[[], Mount], back: Callable[[], Mount]) -> bool:
+        mount = there()
+        if self._take(lambda: self._fitted(mount)):
             return True
         back()
         return False
+
+    def _push(self, gesture: object = None) -> None:
+        self.history.push(self.controls.mount, gesture)
+        self.listeners.controls()
+
+    def _fitted(self, mount: Mount) -> CameraControls:
+        """The camera with a lens and the film that belongs to it, of as many pixels across as now."""
+        controls = self.controls.with_mount(mount)
+        try:
+            return controls.focused_within_reach()
+        except InputError:  # too near for it, and its file does not say what its nearest focus is
+            return replace(controls, focus_m=math.inf)
 
     def hover(self, u: float, v: float) -> None:
         """Draws the rays of what is at u, v of the picture."""
@@ -236,13 +218,7 @@ class LensBench:
 
     def measure_rungs(self) -> None:
         """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
-        camera = self.controls.camera
-
-        def measure() -> None:
-            self.listeners.rungs([], "measuring ...")
-            self.listeners.rungs(*measured_levels(self.shot.scene, camera, self._device))
-
-        self._measuring_rungs.submit(measure)
+        self._follow_ups.measure_levels(self.controls.camera)
 
     # What comes of it.
 
@@ -312,7 +288,6 @@ class LensBench:
         )
         if lens_changed:
             self._draw()
-            self._measure()
         self._ask_for_plan()
         self._keep()
         if replace(before, pose=controls.pose) != controls:
@@ -345,58 +320,26 @@ class LensBench:
             self._set_problem(Problem(f"the picture to compare with: {error}"))
 
     def _draw(self) -> None:
-        lens = self.controls.set_lens
-        self._drawing.submit(lambda: self.listeners.lens(lens_view(lens)))
+        self._follow_ups.draw(self.controls.set_lens)
+        self._follow_ups.measure_depth_of_field(self.controls.set_lens)
         self._trace()
 
     def _trace(self) -> None:
-        lens, heights = self.controls.set_lens, drawn_heights_mm(self.controls.film, self.hovered)
-        self._tracing.submit(lambda: self.listeners.rays(ray_view(lens, heights)))
+        self._follow_ups.trace(self.controls.set_lens, drawn_heights_mm(self.controls.film, self.hovered))
 
     def _keep(self) -> None:
-        controls, switches = self.controls, dict(self.switches.of)
-        self._keeping.submit(lambda: self.listeners.state(state_of(controls, switches)))
-
-    def _measure(self) -> None:
-        lens = self.controls.set_lens
-
-        def measure() -> None:
-            try:
-                sharp = depth_of_field(lens).real
-            except InputError:
-                sharp = SharpRange(math.nan, math.nan)
-            self.listeners.sharp_range(sharp)
-
-        self._measuring.submit(measure)
+        self._follow_ups.keep(self.controls, dict(self.switches.of))
 
     def _ask_for_plan(self) -> None:
-        if "auto" not in self.switches.of.values():
+        if "auto" in self.switches.of.values():
+            self._follow_ups.plan(self.controls.camera, self.switches.as_words(), self._take_plan)
+        else:
             self.plan = None
-            self._planning.submit(lambda: self.listeners.plan(None, ""))  # how the switches stand
-            return
-        controls = self.controls
-        words = self.switches.as_words()
+            self._follow_ups.plan_nothing(self._take_plan)  # how the switches stand is told all the same
 
-        def plan() -> None:
-            note = ""
-            found: Plan | None = None
-            try:
-                found = planning.plan(
-                    self.shot.scene,
-                    controls.camera.replace(model="full"),
-                    device=self._device,
-                    seed=self.shot.seed,
-                    max_bounces=self.shot.max_bounces,
-                    effects=words,
-                )
-            except NothingToPlan as nothing:
-                note = str(nothing)
-            except RealcamError as error:
-                note = str(error)
-            before = self.switches.named(self.plan)
-            self.plan = found
-            self.listeners.plan(found, note)
-            if self.switches.named(found) != before:
-                self._photograph()
-
-        self._planning.submit(plan)
+    def _take_plan(self, plan: Plan | None, note: str) -> None:
+        before = self.switches.named(self.plan)
+        self.plan = plan
+        self.listeners.plan(plan, note)
+        if self.switches.named(plan) != before:
+            self._photograph()

@@ -1,4 +1,4 @@
-"""Changes of a lens as a user makes them in its table and drawing, with undo and redo."""
+"""Changes of a lens as a user makes them in its table and drawing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from typing import Any
 
 from .._core import Glass, InputError, Lens, Surface
 
-_MOST_STEPS = 200
 _PLATE_GLASS = "schott:N-BK7"
 _BETWEEN_NUMBERS = str.maketrans(",/()", "    ")  # as labels of glasses have them: "1.67 / 47.1" and "(1.67, 47.1)"
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
@@ -153,46 +152,6 @@ def glass_of(text: Any) -> float | tuple[float, float] | Glass | None:
             raise InputError("a glass is its index, its index and its Abbe number, or its name")
         return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
     return Glass.named(" ".join(words))
-
-
-class LensHistory:
-    """The lenses that edits have made, of which one is shown."""
-
-    def __init__(self, lens: Lens) -> None:
-        self._lenses, self._at = [lens], 0
-        self._gesture: object = None
-
-    @property
-    def lens(self) -> Lens:
-        return self._lenses[self._at]
-
-    @property
-    def can_undo(self) -> bool:
-        return self._at > 0
-
-    @property
-    def can_redo(self) -> bool:
-        return self._at + 1 < len(self._lenses)
-
-    def push(self, lens: Lens, gesture: object = None) -> None:
-        """What comes of one drag has one `gesture`, and is undone in one step."""
-        if gesture is not None and gesture == self._gesture:
-            self._lenses[self._at] = lens
-            return
-        self._gesture = gesture
-        self._lenses[self._at + 1 :] = [lens]
-        del self._lenses[:-_MOST_STEPS]
-        self._at = len(self._lenses) - 1
-
-    def undo(self) -> Lens:
-        self._gesture = None
-        self._at = max(0, self._at - 1)
-        return self.lens
-
-    def redo(self) -> Lens:
-        self._gesture = None
-        self._at = min(len(self._lenses) - 1, self._at + 1)
-        return self.lens
 
 
 def _is_moved_by_zoom(lens: Lens, index: int) -> bool:

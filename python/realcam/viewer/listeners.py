@@ -32,3 +32,7 @@ class Listeners:
     rungs: Callable[[list[dict[str, Any]], str], None] = lambda rungs, note: None
     state: Callable[[dict[str, Any]], None] = lambda state: None
     sharp_range: Callable[[SharpRange], None] = lambda sharp: None
+
+    def leave(self) -> None:
+        """Nobody is told anything any more."""
+        self.__dict__.update(vars(Listeners()))

@@ -29,7 +29,7 @@ export default {
 <section class="rc-lens" aria-label="Lens">
   <div class="rc-lens-head">
     <h2>{{ view ? view.title || view.name : "No lens yet" }}</h2>
-    <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last edit of the lens back (Ctrl+Z)">Undo</button>
+    <button type="button" @click="send('undo')" :disabled="!history.can_undo" title="Take the last change of the lens back (Ctrl+Z)">Undo</button>
     <button type="button" @click="send('redo')" :disabled="!history.can_redo" title="Do it again (Ctrl+Y)">Redo</button>
     <label title="Blue faces have their centre of curvature on the film's side, red ones on the object's"><input type="checkbox" v-model="colours"> Signs of radii</label>
     <label title="Pupils, principal planes and focal points"><input type="checkbox" v-model="showsMarks"> Marks</label>

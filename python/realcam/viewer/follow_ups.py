@@ -1,0 +1,91 @@
+"""What is told of a camera besides its picture, each on a thread of its own and after the picture's first frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from .. import planning
+from .._core import Camera, InputError, Lens, Plan, RealcamError
+from ..photography import SharpRange, depth_of_field
+from ..shot import Shot
+from .bench_state import state_of
+from .camera_controls import CameraControls
+from .lens_view import lens_view, ray_view
+from .level_costs import measured_levels
+from .listeners import Listeners
+from .newest_task import NewestTask
+
+
+class FollowUps:
+    """Draws, measures and plans for a bench; of what is asked for several times the newest is told to the listeners."""
+
+    def __init__(self, shot: Shot, device: str, listeners: Listeners) -> None:
+        self._shot, self._device, self._listeners = shot, device, listeners
+        self._drawing = NewestTask("realcam-drawing", delay_s=0.02)
+        self._tracing = NewestTask("realcam-rays", delay_s=0.02)
+        # Both take as long as some frames of the picture.
+        self._planning = NewestTask("realcam-planning", quiet_s=0.4)
+        self._measuring_levels = NewestTask("realcam-levels")
+        self._measuring_depth = NewestTask("realcam-depth-of-field", quiet_s=0.1)
+        self._keeping = NewestTask("realcam-state", quiet_s=0.5)
+
+    def close(self) -> None:
+        """Ends all threads after what they are doing."""
+        measuring = self._measuring_depth, self._measuring_levels
+        for task in (self._drawing, self._tracing, self._planning, *measuring, self._keeping):
+            task.close()
+
+    def draw(self, lens: Lens) -> None:
+        self._drawing.submit(lambda: self._listeners.lens(lens_view(lens)))
+
+    def trace(self, lens: Lens, heights_mm: Sequence[float]) -> None:
+        """The rays that end at heights on the film."""
+        self._tracing.submit(lambda: self._listeners.rays(ray_view(lens, heights_mm)))
+
+    def measure_depth_of_field(self, lens: Lens) -> None:
+        def measure() -> None:
+            try:
+                sharp = depth_of_field(lens).real
+            except InputError:
+                sharp = SharpRange(math.nan, math.nan)
+            self._listeners.sharp_range(sharp)
+
+        self._measuring_depth.submit(measure)
+
+    def measure_levels(self, camera: Camera) -> None:
+        """Takes the shot at all levels of simulation, in few pixels, and tells what each costs (docs/accuracy.md)."""
+
+        def measure() -> None:
+            self._listeners.rungs([], "measuring ...")
+            self._listeners.rungs(*measured_levels(self._shot.scene, camera, self._device))
+
+        self._measuring_levels.submit(measure)
+
+    def keep(self, controls: CameraControls, switches: dict[str, str]) -> None:
+        """For a page that is loaded again."""
+        self._keeping.submit(lambda: self._listeners.state(state_of(controls, switches)))
+
+    def plan(self, camera: Camera, effects: list[str], take: Callable[[Plan | None, str], None]) -> None:
+        """Decides on effects, as shot files name them. `take` gets the plan, or None and why there is none."""
+
+        def plan() -> None:
+            try:
+                found = planning.plan(
+                    self._shot.scene,
+                    camera.replace(model="full"),
+                    device=self._device,
+                    seed=self._shot.seed,
+                    max_bounces=self._shot.max_bounces,
+                    effects=effects,
+                )
+            except RealcamError as error:
+                take(None, str(error))
+            else:
+                take(found, "")
+
+        self._planning.submit(plan)
+
+    def plan_nothing(self, take: Callable[[Plan | None, str], None]) -> None:
+        """In place of a plan that is not wanted any more."""
+        self._planning.submit(lambda: take(None, ""))
