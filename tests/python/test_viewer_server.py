@@ -206,10 +206,15 @@ def test_a_token_is_wanted_from_other_machines(browser: playwright.Browser, tmp_
 def test_a_dead_connection_does_not_keep_the_frames(bench: BenchPage, server: Server) -> None:
     """A link that breaks without a word leaves the server with a socket that acknowledges nothing."""
     done(bench)
+    bench.page.evaluate("window.first = [...realcamStreams.values()][0].socket")
     with stream(server, stream_path(bench)) as dead:
         dead.recv(timeout=30)  # takes over, and never acknowledges
         until(
-            lambda: bench.page.evaluate("[...realcamStreams.values()][0].socket.readyState"), lambda s: s == 1, "back"
+            lambda: bench.page.evaluate(
+                "() => { const s = [...realcamStreams.values()][0].socket; return s !== first && s.readyState; }"
+            ),
+            lambda state: state == 1,
+            "back",
         )
         before = bench.picture().astype(int)
         bench.send({"type": "orbit", "x": 0.2, "y": 0})
