@@ -16,7 +16,9 @@ endif()
 pybind11_add_module(_core MODULE NO_EXTRAS ${REALCAM_BINDINGS_SOURCES})
 target_link_libraries(_core PRIVATE realcam_settings)
 realcam_link_if_present(_core PRIVATE ${realcam_backends})
-set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python)
+# Most of the time goes into templates of pybind11 that all files share.
+set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python
+                      UNITY_BUILD ${REALCAM_UNITY} UNITY_BUILD_BATCH_SIZE 9)
 install(TARGETS _core LIBRARY DESTINATION realcam COMPONENT python)
 if(REALCAM_PICTURE_BINDINGS_SOURCES)
   pybind11_add_module(_pictures MODULE NO_EXTRAS ${REALCAM_PICTURE_BINDINGS_SOURCES}

@@ -16,6 +16,13 @@ foreach(header IN LISTS headers)
   list(APPEND cxx_sources ${source})
 endforeach()
 
+# All in one file, too: two that define one name would disturb each other in whatever links both.
+set(all_headers ${CMAKE_CURRENT_BINARY_DIR}/headers/all_headers.cpp)
+list(TRANSFORM headers REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
+list(JOIN includes "" includes)
+file(CONFIGURE OUTPUT ${all_headers} CONTENT "${includes}" @ONLY)
+list(APPEND cxx_sources ${all_headers})
+
 # nvcc takes two seconds for each file, most of them for headers that all of them include. That a header includes what
 # it needs is known from C++, so that it may stand behind others here.
 find_program(NVCC_PROGRAM nvcc PATHS /usr/local/cuda/bin)

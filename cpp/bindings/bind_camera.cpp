@@ -1,7 +1,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <array>
 #include <optional>
 #include <tuple>
 #include <variant>
@@ -14,6 +13,7 @@
 #include "../shot/names.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"
+#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {
@@ -22,11 +22,6 @@ using namespace py::literals;
 
 namespace {
 
-using Triple = std::array<double, 3>;
-
-Vec3d vector_of(const Triple& v) {
-    return {v[0], v[1], v[2]};
-}
 std::tuple<double, double, double> triple_of(Vec3d v) {
     return {v.x, v.y, v.z};
 }

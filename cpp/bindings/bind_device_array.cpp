@@ -38,7 +38,7 @@ py::array numpy_of(const SharedDeviceArray& array) {
     return copy;
 }
 
-py::object array_of(const SharedDeviceArray& array, const py::object& dtype, const py::object& copy) {
+py::object host_copy_of(const SharedDeviceArray& array, const py::object& dtype, const py::object& copy) {
     if (!copy.is_none() && !copy.cast<bool>())
         throw py::value_error("a DeviceArray becomes a numpy array only as a copy; copy=False is out of reach");
     const py::array numbers = numpy_of(array);
@@ -51,7 +51,7 @@ py::dict interface_of(const SharedDeviceArray& array) {
                     "data"_a = py::make_tuple(address, false), "strides"_a = py::none(), "stream"_a = py::none());
 }
 
-std::string text_of(const SharedDeviceArray& array) {
+std::string repr_of(const SharedDeviceArray& array) {
     return "realcam.DeviceArray(shape=" + py::repr(shape_of(array)).cast<std::string>() +
            ", dtype=" + py::str(dtype_of(array)).cast<std::string>() + ", device=\"" + device_of(array) + "\")";
 }
@@ -68,11 +68,11 @@ void bind_device_array(py::module_& m) {
         .def_property_readonly("dtype", &dtype_of, "numpy.dtype: float64, float32, int32 or uint8.")
         .def_property_readonly("device", &device_of, "As in `device` of Lens.trace: \"cuda:0\".")
         .def("numpy", &numpy_of, "A copy in the host's memory. Raises DeviceError.")
-        .def("__array__", &array_of, "dtype"_a = py::none(), py::kw_only(), "copy"_a = py::none(),
+        .def("__array__", &host_copy_of, "dtype"_a = py::none(), py::kw_only(), "copy"_a = py::none(),
              "For numpy.asarray. Raises ValueError for copy=False, and DeviceError.")
         .def("__len__",
              [](const SharedDeviceArray& array) { return array.shape().empty() ? 0 : array.shape().front(); })
-        .def("__repr__", &text_of)
+        .def("__repr__", &repr_of)
         .def("__reduce__",
              [](const SharedDeviceArray&) -> py::tuple {
                  throw py::type_error("a DeviceArray lies in a GPU's memory; pickle what its numpy() returns");

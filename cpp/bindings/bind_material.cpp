@@ -2,12 +2,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <variant>
 
 #include "../scene/scene_checks.hpp"
 #include "material.hpp"
 #include "short_text.hpp"
+#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {
@@ -16,12 +16,7 @@ using namespace py::literals;
 
 namespace {
 
-using Colour = std::array<float, 3>;
 using Which = std::variant<py::ssize_t, py::str>;
-
-Color rgb(const Colour& c) {
-    return {c[0], c[1], c[2]};
-}
 
 auto color_property(Color Material::* member) {
     return [member](const PythonMaterial& m) {
@@ -149,11 +144,12 @@ PythonMaterial make_metallic_roughness(const Colour& base_color, float metallic,
     return m;
 }
 
-PythonMaterial changed(PythonMaterial m, const std::optional<Colour>& diffuse, const std::optional<Colour>& specular,
-                       std::optional<float> shininess, const std::optional<Colour>& emission, const py::object& texture,
-                       const std::optional<std::string>& name, std::optional<float> metallic,
-                       std::optional<float> roughness, std::optional<float> transmission, std::optional<float> ior,
-                       std::optional<float> opacity) {
+PythonMaterial with_numbers(PythonMaterial m, const std::optional<Colour>& diffuse,
+                            const std::optional<Colour>& specular, std::optional<float> shininess,
+                            const std::optional<Colour>& emission, const py::object& texture,
+                            const std::optional<std::string>& name, std::optional<float> metallic,
+                            std::optional<float> roughness, std::optional<float> transmission, std::optional<float> ior,
+                            std::optional<float> opacity) {
     if (diffuse) m.values.diffuse = rgb(*diffuse);
     if (specular) m.values.specular = rgb(*specular);
     if (emission) m.values.emission = rgb(*emission);
@@ -300,7 +296,7 @@ void bind_material(py::module_& m) {
             "and of one channel: specular_weight_texture (the fourth, or the mean of fewer), clearcoat_texture and\n"
             "transmission_texture (red), clearcoat_roughness_texture (green). absorption, thin, emission, opacity and\n"
             "the other textures as in Material(). Raises InputError.")
-        .def("replace", &changed, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
+        .def("replace", &with_numbers, py::kw_only(), "diffuse"_a = py::none(), "specular"_a = py::none(),
              "shininess"_a = py::none(), "emission"_a = py::none(), "texture"_a = py::ellipsis(), "name"_a = py::none(),
              "metallic"_a = py::none(), "roughness"_a = py::none(), "transmission"_a = py::none(), "ior"_a = py::none(),
              "opacity"_a = py::none(),

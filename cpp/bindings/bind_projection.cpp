@@ -17,7 +17,7 @@ using namespace py::literals;
 
 namespace {
 
-using Array = InputArray<double>;
+using Doubles = InputArray<double>;
 
 SightRay sight_ray_from(const std::string& name) {
     if (name == "light") return SightRay::light;
@@ -60,13 +60,13 @@ std::shared_ptr<const SightLines> lines_of(const Camera& camera, SightRay ray) {
     return lines = std::move(made);
 }
 
-std::int64_t row_count(const Array& array, int columns, const char* what) {
+std::int64_t row_count(const Doubles& array, int columns, const char* what) {
     if (array.ndim() != 2 || array.shape(1) != columns)
         throw InputError(std::string(what) + " must be an array of shape (N, " + std::to_string(columns) + ")");
     return array.shape(0);
 }
 
-py::object project(const Camera& camera, const Array& points, const std::string& through, bool return_status) {
+py::object project(const Camera& camera, const Doubles& points, const std::string& through, bool return_status) {
     const SightRay ray = sight_ray_from(through);
     const std::int64_t count = row_count(points, 3, "points_m");
     py::array_t<double> pixels({count, std::int64_t{2}});
@@ -90,7 +90,7 @@ py::object project(const Camera& camera, const Array& points, const std::string&
     return py::make_tuple(pixels, status);
 }
 
-py::tuple rays_of(const Camera& camera, const Array& pixels, const std::string& through, bool return_light) {
+py::tuple rays_through(const Camera& camera, const Doubles& pixels, const std::string& through, bool return_light) {
     const SightRay which = sight_ray_from(through);
     const std::int64_t count = row_count(pixels, 2, "pixels");
     py::array_t<double> origins({count, std::int64_t{3}}), directions({count, std::int64_t{3}}), light(count);
@@ -161,7 +161,7 @@ void bind_projection(py::module_& m) {
              "film point; \"chief\": where the ray through the middle of the stop lands.\n"
              "NaN where the lens images no such point. return_status: return (pixels, status), with a\n"
              "ProjectionStatus for each point. Raises InputError.")
-        .def("ray", &rays_of, "pixels"_a, py::kw_only(), "through"_a = "light", "return_light"_a = false,
+        .def("ray", &rays_through, "pixels"_a, py::kw_only(), "through"_a = "light", "return_light"_a = false,
              "The lines along which places of the picture, (N, 2) column and row as from project, look into the\n"
              "scene: (origins_m, directions), (N, 3) float64, the first where the line leaves the lens, the second\n"
              "unit. project takes each of their points back to the pixel.\n"

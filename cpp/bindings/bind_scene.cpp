@@ -1,6 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -12,6 +11,7 @@
 #include "picture_readers.hpp"
 #include "scene_from_arrays.hpp"
 #include "short_text.hpp"
+#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {
@@ -19,16 +19,6 @@ namespace realcam::bindings {
 using namespace py::literals;
 
 namespace {
-
-using Colour = std::array<float, 3>;
-using Triple = std::array<double, 3>;
-
-Color rgb(const Colour& c) {
-    return {c[0], c[1], c[2]};
-}
-Vec3d vector_of(const Triple& v) {
-    return {v[0], v[1], v[2]};
-}
 
 Vec3d unit_vector(const char* what, const Triple& direction) {
     const Vec3d d = vector_of(direction);

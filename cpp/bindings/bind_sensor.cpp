@@ -154,18 +154,18 @@ py::array_t<double> matrix_array(const SensorMatrix& m) {
     return copy_of(std::vector<double>(m.begin(), m.end()), {3, 3});
 }
 
-Sensor changed(Sensor sensor, const std::optional<std::string>& name, std::optional<double> pixel_pitch_um,
-               const std::optional<std::pair<int, int>>& resolution,
-               const std::optional<std::string>& color_filter_array, const std::optional<Rows>& quantum_efficiency,
-               const std::optional<Rows>& cover_glass, const std::optional<Rows>& angular_response,
-               std::optional<double> gain_dn_per_e, std::optional<double> largest_gain_db,
-               std::optional<double> saturation_capacity_e, std::optional<int> adc_bits,
-               std::optional<double> black_level_dn, std::optional<double> converter_noise_dn,
-               std::optional<double> read_noise_e, std::optional<double> row_noise_e,
-               std::optional<double> dark_current_e_per_s, std::optional<double> dark_current_temperature_c,
-               std::optional<double> dark_current_doubling_k, std::optional<double> dsnu_e,
-               std::optional<double> prnu_percent, std::optional<double> hot_pixel_share,
-               std::optional<double> hot_pixel_current_e_per_s) {
+Sensor with_changes(Sensor sensor, const std::optional<std::string>& name, std::optional<double> pixel_pitch_um,
+                    const std::optional<std::pair<int, int>>& resolution,
+                    const std::optional<std::string>& color_filter_array, const std::optional<Rows>& quantum_efficiency,
+                    const std::optional<Rows>& cover_glass, const std::optional<Rows>& angular_response,
+                    std::optional<double> gain_dn_per_e, std::optional<double> largest_gain_db,
+                    std::optional<double> saturation_capacity_e, std::optional<int> adc_bits,
+                    std::optional<double> black_level_dn, std::optional<double> converter_noise_dn,
+                    std::optional<double> read_noise_e, std::optional<double> row_noise_e,
+                    std::optional<double> dark_current_e_per_s, std::optional<double> dark_current_temperature_c,
+                    std::optional<double> dark_current_doubling_k, std::optional<double> dsnu_e,
+                    std::optional<double> prnu_percent, std::optional<double> hot_pixel_share,
+                    std::optional<double> hot_pixel_current_e_per_s) {
     std::string changes;
     const auto changes_if = [&](bool does, const char* what) {
         if (does) changes += std::string(changes.empty() ? "" : ", ") + what;
@@ -294,7 +294,7 @@ void bind_sensor(py::module_& m) {
     type.def_static(
             "load", [](const py::object& name) { return io::read_sensor(path_from(name)); }, "name_or_path"_a = "ideal",
             "A bundled sensor by name, or a sensor file (.toml) by path. Raises InputError with file and line.")
-        .def("replace", &changed, py::kw_only(), "name"_a = py::none(), "pixel_pitch_um"_a = py::none(),
+        .def("replace", &with_changes, py::kw_only(), "name"_a = py::none(), "pixel_pitch_um"_a = py::none(),
              "resolution"_a = py::none(), "color_filter_array"_a = py::none(), "quantum_efficiency"_a = py::none(),
              "cover_glass"_a = py::none(), "angular_response"_a = py::none(), "gain_dn_per_e"_a = py::none(),
              "largest_gain_db"_a = py::none(), "saturation_capacity_e"_a = py::none(), "adc_bits"_a = py::none(),

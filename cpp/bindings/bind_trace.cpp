@@ -20,7 +20,7 @@ using namespace py::literals;
 
 namespace {
 
-using Array = InputArray<double>;
+using Doubles = InputArray<double>;
 
 /// Arrays of numpy, or DeviceArrays.
 struct TraceResult {
@@ -49,7 +49,7 @@ TraceOptions options_of(const LensSystem& lens, std::optional<double> wavelength
             surface_count.value_or(-1), transmission};
 }
 
-std::int64_t ray_count(const Array& origins, const Array& directions) {
+std::int64_t ray_count(const Doubles& origins, const Doubles& directions) {
     const bool fits = origins.ndim() == 2 && origins.shape(1) == 3 && directions.ndim() == 2 &&
                       directions.shape(1) == 3 && origins.shape(0) == directions.shape(0);
     if (!fits) throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
@@ -57,7 +57,7 @@ std::int64_t ray_count(const Array& origins, const Array& directions) {
 }
 
 /// (N,), or None where it is not asked for. In double whatever the precision of the trace.
-py::object transmission_of(const LensSystem& lens, const Array& origins, const Array& directions,
+py::object transmission_of(const LensSystem& lens, const Doubles& origins, const Doubles& directions,
                            const TraceOptions& options) {
     if (!options.transmission) return py::none();
     const auto count = static_cast<std::size_t>(origins.shape(0));
@@ -76,7 +76,7 @@ py::object transmission_of(const LensSystem& lens, const Array& origins, const A
     return result;
 }
 
-TraceResult trace_host_arrays(const LensSystem& lens, const Array& origins, const Array& directions,
+TraceResult trace_host_arrays(const LensSystem& lens, const Doubles& origins, const Doubles& directions,
                               const TraceOptions& options, std::optional<int> gpu) {
     const std::int64_t count = ray_count(origins, directions);
     py::array_t<double> to({count, std::int64_t{3}}), towards({count, std::int64_t{3}}), path(count);
@@ -136,7 +136,7 @@ TraceResult trace(const LensSystem& lens, const py::object& origins, const py::o
     if (from || along)
         throw InputError("origins_mm and directions must lie on the same device, and only " +
                          std::string(from ? "origins_mm" : "directions") + " lies on a GPU");
-    return trace_host_arrays(lens, Array(origins), Array(directions), options,
+    return trace_host_arrays(lens, Doubles(origins), Doubles(directions), options,
                              device ? gpu_for_rays(*device) : std::nullopt);
 }
 

@@ -10,6 +10,7 @@
 #include "../render/metering.hpp"
 #include "bindings.hpp"
 #include "render_turn.hpp"
+#include "triples.hpp"
 
 namespace realcam::bindings {
 
@@ -17,16 +18,13 @@ using namespace py::literals;
 
 namespace {
 
-using Triple = std::array<double, 3>;
-
-std::optional<Vec3d> vector_of(const std::optional<Triple>& v) {
-    if (!v) return std::nullopt;
-    return Vec3d{(*v)[0], (*v)[1], (*v)[2]};
+std::optional<Vec3d> vector_if(const std::optional<Triple>& v) {
+    return v ? std::optional(vector_of(*v)) : std::nullopt;
 }
 
 Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>& position,
               const std::optional<Triple>& look_at, const Triple& up, std::optional<double> focus_m) {
-    set_view(camera, scene, {vector_of(position), vector_of(look_at), Vec3d{up[0], up[1], up[2]}, focus_m});
+    set_view(camera, scene, {vector_if(position), vector_if(look_at), vector_of(up), focus_m});
     return camera;
 }
 

@@ -169,8 +169,9 @@ template <class T, int N>
 REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
                                           AsphereHits<T, N>& hits) {
     AsphereSearch<T, N> search;
-    Vec3Lanes<T, N> origin{}, direction{};  // zeros, because gcc fears that a lane is read before it is written
-    alignas(kLaneAlignment<T, N>) T outside[N];
+    // Zeros, because gcc fears that a lane is read before it is written.
+    Vec3Lanes<T, N> origin{}, direction{};
+    alignas(kLaneAlignment<T, N>) T outside[N]{};
     int lane_of[N], count = 0;
     for (int i = 0; i < N; ++i) {
         if (rays.status[i] != 0 || hits.slack[i] >= T(0)) continue;

@@ -6,8 +6,8 @@
 
 #include "../camera/picture_codes.hpp"
 #include "../optics/lens_path.hpp"
-#include "film_bundles.hpp"
 #include "plan.hpp"
+#include "sampled_bundles.hpp"
 #include "scene_facts.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -101,11 +101,11 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
     for (const double share : {0.0, 0.25, 0.5, 0.7, 0.85, 0.97}) {
         const Vec2f film = {static_cast<float>(share) * full.film_half_width,
                             static_cast<float>(share) * full.film_half_height};
-        const FilmBundle traced = traced_bundle(full, full.lens, film, tracer);
-        const FilmBundle pinhole = ideal_bundle([&](Vec2f u) { return thin_lens_ray(ideal, film, u, 0.0f); });
-        const FilmBundle thin =
+        const SampledBundle traced = traced_bundle(full, full.lens, film, tracer);
+        const SampledBundle pinhole = ideal_bundle([&](Vec2f u) { return thin_lens_ray(ideal, film, u, 0.0f); });
+        const SampledBundle thin =
             ideal_bundle([&](Vec2f u) { return thin_lens_ray(ideal, film, u, ideal.thin.pupil_radius); });
-        const FilmBundle thick = ideal_bundle([&](Vec2f u) { return thick_lens_ray(ideal, film, u); });
+        const SampledBundle thick = ideal_bundle([&](Vec2f u) { return thick_lens_ray(ideal, film, u); });
         const double value = value_at(facts, share), white_for_one = value / thin.light;
         const auto codes_between = [&](double light) {
             return std::fabs(code_of(white_for_one * traced.light) - code_of(white_for_one * light));
@@ -117,11 +117,11 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
         const BundleSpot there = spot_of(traced, full.circle, sharp), ideally = spot_of(thin, full.circle, sharp);
         const auto scale =
             static_cast<float>(share > 0 ? std::hypot(there.x, there.y) / std::hypot(ideally.x, ideally.y) : 1.0);
-        const FilmBundle mapped = ideal_bundle([&](Vec2f u) {
+        const SampledBundle mapped = ideal_bundle([&](Vec2f u) {
             return thin_lens_ray(ideal, {scale * film.x, scale * film.y}, u, ideal.thin.pupil_radius);
         });
-        const FilmBundle in_blue = traced_bundle(full, blue.view(), film, tracer);
-        const FilmBundle in_red = traced_bundle(full, red.view(), film, tracer);
+        const SampledBundle in_blue = traced_bundle(full, blue.view(), film, tracer);
+        const SampledBundle in_red = traced_bundle(full, red.view(), film, tracer);
         for (const double depth : depths) {
             const BundleSpot spot = spot_of(traced, full.circle, depth);
             compare(spot, spot_of(pinhole, full.circle, depth), px_per_mm, errors.pinhole);

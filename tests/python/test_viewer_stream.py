@@ -13,6 +13,7 @@ from unittest.mock import Mock
 
 import pytest
 
+pytest.importorskip("simplejpeg")
 pytest.importorskip("starlette")
 
 from realcam.viewer.lens_bench import LensBench

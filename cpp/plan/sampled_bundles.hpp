@@ -8,7 +8,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// The light of one film point, followed back into the scene: what one camera model makes of it.
-struct FilmBundle {
+struct SampledBundle {
     static constexpr int kRays = PupilTracer::kBlock;
 
     std::array<LensFrameRay, kRays> rays;
@@ -22,34 +22,34 @@ struct BundleSpot {
     double diameter;  ///< of an even disc with the same mean square radius, mm on the film
 };
 
-namespace film_bundles_detail {
+namespace sampled_bundles_detail {
 
 inline Vec2f pupil_number(int ray) {
     return sample_2d(0x9e3779b9u, static_cast<std::uint32_t>(ray), dimension::pupil);
 }
 
-}  // namespace film_bundles_detail
+}  // namespace sampled_bundles_detail
 
 /// `ray_of(u)`: an ideal lens's.
 template <class RayOf>
-FilmBundle ideal_bundle(RayOf&& ray_of) {
-    FilmBundle bundle;
-    for (int i = 0; i < FilmBundle::kRays; ++i) {
+SampledBundle ideal_bundle(RayOf&& ray_of) {
+    SampledBundle bundle;
+    for (int i = 0; i < SampledBundle::kRays; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        bundle.rays[k] = ray_of(film_bundles_detail::pupil_number(i));
+        bundle.rays[k] = ray_of(sampled_bundles_detail::pupil_number(i));
         bundle.passes[k] = true;
-        bundle.light += static_cast<double>(bundle.rays[k].weight) / FilmBundle::kRays;
+        bundle.light += static_cast<double>(bundle.rays[k].weight) / SampledBundle::kRays;
     }
     return bundle;
 }
 
 /// Through every surface. `path`: of the lens, for light of one wavelength from the film; `camera`: with its pupil.
-inline FilmBundle traced_bundle(const CameraView& camera, const LensView<float>& path, Vec2f film,
-                                const PupilTracer& tracer) {
+inline SampledBundle traced_bundle(const CameraView& camera, const LensView<float>& path, Vec2f film,
+                                   const PupilTracer& tracer) {
     PupilTracer::Rays inside;
-    float weights[FilmBundle::kRays];
-    for (int i = 0; i < FilmBundle::kRays; ++i) {
-        const Vec2f u = film_bundles_detail::pupil_number(i);
+    float weights[SampledBundle::kRays];
+    for (int i = 0; i < SampledBundle::kRays; ++i) {
+        const Vec2f u = sampled_bundles_detail::pupil_number(i);
         const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);
         inside.origin.set(i, {film.x, film.y, camera.film_distance});
         inside.direction.set(i, pupil.direction);
@@ -57,19 +57,19 @@ inline FilmBundle traced_bundle(const CameraView& camera, const LensView<float>&
         weights[i] = pupil.weight;
     }
     tracer.trace(path, inside);
-    FilmBundle bundle;
-    for (int i = 0; i < FilmBundle::kRays; ++i) {
+    SampledBundle bundle;
+    for (int i = 0; i < SampledBundle::kRays; ++i) {
         const auto k = static_cast<std::size_t>(i);
         bundle.passes[k] = inside.status[i] == 0;
         if (!bundle.passes[k]) continue;
         bundle.rays[k] = {inside.origin[i], normalized(inside.direction[i]), weights[i]};
-        bundle.light += static_cast<double>(weights[i]) / FilmBundle::kRays;
+        bundle.light += static_cast<double>(weights[i]) / SampledBundle::kRays;
     }
     return bundle;
 }
 
 /// `distance_mm`: of a plane from the front vertex; infinite is allowed. No numbers where no light passes.
-inline BundleSpot spot_of(const FilmBundle& bundle, const CircleOfConfusion& circle, double distance_mm) {
+inline BundleSpot spot_of(const SampledBundle& bundle, const CircleOfConfusion& circle, double distance_mm) {
     const bool is_far = !(distance_mm < 1e30);
     // A film height of 1 mm is so many mm there, or at infinity such a slope.
     const double scale =

@@ -1,0 +1,21 @@
+#pragma once
+#include <array>
+
+#include "../math/color.hpp"
+#include "../math/vec3.hpp"
+
+namespace realcam::bindings {
+
+/// As Python gives points and colours.
+using Triple = std::array<double, 3>;
+using Colour = std::array<float, 3>;
+
+inline Vec3d vector_of(const Triple& v) {
+    return {v[0], v[1], v[2]};
+}
+
+inline Color rgb(const Colour& c) {
+    return {c[0], c[1], c[2]};
+}
+
+}  // namespace realcam::bindings
