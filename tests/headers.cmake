@@ -16,12 +16,18 @@ foreach(header IN LISTS headers)
   list(APPEND cxx_sources ${source})
 endforeach()
 
-# All in one file, too: two that define one name would disturb each other in whatever links both.
-set(all_headers ${CMAKE_CURRENT_BINARY_DIR}/headers/all_headers.cpp)
-list(TRANSFORM headers REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
+# All in one file, too, with those that one program links and no other library is needed for: two that define one name
+# would disturb each other there.
+set(all_headers ${headers})
+foreach(folder IN ITEMS bvh devices io plan shot)
+  file(GLOB more CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.hpp)
+  list(APPEND all_headers ${more})
+endforeach()
+set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/all_headers.cpp)
+list(TRANSFORM all_headers REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
 list(JOIN includes "" includes)
-file(CONFIGURE OUTPUT ${all_headers} CONTENT "${includes}" @ONLY)
-list(APPEND cxx_sources ${all_headers})
+file(CONFIGURE OUTPUT ${source} CONTENT "${includes}" @ONLY)
+list(APPEND cxx_sources ${source})
 
 # nvcc takes two seconds for each file, most of them for headers that all of them include. That a header includes what
 # it needs is known from C++, so that it may stand behind others here.
