@@ -33,7 +33,7 @@ class Link:
         self.frames: asyncio.Queue[bytes] = asyncio.Queue()
         self.closed: tuple[int, str] | None = None
 
-    def type(self, *messages: dict[str, Any] | str) -> None:
+    def says(self, *messages: dict[str, Any] | str) -> None:
         for message in messages:
             text = message if isinstance(message, str) else json.dumps(message)
             self.from_page.put_nowait({"type": "websocket.receive", "text": text})
@@ -64,6 +64,7 @@ class SlowBench:
         self.may, self.turned = threading.Event(), []
         self.bench = Mock(spec=LensBench)
         self.bench.listeners = Listeners()
+        self.bench.show.side_effect = lambda: self.may.wait(WAIT_S)
         self.bench.turn.side_effect = self.turn
 
     def turn(self, ring: str, steps: int) -> bool:
@@ -126,11 +127,11 @@ def test_everything_is_read_while_something_takes_long() -> None:
     async def test(slow: SlowBench, stream: PictureStream) -> None:
         link = Link()
         async with served(stream, link):
-            link.type(*MOVES)
+            link.says(*MOVES)
             for serial in (1, 2, 3):
                 slow.bench.listeners.frame("a", frame(serial))
                 await asyncio.wait_for(link.frames.get(), WAIT_S)
-                link.type(f"ack a {serial}")
+                link.says(f"ack a {serial}")
             await until(link.from_page.empty)
             assert slow.turned == []
             slow.may.set()
@@ -144,7 +145,8 @@ def test_what_was_asked_for_before_a_connection_was_lost_is_done() -> None:
     async def test(slow: SlowBench, stream: PictureStream) -> None:
         link = Link()
         async with served(stream, link):
-            link.type(*MOVES[:7])
+            await until(lambda: slow.bench.show.called)  # and is under way, so that all seven have to wait
+            link.says(*MOVES[:7])
             await until(link.from_page.empty)
         async with served(stream, Link()):
             slow.may.set()
@@ -159,14 +161,14 @@ def test_what_no_page_sends_ends_the_connection_and_what_came_with_it(sent: list
     async def test(slow: SlowBench, stream: PictureStream) -> None:
         link = Link()
         serving = asyncio.create_task(stream.serve(link))
-        link.type(*sent)
+        link.says(*sent)
         await asyncio.wait_for(serving, WAIT_S)
         assert link.closed is not None
         assert link.closed[0] == 1008
         slow.may.set()
         other = Link()
         async with served(stream, other):
-            other.type({"type": "turn", "ring": "iso", "steps": 4})
+            other.says({"type": "turn", "ring": "iso", "steps": 4})
             await until(lambda: 4 in slow.turned)
             assert len(slow.turned) <= 2  # the one that was under way, and this one
 

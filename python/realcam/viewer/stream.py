@@ -97,7 +97,8 @@ class PictureStream:
         while True:
             message = await self._inbox.next()
             try:
-                await self._loop.run_in_executor(self._executor, perform, message, self._bench)
+                # Shielded, because what waits for its turn would be given up with the connection.
+                await asyncio.shield(self._loop.run_in_executor(self._executor, perform, message, self._bench))
             except BadMessage:
                 raise
             except RealcamError as error:
