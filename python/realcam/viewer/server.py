@@ -17,6 +17,7 @@ from .._core import DeviceError, LensFileError
 from ..shot import Shot
 from .access import BodyLimit, Folders, Gate, is_local
 from .files_panel import MOST_UPLOADED, lens_preview
+from .left_requests import LeftRequests
 from .lens_bench import AnyPictureLoop, LensBench
 from .page import build_page
 from .picture_loop import PictureLoop
@@ -58,6 +59,7 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
         make_loop = partial(RemotePictureLoop, address=settings.connect, token=settings.token)
         make_loop(shot.scene, lambda _: None, lambda *_: None).close()  # so that a mistake is told at once
 
+    app.add_middleware(LeftRequests)
     app.add_middleware(BodyLimit, most=2 * MOST_UPLOADED)
     app.add_middleware(Gate, token=token)
     app.add_static_files("/realcam", _STATIC)
