@@ -158,14 +158,19 @@ def test_what_is_no_http(server: Server) -> None:
     assert server.answers()
 
 
-def test_requests_that_are_left_are_no_errors(server: Server) -> None:
-    """As a page does that is closed while it loads."""
+def test_requests_that_are_left_are_no_errors(browser: playwright.Browser, server: Server) -> None:
+    """As of a page that is closed while it loads."""
     paths = ["", "realcam-lenses/fisheye-6mm-220deg.svg", "_nicegui_ws/socket.io/?EIO=4&transport=polling"]
     for k in range(30):
         with socket.create_connection(("127.0.0.1", server.port), 20) as line:
             line.sendall(f"GET /{paths[k % 3]} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
             time.sleep(0.001 * k)
-    time.sleep(1)  # until all of them have come to their ends
+    for k in range(9):
+        page = browser.new_page()
+        page.goto(server.url, wait_until="commit")
+        time.sleep(0.1 * k)
+        page.close()
+    time.sleep(1)  # until all requests have come to their ends
     assert server.answers()
     assert server.complaints() == []
 

@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import logging
 
-from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 _log = logging.getLogger(__name__)
 
-_CLIENT_CLOSED_REQUEST = 499  # nginx's number for it; nobody reads the answer
-
 
 class LeftRequests:
-    """ASGI middleware that ends the answers to requests whose client has gone.
+    """ASGI middleware around all others, by which a request whose client has gone may fail.
 
-    What is not answered, half answered, or fails because there is no client any more (Socket.IO finds a request
-    without a method), the middleware of NiceGUI around this would report as an error of the server.
+    NiceGUI's middleware and Socket.IO find no answer then, or no request, and what they raise would stand in the log as
+    an error of the server.
     """
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
-        is_left = is_begun = is_ended = False
+        is_left = False
 
         async def heard() -> Message:
             nonlocal is_left
@@ -34,19 +28,9 @@ class LeftRequests:
             is_left |= message["type"] == "http.disconnect"
             return message
 
-        async def said(message: Message) -> None:
-            nonlocal is_begun, is_ended
-            is_begun = True
-            is_ended = message["type"] != "http.response.start" and not message.get("more_body", False)
-            await send(message)
-
         try:
-            await self._app(scope, heard, said)
+            await self._app(scope, heard, send)
         except Exception as error:
-            if is_begun or not is_left:
+            if not is_left:
                 raise
-            _log.debug("%s was left before it was answered", scope["path"], exc_info=error)
-        if is_left and not is_begun:
-            await Response(status_code=_CLIENT_CLOSED_REQUEST)(scope, receive, send)
-        elif is_left and not is_ended:
-            await send({"type": "http.response.body", "body": b""})
+            _log.info("%s was left before it was answered", scope["path"], exc_info=error)

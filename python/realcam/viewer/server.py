@@ -59,9 +59,11 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
         make_loop = partial(RemotePictureLoop, address=settings.connect, token=settings.token)
         make_loop(shot.scene, lambda _: None, lambda *_: None).close()  # so that a mistake is told at once
 
-    app.add_middleware(LeftRequests)
     app.add_middleware(BodyLimit, most=2 * MOST_UPLOADED)
     app.add_middleware(Gate, token=token)
+    # Middleware that is added stands within NiceGUI's own.
+    build_middleware_stack = app.build_middleware_stack
+    app.build_middleware_stack = lambda: LeftRequests(build_middleware_stack())  # type: ignore[method-assign]
     app.add_static_files("/realcam", _STATIC)
 
     # By the title a page knows whether what it has kept is of this shot.
