@@ -6,6 +6,12 @@ foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
 endforeach()
 file(GLOB headers CONFIGURE_DEPENDS ${patterns})
 
+function(write_includes source headers)
+  list(TRANSFORM headers REPLACE "(.+)" "#include \"\\1\"\n")
+  list(JOIN headers "" includes)
+  file(CONFIGURE OUTPUT ${source} CONTENT "${includes}" @ONLY)
+endfunction()
+
 set(cxx_sources "")
 foreach(header IN LISTS headers)
   file(RELATIVE_PATH relative ${PROJECT_SOURCE_DIR}/cpp ${header})
@@ -24,9 +30,7 @@ foreach(folder IN ITEMS bvh devices io plan shot)
   list(APPEND all_headers ${more})
 endforeach()
 set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/all_headers.cpp)
-list(TRANSFORM all_headers REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
-list(JOIN includes "" includes)
-file(CONFIGURE OUTPUT ${source} CONTENT "${includes}" @ONLY)
+write_includes(${source} "${all_headers}")
 list(APPEND cxx_sources ${source})
 
 # nvcc takes two seconds for each file, most of them for headers that all of them include. That a header includes what
@@ -38,11 +42,9 @@ if(NVCC_PROGRAM)
   math(EXPR last "${count} - 1")
   foreach(begin RANGE 0 ${last} 24)
     list(SUBLIST headers ${begin} 24 bundle)
-    list(TRANSFORM bundle REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
-    list(JOIN includes "" includes)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/cuda_${begin}.cu)
     set(stamp ${CMAKE_CURRENT_BINARY_DIR}/headers/cuda_${begin}.ptx)
-    file(CONFIGURE OUTPUT ${source} CONTENT "${includes}" @ONLY)
+    write_includes(${source} "${bundle}")
     # PTX: both passes of nvcc's front end, and neither the assembler nor the host compiler's back end.
     add_custom_command(OUTPUT ${stamp}
       COMMAND ${NVCC_PROGRAM} -std=c++20 --expt-relaxed-constexpr -arch=sm_90 -ptx -ccbin ${CMAKE_CXX_COMPILER}

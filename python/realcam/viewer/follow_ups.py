@@ -24,7 +24,7 @@ class FollowUps:
         self._shot, self._device, self._listeners = shot, device, listeners
         self._drawing = NewestTask("realcam-drawing", delay_s=0.02)
         self._tracing = NewestTask("realcam-rays", delay_s=0.02)
-        # Both take as long as some frames of the picture.
+        # What takes as long as some frames of the picture.
         self._planning = NewestTask("realcam-planning", quiet_s=0.4)
         self._measuring_levels = NewestTask("realcam-levels")
         self._measuring_depth = NewestTask("realcam-depth-of-field", quiet_s=0.1)
@@ -32,8 +32,8 @@ class FollowUps:
 
     def close(self) -> None:
         """Ends all threads after what they are doing."""
-        measuring = self._measuring_depth, self._measuring_levels
-        for task in (self._drawing, self._tracing, self._planning, *measuring, self._keeping):
+        quick = self._drawing, self._tracing, self._keeping
+        for task in (*quick, self._planning, self._measuring_levels, self._measuring_depth):
             task.close()
 
     def draw(self, lens: Lens) -> None:
