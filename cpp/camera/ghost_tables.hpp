@@ -6,7 +6,7 @@
 #include "../math/append_cdf.hpp"
 #include "../optics/axial_share.hpp"
 #include "../optics/film_mirror.hpp"
-#include "../optics/fit_coatings.hpp"
+#include "../optics/ghost_coatings.hpp"
 #include "entry_search.hpp"
 #include "film_spectrum.hpp"
 #include "ghost_choice.hpp"
@@ -48,7 +48,15 @@ public:
         const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
         std::vector<GhostPair> pairs;
         std::vector<double> axial;
-        const AxialShares axial_share(lens, lens.wavelength_nm);
+        // Of a spectrum the mean: what a coating stops at the design wavelength it reflects at another.
+        std::vector<AxialShares> of_wavelengths;
+        for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens.wavelength_nm})
+            of_wavelengths.emplace_back(lens, wavelength);
+        const auto axial_share = [&](const std::vector<Crossing>& way) {
+            double sum = 0;
+            for (const AxialShares& share : of_wavelengths) sum += share(way);
+            return sum / static_cast<double>(of_wavelengths.size());
+        };
         const auto look_at = [&](const std::vector<GhostPair>& wanted) {
             for (const GhostPair pair : wanted) {
                 // A way that no more light can take than ten times what the lens itself takes is not worth the search.
@@ -111,7 +119,7 @@ private:
         std::vector<SurfaceView<float>> surfaces;
         std::vector<GhostCoating<kOneWavelengthTerms>> coatings;
         std::vector<IndexCubic> indices;
-        std::vector<GhostCoating<kSpectrumTerms>> spectral_coatings;
+        std::vector<GhostCoating<kGhostSpectrumTerms>> spectral_coatings;
     };
 
     GhostView view_of(const Ways& of, GhostLight light, std::int32_t pixel_samples, float reach) const {
@@ -138,26 +146,17 @@ private:
     /// What light does at each crossing that a way may have.
     void make_crossings(const LensSystem& lens, const FilmSpectrum* spectrum) {
         all_ = ghost_tables_detail::all_crossings(lens);
-        const std::vector<double> design = lens.indices(lens.wavelength_nm);
-        const auto ghostly = [&](const auto& coatings, const std::vector<IndexCubic>& beyond) {
-            using Polynomials = typename std::decay_t<decltype(coatings)>::value_type;
-            std::vector<GhostCoating<Polynomials::kTerms>> all;
-            for (std::size_t k = 0; k < coatings.size(); ++k) {
-                const double n = all_[k].index_before(design);
-                all.push_back({coatings[k], beyond[k], static_cast<float>(n * n), all_[k].is_reflected, {}});
-            }
-            return all;
-        };
-        const WavelengthRange range =
-            spectrum ? spectrum->range() : WavelengthRange{lens.wavelength_nm, lens.wavelength_nm};
-        const std::vector<IndexCubic> beyond = index_cubics(lens, all_, range, true);
-        if (spectrum) {
-            all_indices_ = index_cubics(lens, all_, range);
-            all_spectral_ = ghostly(
-                fit_coatings<kSpectrumTerms>(lens, all_, spectrum->even_wavelengths(), variable_over(range)), beyond);
-        } else {
-            all_coatings_ = ghostly(fit_coatings<kOneWavelengthTerms>(lens, all_, {lens.wavelength_nm}), beyond);
+        if (!spectrum) {
+            const double design = lens.wavelength_nm;
+            all_coatings_ =
+                ghost_coatings(lens, all_, fit_coatings<kOneWavelengthTerms>(lens, all_, {design}), {design, design});
+            return;
         }
+        const WavelengthRange range = spectrum->range();
+        all_indices_ = index_cubics(lens, all_, range);
+        all_spectral_ = ghost_coatings(
+            lens, all_,
+            fit_coatings<kGhostSpectrumTerms>(lens, all_, spectrum->even_wavelengths(), variable_over(range)), range);
     }
 
     /// `crossings`: in the order in which light meets them that goes along `path`.
@@ -196,7 +195,7 @@ private:
     std::vector<Crossing> all_;  ///< of which the next three are, by ghost_tables_detail::number_of
     std::vector<GhostCoating<kOneWavelengthTerms>> all_coatings_;
     std::vector<IndexCubic> all_indices_;
-    std::vector<GhostCoating<kSpectrumTerms>> all_spectral_;
+    std::vector<GhostCoating<kGhostSpectrumTerms>> all_spectral_;
     float film_radius_, film_index_, entry_reach_, exit_reach_;
     float largest_half_tangent_ = 0;
     Iris<float> iris_{};

@@ -42,7 +42,7 @@ struct GhostView {
     const SurfaceView<float>* surfaces;  ///< of all crossings of all ways, as the next three
     const GhostCoating<kOneWavelengthTerms>* coatings;
     const IndexCubic* indices;  ///< where samples have wavelengths, as the next; else null
-    const GhostCoating<kSpectrumTerms>* spectral_coatings;  ///< null: surfaces pass on all light
+    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< null: surfaces pass on all light
     float largest_half_tangent;  ///< of the angle between axis and light from which any ghost comes
     float film_radius;           ///< of a circle that holds the film
     float film_index;            ///< of the medium before the film

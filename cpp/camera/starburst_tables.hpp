@@ -2,8 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "../optics/fit_coatings.hpp"
-#include "../optics/lens_dispersion.hpp"
+#include "../optics/ghost_coatings.hpp"
 #include "diffraction_view.hpp"
 #include "entry_search.hpp"
 #include "film_spectrum.hpp"
@@ -31,7 +30,11 @@ public:
         const std::vector<Crossing> way = crossings_of(lens);
         const WavelengthRange range = light.disperses ? light.spectrum.range() : WavelengthRange{design, design};
         indices_ = index_cubics(lens, way, range);
-        if (light.has_coatings) set_coatings(lens, way, light.spectrum, range);
+        if (light.has_coatings)
+            coatings_ = ghost_coatings(lens, way,
+                                       fit_coatings<kGhostSpectrumTerms>(lens, way, light.spectrum.even_wavelengths(),
+                                                                         variable_over(light.spectrum.range())),
+                                       range);
     }
 
     GhostView view() const {
@@ -58,23 +61,11 @@ public:
 private:
     static constexpr std::array<float, 2> kCdf = {0, 1};
 
-    void set_coatings(const LensSystem& lens, const std::vector<Crossing>& way, const FilmSpectrum& spectrum,
-                      WavelengthRange range) {
-        const auto fitted =
-            fit_coatings<kSpectrumTerms>(lens, way, spectrum.even_wavelengths(), variable_over(spectrum.range()));
-        const std::vector<IndexCubic> beyond = index_cubics(lens, way, range, true);
-        const std::vector<double> design = lens.indices(lens.wavelength_nm);
-        for (std::size_t k = 0; k < way.size(); ++k) {
-            const double n = way[k].index_before(design);
-            coatings_.push_back({fitted[k], beyond[k], static_cast<float>(n * n), false, {}});
-        }
-    }
-
     LensPath<float> path_;
     GhostWay way_;
     GhostEntries entries_{};
     std::vector<IndexCubic> indices_;
-    std::vector<GhostCoating<kSpectrumTerms>> coatings_;
+    std::vector<GhostCoating<kGhostSpectrumTerms>> coatings_;
     float largest_half_tangent_ = 0, reach_;
 };
 

@@ -7,8 +7,9 @@
 namespace REALCAM_NAMESPACE {
 
 inline constexpr int kCosineTerms = 8;
-/// Of one wavelength, and of a spectrum.
-inline constexpr int kOneWavelengthTerms = 1, kSpectrumTerms = 5;
+/// Of one wavelength, and of a spectrum: of ghosts more, because what is reflected is so little that an error of a
+/// thousandth of the light that passes may be half of it.
+inline constexpr int kOneWavelengthTerms = 1, kSpectrumTerms = 5, kGhostSpectrumTerms = 7;
 
 /// Shares of the power that a surface without a coating lets through, for polarisation across (s) and in (p) the plane
 /// of incidence.

@@ -8,10 +8,11 @@ namespace REALCAM_NAMESPACE {
 /// transmittance.
 template <int kWavelengthTerms>
 struct alignas(16) GhostCoating : CoatingPolynomials<kWavelengthTerms> {
-    IndexCubic other_change;  ///< n'^2 / n^2 - 1 of the medium behind, into which a reflected ray does not go
-    float index_squared;      ///< n^2 of the medium before
+    // Of the medium behind, into which a reflected ray does not go:
+    IndexCubic other_change;      ///< n'^2 / n^2 - 1
+    IndexCubic other_difference;  ///< n'^2 - n^2
     std::int32_t is_reflected;
-    std::int32_t unused[2];
+    std::int32_t unused[3];
 };
 
 /// Media on a ghost's way. `kWavelengthTerms`: of one wavelength, or of a spectrum, with one for each ray.
@@ -36,8 +37,9 @@ struct GhostMedia {
             const float in = std::fabs(before), x = disperses ? variable[lane] : 0.0f;
             const bool reflects = coating.is_reflected != 0;
             const float change = disperses ? coating.other_change.at(x) : coating.other_change.c[0];
+            const float difference = disperses ? coating.other_difference.at(x) : coating.other_difference.c[0];
             // 0 under total reflection: then nothing is let through, and all is reflected.
-            const float other = select(reflects, sqrt_or_zero(in * in + change * coating.index_squared), behind);
+            const float other = select(reflects, sqrt_or_zero(in * in + difference), behind);
             const FresnelTransmittance through = coating.transmittance(in, other, 1.0f + change, x);
             passed.s[lane] *= select(reflects, 1.0f - through.s, through.s);
             passed.p[lane] *= select(reflects, 1.0f - through.p, through.p);

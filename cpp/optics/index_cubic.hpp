@@ -13,7 +13,8 @@ struct WavelengthVariable {
     REALCAM_INLINE float at(float wavelength_nm) const { return scale / (wavelength_nm - kPole_nm) + offset; }
 };
 
-/// n'^2 / n^2 - 1 of a surface, a cubic of the WavelengthVariable.
+/// What a surface does to light by its indices, a cubic of the WavelengthVariable: n'^2 / n^2 - 1, if nothing else is
+/// said.
 struct alignas(16) IndexCubic {
     float c[4];
 

@@ -58,10 +58,11 @@ inline void check_dispersion(const LensSystem& lens, WavelengthRange range) {
                          " lies in glass; a lens with air behind its last surface is wanted");
 }
 
-/// What surfaces do to light on a way through the lens, in the order in which it meets them; `beyond`: what they would
-/// do if they let it pass where they reflect it. Throws InputError where a glass has no index.
-inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way,
-                                            WavelengthRange range, bool beyond = false) {
+/// A cubic for each crossing of a way, in the order in which the light meets them, of `value_of(crossing, indices)`;
+/// `indices`: those of LensSystem::indices. Throws InputError where a glass has no index.
+template <class ValueOf>
+std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Crossing>& way, WavelengthRange range,
+                                    ValueOf&& value_of) {
     constexpr std::size_t kNodes = 16;
     const WavelengthVariable variable = variable_over(range);
     std::array<double, kNodes> nodes{};
@@ -76,15 +77,20 @@ inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::v
     }
     std::vector<IndexCubic> cubics;
     for (const Crossing& crossing : way) {
-        std::array<double, kNodes> change{};
-        for (std::size_t j = 0; j < kNodes; ++j) {
-            const double n = crossing.index_before(indices[j]);
-            const double other = beyond ? crossing.index_beyond(indices[j]) : crossing.index_behind(indices[j]);
-            change[j] = (other - n) * (other + n) / (n * n);
-        }
-        cubics.push_back(lens_dispersion_detail::cubic_of(nodes, change));
+        std::array<double, kNodes> values{};
+        for (std::size_t j = 0; j < kNodes; ++j) values[j] = value_of(crossing, indices[j]);
+        cubics.push_back(lens_dispersion_detail::cubic_of(nodes, values));
     }
     return cubics;
+}
+
+/// What surfaces do to light on a way through the lens.
+inline std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way,
+                                            WavelengthRange range) {
+    return cubics_over(lens, way, range, [](const Crossing& crossing, const std::vector<double>& indices) {
+        const double n = crossing.index_before(indices), behind = crossing.index_behind(indices);
+        return (behind - n) * (behind + n) / (n * n);
+    });
 }
 
 /// Of light on its way through the whole lens.

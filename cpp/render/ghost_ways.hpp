@@ -80,8 +80,8 @@ REALCAM_INLINE void pass_ghost_way(const GhostView& ghosts, const GhostWay& way,
         if (ghosts.spectral_coatings)
             trace_lens<lens_kind>(
                 lens, rays, NoRecord{},
-                GhostMedia<kSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
-                                              variable, passed});
+                GhostMedia<kGhostSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,
+                                                   variable, passed});
         else
             trace_lens<lens_kind>(lens, rays, NoRecord{}, ManyWavelengths{ghosts.indices + way.first, variable});
     } else {

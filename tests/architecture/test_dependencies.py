@@ -96,6 +96,7 @@ HOST_ONLY = {
     "optics/fit_coatings.hpp",
     "optics/focus.hpp",
     "optics/ghost.hpp",
+    "optics/ghost_coatings.hpp",
     "optics/glass.hpp",
     "optics/glass_resonances.hpp",
     "optics/iris_shape.hpp",

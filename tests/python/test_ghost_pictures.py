@@ -180,6 +180,32 @@ def test_all_pairs_of_a_double_gauss_bring_as_much_light_as_an_independent_sum(d
                      abs(total / expected - 1), 0.01, ""))  # fmt: skip
 
 
+@pytest.mark.parametrize("wavelength_nm", [400.0, 450.0, 650.0])
+def test_ghosts_under_a_line_have_the_reflectances_of_that_line(wavelength_nm: float) -> None:
+    """Of a singlet and a window of glass that disperses much."""
+
+    def lens_for(nm: float) -> rc.Lens:
+        surfaces = [
+            rc.Stop(clear_semi_diameter_mm=5, thickness_mm=0),
+            rc.Surface(radius_of_curvature_mm=60, thickness_mm=6, material="N-BK7", clear_semi_diameter_mm=15),
+            rc.Surface(radius_of_curvature_mm=-80, thickness_mm=3, clear_semi_diameter_mm=15),
+            rc.Surface(thickness_mm=4, material="N-SF11", clear_semi_diameter_mm=15),
+            rc.Surface(clear_semi_diameter_mm=15),
+        ]
+        return rc.Lens(surfaces=surfaces, film_distance_mm=55.0, wavelength_nm=nm).with_coating("bare")
+
+    tangent = float(np.tan(np.radians(9)))
+    trace = SequentialTrace(lens_for(wavelength_nm))
+    pairs = [(b, a) for a, b in itertools.combinations(trace.refracting, 2)]
+    expected = sum(trace.flux(pair, tangent, 24, 256) for pair in pairs)
+    camera = rc.Camera(lens_for(587.5618), film=FILM, exposure_time_s=1)
+    lit = ghosts(far_lamp(tangent, 0.0), camera, spp=256, effects={"dispersion"}, illuminant=wavelength_nm)
+    total = lit.mean(axis=2).sum() * (24 / 96) ** 2
+    hold(Measurement("Effects", "light of the ghosts of a singlet and a window of N-SF11",
+                     f"{wavelength_nm:g} nm, against a sum over rays in double", "cpu", "float32",
+                     abs(total / expected - 1), 0.01, ""))  # fmt: skip
+
+
 @pytest.mark.parametrize("degrees", [0.0, 12.0])
 def test_a_film_that_reflects_brings_as_much_light_as_an_independent_sum(degrees: float) -> None:
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)
