@@ -10,6 +10,7 @@
 
 #include "../camera/ray_request.hpp"
 #include "../optics/aim_request.hpp"
+#include "../optics/bundle_quadrature.hpp"
 
 namespace realcam {
 namespace {
@@ -45,15 +46,15 @@ void trace_with(const TraceRequest<T>& all, void (*kernel)(const void*), const K
 
 template <class T>
 std::int64_t film_points_with(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
-                              EntryPattern pattern, std::int64_t count, double film_distance, float* at,
-                              void (*kernel)(void*), const KeepGoing& keep_going) {
+                              const EntryRectangle& lit, EntryPattern pattern, std::int64_t count, double film_distance,
+                              float* at, void (*kernel)(void*), const KeepGoing& keep_going) {
     const LensPath<T> path(lens, LightDirection::to_film, wavelength_nm);
     const auto two = [](Vec2<double> v) { return Vec2<T>{static_cast<T>(v.x), static_cast<T>(v.y)}; };
     FilmPointsRequest<T> request{path.view(),
                                  static_cast<Vec3<T>>(bundle.object.centre - Vec3d{0, 0, path.entry_position}),
                                  static_cast<Vec3<T>>(bundle.object.towards),
-                                 two({bundle.middle.x, bundle.middle.y}),
-                                 two({bundle.reach.x, bundle.reach.y}),
+                                 two(lit.middle),
+                                 two(lit.reach),
                                  static_cast<T>(bundle.object.inverse_distance),
                                  static_cast<T>(path.entry_index),
                                  static_cast<T>(film_distance),
@@ -78,10 +79,11 @@ std::int64_t film_points_with(const LensSystem& lens, double wavelength_nm, cons
 std::int64_t find_film_points(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
                               EntryPattern pattern, Precision precision, std::int64_t count, double film_distance,
                               float* at, const KeepGoing& keep_going) {
+    const EntryRectangle lit = lit_rectangle(bundle, parallel_ray_loop(keep_going));
     if (precision == Precision::float64)
-        return film_points_with<double>(lens, wavelength_nm, bundle, pattern, count, film_distance, at,
+        return film_points_with<double>(lens, wavelength_nm, bundle, lit, pattern, count, film_distance, at,
                                         kernels().film_points_f64, keep_going);
-    return film_points_with<float>(lens, wavelength_nm, bundle, pattern, count, film_distance, at,
+    return film_points_with<float>(lens, wavelength_nm, bundle, lit, pattern, count, film_distance, at,
                                    kernels().film_points_f32, keep_going);
 }
 

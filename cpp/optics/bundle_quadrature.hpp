@@ -111,6 +111,30 @@ std::vector<LitSpoke> lit_spokes(const Bundle& bundle, int count, const RayLoop&
     return lit;
 }
 
+/// A rectangle in the plane in which a bundle is even.
+struct EntryRectangle {
+    Vec2<double> middle, reach;  ///< half its sides
+};
+
+/// A rectangle that holds all light of a bundle: its own, and what stands out of that by the edges on spokes. Between
+/// two of 128 spokes a corner of the light stands out further, by 1.3% of its reach where two rims cut out a pointed
+/// oval, and by 1.8% where a stop is a pentagon; hence the margin.
+template <class Bundle>
+EntryRectangle lit_rectangle(const Bundle& bundle, const RayLoop& loop = {}) {
+    constexpr int kSpokes = 128;
+    constexpr double kMargin = 1.03;
+    Vec2<double> low = {bundle.middle.x - bundle.reach.x, bundle.middle.y - bundle.reach.y};
+    Vec2<double> high = {bundle.middle.x + bundle.reach.x, bundle.middle.y + bundle.reach.y};
+    for (const LitSpoke& spoke : lit_spokes(bundle, kSpokes, loop))
+        for (const Stretch& stretch : spoke.stretches) {
+            const Vec2<double> edge = spoke.at(bundle, kMargin * stretch.to);
+            low = {std::min(low.x, edge.x), std::min(low.y, edge.y)};
+            high = {std::max(high.x, edge.x), std::max(high.y, edge.y)};
+        }
+    if (bundle.mirrored) low.x = -high.x;
+    return {{0.5 * (low.x + high.x), 0.5 * (low.y + high.y)}, {0.5 * (high.x - low.x), 0.5 * (high.y - low.y)}};
+}
+
 /// Rays for integrals over what passes the lens: on each spoke Gauss's nodes between the edges of the light, wherever
 /// rims, blades and obstructions put them. So nothing is lost at edges, and smooth functions need few rays. Rays of a
 /// half bundle stand for twice their area.

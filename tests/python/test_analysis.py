@@ -12,6 +12,7 @@ import matplotlib.figure
 import numpy as np
 import pytest
 import realcam as rc
+import scipy.special
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from realcam.analysis import kinds, report, style
 
@@ -158,6 +159,57 @@ def test_film_points_are_the_spot_of_very_many_rays() -> None:
                 assert found == pytest.approx(size, rel=5e-3, abs=3e-4)
     with pytest.raises(rc.InputError, match="even or grid"):
         LENS.film_points(pattern="random")
+
+
+@pytest.mark.parametrize(
+    ("name", "field"),
+    [("double-gauss-50mm", 5.0), ("double-gauss-50mm", 18.0), ("double-gauss-50mm", 21.0), ("tessar-50mm", 18.0),
+     ("tessar-50mm", 21.0), ("fast-50mm", 20.0), ("zoom-70-200mm", 8.0), ("wide-24mm", 38.0), ("phone-4mm", 33.0)],
+)  # fmt: skip
+def test_film_points_miss_nothing_that_passes(name: str, field: float) -> None:
+    """Against rays between the edges of the light, which real rays find one by one. Contrast tells what is missing at
+    the edge, where rays land farthest from the middle."""
+    lens = rc.Lens.load(name)
+    bundle = lens.bundle(field, spokes=512, nodes=32)
+    points = lens.film_points(field, 400_000, dtype="float64").astype(float)
+    for axis in (0, 1):
+        for frequency in (10.0, 20.0):
+            turns = 2j * np.pi * frequency
+            expected = abs(bundle.energy @ np.exp(turns * bundle.points_mm[:, axis]))
+            found = abs(np.exp(turns * points[:, axis]).mean())
+            # A sequence of 4e5 evenly spread points, cut by the edge of the light, is right within 1e-3.
+            assert found == pytest.approx(expected, abs=1.5e-3)
+    reach = np.abs(bundle.points_mm - points.mean(axis=0)).max(axis=0)
+    assert (np.abs(points - points.mean(axis=0)).max(axis=0) > 0.97 * reach).all()
+
+
+@pytest.mark.parametrize(("defocus_mm", "frequency"), [(0.0, 40.0), (0.5, 40.0), (1.0, 40.0), (3.0, 80.0)])
+def test_geometric_mtf_has_as_many_rays_as_the_frequency_asks_for(defocus_mm: float, frequency: float) -> None:
+    """Out of the focus of a hyperboloid that has no aberrations: light from the left, parallel in the glass, meets in
+    one point behind it. A ray at the height h crosses the axis with the tangent h / (f - z), z the sag there."""
+    n, radius_mm, stop_mm = 1.5, -50.0, 10.0
+    f = radius_mm / (1 - n)
+    surfaces = [
+        rc.Stop(clear_semi_diameter_mm=stop_mm, thickness_mm=0),
+        rc.Surface(thickness_mm=5, material=n, clear_semi_diameter_mm=12),
+        rc.Surface(radius_of_curvature_mm=radius_mm, conic=-(n**2), clear_semi_diameter_mm=12),
+    ]
+    lens = rc.Lens(surfaces=surfaces, film_distance_mm=f)
+    light = {"wavelengths_nm": [587.5618], "object_distance_m": np.inf, "method": "geometric"}
+    mtf = analysis.mtf(lens, [0.0], [frequency], defocus_mm=[defocus_mm], **light)
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    h = stop_mm * np.sqrt((nodes + 1) / 2)  # evenly over the area
+    sag = h**2 / radius_mm / (1 + np.sqrt(1 - (1 - n**2) * h**2 / radius_mm**2))
+    at = defocus_mm * h / (f - sag)
+    expected = abs(weights @ scipy.special.j0(2 * np.pi * frequency * at)) / 2
+    assert mtf.tangential[0, 0, 0] == pytest.approx(expected, abs=2e-4)
+    assert mtf.sagittal[0, 0, 0] == pytest.approx(expected, abs=2e-4)
+
+
+def test_contrast_that_rays_cannot_tell_is_none() -> None:
+    mtf = analysis.mtf(LENS, [10.0], [40.0, 4e5], method="geometric")
+    assert np.isfinite(mtf.tangential[0, 0, 0])
+    assert np.isnan(mtf.tangential[0, 0, 1])
 
 
 def test_bundles_carry_all_the_light() -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from .._core import InputError, Lens
+from .._core import InputError, Lens, RayBundle
 from . import style
 from .fields import (
     Bundles,
@@ -64,7 +65,8 @@ def mtf(
 
     fields_deg: None is the axis, 0.7 and all of the image height. frequencies_per_mm: None is 10, 20 and 40 on a film
     of 43 mm, and as fine in proportion on others. wavelengths_nm: None is F line, design wavelength, C line, in equal
-    shares. defocus_mm: (D,) planes behind the film. method: "diffraction", or "geometric": rays alone.
+    shares. defocus_mm: (D,) planes behind the film. method: "diffraction", or "geometric": rays alone, as many as the
+    highest frequency asks for, right within 1e-4; nan where 200 000 rays do not tell the contrast within 0.01.
     Raises InputError where no light passes.
     """
     if method not in METHODS:
@@ -119,14 +121,53 @@ def _by_waves(source: Bundles, field: float, colour: float, frequencies: Doubles
     )
 
 
+_SPOKES, _NODES, _MOST_DOUBLINGS = 32, 6, 5
+# Of the contrast: what is wanted, and what is told at all where no more rays are taken.
+_WANTED_ERROR, _TOLD_ERROR = 1e-4, 1e-2
+
+
 def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> _Transfer:
-    bundle = source.at(field, colour, 64, 12)
-    chief = np.array(bundle.chief_ray_mm)
-    slopes = bundle.directions[:, :2] / bundle.directions[:, 2:]
-    places = bundle.points_mm - chief + planes[:, None, None] * slopes  # (D, N, 2)
-    turns = 2 * np.pi * frequencies[:, None] * places.transpose(2, 0, 1)[:, :, None, :]
-    otf = np.cos(turns) @ bundle.energy - 1j * (np.sin(turns) @ bundle.energy)  # faster than a complex exponential
-    return _Transfer(otf[::-1], np.ones((2, len(frequencies))), chief)
+    """As many rays as the frequencies ask for.
+
+    A sum over M spokes is exact for waves of fewer than M periods around the light, one over n Gauss nodes for some n
+    periods along a spoke. So there are at least as many as the spot is periods wide, and twice as many each time until
+    the contrast stays as it is.
+    """
+
+    def bundle(doublings: int) -> RayBundle:
+        return source.at(field, colour, _SPOKES << doublings, _NODES << doublings)
+
+    radius = np.linalg.norm(_places(bundle(0), planes, slice(None)), axis=2).max()
+    periods = float(frequencies.max() * radius)
+    enough = math.ceil(math.log2(max(1.0, 2 * math.pi * periods / _SPOKES, periods / _NODES)))
+    doublings = min(1 + enough, _MOST_DOUBLINGS)
+    before = _sum_of_rays(bundle(doublings - 1), frequencies, planes)
+    while True:
+        otf = _sum_of_rays(bundle(doublings), frequencies, planes)
+        error = np.abs(otf - before)
+        if error.max() < _WANTED_ERROR or doublings == _MOST_DOUBLINGS:
+            break
+        before, doublings = otf, doublings + 1
+    otf = np.where(error < _TOLD_ERROR, otf, np.nan)
+    return _Transfer(otf, np.ones((2, len(frequencies))), np.array(bundle(0).chief_ray_mm))
+
+
+def _places(bundle: RayBundle, planes: Doubles, rays: slice) -> Doubles:
+    """(D, N, 2), mm from the chief ray."""
+    slopes = bundle.directions[rays, :2] / bundle.directions[rays, 2:]
+    places: Doubles = bundle.points_mm[rays] - bundle.chief_ray_mm + planes[:, None, None] * slopes
+    return places
+
+
+def _sum_of_rays(bundle: RayBundle, frequencies: Doubles, planes: Doubles) -> np.ndarray:
+    """(2, D, K), tangential and sagittal, about the chief ray."""
+    otf = np.zeros((2, len(planes), len(frequencies)), complex)
+    step = max(1, (1 << 21) // (len(planes) * len(frequencies)))  # rays at once: some 100 MB
+    for first in range(0, len(bundle.energy), step):
+        rays = slice(first, first + step)
+        turns = 2 * np.pi * frequencies[:, None] * _places(bundle, planes, rays).transpose(2, 0, 1)[::-1, :, None, :]
+        otf += np.cos(turns) @ bundle.energy[rays] - 1j * (np.sin(turns) @ bundle.energy[rays])  # faster than exp
+    return otf
 
 
 def mtf_over_frequency(
