@@ -267,11 +267,13 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
                                 [&](Vec2f at, Vec2f u) { return thin_lens_ray(camera, at, u, 0.0f); });
             break;
         case CameraModel::thin_lens:
-        case CameraModel::mapped_lens:
             generate_ideal_rays(camera, block, film, rays, [&](Vec2f at, Vec2f u) {
-                return camera.map.count > 0 ? mapped_lens_ray(camera, at, u)
-                                            : thin_lens_ray(camera, at, u, camera.thin.pupil_radius);
+                return thin_lens_ray(camera, at, u, camera.thin.pupil_radius);
             });
+            break;
+        case CameraModel::mapped_lens:
+            generate_ideal_rays(camera, block, film, rays,
+                                [&](Vec2f at, Vec2f u) { return mapped_lens_ray(camera, at, u); });
             break;
         case CameraModel::thick_lens:
             generate_ideal_rays(camera, block, film, rays,

@@ -84,9 +84,14 @@ def _best(work: Callable[[], object], rounds: int = 3) -> float:
     return min(times)
 
 
+def _sky() -> Scene:
+    """Nothing but a sky, so that a picture costs what its camera rays cost."""
+    return Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
+
+
 def pass_share(threads: int) -> Result:
     """Share of the sampled rays that pass the lens, whole frame, wide open."""
-    speck = Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(1.0)
+    speck = _sky()
     shares = {}
     for name in lens_names():
         lens = Lens.load(name)
@@ -95,6 +100,24 @@ def pass_share(threads: int) -> Result:
         stats = render(speck, Camera(lens, film=film), spp=16, max_bounces=0, device="cpu", threads=threads).stats
         shares[name] = round(stats.passed_rays / stats.sampled_rays, 4)
     return {"share": shares, "worst": min(shares.values())}
+
+
+def camera_models(threads: int) -> Result:
+    """640 x 640 pixels of 20 samples of a sky: CPU seconds by camera model. An ideal lens that takes as long as every
+    surface has lost its vector code."""
+    sky = _sky()
+    cpu: dict[str, list[float]] = {}
+    for _ in range(5):  # in turns, so that what else the machine does falls on all alike
+        for model in ("pinhole", "thin", "mapped", "thick", "full"):
+            start = time.process_time()
+            stats = render(sky, frame_camera(model), spp=20, effects=(), device="cpu", threads=threads).stats
+            share = 1 - stats.setup_seconds / stats.seconds
+            cpu.setdefault(model, []).append(share * (time.process_time() - start))
+    best = {model: min(times) for model, times in cpu.items()}
+    return {
+        "cpu_seconds": {model: round(seconds, 3) for model, seconds in best.items()},
+        "over_full": {model: round(seconds / best["full"], 2) for model, seconds in best.items()},
+    }
 
 
 FRAME_EMITTER_RADIANCE = 2000.0  # cd/m^2, of the area light of frame_scene_arrays
@@ -376,6 +399,7 @@ BENCHMARKS: dict[str, Callable[[int], Result]] = {
     "lens-rays": lens_rays,
     "lens-setup": lens_setup,
     "pass-share": pass_share,
+    "camera-models": camera_models,
     "frame": frame,
     "sensor": sensor,
     "gpu-lens-rays": gpu_lens_rays,

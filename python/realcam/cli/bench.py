@@ -15,8 +15,8 @@ def bench(
     names: Annotated[
         Optional[list[str]],  # noqa: UP045
         typer.Argument(
-            help="lens-rays, lens-setup, pass-share, frame, sensor; gpu-lens-rays, gpu-hits, gpu-paths, gpu-frames, "
-            "gpu-objects [all].",
+            help="lens-rays, lens-setup, pass-share, camera-models, frame, sensor; gpu-lens-rays, gpu-hits, gpu-paths, "
+            "gpu-frames, gpu-objects [all].",
             metavar="[BENCHMARK]...",
             show_default=False,
         ),
