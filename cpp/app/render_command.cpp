@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "../devices/devices.hpp"
@@ -89,7 +90,7 @@ public:
         Camera camera = camera_of(request);
         const auto session = make_session(words_.device);
         shot::Shot shot = set_up_shot(request, std::move(camera));
-        const Plan plan = planned(*session, shot, request, thresholds_of(words_));
+        const Plan plan = planned(*session, shot, request, true);
         std::fputs((as_json ? json_of(plan) : text_of(plan, io::name_of(plan.model))).c_str(), stdout);
     }
 
@@ -105,7 +106,7 @@ private:
     /// Returns what was decided. What cannot be planned is taken as it stands.
     std::string follow_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request) const {
         try {
-            const Plan plan = planned(session, shot, request, thresholds_of(words_));
+            const Plan plan = planned(session, shot, request, false);
             apply(plan, shot.camera, request.settings);
             if (words_.explains) std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
             return summary_of(plan);
@@ -117,10 +118,10 @@ private:
     }
 
     /// Meters first, because sizes in codes depend on the exposure.
-    static Plan planned(Session& session, shot::Shot& shot, const shot::ShotRequest& request,
-                        const PlanThresholds& thresholds) {
+    Plan planned(Session& session, shot::Shot& shot, const shot::ShotRequest& request, bool measures_times) const {
         meter(shot, request, session, {});
-        const PlanRequest wanted{request.settings.effects, thresholds, shot.camera.model == CameraModel::full_lens};
+        const PlanRequest wanted{request.settings.effects, thresholds_of(words_),
+                                 shot.camera.model == CameraModel::full_lens, measures_times};
         return make_plan(session, shot.scene, shot.camera, request.settings, wanted, fast_pupil_tracer());
     }
 
@@ -144,7 +145,7 @@ private:
                 .key("by")
                 .text(decision.by == DecidedBy::user ? "user" : "planner")
                 .key("time_share")
-                .number(decision.time)
+                .number(decision.time.value_or(std::numeric_limits<double>::quiet_NaN()))
                 .key("reason")
                 .text(decision.reason)
                 .end();

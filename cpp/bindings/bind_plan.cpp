@@ -21,7 +21,8 @@ namespace {
 /// As Python's users see it.
 struct Decision {
     std::string effect, unit, by, reason;
-    double size, threshold, time_share;
+    double size, threshold;
+    std::optional<double> time_share;
     bool is_kept;
 };
 
@@ -49,8 +50,9 @@ PlanThresholds thresholds_from(const std::string& quality, std::optional<double>
 
 Planned plan(const Assembly& scene, const Camera& camera, const std::string& device, std::int64_t seed, int max_bounces,
              int threads, std::vector<std::string> effects, const std::string& quality,
-             std::optional<double> threshold_px, std::optional<double> threshold_codes) {
+             std::optional<double> threshold_px, std::optional<double> threshold_codes, bool times) {
     PlanRequest request;
+    request.measures_times = times;
     effects.push_back("auto");
     request.effects = effects_named(effects);
     request.thresholds = thresholds_from(quality, threshold_px, threshold_codes);
@@ -78,7 +80,8 @@ void bind_plan(py::module_& m) {
         .def_readonly("is_kept", &Decision::is_kept)
         .def_readonly("by", &Decision::by, "\"planner\", or \"user\" where the effect was named.")
         .def_readonly("time_share", &Decision::time_share,
-                      "Expected time, as a share of that of a picture without effects.")
+                      "What the effect by itself adds to the picture's time, as a share of that without effects, "
+                      "measured on the device;\nNone: not measured.")
         .def_readonly("reason", &Decision::reason)
         .def("__repr__", [](const Decision& d) {
             return "<realcam.PlanDecision " + d.effect + ' ' + (d.is_kept ? "kept" : "left out") + ": " +
@@ -98,7 +101,7 @@ void bind_plan(py::module_& m) {
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
     m.def("_plan", &plan, "scene"_a, "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a, "effects"_a,
-          "quality"_a, "threshold_px"_a, "threshold_codes"_a);
+          "quality"_a, "threshold_px"_a, "threshold_codes"_a, "times"_a);
 }
 
 }  // namespace realcam::bindings

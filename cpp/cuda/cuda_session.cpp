@@ -40,7 +40,6 @@ public:
     }
 
     std::string name() const override { return "GPU (" + name_ + ")"; }
-    bool is_on_gpu() const override { return true; }
 
     DevicePicture device_picture(const KeepGoing& keep_going) override {
         return of_all_collected(keep_going, [&] { return develop_here(); });

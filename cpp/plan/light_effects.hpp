@@ -83,9 +83,9 @@ inline double brightest(const SceneFacts& facts) {
 /// Which light comes to the film by a pair of surfaces, by first order.
 class GhostBundle {
 public:
-    GhostBundle(const LensSystem& lens, GhostPair pair)
+    GhostBundle(const LensSystem& lens, GhostPair pair, double wavelength_nm)
         : lens_(lens),
-          path_(ghost_path(lens, lens.wavelength_nm, pair)),
+          path_(ghost_path(lens, wavelength_nm, pair)),
           of_height_(on_film(path_.of_height)),
           of_slope_(on_film(path_.of_slope)) {}
 
@@ -154,7 +154,7 @@ inline std::vector<AxialShares> shares_of(const LensSystem& lens) {
 /// By how much an effect of surfaces changes the light of the picture.
 struct LightChange {
     double codes = 0;  ///< in the colour that shows it most
-    double colour_codes = 0;  ///< by which it is more than at one wavelength for all colours
+    double colour_codes = 0;  ///< by which a colour shows it more or less than at one wavelength for all colours
 };
 
 /// What the surfaces keep, where the picture is brightest without being clipped.
@@ -162,13 +162,14 @@ inline LightChange coating_codes(const Camera& camera, const SceneFacts& facts) 
     using namespace light_effects_detail;
     const double value = std::min(brightest(facts), 1.0);
     const auto way = crossings_of(camera.lens);
+    const std::vector<AxialShares> shares = shares_of(camera.lens);
+    const auto codes_of = [&](const AxialShares& share) { return code_of(value) - code_of(value * share(way)); };
+    const double of_one = codes_of(shares.back());
     LightChange change;
-    double of_one = 0;
-    for (const AxialShares& share : shares_of(camera.lens)) {
-        of_one = code_of(value) - code_of(value * share(way));
-        change.codes = std::max(change.codes, of_one);
+    for (const AxialShares& share : shares) {
+        change.codes = std::max(change.codes, codes_of(share));
+        change.colour_codes = std::max(change.colour_codes, std::fabs(codes_of(share) - of_one));
     }
-    change.colour_codes = change.codes - of_one;
     return change;
 }
 
@@ -176,6 +177,47 @@ inline LightChange coating_codes(const Camera& camera, const SceneFacts& facts) 
 struct GhostChange : LightChange {
     GhostPair brightest{-1, -1};  ///< none: it is the veil of all
 };
+
+namespace light_effects_detail {
+
+/// The disc that one ghost makes of a lamp on the film, in one colour.
+struct GhostDisc {
+    double middle, radius;  ///< mm; along the direction to the lamp, from the middle of the film
+    double value;  ///< of the developed picture
+    double darkest;  ///< of the picture without it, within the disc
+};
+
+/// `share`: of the light that the ghost's way keeps; `pixel`: mm. Nothing where rims or the frame leave nothing of it.
+inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFacts& facts, const GhostBundle& bundle,
+                                           const SeenLight& light, double share, double pixel) {
+    const double across = light.from.x / -light.from.z, down = light.from.y / -light.from.z;
+    // On the axis too the place of the ghost moves with the slope, by as much as close to it.
+    const double slope = std::max(std::hypot(across, down), 1e-6);
+    const std::optional<GhostBundle::Spot> spot = bundle.spot_of(slope);
+    if (!spot) return {};
+    const double chief = spot->middle / slope;
+    const double image = light.solid_angle_sr * chief * chief;
+    const double radius =
+        std::sqrt(std::max(spot->radius * spot->radius, pixel * pixel / 4) + image / std::numbers::pi);
+    const PicturePlace place = place_of(camera, -chief * across, -chief * down);
+    const auto dark = darkest_within(facts, place, radius / camera.film.width_mm, radius / camera.film.height_mm);
+    if (!dark) return {};
+    const double gathered = spot->radius_in_front / radius;
+    const double lux = light.illuminance_lux * -light.from.z * gathered * gathered;
+    return GhostDisc{spot->middle, radius, value_of(camera, share * lux), *dark};
+}
+
+/// By how many codes a disc in one colour differs from that at the lens's own wavelength: by its light, and in the
+/// crescent that one of them reaches and the other does not, of which a pixel may see a share only.
+inline double colour_between(const GhostDisc& disc, double veil, const GhostDisc& of_one, double veil_of_one,
+                             double pixel) {
+    const double light = std::fabs(codes_between(disc.darkest, disc.value + veil) -
+                                   codes_between(disc.darkest, of_one.value + veil_of_one));
+    const double crescent = std::fabs(disc.middle - of_one.middle) + std::fabs(disc.radius - of_one.radius);
+    return std::max(light, codes_between(disc.darkest, std::min(crescent / pixel, 1.0) * of_one.value));
+}
+
+}  // namespace light_effects_detail
 
 /// By first order, in the colour that shows it most. The light of a lamp fills a disc; where the picture is darkest in
 /// it, it shows most. The veil that all ghosts make of what the lens sees shows most where the picture is darkest:
@@ -189,55 +231,48 @@ inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     const double pixel = camera.film.width_mm / camera.film.width;
     const std::vector<SeenLight> lights = brightest_in_front(facts);
     const std::vector<AxialShares> shares = shares_of(lens);
-    struct Spot {
+    struct Discs {
         GhostPair pair;
-        std::size_t colour;
-        double value, dark;
+        std::array<std::optional<GhostDisc>, kColours + 1> of_colours;
     };
-    std::vector<Spot> spots;
+    std::vector<Discs> all;
     std::array<double, kColours + 1> veil{};
     for (const GhostPair pair : ghost_pairs(lens)) {
-        const GhostBundle bundle(lens, pair);
         const auto way = crossings_of(lens, pair);
-        std::array<double, kColours + 1> share;
-        for (std::size_t c = 0; c <= kColours; ++c) share[c] = shares[c](way);
-        const GhostBundle::View view = bundle.view_from_the_middle();
-        const double relative = (view.sine / sine_of_lens) * (view.sine / sine_of_lens);
-        const double seen = facts.surroundings.mean_within(view.slope_in_scene);
-        for (std::size_t c = 0; c <= kColours; ++c) veil[c] += share[c] * relative * seen;
-        for (const SeenLight& light : lights) {
-            const double across = light.from.x / -light.from.z, down = light.from.y / -light.from.z;
-            // On the axis too the place of the ghost moves with the slope, by as much as close to it.
-            const double slope = std::max(std::hypot(across, down), 1e-6);
-            const std::optional<GhostBundle::Spot> spot = bundle.spot_of(slope);
-            if (!spot) continue;
-            const double chief = spot->middle / slope;
-            const double image = light.solid_angle_sr * chief * chief;
-            const double disc =
-                std::sqrt(std::max(spot->radius * spot->radius, pixel * pixel / 4) + image / std::numbers::pi);
-            const PicturePlace place = place_of(camera, -chief * across, -chief * down);
-            const auto dark = darkest_within(facts, place, disc / camera.film.width_mm, disc / camera.film.height_mm);
-            if (!dark) continue;
-            const double gathered = spot->radius_in_front / disc;
-            const double lux = light.illuminance_lux * -light.from.z * gathered * gathered;
-            for (std::size_t c = 0; c <= kColours; ++c)
-                spots.push_back({pair, c, value_of(camera, share[c] * lux), *dark});
+        std::vector<Discs> of_lights(lights.size(), Discs{pair, {}});
+        for (std::size_t c = 0; c <= kColours; ++c) {
+            const GhostBundle bundle(lens, pair, c < kColours ? kColours_nm[c] : lens.wavelength_nm);
+            const double share = shares[c](way);
+            const GhostBundle::View view = bundle.view_from_the_middle();
+            const double relative = (view.sine / sine_of_lens) * (view.sine / sine_of_lens);
+            veil[c] += share * relative * facts.surroundings.mean_within(view.slope_in_scene);
+            for (std::size_t k = 0; k < lights.size(); ++k)
+                of_lights[k].of_colours[c] = ghost_disc(camera, facts, bundle, lights[k], share, pixel);
         }
+        all.insert(all.end(), of_lights.begin(), of_lights.end());
     }
     double darkest = brightest(facts);
     for (const SeenTile& tile : facts.tiles) darkest = std::min(darkest, tile.value);
     GhostChange most;
-    double of_one = codes_between(darkest, veil.back());
-    most.codes = codes_between(darkest, *std::max_element(veil.begin(), veil.end()));
-    for (const Spot& spot : spots) {
-        const double codes = codes_between(spot.dark, spot.value + veil[spot.colour]);
-        if (codes > most.codes) {
-            most.codes = codes;
-            most.brightest = spot.pair;
-        }
-        if (spot.colour == kColours) of_one = std::max(of_one, codes);
+    for (const double of_colour : veil) {
+        const double codes = codes_between(darkest, of_colour);
+        most.codes = std::max(most.codes, codes);
+        most.colour_codes = std::max(most.colour_codes, std::fabs(codes - codes_between(darkest, veil.back())));
     }
-    most.colour_codes = most.codes - of_one;
+    for (const Discs& discs : all) {
+        const std::optional<GhostDisc>& of_one = discs.of_colours.back();
+        for (std::size_t c = 0; c <= kColours; ++c) {
+            const std::optional<GhostDisc>& disc = discs.of_colours[c];
+            if (!disc) continue;
+            const double codes = codes_between(disc->darkest, disc->value + veil[c]);
+            if (codes > most.codes) {
+                most.codes = codes;
+                most.brightest = discs.pair;
+            }
+            most.colour_codes = std::max(most.colour_codes,
+                                         of_one ? colour_between(*disc, veil[c], *of_one, veil.back(), pixel) : codes);
+        }
+    }
     return most;
 }
 

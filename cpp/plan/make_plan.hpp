@@ -1,4 +1,5 @@
 #pragma once
+#include "measure_times.hpp"
 #include "plan_shot.hpp"
 #include "probe_scene.hpp"
 
@@ -18,7 +19,9 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
     const CameraSetup of_surfaces(full, tracer), of_ideal(ideal, tracer);
     const LensErrors errors =
         lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), camera.lens, facts, tracer);
-    return plan_shot(camera, errors, facts, request, session.is_on_gpu());
+    Plan plan = plan_shot(camera, errors, facts, request);
+    if (request.measures_times) measure_times(session, scene, camera, settings, plan, progress);
+    return plan;
 }
 
 }  // namespace REALCAM_NAMESPACE

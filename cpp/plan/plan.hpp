@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct PlanDecision {
     double threshold;
     bool is_kept;
     DecidedBy by = DecidedBy::planner;
-    double time;  ///< that it adds to the picture's, as a share of that without any effect
+    std::optional<double>
+        time;  ///< that it adds to the picture's, as a share of that without any effect; where measured
     std::string reason;  ///< a sentence
 
     bool operator==(const PlanDecision&) const = default;

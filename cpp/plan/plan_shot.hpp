@@ -16,6 +16,7 @@ struct PlanRequest {
     EffectChoice effects;  ///< those that were named stay as they are
     PlanThresholds thresholds = {};
     bool may_choose_model = true;  ///< else the camera's stays
+    bool measures_times = false;  ///< what effects add to the time of the picture, which itself takes some seconds
 };
 
 /// The effects of a picture for which there is no plan: those that somebody has named.
@@ -27,30 +28,6 @@ inline EffectChoice without_plan(EffectChoice effects) {
 
 namespace plan_shot_detail {
 
-/// What an effect adds to a picture's time, as a share of it: benchmarks/results, on one core and on a GPU.
-struct EffectTime {
-    const char* name;
-    struct {
-        double spheres, aspheres;
-    } cpu, gpu;
-};
-inline constexpr EffectTime kEffectTimes[] = {
-    {"dispersion", {0.12, 0.46}, {0.15, 0.74}}, {"coatings", {0.03, 0.05}, {0.07, 0.07}},
-    {"ghosts", {0.5, 1.45}, {0.21, 0.61}},      {"diffraction", {0.1, 0.15}, {0.13, 0.15}},
-    {"motion_blur", {0.1, 0.05}, {0.1, 0.05}},
-};
-
-inline double time_of(const std::string& effect, const LensSystem& lens, bool on_gpu) {
-    const bool has_aspheres = std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
-                                          [](const Surface& surface) { return surface.is_asphere(); });
-    for (const EffectTime& time : kEffectTimes) {
-        if (effect != time.name) continue;
-        const auto& device = on_gpu ? time.gpu : time.cpu;
-        return has_aspheres ? device.aspheres : device.spheres;
-    }
-    return 0;
-}
-
 /// Two or three digits.
 inline std::string short_size(double size) {
     char text[32];
@@ -60,9 +37,8 @@ inline std::string short_size(double size) {
 
 class Planner {
 public:
-    Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const PlanRequest& request,
-            bool on_gpu)
-        : camera_(camera), errors_(errors), facts_(facts), request_(request), on_gpu_(on_gpu) {}
+    Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const PlanRequest& request)
+        : camera_(camera), errors_(errors), facts_(facts), request_(request) {}
 
     Plan plan() {
         plan_.effects = without_plan(request_.effects);
@@ -88,7 +64,7 @@ private:
 
     /// `reason`: what is so large. `doubt`: why it is left to the user; empty: it is not.
     void decide(const char* name, double size, SizeUnit unit, std::string reason, const std::string& doubt = "") {
-        const EffectInfo& effect = effect_named(name);
+        const EffectInfo& effect = *find_effect(name);
         const double threshold = unit == SizeUnit::pixels ? request_.thresholds.pixels : request_.thresholds.codes;
         const bool is_named = (request_.effects.named & bit_of(effect)) != 0;
         const bool is_kept =
@@ -97,8 +73,7 @@ private:
             reason += "; " + (doubt.empty() ? "an ideal lens cannot show it" : doubt);
         plan_.effects.*effect.member = is_kept;
         plan_.decisions.push_back({name, size, unit, threshold, is_kept,
-                                   is_named ? DecidedBy::user : DecidedBy::planner,
-                                   time_of(name, camera_.lens, on_gpu_), reason});
+                                   is_named ? DecidedBy::user : DecidedBy::planner, std::nullopt, reason});
     }
 
     /// Glass without a word on its coating is taken as bare, which few lenses are.
@@ -119,7 +94,7 @@ private:
         const LightChange light = coating_codes(camera_, facts_);
         decide("coatings", light.codes, SizeUnit::codes,
                "the glass takes " + codes(light.codes) + " from what is bright", doubt_of_coatings());
-        note_colour(plan_.effects.coatings, light);
+        if (plan_.effects.coatings) coating_colour_codes_ = light.colour_codes;
     }
 
     void decide_ghosts() {
@@ -131,11 +106,7 @@ private:
                    : "ghosts and their veil bring " + codes(light.codes) + " to what is dark, most by surfaces " +
                          surface(light.brightest.first) + " and " + surface(light.brightest.second),
                doubt_of_coatings());
-        note_colour(plan_.effects.ghosts, light);
-    }
-
-    void note_colour(bool is_kept, const LightChange& light) {
-        if (is_kept) coating_colour_codes_ = std::max(coating_colour_codes_, light.colour_codes);
+        if (plan_.effects.ghosts) ghost_colour_codes_ = light.colour_codes;
     }
 
     void decide_diffraction() {
@@ -151,18 +122,22 @@ private:
             decide("diffraction", star, SizeUnit::codes, "two pixels beside lamps stars bring " + codes(star));
     }
 
-    /// Of glass; and of coatings, which are of one wavelength where neither dispersion nor diffraction brings others.
+    /// Of glass; of coatings, which are of one wavelength where neither dispersion nor diffraction brings others; and
+    /// of ghosts, to which dispersion alone does.
     void decide_colour() {
         const double lateral = errors_.lateral_colour_px, axial = errors_.axial_colour_px;
-        const double size = std::max(lateral, axial);
+        const double of_glass = std::max(lateral, axial);
         const double of_coatings = plan_.effects.diffraction ? 0.0 : coating_colour_codes_;
-        if (size / request_.thresholds.pixels < of_coatings / request_.thresholds.codes)
-            decide("dispersion", of_coatings, SizeUnit::codes,
-                   "what the coatings reflect has a colour of " + codes(of_coatings));
+        const double of_light = std::max(of_coatings, ghost_colour_codes_);
+        if (of_glass / request_.thresholds.pixels < of_light / request_.thresholds.codes)
+            decide("dispersion", of_light, SizeUnit::codes,
+                   (of_coatings > ghost_colour_codes_ ? "what the coatings take has a colour of "
+                                                      : "ghosts have a colour of ") +
+                       codes(of_light));
         else
-            decide("dispersion", size, SizeUnit::pixels,
-                   lateral >= axial ? "blue and red light fall " + px(size) + " apart"
-                                    : "blue and red light are not blurred alike, by a disc of " + px(size));
+            decide("dispersion", of_glass, SizeUnit::pixels,
+                   lateral >= axial ? "blue and red light fall " + px(of_glass) + " apart"
+                                    : "blue and red light are not blurred alike, by a disc of " + px(of_glass));
     }
 
     void decide_motion() {
@@ -194,7 +169,7 @@ private:
         const auto add = [&](const char* name, double size, SizeUnit unit, bool is_kept, const std::string& reason) {
             const double threshold = unit == SizeUnit::pixels ? thresholds.pixels : thresholds.codes;
             const bool comes_along = is_kept && size < threshold && by == DecidedBy::planner;
-            plan_.decisions.push_back({name, size, unit, threshold, is_kept, by, 0,
+            plan_.decisions.push_back({name, size, unit, threshold, is_kept, by, std::nullopt,
                                        reason + (comes_along ? "; it comes along with the camera model" : "")});
         };
         add("defocus", errors_.defocus_px, SizeUnit::pixels, !is_pinhole,
@@ -211,9 +186,8 @@ private:
     const LensErrors& errors_;
     const SceneFacts& facts_;
     const PlanRequest& request_;
-    bool on_gpu_;
     Plan plan_;
-    double coating_colour_codes_ = 0;  ///< the most of the effects that are kept
+    double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< of those that are kept
 };
 
 }  // namespace plan_shot_detail
@@ -225,10 +199,10 @@ inline void apply(const Plan& plan, Camera& camera, RenderSettings& settings) {
     if (!settings.effects.have_wavelengths()) settings.illuminant.reset();
 }
 
-/// What is worth simulating of a shot. `on_gpu`: it is rendered, which the expected times depend on.
+/// What is worth simulating of a shot.
 inline Plan plan_shot(const Camera& camera, const LensErrors& errors, const SceneFacts& facts,
-                      const PlanRequest& request, bool on_gpu) {
-    return plan_shot_detail::Planner(camera, errors, facts, request, on_gpu).plan();
+                      const PlanRequest& request) {
+    return plan_shot_detail::Planner(camera, errors, facts, request).plan();
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -45,7 +45,7 @@ inline std::string text_of(const Plan& plan, const std::string& model_name) {
         rows.push_back(
             {decision.name, number(decision.size, 3) + " " + unit, number(decision.threshold, 3) + " " + unit,
              std::string(decision.is_kept ? "kept" : "left out") + (decision.by == DecidedBy::user ? " as asked" : ""),
-             decision.time > 0 ? "+" + number(100 * decision.time, 3) + "%" : "", decision.reason});
+             decision.time ? "+" + number(100 * *decision.time, 2) + "%" : "", decision.reason});
     }
     std::array<std::size_t, 6> width{};
     for (const Row& row : rows)

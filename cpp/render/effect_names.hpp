@@ -85,10 +85,11 @@ inline std::uint32_t bit_of(const EffectInfo& effect) {
     return 1u << (&effect - kEffects.data());
 }
 
-/// By the name in kEffects.
-inline const EffectInfo& effect_named(const std::string& name) {
-    return *std::find_if(kEffects.begin(), kEffects.end(),
-                         [&](const EffectInfo& effect) { return name == effect.name; });
+/// By the name in kEffects; null for one that is none.
+inline const EffectInfo* find_effect(const std::string& name) {
+    const auto found =
+        std::find_if(kEffects.begin(), kEffects.end(), [&](const EffectInfo& effect) { return name == effect.name; });
+    return found == kEffects.end() ? nullptr : &*found;
 }
 
 inline std::string effect_names() {
@@ -125,9 +126,8 @@ inline EffectChoice effects_named(const std::vector<std::string>& names) {
         }
         const bool on = !name.starts_with('-');
         const std::string plain = effect_names_detail::effect_of(name);
-        const auto found = std::find_if(kEffects.begin(), kEffects.end(),
-                                        [&](const EffectInfo& effect) { return plain == effect.name; });
-        if (found == kEffects.end())
+        const EffectInfo* found = find_effect(plain);
+        if (!found)
             throw InputError("unknown effect \"" + name.substr(0, 60) + "\"; some of " + effect_names() +
                              " are wanted");
         for (const std::string& other : names)

@@ -46,7 +46,7 @@ inline double metered_exposure_time(Session& session, const Assembly& scene, Cam
     if (settings.effects.is_automatic) {  // which they are depends on the exposure
         EffectChoice effects;
         // A real camera measures the light that its lens lets through.
-        const bool is_named = (settings.effects.named & bit_of(effect_named("coatings"))) != 0;
+        const bool is_named = (settings.effects.named & bit_of(*find_effect("coatings"))) != 0;
         effects.coatings =
             is_named ? settings.effects.coatings
                      : camera.model == CameraModel::full_lens && surfaces_with_unknown_coating(camera.lens).empty();

@@ -52,7 +52,6 @@ public:
 
     /// The device, for people.
     virtual std::string name() const = 0;
-    virtual bool is_on_gpu() const { return false; }
 
     /// Throws InputError and SceneFileError for a scene that makes no picture, and Cancelled.
     void check(const Assembly& scene, const KeepGoing& keep_going = {}) {
