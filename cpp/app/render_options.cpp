@@ -50,6 +50,7 @@ void read_camera_words(const RenderWords& w, shot::ShotRequest& request) {
     if (!w.blade_rotation.empty()) request.blade_rotation_deg = parse_number("--blade-rotation", w.blade_rotation);
     check_blades(request);
     if (!w.film.empty()) request.film_mm = parse_size("--film", w.film);
+    if (!w.film_shift.empty()) request.film_shift_mm = parse_shift("--film-shift", w.film_shift);
     if (!w.resolution.empty()) request.resolution = parse_resolution("--resolution", w.resolution);
     if (!w.position.empty()) request.view.position_m = parse_point("--position", w.position);
     if (!w.look_at.empty()) request.view.look_at_m = parse_point("--look-at", w.look_at);
@@ -153,6 +154,8 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
         "NAME");
     add_lens_options(command, w.lens_file);
     option("--film", w.film, "Film in mm [the lens's, in the shape of the resolution]", "WxH");
+    option("--film-shift", w.film_shift,
+           "The film's middle from the lens's axis, mm to the right and up as the picture shows it [0,0]", "X,Y");
     option("--resolution", w.resolution, "Pixels [960 along the longer side]", "WxH");
     option("--position", w.position,
            "Middle of the film, metres [in front of look-at, along +z, such that the scene fills the film]", "X,Y,Z");

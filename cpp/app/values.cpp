@@ -92,6 +92,12 @@ std::array<double, 2> parse_size(const std::string& option, const std::string& t
     return {v[0], v[1]};
 }
 
+std::array<double, 2> parse_shift(const std::string& option, const std::string& text) {
+    std::vector<double> v;
+    if (!read_numbers(text, ',', 2, v)) fail(option, text, "two lengths in mm with a comma, such as 0,8");
+    return {v[0], v[1]};
+}
+
 std::array<int, 2> parse_resolution(const std::string& option, const std::string& text) {
     std::vector<double> v;
     const auto whole = [](double n) { return n == std::floor(n) && std::fabs(n) < 2e9; };

@@ -30,6 +30,8 @@ std::optional<double> parse_exposure_time(const std::string& option, const std::
 Vec3d parse_point(const std::string& option, const std::string& text);
 /// "36x24".
 std::array<double, 2> parse_size(const std::string& option, const std::string& text);
+/// "0,-3.5".
+std::array<double, 2> parse_shift(const std::string& option, const std::string& text);
 /// "960x640".
 std::array<int, 2> parse_resolution(const std::string& option, const std::string& text);
 CameraModel parse_model(const std::string& text);

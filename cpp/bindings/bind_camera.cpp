@@ -31,16 +31,17 @@ CameraModel model_from(const std::string& name) {
     throw InputError("unknown camera model \"" + name + "\"; pinhole, thin, mapped, thick or full is wanted");
 }
 
-Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution) {
-    const Film film{width_mm, height_mm, resolution.first, resolution.second};
+Film make_film(double width_mm, double height_mm, std::pair<int, int> resolution, std::pair<double, double> shift_mm) {
+    const Film film{width_mm, height_mm, resolution.first, resolution.second, {shift_mm.first, shift_mm.second}};
     validate(film);
     return film;
 }
 
 Film changed_film(const Film& film, std::optional<double> width_mm, std::optional<double> height_mm,
-                  std::optional<std::pair<int, int>> resolution) {
-    const auto [columns, rows] = resolution.value_or(std::pair(film.width, film.height));
-    return make_film(width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm), {columns, rows});
+                  std::optional<std::pair<int, int>> resolution, std::optional<std::pair<double, double>> shift_mm) {
+    return make_film(width_mm.value_or(film.width_mm), height_mm.value_or(film.height_mm),
+                     resolution.value_or(std::pair(film.width, film.height)),
+                     shift_mm.value_or(std::pair(film.shift_mm.x, film.shift_mm.y)));
 }
 
 /// (time_s, position, look_at), or with up.
@@ -121,8 +122,10 @@ std::optional<std::tuple<double, double, double>> pupil_position(const Camera& c
 }
 
 std::string text_of(const Film& film) {
+    const bool is_shifted = film.shift_mm.x != 0 || film.shift_mm.y != 0;
     return "<realcam.Film " + digits(film.width_mm) + " x " + digits(film.height_mm) + " mm, " +
-           std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels>";
+           std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels" +
+           (is_shifted ? ", shifted by (" + digits(film.shift_mm.x) + ", " + digits(film.shift_mm.y) + ") mm>" : ">");
 }
 
 std::string text_of(const Camera& camera) {
@@ -139,12 +142,24 @@ void bind_film(py::module_& m) {
     py::class_<Film> film(m, "Film", "The light-sensitive rectangle and its pixels.");
     def_hashable_value(film);
     film.def(py::init(&make_film), "width_mm"_a = 36.0, "height_mm"_a = 24.0, "resolution"_a = std::pair(960, 640),
-             "resolution: (columns, rows). Raises InputError.")
+             "shift_mm"_a = std::pair(0.0, 0.0),
+             "resolution: (columns, rows). shift_mm: of the film's middle from the lens's axis, right and up as the\n"
+             "picture shows it: a shift lens's, or the principal point of a sensor, whose pixel is principal_point.\n"
+             "Raises InputError.")
         .def_readonly("width_mm", &Film::width_mm)
         .def_readonly("height_mm", &Film::height_mm)
         .def_property_readonly("resolution", [](const Film& f) { return std::pair(f.width, f.height); })
+        .def_property_readonly("shift_mm", [](const Film& f) { return std::pair(f.shift_mm.x, f.shift_mm.y); })
+        .def_property_readonly(
+            "principal_point",
+            [](const Film& f) {
+                const Vec2<double> axis = f.pixel_of({0, 0});
+                return std::pair(axis.x, axis.y);
+            },
+            "(column, row) at which the lens's axis meets the film, from the picture's upper left corner.")
         .def("replace", &changed_film, py::kw_only(), "width_mm"_a = py::none(), "height_mm"_a = py::none(),
-             "resolution"_a = py::none(), "The film with some of what Film() takes changed. None stays.")
+             "resolution"_a = py::none(), "shift_mm"_a = py::none(),
+             "The film with some of what Film() takes changed. None stays.")
         .def("__repr__", [](const Film& f) { return text_of(f); });
 }
 

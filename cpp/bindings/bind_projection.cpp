@@ -30,7 +30,7 @@ SightRay sight_ray_from(const std::string& name) {
 std::shared_ptr<const SightLines> lines_of(const Camera& camera, SightRay ray) {
     struct Last {
         LensSystem lens;
-        double width_mm, height_mm;
+        double film_radius_mm;
         CameraModel model;
         SightRay ray;
         bool operator==(const Last&) const = default;
@@ -40,7 +40,7 @@ std::shared_ptr<const SightLines> lines_of(const Camera& camera, SightRay ray) {
     static std::shared_ptr<const SightLines> lines;
     static LastSetup setups;
     validate(camera);
-    Last wanted = {camera.lens, camera.film.width_mm, camera.film.height_mm, camera.model, ray};
+    Last wanted = {camera.lens, camera.film.radius_mm(), camera.model, ray};
     {
         const std::lock_guard lock(mutex);
         if (last == wanted) return lines;

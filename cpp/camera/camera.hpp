@@ -31,8 +31,22 @@ inline constexpr int kMaxResolution = 32768;
 struct Film {
     double width_mm = 36, height_mm = 24;
     int width = 960, height = 640;
+    Vec2<double> shift_mm = {0, 0};  ///< of its middle from the lens's axis, right and up as the picture shows it
 
     bool operator==(const Film&) const = default;
+
+    /// Of the place farthest from the axis, mm.
+    double radius_mm() const {
+        return std::hypot(0.5 * width_mm + std::fabs(shift_mm.x), 0.5 * height_mm + std::fabs(shift_mm.y));
+    }
+    /// From column and row, counted from the picture's upper left corner, to mm from the axis, right and up as the
+    /// picture shows it; and back.
+    Vec2<double> place_of(Vec2<double> pixel) const {
+        return {(pixel.x / width - 0.5) * width_mm + shift_mm.x, (0.5 - pixel.y / height) * height_mm + shift_mm.y};
+    }
+    Vec2<double> pixel_of(Vec2<double> place) const {
+        return {(0.5 + (place.x - shift_mm.x) / width_mm) * width, (0.5 - (place.y - shift_mm.y) / height_mm) * height};
+    }
 };
 
 /// Where the camera is: the middle of its film, and its axes, in the scene (metres, right-handed, y up).
@@ -112,6 +126,9 @@ inline void validate(const Film& film) {
     if (!lies_between(kSmallestFilm, film.width_mm, kLargestFilm) ||
         !lies_between(kSmallestFilm, film.height_mm, kLargestFilm))
         throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
+    if (!lies_between(-kLargestFilm, film.shift_mm.x, kLargestFilm) ||
+        !lies_between(-kLargestFilm, film.shift_mm.y, kLargestFilm))
+        throw InputError("the film's shift must be two finite lengths of at most 1e9 mm");
 }
 
 /// Throws InputError where nothing can be seen from there.
@@ -425,6 +442,7 @@ public:
         view.height = camera_.film.height;
         view.film_half_width = static_cast<float>(0.5 * camera_.film.width_mm);
         view.film_half_height = static_cast<float>(0.5 * camera_.film.height_mm);
+        view.film_middle = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
         view.film_distance = static_cast<float>(lens.film_distance);
         view.front_vertex_m = static_cast<float>(0.001 * lens.film_position());
         view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
@@ -487,7 +505,7 @@ private:
     }
 
     /// Of the film point furthest from the axis, mm.
-    double film_radius() const { return 0.5 * std::hypot(camera_.film.width_mm, camera_.film.height_mm); }
+    double film_radius() const { return camera_.film.radius_mm(); }
 
     void set_coatings(const CameraSetup* last) {
         const LensSystem& lens = camera_.lens;
@@ -549,7 +567,7 @@ private:
 
     bool has_lens_and_film_of(const Camera& camera) const {
         return camera_.lens == camera.lens && camera_.film.width_mm == camera.film.width_mm &&
-               camera_.film.height_mm == camera.film.height_mm;
+               camera_.film.height_mm == camera.film.height_mm && camera_.film.shift_mm == camera.film.shift_mm;
     }
     bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths, PupilSampling sampling) const {
         return pupil_ && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&

@@ -56,6 +56,7 @@ struct CameraView : CameraPlacement {
     CameraModel model;
     int width, height;                    ///< pixels
     float film_half_width, film_half_height;  ///< mm
+    Vec2f film_middle;                        ///< from the axis, mm
     float film_distance;                  ///< last vertex to film, mm
     float axis_irradiance;  ///< of the real lens on the axis for unit radiance; the ideal models take it over
     float front_vertex_m;   ///< film to front vertex, metres

@@ -24,16 +24,25 @@ inline double picture_angle(const Camera& camera, double image_height_mm) {
     return std::fabs(std::atan(static_cast<double>(thick.A) * slope - static_cast<double>(thick.C) * height));
 }
 
-/// From edge to edge of the picture, and from corner to corner, radians.
+/// From edge to edge of the picture, and from corner to corner, radians. Of a film that is shifted: in the planes of
+/// the axis, and the two corners farthest from each other on both sides of it.
 struct FieldOfView {
     double horizontal, vertical, diagonal;
 };
 
 /// Throws InputError where the camera's model has no place for its lens.
 inline FieldOfView field_of_view(const Camera& camera) {
-    const double width = camera.film.width_mm, height = camera.film.height_mm;
-    return {2 * picture_angle(camera, 0.5 * width), 2 * picture_angle(camera, 0.5 * height),
-            2 * picture_angle(camera, 0.5 * std::hypot(width, height))};
+    const double x = 0.5 * camera.film.width_mm, y = 0.5 * camera.film.height_mm;
+    const double right = std::fabs(camera.film.shift_mm.x), up = std::fabs(camera.film.shift_mm.y);
+    // From the place farthest from the axis to the one opposite, which may lie on the same side.
+    const auto between = [&](double far, double opposite) {
+        const double angle = picture_angle(camera, far);
+        return opposite == far ? 2 * angle
+                               : angle + std::copysign(picture_angle(camera, std::fabs(opposite)), opposite);
+    };
+    const double beyond = (x + right) * (x - right) + (y + up) * (y - up);
+    return {between(x + right, x - right), between(y + up, y - up),
+            between(std::hypot(x + right, y + up), std::copysign(std::hypot(x - right, y - up), beyond))};
 }
 
 /// The middle of the paraxial entrance pupil in the scene, metres: where lines from the scene to the camera meet. None

@@ -15,13 +15,16 @@ public:
     explicit PictureMap(const CameraView& camera)
         : pixels_per_mm_x_(0.5 * camera.width / static_cast<double>(camera.film_half_width)),
           pixels_per_mm_y_(0.5 * camera.height / static_cast<double>(camera.film_half_height)),
-          middle_{0.5 * camera.width, 0.5 * camera.height} {
+          axis_{0.5 * camera.width + pixels_per_mm_x_ * static_cast<double>(camera.film_middle.x),
+                0.5 * camera.height - pixels_per_mm_y_ * static_cast<double>(camera.film_middle.y)} {
         // Another film behind the same lens: one row, from the middle to a corner.
         CameraView along = camera;
         static_cast<CameraPlacement&>(along) = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         along.keys = nullptr;
         along.key_count = 0;
-        const float corner = std::hypot(camera.film_half_width, camera.film_half_height);
+        const float corner = std::hypot(camera.film_half_width + std::fabs(camera.film_middle.x),
+                                        camera.film_half_height + std::fabs(camera.film_middle.y));
+        along.film_middle = {0, 0};
         along.width = 2 * kRadii;
         along.height = 1;
         along.film_half_width = corner;
@@ -49,8 +52,7 @@ public:
         const std::optional<double> film = film_radius(radius, point.z, is_direction);
         if (!film) return std::nullopt;
         const double share = radius > 0 ? *film / radius : 0;
-        return Vec2<double>{middle_.x + pixels_per_mm_x_ * share * point.x,
-                            middle_.y - pixels_per_mm_y_ * share * point.y};
+        return Vec2<double>{axis_.x + pixels_per_mm_x_ * share * point.x, axis_.y - pixels_per_mm_y_ * share * point.y};
     }
 
 private:
@@ -91,7 +93,7 @@ private:
     }
 
     double pixels_per_mm_x_, pixels_per_mm_y_;
-    Vec2<double> middle_;
+    Vec2<double> axis_;  ///< where the lens's axis meets the picture
     std::vector<Ray> rays_;  ///< from the middle outwards
 };
 

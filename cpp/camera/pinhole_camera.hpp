@@ -42,8 +42,9 @@ inline std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const P
     PinholeCamera result{};
     result.focal_x = lens.image_distance * film.width / film.width_mm;
     result.focal_y = lens.image_distance * film.height / film.height_mm;
-    result.centre_x = 0.5 * film.width;
-    result.centre_y = 0.5 * film.height;
+    const Vec2<double> axis = film.pixel_of({0, 0});
+    result.centre_x = axis.x;
+    result.centre_y = axis.y;
     const camera_detail::Axes axes = camera_detail::axes_of(pose);
     result.right = axes.right;
     result.down = -axes.up;

@@ -62,8 +62,7 @@ public:
     PixelRay ray_of(Vec2<double> pixel) const {
         const Affine<double>& place = places_[places_.size() == 1 ? 0 : static_cast<std::size_t>(row_of(pixel.y))];
         // Seen from behind the camera, as the picture shows it.
-        const double x = (pixel.x - 0.5 * film_.width) * film_.width_mm / film_.width;
-        const double y = (0.5 * film_.height - pixel.y) * film_.height_mm / film_.height;
+        const auto [x, y] = film_.place_of(pixel);
         const double radius = std::hypot(x, y);
         if (!(radius <= lines_->reach())) return {kNowhere3, kNowhere3};
         const std::optional<SightLine> line = lines_->at(radius);
@@ -95,8 +94,7 @@ private:
             return {kNowhere, lines_->ends_in_film() ? ProjectionStatus::blocked : ProjectionStatus::outside_picture};
         }
         const double share = away > 0 ? lines_->sign() * *radius / away : 0;
-        const Vec2<double> pixel = {0.5 * film_.width + share * x * film_.width / film_.width_mm,
-                                    0.5 * film_.height - share * y * film_.height / film_.height_mm};
+        const Vec2<double> pixel = film_.pixel_of({share * x, share * y});
         const bool inside = pixel.x >= 0 && pixel.x <= film_.width && pixel.y >= 0 && pixel.y <= film_.height;
         return {pixel, inside ? ProjectionStatus::ok : ProjectionStatus::outside_picture};
     }

@@ -49,7 +49,7 @@ public:
         focus_ = lens.focus_distance - reference_;
         const CameraView view = setup.view(camera.pose.position_m);
         // So much more that rounding leaves no corner without a line.
-        reach_ = 0.5 * std::hypot(camera.film.width_mm, camera.film.height_mm) * (1 + 1e-7);
+        reach_ = camera.film.radius_mm() * (1 + 1e-7);
         if (has_real_pupil(camera.model)) {
             const auto lit = static_cast<double>(view.pupil.image_radius);
             ends_in_film_ = lit < reach_;

@@ -57,6 +57,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.focus_distance_m = camera.lens.focus_distance / 1000;
     metadata.film_width_mm = camera.film.width_mm;
     metadata.film_height_mm = camera.film.height_mm;
+    metadata.film_shift_mm = camera.film.shift_mm;
     metadata.pixel_width_um = 1000 * camera.film.width_mm / camera.film.width;
     metadata.pixel_height_um = 1000 * camera.film.height_mm / camera.film.height;
     metadata.pinhole = pinhole_camera(camera, middle_pose(camera));
@@ -98,8 +99,10 @@ std::vector<std::pair<std::string, std::string>> ImageMetadata::entries() const 
                              numbers({p.right.x, p.right.y, p.right.z, t.x, p.down.x, p.down.y, p.down.z, t.y,
                                       p.forward.x, p.forward.y, p.forward.z, t.z}));
     }
-    // What is not said of a picture is that nothing was left out, that the diaphragm is round, and that the shutter
-    // opened at once at time 0.
+    // What is not said of a picture is that nothing was left out, that the film is centred and the diaphragm round, and
+    // that the shutter opened at once at time 0.
+    if (film_shift_mm.x != 0 || film_shift_mm.y != 0)
+        entries.emplace_back("realcam:film_shift_mm", numbers({film_shift_mm.x, film_shift_mm.y}));
     if (iris.blades > 0) {
         entries.emplace_back("realcam:blades", std::to_string(iris.blades));
         entries.emplace_back("realcam:blade_rounding", number(iris.rounding));

@@ -19,6 +19,7 @@ struct ImageMetadata {
     IrisShape iris;
     double focus_distance_m = 0;  ///< object plane to film; may be infinite
     double film_width_mm = 0, film_height_mm = 0;
+    Vec2<double> film_shift_mm = {0, 0};
     double pixel_width_um = 0, pixel_height_um = 0;
     std::optional<PinholeCamera> pinhole;  ///< to first order, in the middle of the exposure
     double exposure_time_s = 0;

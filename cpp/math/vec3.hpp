@@ -8,6 +8,8 @@ namespace REALCAM_NAMESPACE {
 template <class T>
 struct Vec2 {
     T x, y;
+
+    constexpr bool operator==(const Vec2&) const = default;
 };
 
 template <class T>

@@ -99,8 +99,10 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
     LensErrors errors;
     errors.film_sine = std::sqrt(static_cast<double>(ideal.axis_irradiance) / std::numbers::pi);
     for (const double share : {0.0, 0.25, 0.5, 0.7, 0.85, 0.97}) {
-        const Vec2f film = {static_cast<float>(share) * full.film_half_width,
-                            static_cast<float>(share) * full.film_half_height};
+        // To the corner farthest from the axis.
+        const Vec2f film = {
+            full.film_middle.x + std::copysign(static_cast<float>(share) * full.film_half_width, full.film_middle.x),
+            full.film_middle.y + std::copysign(static_cast<float>(share) * full.film_half_height, full.film_middle.y)};
         const SampledBundle traced = traced_bundle(full, full.lens, film, tracer);
         const SampledBundle pinhole = ideal_bundle([&](Vec2f u) { return thin_lens_ray(ideal, film, u, 0.0f); });
         const SampledBundle thin =
@@ -115,8 +117,8 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
         if (!(traced.light > 0)) continue;  // outside of what the lens lights
         // The thin lens at the place that shows in the plane in focus what this one shows here.
         const BundleSpot there = spot_of(traced, full.circle, sharp), ideally = spot_of(thin, full.circle, sharp);
-        const auto scale =
-            static_cast<float>(share > 0 ? std::hypot(there.x, there.y) / std::hypot(ideally.x, ideally.y) : 1.0);
+        const auto scale = static_cast<float>(
+            film.x != 0 || film.y != 0 ? std::hypot(there.x, there.y) / std::hypot(ideally.x, ideally.y) : 1.0);
         const SampledBundle mapped = ideal_bundle([&](Vec2f u) {
             return thin_lens_ray(ideal, {scale * film.x, scale * film.y}, u, ideal.thin.pupil_radius);
         });

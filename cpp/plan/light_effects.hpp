@@ -37,7 +37,9 @@ struct PicturePlace {
 };
 
 inline PicturePlace place_of(const Camera& camera, double film_x, double film_y) {
-    return {0.5 - film_x / camera.film.width_mm, 0.5 + film_y / camera.film.height_mm};
+    const Film& film = camera.film;
+    const Vec2<double> pixel = film.pixel_of({-film_x, -film_y});
+    return {pixel.x / film.width, pixel.y / film.height};
 }
 
 /// The darkest tile within a disc of the picture; nothing where none is.

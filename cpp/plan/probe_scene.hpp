@@ -38,6 +38,7 @@ inline bool is_hidden(Session& session, const Assembly& scene, Camera camera, Re
     camera.motion.clear();
     camera.film.width = camera.film.height = 1;
     camera.film.width_mm = camera.film.height_mm = 1e-3;
+    camera.film.shift_mm = {0, 0};
     settings.spp = 1;
     const Image image = take_picture(session, scene, camera, settings, {});
     // A lamp's own surface is not in its way, which bulges towards the lens by its radius at most.
@@ -68,6 +69,7 @@ inline WideView wide_view(Session& session, const Assembly& scene, Camera camera
     const double f = std::fabs(first_order(camera.lens, camera.lens.wavelength_nm).effective_focal_length);
     camera.film.width = camera.film.height = view.side;
     camera.film.width_mm = camera.film.height_mm = 2 * view.half_slope * f;
+    camera.film.shift_mm = {0, 0};
     settings.layers = {};
     const Image image = take_picture(session, scene, camera, settings, progress);
     for (std::size_t i = 0; i < image.depth.size(); ++i) {

@@ -42,7 +42,11 @@ inline double filling_distance(const BoundingBox& box, const Camera& camera, Vec
         const double angle = widest_field_angle(camera.lens, half_film_mm);
         return kFilledShare * (angle > 0 && angle < std::numbers::pi / 4 ? std::tan(angle) : 1.0);
     };
-    const double tan_x = tangent(0.5 * camera.film.width_mm), tan_y = tangent(0.5 * camera.film.height_mm);
+    // The axis looks at the target: of a film that is shifted the narrower side counts, as far as there is one.
+    const auto half = [](double side, double shift) { return std::max(0.5 * side - std::fabs(shift), 0.1 * side); };
+    const Film& film = camera.film;
+    const double tan_x = tangent(half(film.width_mm, film.shift_mm.x)),
+                 tan_y = tangent(half(film.height_mm, film.shift_mm.y));
     const auto axes = axes_of(camera.pose);
     // Also keeps a scene without breadth, such as a plane seen edge on, in front of the camera.
     const double pupil = first_order(camera.lens, camera.lens.wavelength_nm).entrance_pupil_position;

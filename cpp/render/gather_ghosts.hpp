@@ -38,7 +38,8 @@ REALCAM_INLINE void start_film_rays(const CameraView& camera, const GhostView& g
         const int row = static_cast<int>(u.y * static_cast<float>(camera.height));
         film.block.column[i] = select(column < camera.width, column, camera.width - 1);
         film.block.row[i] = select(row < camera.height, row, camera.height - 1);
-        const float x = (1.0f - 2.0f * u.x) * camera.film_half_width, y = (2.0f * u.y - 1.0f) * camera.film_half_height;
+        const float x = camera.film_middle.x + (1.0f - 2.0f * u.x) * camera.film_half_width,
+                    y = camera.film_middle.y + (2.0f * u.y - 1.0f) * camera.film_half_height;
         const float radius = std::sqrt(x * x + y * y), inverse = 1.0f / select(radius > 0.0f, radius, 1.0f);
         const float out_x = select(radius > 0.0f, x * inverse, 1.0f), out_y = y * inverse;
         const int bin = static_cast<int>(radius / ghosts.film_radius * static_cast<float>(kGhostBins));

@@ -36,8 +36,10 @@ REALCAM_INLINE LensFrame lens_frame(const CameraView& camera, float time) {
 
 /// A pixel of the film, or -1.
 REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y) {
-    const float column = 0.5f * static_cast<float>(camera.width) * (1.0f - x / camera.film_half_width);
-    const float row = 0.5f * static_cast<float>(camera.height) * (1.0f + y / camera.film_half_height);
+    const float column =
+        0.5f * static_cast<float>(camera.width) * (1.0f - (x - camera.film_middle.x) / camera.film_half_width);
+    const float row =
+        0.5f * static_cast<float>(camera.height) * (1.0f + (y - camera.film_middle.y) / camera.film_half_height);
     const bool inside = (column >= 0.0f) & (column < static_cast<float>(camera.width)) & (row >= 0.0f) &
                         (row < static_cast<float>(camera.height));
     return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;

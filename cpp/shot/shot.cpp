@@ -61,6 +61,7 @@ Camera camera_of(const ShotRequest& request) {
         camera.lens = with_iris(camera.lens, iris_of(request, camera.lens.iris));
     if (request.f_number) camera.lens = stopped_down(camera.lens, *request.f_number);
     camera.film = default_film(camera.lens, request.film_mm, request.resolution);
+    camera.film.shift_mm = {request.film_shift_mm[0], request.film_shift_mm[1]};
     camera.model = request.model;
     camera.iso = request.iso;
     camera.shutter = request.shutter;

@@ -42,6 +42,7 @@ public:
                       "blade_rounding",
                       "blade_rotation_deg",
                       "film_mm",
+                      "film_shift_mm",
                       "resolution",
                       "position_m",
                       "look_at_m",
@@ -107,6 +108,8 @@ private:
         shot.blade_rotation_deg = table_.number("blade_rotation_deg");
         table_.checked(shot.blades ? "blades" : "blade_rounding", [&] { check_blades(shot); });
         if (const auto size = table_.numbers("film_mm", 2); !size.empty()) shot.film_mm = {size[0], size[1]};
+        if (const auto shift = table_.numbers("film_shift_mm", 2); !shift.empty())
+            shot.film_shift_mm = {shift[0], shift[1]};
         if (const auto pixels = table_.numbers("resolution", 2); !pixels.empty())
             shot.resolution = {table_.whole("resolution", pixels[0]), table_.whole("resolution", pixels[1])};
         shot.view.position_m = table_.point("position_m");

@@ -30,6 +30,7 @@ struct ShotRequest {
     std::optional<int> blades;  ///< of the diaphragm; this and the next two: the lens's where they are left out
     std::optional<double> blade_rounding, blade_rotation_deg;
     std::optional<std::array<double, 2>> film_mm;
+    std::array<double, 2> film_shift_mm = {0, 0};  ///< see Film
     std::optional<std::array<int, 2>> resolution;
     ViewRequest view;
     std::vector<PoseKey> motion;  ///< of the camera, in place of position and look_at; empty: it stands still

@@ -669,7 +669,11 @@ class Lens(_Value):
 @final
 class Film(_Value):
     def __init__(
-        self, width_mm: float = 36.0, height_mm: float = 24.0, resolution: tuple[int, int] = (960, 640)
+        self,
+        width_mm: float = 36.0,
+        height_mm: float = 24.0,
+        resolution: tuple[int, int] = (960, 640),
+        shift_mm: tuple[float, float] = (0.0, 0.0),
     ) -> None: ...
     @staticmethod
     def for_lens(
@@ -681,6 +685,7 @@ class Film(_Value):
         width_mm: float | None = None,
         height_mm: float | None = None,
         resolution: tuple[int, int] | None = None,
+        shift_mm: tuple[float, float] | None = None,
     ) -> Film: ...
     @property
     def width_mm(self) -> float: ...
@@ -688,6 +693,10 @@ class Film(_Value):
     def height_mm(self) -> float: ...
     @property
     def resolution(self) -> tuple[int, int]: ...
+    @property
+    def shift_mm(self) -> tuple[float, float]: ...
+    @property
+    def principal_point(self) -> tuple[float, float]: ...
 
 @final
 class Sensor(_Value):
@@ -1222,7 +1231,7 @@ class PlanDecision(_Value):
     @property
     def by(self) -> str: ...
     @property
-    def time_share(self) -> float: ...
+    def time_share(self) -> float | None: ...
     @property
     def reason(self) -> str: ...
 
@@ -1248,6 +1257,7 @@ def _plan(
     quality: str,
     threshold_px: float | None,
     threshold_codes: float | None,
+    times: bool,
 ) -> Plan: ...
 
 @final

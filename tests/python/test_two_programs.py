@@ -28,6 +28,7 @@ SHOTS = {
     "metered with bounces": 'lens = "tessar-50mm"\nf_number = 8\nmax_bounces = 3\nseed = 9\nspp = 2\ntone = "linear"\n',
     "all layers": 'layers = ["all"]\nspp = 2\n',
     "some layers": 'layers = ["object_id", "normal"]\nenvironment_cd_m2 = 3\nspp = 2\n',
+    "a shifted film": "film_mm = [24, 16]\nfilm_shift_mm = [3, -2.5]\nfocus_m = 3\nspp = 2\n",
     "another model": 'model = "thick"\nfocus_m = inf\nfilm_mm = [24, 24]\nexposure_time_s = 0.001\niso = 800\n',
 }
 

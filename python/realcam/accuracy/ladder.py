@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
-from .._core import Camera, Film, InputError, Scene
+from .._core import Camera, InputError, Scene
 from ..image import Image
 from ..render import ProgressCallback, render
 from .errors import Codes, codes, flip, mean_square
@@ -138,7 +138,7 @@ def accuracy_cost(
     columns, rows = film.resolution
     scale = min(1.0, size / max(columns, rows))
     small = (max(1, round(columns * scale)), max(1, round(rows * scale)))
-    camera = camera.replace(film=Film(film.width_mm, film.height_mm, small), model="full")
+    camera = camera.replace(film=film.replace(resolution=small), model="full")
     settings = {"device": device, "threads": threads, "max_bounces": max_bounces}
     wanted = tuple(known_effects(camera) if effects is None else effects)
 

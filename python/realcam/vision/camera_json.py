@@ -29,6 +29,7 @@ def camera_json(camera: Camera, fits: Iterable[CameraModelFit] = ()) -> dict[str
         "width": film.resolution[0],
         "height": film.resolution[1],
         "film_mm": [film.width_mm, film.height_mm],
+        "film_shift_mm": list(film.shift_mm),
         "lens": {
             "name": lens.name,
             "focal_length_mm": _finite(data.effective_focal_length_mm),

@@ -57,7 +57,7 @@ class CameraModelFit:
 
     @property
     def largest_radius_px(self) -> float:
-        """Distance from the middle of the picture that belongs to largest_angle_deg, in columns."""
+        """Distance from the principal point that belongs to largest_angle_deg, in columns."""
         return float(self.camera_matrix[0, 0] * self._largest_radius())
 
     def project(self, points_m: ArrayLike) -> Array:

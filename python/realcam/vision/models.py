@@ -1,6 +1,6 @@
 """The camera models of computer vision, as functions of the angle to the axis.
 
-Lenses are round, so that a model says how far from the middle of the picture a direction shows, r(s), in units of the
+Lenses are round, so that a model says how far from the principal point a direction shows, r(s), in units of the
 focal length; s is the angle theta itself, or its tangent. Tangential terms are 0. Sources: OpenCV's documentation of
 calib3d and fisheye (J. Kannala and S. Brandt, IEEE PAMI 28 (2006) 1335, with the odd powers up to the ninth); f_theta
 is the polynomial of simulators and data sets of automobiles, of all powers from the first to the fifth.
