@@ -22,7 +22,7 @@ realcam_sources(REALCAM_DEVICES_SOURCES devices)
 # The readers of lens files and glasses are a library of their own, so that who uses lenses needs nothing that reads
 # scenes.
 set(REALCAM_LENS_IO_SOURCES ${REALCAM_IO_SOURCES})
-list(FILTER REALCAM_LENS_IO_SOURCES INCLUDE REGEX "/(lens_[a-z_]+|json|glass_catalogue|nearest_names|printable|readable_file|regular_file|free_memory)\\.cpp$")
+list(FILTER REALCAM_LENS_IO_SOURCES INCLUDE REGEX "/(lens_[a-z_]+|json|glass_catalogue|nearest_names|printable|readable_file|regular_file|free_memory|toml_document)\\.cpp$")
 list(REMOVE_ITEM REALCAM_IO_SOURCES ${REALCAM_LENS_IO_SOURCES})
 
 # Built once for each instruction set, see RealcamInstructionSets.cmake.

@@ -3,10 +3,16 @@
 
     pip install opticalglass scipy
     python tools/make_glass_catalogue.py [--opticalglass DIR] [--agf schott=FILE] [--agf hoya=FILE] > lenses/glass.toml
+    python tools/make_glass_catalogue.py --extend DIR      # changes lenses/glass.toml
 
 `opticalglass` (BSD) carries the makers' own data sheets. DIR is the folder it is installed in, if
 that is not on the path. An AGF file, the catalogue format in which makers publish for lens-design
 programs, adds the glasses that a maker no longer lists; where both have a name, the data sheet wins.
+
+`--extend` adds to the file what it lacks: the materials of OTHERS, and glasses of DIR, the folder data-nk/glass of the
+refractiveindex.info database (public domain), which has the makers' AGF catalogues of 2017 and later. It is in the
+wheel of `optiland`, as optiland/database/data-nk/glass. A glass whose name another maker has too is left out, so that no name
+of a lens file gets a second meaning.
 
 Schott and Ohara publish the Sellmeier formula, whose coefficients are copied. Hoya, CDGM, Hikari and
 Sumita publish n^2 as a power series in the wavelength; a three-term Sellmeier formula is fitted to
@@ -38,16 +44,68 @@ MAKERS = [  # catalogue, name in opticalglass, formula, edition of the data shee
     ("sumita", "Sumita", [0, 2, -2, -4, -6, -8], "Sumita, Ver. 12.00.05, 29 July 2020"),
 ]
 
-# What no maker lists, and lens-design programs have in catalogues of mixed materials, by the names that they use.
-# B, and wavelengths in um whose squares are C.
+# What no maker of glass lists, and lens-design programs have in catalogues of mixed materials, by the names that they
+# use: B, and C in um^2. A constant is a term with C = 0. Of crystals with two indices, the ordinary one. Germanium and
+# silicon, whose formulas give no index in the visible, are left out, and so is barium fluoride, as Hoya has a BAF2.
 OTHERS = [
     (
         "Fused silica: I. H. Malitson, J. Opt. Soc. Am. 55, 1205 (1965), at 20 C, 0.21 to 3.71 um",
         ("SILICA", "F_SILICA"),
         [0.6961663, 0.4079426, 0.8974794],
-        [0.0684043, 0.1162414, 9.896161],
+        [0.0684043**2, 0.1162414**2, 9.896161**2],
+    ),
+    (
+        "Calcium fluoride: I. H. Malitson, Appl. Opt. 2, 1103 (1963), at 24 C, 0.23 to 9.7 um",
+        ("CAF2",),
+        [0.5675888, 0.4710914, 3.8484723],
+        [0.050263605**2, 0.1003909**2, 34.649040**2],
+    ),
+    (
+        "Magnesium fluoride: M. J. Dodge, Appl. Opt. 23, 1980 (1984), at 19 C, 0.2 to 7 um",
+        ("MGF2",),
+        [0.48755108, 0.39875031, 2.3120353],
+        [0.04338408**2, 0.09461442**2, 23.793604**2],
+    ),
+    (
+        "Lithium fluoride: H. H. Li, J. Phys. Chem. Ref. Data 5, 329 (1976), at 24 C, 0.1 to 11 um",
+        ("LIF",),
+        [0.92549, 6.96747],
+        [0.07376**2, 32.790**2],
+    ),
+    (
+        "Sapphire: I. H. Malitson, M. J. Dodge, J. Opt. Soc. Am. 62, 1405 (1972), at 20 C, 0.2 to 5 um",
+        ("SAPPHIRE", "AL2O3"),
+        [1.4313493, 0.65054713, 5.3414021],
+        [0.0726631**2, 0.1193242**2, 18.028251**2],
+    ),
+    (
+        "Zinc selenide: D. T. F. Marple, J. Appl. Phys. 35, 539 (1964), 0.48 to 2.5 um",
+        ("ZNSE",),
+        [3.0, 1.9],
+        [0.0, 0.113],
+    ),
+    (
+        "Zinc sulphide: M. Debenham, Appl. Opt. 23, 2238 (1984); C. A. Klein, 25, 1873 (1986), at 20 C, 0.41 to 13 um",
+        ("ZNS", "CLEARTRAN"),
+        [8.393 - 1 - 0.14383 / 0.2421**2 - 4430.99 / 36.71**2, 0.14383 / 0.2421**2, 4430.99 / 36.71**2],
+        [0.0, 0.2421**2, 36.71**2],
     ),
 ]
+
+# Of plastics n_d and V_d alone: measurements of different samples differ by 1e-3 in index, and by several in V_d.
+PLASTICS = (
+    "Optical plastics: n_d and V_d as makers state them, and lens-design programs have them under these names",
+    {
+        "PMMA": (1.4918, 57.44),
+        "ACRYLIC": (1.4917, 55.31),
+        "POLYCARB": (1.5855, 29.91),
+        "POLYSTYR": (1.5905, 30.87),
+        "SAN": (1.5673, 34.81),
+        "COC": (1.5337, 56.23),
+        "E48R": (1.5312, 56.04),
+        "ZEONEX-E48R": (1.5312, 56.04),
+    },
+)
 
 
 def sellmeier_index(b, c, um):
@@ -138,6 +196,80 @@ def glass_line(coefficients, formula):
     return f"table = [{rows}]", n_d, "table"
 
 
+def glasses_of_database(folder):
+    """(name, coefficients, formula, index at d, source) of a maker's glasses in the refractiveindex.info database."""
+    for path in sorted(folder.glob("*.yml"), key=lambda p: p.stem.upper()):
+        text = path.read_text(encoding="utf-8")
+        found = re.search(r"type: formula (\d+)\s+wavelength_range:.*\s+coefficients: (.*)", text)
+        printed = re.search(r"^ +nd: (\S+)", text, re.MULTILINE)
+        source = re.search(r"REFERENCES: \"<a href=[^>]*>([^<]*)</a>", text)
+        if not (found and printed and source):
+            continue
+        c = [float(v) for v in found[2].split()]
+        if found[1] in ("1", "2") and c[0] == 0 and len(c) == 7:
+            roots = c[2::2]
+            yield (
+                path.stem,
+                c[1::2] + [v * v if found[1] == "1" else v for v in roots],
+                "sellmeier",
+                float(printed[1]),
+                source[1],
+            )
+        elif found[1] == "3":
+            yield path.stem, c[:1] + c[1::2], [0] + [int(p) for p in c[2::2]], float(printed[1]), source[1]
+
+
+def bare(name):
+    return re.sub("[-_ ]", "", name).upper()
+
+
+def plastics_lines():
+    title, plastics = PLASTICS
+    return [f"# {title}", *(f'"{name}" = {{ n_d = {n_d}, V_d = {v_d} }}' for name, (n_d, v_d) in plastics.items())]
+
+
+def extend(catalogue, database):
+    """Adds to the catalogue what it lacks; nothing that it has is changed."""
+    head, *sections = re.split(r"\n(?=\[)", catalogue.read_text(encoding="utf-8"))
+    makers = {re.match(r"\[(\w+)\]", section)[1]: section.rstrip("\n").split("\n") for section in sections}
+    owners = {}
+    for maker, lines in makers.items():
+        for name in re.findall(r'^"([^"]+)" =', "\n".join(lines), re.MULTILINE):
+            owners.setdefault(bare(name), set()).add(maker)
+    candidates = {maker: list(glasses_of_database(database / maker)) for maker, *_ in MAKERS}
+    for names in [*(names for _, names, *_ in OTHERS), PLASTICS[1]]:
+        for name in names:
+            owners.setdefault(bare(name), set()).add("misc")
+    for maker, glasses in candidates.items():
+        for name, *_ in glasses:
+            owners.setdefault(bare(name), set()).add(maker)
+    counts = dict.fromkeys(("copied", "fitted", "table"), 0)
+    for maker, glasses in candidates.items():
+        added = {}
+        known = {bare(name) for name in re.findall(r'^"([^"]+)" =', "\n".join(makers[maker]), re.MULTILINE)}
+        for name, coefficients, formula, printed, source in glasses:
+            if bare(name) in known or len(owners[bare(name)]) > 1:
+                continue
+            toml, n_d, made = glass_line(coefficients, formula)
+            if not (1.3 < n_d < 2.3) or abs(printed - n_d) > 3e-5:
+                print(f"{maker}:{name} left out: formula gives {n_d:.6f}, stated is {printed}", file=sys.stderr)
+                continue
+            counts[made] += 1
+            added.setdefault(source, []).append(f'"{name}" = {{ {toml} }}')
+        for source, lines in added.items():
+            makers[maker] += [f"# refractiveindex.info database, {source}", *lines]
+    for title, names, b, c in OTHERS:
+        lines = [f'"{name}" = {{ {sellmeier_line(b, c)} }}' for name in names]
+        if lines[0] not in makers["misc"]:
+            makers["misc"] += [f"# {title}", *lines]
+            counts["copied"] += len(lines)
+    if plastics_lines()[0] not in makers["misc"]:
+        makers["misc"] += plastics_lines()
+    head = re.sub(r"(\d+) (copied|fitted|table)", lambda m: f"{int(m[1]) + counts[m[2]]} {m[2]}", head)
+    sections = ["\n".join(lines) + "\n" for lines in makers.values()]
+    catalogue.write_text("\n".join([head, *sections]), encoding="utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--opticalglass", metavar="DIR", help="folder that the package opticalglass is installed in")
@@ -148,7 +280,10 @@ def main():
         metavar="CATALOGUE=FILE",
         help="a maker's AGF catalogue, for glasses that the data sheet no longer lists",
     )
+    parser.add_argument("--extend", metavar="DIR", help="add what lenses/glass.toml lacks, from this folder")
     options = parser.parse_args()
+    if options.extend:
+        return extend(Path(__file__).parents[1] / "lenses" / "glass.toml", Path(options.extend))
     if options.opticalglass:
         sys.path.insert(0, options.opticalglass)
 
@@ -179,10 +314,11 @@ def main():
                 counts[made] = counts.get(made, 0) + 1
                 lines.append(f'"{name}" = {{ {toml} }}')
     lines.append("\n[misc]")
-    for title, names, b, roots in OTHERS:
+    for title, names, b, c in OTHERS:
         lines.append(f"# {title}")
-        lines += [f'"{name}" = {{ {sellmeier_line(b, [root**2 for root in roots])} }}' for name in names]
+        lines += [f'"{name}" = {{ {sellmeier_line(b, c)} }}' for name in names]
         counts["copied"] = counts.get("copied", 0) + len(names)
+    lines += plastics_lines()
     print(
         "\n".join(
             [

@@ -49,7 +49,8 @@ void add_lens_command(CLI::App& app) {
 
     CLI::App* info = lens->add_subcommand("info", "Print a lens's table of surfaces and its first-order data");
     const auto options = std::make_shared<InfoOptions>();
-    info->add_option("lens", options->lens, "A bundled lens, or a lens file: .toml, .zmx, .seq, .dat, .json, .roa")
+    info->add_option("lens", options->lens,
+                     "A bundled lens, or a lens file: .toml, .zmx, .seq, .len, .dat, .json, .roa")
         ->required()
         ->type_name("NAME");
     info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");

@@ -27,10 +27,22 @@ void add_lens_options(CLI::App& command, LensWords& words) {
         ->type_name("WHERE");
 }
 
+std::string advice_on(const io::LensReadError& error) {
+    if (error.can_be_forced) return "; --force reads it all the same";
+    if (error.glass.empty()) return "";
+    return "; --glass " + error.glass + '=' + (error.candidate.empty() ? "n_d,V_d" : error.candidate) + " names it";
+}
+
 io::LensReadOptions lens_options_of(const LensWords& words) {
     io::LensReadOptions options;
     for (const std::string& text : words.glasses) {
-        const auto [name, glass] = io::named_glass(text);
+        const auto [name, glass] = [&] {
+            try {
+                return io::named_glass(text);
+            } catch (const InputError& error) {
+                throw InputError(std::string("--glass: ") + error.what());
+            }
+        }();
         if (!options.glasses.emplace(name, glass).second)
             throw InputError("--glass: the glass \"" + name + "\" is given twice");
     }

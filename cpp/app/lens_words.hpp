@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "../io/lens_error.hpp"
 #include "../io/lens_file.hpp"
 
 namespace realcam::app {
@@ -16,6 +17,9 @@ struct LensWords {
 
 /// Adds --zoom, --glass, --force and --pbrt-thickness.
 void add_lens_options(CLI::App& command, LensWords& words);
+
+/// What of them settles an error of a lens file, as the end of its message; empty where none does.
+std::string advice_on(const io::LensReadError& error);
 
 /// Their meaning; what a reader has to tell goes to stderr. Throws InputError.
 io::LensReadOptions lens_options_of(const LensWords& words);

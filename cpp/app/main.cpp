@@ -7,6 +7,7 @@
 #include "../io/one_line.hpp"
 #include "devices.hpp"
 #include "lens_command.hpp"
+#include "lens_words.hpp"
 #include "render_command.hpp"
 
 namespace {
@@ -55,6 +56,8 @@ int main(int argc, char** argv) {
         return 128 + interrupted.signal;
     } catch (const std::bad_alloc&) {
         return fail("out of memory");
+    } catch (const realcam::io::LensReadError& error) {
+        return fail(error.what() + realcam::app::advice_on(error));
     } catch (const std::exception& error) {
         return fail(error.what());
     }

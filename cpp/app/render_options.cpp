@@ -148,10 +148,10 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
            "SCENE")
         ->required();
     command.option_defaults()->group("Camera");
-    option(
-        "--lens", w.lens,
-        "Bundled lens (`realcam lens list`), or a lens file: .toml, .zmx, .seq, .dat, .json, .roa [double-gauss-50mm]",
-        "NAME");
+    option("--lens", w.lens,
+           "Bundled lens (`realcam lens list`), or a lens file: .toml, .zmx, .seq, .len, .dat, .json, .roa "
+           "[double-gauss-50mm]",
+           "NAME");
     add_lens_options(command, w.lens_file);
     option("--film", w.film, "Film in mm [the lens's, in the shape of the resolution]", "WxH");
     option("--film-shift", w.film_shift,

@@ -1,4 +1,5 @@
 #include "../error.hpp"
+#include "../io/lens_error.hpp"
 #include "../io/one_line.hpp"
 #include "../plan/plan.hpp"
 
@@ -41,6 +42,20 @@ void raise(const LensFileError& error) {
     instance.attr("file") = text_from(error.file);
     instance.attr("line") = error.line;
     instance.attr("surface") = error.surface;
+    const auto* read_error = dynamic_cast<const io::LensReadError*>(&error);
+    const io::LensReadError nothing("");
+    const io::LensReadError& remedy = read_error ? *read_error : nothing;
+    instance.attr("glass") = text_from(remedy.glass);
+    instance.attr("candidate") = text_from(remedy.candidate);
+    instance.attr("can_be_forced") = remedy.can_be_forced;
+    // Python prints notes under a traceback. They are no part of the message, which the browser shows too.
+    py::list notes;
+    if (remedy.can_be_forced) notes.append("Lens.load(..., force=True) reads it all the same");
+    if (!remedy.glass.empty())
+        notes.append(text_from("Lens.load(..., glass={\"" + remedy.glass +
+                               "\": " + (remedy.candidate.empty() ? "(n_d, V_d)" : '"' + remedy.candidate + '"') +
+                               "}) names it"));
+    if (!notes.empty()) instance.attr("__notes__") = notes;
     PyErr_SetObject(type_of<LensFileError>().ptr(), instance.ptr());
 }
 
@@ -65,7 +80,8 @@ void bind_errors(py::module_& m) {
     define<LensFileError>(
         m, "LensFileError", base,
         "A lens that cannot be read or built. Attributes: file (str, empty where there is none), line and "
-        "surface (int, from 1; 0 where they do not apply).");
+        "surface (int, from 1; 0 where they do not apply); glass (str), the name of a glass that is not known, or "
+        "several, and candidate, one of these; can_be_forced (bool), whether force=True reads the file.");
     define<SceneFileError>(m, "SceneFileError", base, "A scene that cannot be read, or that holds no geometry.");
     define<ImageFileError>(m, "ImageFileError", base, "A picture that cannot be read or written.");
     define<DeviceError>(m, "DeviceError", base, "A device, or its library, that fails.");

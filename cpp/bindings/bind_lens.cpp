@@ -213,24 +213,30 @@ void warn(const std::string& message) {
     if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) < 0) throw py::error_already_set();
 }
 
+/// Of a file, and what of it was computed or assumed. Other threads run meanwhile, and Ctrl-C ends it.
+std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string& path, io::LensReadOptions options) {
+    std::vector<std::string> notes;
+    options.warn = [&](const std::string& note) { notes.push_back(note); };
+    options.keep_going = heed_signals;
+    const Unlocked unlocked;
+    LensSystem lens = io::read_lens(path, options);
+    return {std::move(lens), std::move(notes)};
+}
+
 LensSystem load_lens(const py::object& name, const std::optional<std::map<std::string, py::object>>& glass, bool force,
                      const std::optional<std::string>& pbrt_thickness) {
     io::LensReadOptions options;
     options.force = force;
-    options.warn = warn;
     if (glass)
         for (const auto& [called, material] : *glass) options.glasses.insert_or_assign(called, glass_from(material));
     if (pbrt_thickness) options.pbrt_thickness = io::pbrt_thickness_named(*pbrt_thickness);
-    return io::read_lens(path_from(name), options);
+    auto [lens, notes] = read_unlocked(path_from(name), std::move(options));
+    for (const std::string& note : notes) warn(note);
+    return std::move(lens);
 }
 
-/// Of a file, and what of it was computed or assumed.
 std::pair<LensSystem, std::vector<std::string>> read_lens_with_notes(const py::object& path) {
-    std::vector<std::string> notes;
-    io::LensReadOptions options;
-    options.warn = [&](const std::string& note) { notes.push_back(note); };
-    LensSystem lens = io::read_lens(path_from(path), options);
-    return {std::move(lens), std::move(notes)};
+    return read_unlocked(path_from(path), {});
 }
 
 /// The content of its file, and what a file with that suffix cannot say.
@@ -386,7 +392,7 @@ void bind_lens(py::module_& m) {
             "pbrt_thickness"_a = py::none(),
             "A bundled lens by name, or a lens file by path. The suffix says of which program: .zmx (Zemax), "
             ".seq\n"
-            "(CODE V), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.\n"
+            "(CODE V), .len (OSLO), .dat (pbrt), .json (Optiland), .roa (ray-optics); else it is realcam's own, TOML.\n"
             "glass: {name in the file: (n_d, V_d), \"schott:F4\", or what else Surface() takes}, for glasses that "
             "no\n"
             "catalogue has, or several. force: leaves out what realcam has no model of, with a UserWarning.\n"

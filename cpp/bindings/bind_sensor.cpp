@@ -292,7 +292,13 @@ void bind_sensor(py::module_& m) {
                             "An image sensor, by the linear model of EMVA standard 1288 (docs/sensor.md). A value.");
     def_hashable_value(type, [](const Sensor& sensor) { validate(sensor); });
     type.def_static(
-            "load", [](const py::object& name) { return io::read_sensor(path_from(name)); }, "name_or_path"_a = "ideal",
+            "load",
+            [](const py::object& name) {
+                const std::string path = path_from(name);
+                const Unlocked unlocked;
+                return io::read_sensor(path, heed_signals);
+            },
+            "name_or_path"_a = "ideal",
             "A bundled sensor by name, or a sensor file (.toml) by path. Raises InputError with file and line.")
         .def("replace", &with_changes, py::kw_only(), "name"_a = py::none(), "pixel_pitch_um"_a = py::none(),
              "resolution"_a = py::none(), "color_filter_array"_a = py::none(), "quantum_efficiency"_a = py::none(),

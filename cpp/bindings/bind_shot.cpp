@@ -15,11 +15,20 @@ namespace {
 
 /// Scene, camera and the settings for render().
 py::tuple read_shot(const py::object& path, const std::string& device, const py::object& progress) {
-    shot::ShotRequest request = shot::read_shot_file(path_from(path));
-    request.lens_options.warn = [](const std::string& message) {
-        if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) < 0) throw py::error_already_set();
-    };
-    Camera camera = shot::camera_of(request);
+    shot::ShotRequest request;
+    Camera camera;
+    std::vector<std::string> notes;
+    const std::string name = path_from(path);
+    {
+        const Unlocked unlocked;
+        request = shot::read_shot_file(name);
+        request.lens_options.keep_going = heed_signals;
+        request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
+        camera = shot::camera_of(request);
+        request.lens_options = {};  // which must not outlive what they name
+    }
+    for (const std::string& note : notes)
+        if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
     shot::Shot shot = shot::set_up(request, std::move(camera), shot::scene_of(request, picture_readers()));
     if (!request.exposure_time_s) {
         Session& session = session_for(device);

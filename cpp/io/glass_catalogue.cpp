@@ -1,9 +1,11 @@
 #include <map>
+#include <set>
 
 #include "bundled_lenses.hpp"
 #include "glass_table.hpp"
 #include "lens_file.hpp"
 #include "lens_glass.hpp"
+#include "lens_text.hpp"
 
 namespace realcam::io {
 namespace {
@@ -98,13 +100,17 @@ Glass glass_from_table(const TomlTable& table) {
         std::vector<Glass::TablePoint> list;
         const toml::array* rows = points->as_array();
         if (!rows || rows->empty()) table.fail("\"table\" must be an array of [wavelength in nm, index]", points);
+        if (rows->size() > kMostFileIndices)
+            table.fail("\"table\" has " + std::to_string(rows->size()) + " rows; at most " +
+                           std::to_string(kMostFileIndices) + " are read",
+                       points);
+        std::set<double> wavelengths;
         for (const toml::node& row : *rows) {
             const toml::array* pair = row.as_array();
             if (!pair || pair->size() != 2) table.fail("each row of \"table\" must be [wavelength in nm, index]", &row);
             list.push_back({table.as_number((*pair)[0], "a wavelength"), table.as_number((*pair)[1], "an index")});
-            for (std::size_t i = 0; i + 1 < list.size(); ++i)
-                if (list[i].wavelength_nm == list.back().wavelength_nm)
-                    table.fail("\"table\" gives a wavelength twice", &row);
+            if (!wavelengths.insert(list.back().wavelength_nm).second)
+                table.fail("\"table\" gives a wavelength twice", &row);
             if (!(list.back().wavelength_nm > 0)) table.fail("wavelengths are positive numbers, in nm", &row);
         }
         return Glass::table(std::move(list));

@@ -4,9 +4,13 @@
 #include "../optics/coating_checks.hpp"
 #include "../optics/named_coatings.hpp"
 #include "lens_material.hpp"
+#include "lens_text.hpp"
 
 namespace realcam::io {
 namespace {
+
+/// Several for each surface.
+constexpr std::size_t kMostCoatings = 1000;
 
 std::vector<std::string> metal_names() {
     return {aluminium().label, silver().label};
@@ -36,7 +40,7 @@ CoatingLayer read_layer(const TomlTable& layer, const std::optional<TomlTable>& 
                         std::optional<double> design_wavelength_nm) {
     layer.allow({"material", "complex_index", "thickness_nm", "thickness_waves", "label"});
     CoatingLayer result{read_layer_material(layer, glasses), 0};
-    if (layer.find("label")) result.material.label = layer.text("label");
+    if (layer.find("label")) result.material.label = layer.line("label");
     const auto nm = layer.number("thickness_nm"), waves = layer.number("thickness_waves");
     if (nm.has_value() == waves.has_value())
         layer.fail("a layer needs exactly one of \"thickness_nm\" and \"thickness_waves\"");
@@ -65,8 +69,15 @@ std::vector<CoatingLayer> read_layers(const TomlTable& table, const std::optiona
         table.fail("the coating has " + std::to_string(list->size()) + " layers; at most " +
                        std::to_string(kMaxCoatingLayers) + " are supported",
                    node);
-    for (const toml::node& layer : *list)
+    std::size_t indices = 0;
+    for (const toml::node& layer : *list) {
         layers.push_back(read_layer(TomlTable(*layer.as_table(), table.file()), glasses, design));
+        const CoatingMaterial& material = layers.back().material;
+        indices += material.points.size() + material.glass.parts().points.size();
+        if (indices > kMostFileIndices)
+            table.fail("the materials of the coating have more than " + std::to_string(kMostFileIndices) + " indices",
+                       &layer);
+    }
     return layers;
 }
 
@@ -81,8 +92,8 @@ Coating read_coating(const TomlTable& table, const std::string& name, const std:
     Coating coating = reflectance ? stated_reflectance(*reflectance, name)
                       : metal     ? metal_mirror(read_metal(table), read_layers(table, glasses), name)
                                   : layered_coating(read_layers(table, glasses), name);
-    if (table.find("label")) coating.name = table.text("label");
-    if (table.find("metal_label")) coating.metal.label = table.text("metal_label");
+    if (table.find("label")) coating.name = table.line("label");
+    if (table.find("metal_label")) coating.metal.label = table.line("metal_label");
     try {
         check_coating(coating);
     } catch (const InputError& error) {
@@ -94,13 +105,18 @@ Coating read_coating(const TomlTable& table, const std::string& name, const std:
 }  // namespace
 
 LensCoatings::LensCoatings(const TomlTable& file, const std::optional<TomlTable>& glasses) {
-    if (const auto tables = file.table("coating"))
+    if (const auto tables = file.table("coating")) {
+        if (tables->raw().size() > kMostCoatings)
+            tables->fail("the lens has " + std::to_string(tables->raw().size()) + " coatings; at most " +
+                         std::to_string(kMostCoatings) + " are read");
         for (const auto& [key, node] : tables->raw()) {
             const std::string name(key.str());
+            tables->check_name(name, node);
             if (named_coating(name))
                 tables->fail(in_quotes(name) + " is a coating that all lens files know; another name is wanted", &node);
             own_[name] = read_coating(*tables->table(name), name, glasses);
         }
+    }
     if (!file.find("default_coating")) return;
     default_ = named(file, "default_coating");
     if (default_.is_for_mirrors())

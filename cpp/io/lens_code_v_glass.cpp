@@ -1,9 +1,11 @@
 // Glasses in a .seq file: of a catalogue, fictitious ones, and the file's own.
 
 #include <algorithm>
+#include <cmath>
 
 #include "lens_code_v_reader.hpp"
 #include "printable.hpp"
+#include "text_number.hpp"
 
 namespace realcam::io {
 namespace {
@@ -22,31 +24,61 @@ std::optional<AbbePair> fictitious(const std::string& name) {
 
 }  // namespace
 
-// Glasses of the file's own: PWL and the wavelengths, then a name and an index for each.
 void CodeVReader::read_private(const Words& words) {
     const std::string word = upper_case(words[0].text);
     if (word == "END") {
         in_private_ = false;
     } else if (word == "PWL") {
-        private_nm_ = numbers(words, 1, "PWL");
+        private_nm_.clear();
+        for (std::size_t i = 1; i < words.size(); ++i) {
+            std::string_view rest = words[i].text;
+            private_nm_.push_back(take_number(rest).value_or(0));
+        }
     } else {
-        const std::vector<double> indices = numbers(words, 1, "the private glass " + in_quotes(words[0].text));
-        if (indices.size() != private_nm_.size())
-            lines_.fail("the private glass " + in_quotes(words[0].text) + " has " + std::to_string(indices.size()) +
-                        " indices for " + std::to_string(private_nm_.size()) + " wavelengths (PWL)");
-        std::vector<Glass::TablePoint> points;
-        for (std::size_t i = 0; i < indices.size(); ++i) points.push_back({private_nm_[i], indices[i]});
+        broken_private_.erase(word);
         try {
-            const bool same =
-                std::all_of(indices.begin(), indices.end(), [&](double index) { return index == indices.front(); });
-            Glass glass = same ? Glass::constant(indices.front()) : Glass::table(std::move(points));
-            glass.label = std::string(words[0].text);
-            glasses_.define(word, std::move(glass));
+            glasses_.define(word, private_glass(words));
             private_names_.insert(word);
         } catch (const InputError& error) {
-            lines_.fail(error.what());
+            broken_private_.emplace(word, LensReadError(error, lines_.file(), lines_.number()));
+        } catch (const LensFileError& error) {
+            broken_private_.emplace(word, error);
         }
     }
+}
+
+Glass CodeVReader::private_glass(const Words& words) const {
+    const std::string what = "the private glass " + in_quotes(words[0].text);
+    std::string label = printable(words[0].text.substr(0, 100));
+    const std::string formula = words.size() > 1 ? upper_case(words[1].text.substr(0, 8)) : "";
+    if (!formula.empty() && formula[0] >= 'A' && formula[0] <= 'Z') {
+        if (formula != "LAU")
+            throw InputError(what + " is given by the formula " + in_quotes(words[1].text) +
+                             ", which is not known; LAU (Laurent) or an index for each wavelength is wanted");
+        // n^2 = A0 + A1 l^2 + A2 / l^2 + A3 / l^4 + ..., l in um.
+        const std::vector<double> a = numbers(words, 2, what);
+        return glass_of_formula(
+            [&](double um) {
+                const double inverse = 1 / (um * um);
+                double square = 0;
+                for (std::size_t i = a.size(); i-- > 2;) square = (square + a[i]) * inverse;
+                return std::sqrt(square + a[0] + (a.size() > 1 ? a[1] * um * um : 0));
+            },
+            label);
+    }
+    const std::vector<double> indices = numbers(words, 1, what);
+    if (indices.size() != private_nm_.size())
+        throw InputError(what + " has " + std::to_string(indices.size()) + " indices for " +
+                         std::to_string(private_nm_.size()) + " wavelengths (PWL)");
+    if (indices.size() > kMostFileIndices)
+        throw InputError(what + " has more than " + std::to_string(kMostFileIndices) + " indices");
+    std::vector<Glass::TablePoint> points;
+    for (std::size_t i = 0; i < indices.size(); ++i) points.push_back({private_nm_[i], indices[i]});
+    const bool same =
+        std::all_of(indices.begin(), indices.end(), [&](double index) { return index == indices.front(); });
+    Glass glass = same ? Glass::constant(indices.front()) : Glass::table(std::move(points));
+    glass.label = std::move(label);
+    return glass;
 }
 
 void CodeVReader::set_glass(PrescriptionSurface& row, std::string_view text) {
@@ -58,7 +90,9 @@ void CodeVReader::set_glass(PrescriptionSurface& row, std::string_view text) {
     }
     if (name == "TIRO" || name == "TIR") return foreign("total internal reflection (" + name + ")");
     try {
-        if (private_names_.contains(name)) {
+        if (const auto broken = broken_private_.find(name); broken != broken_private_.end() && !glasses_.is_given(name))
+            lines_.fail(broken->second.detail + " (line " + std::to_string(broken->second.line) + ')');
+        if (private_names_.contains(name) || glasses_.is_given(name)) {
             row.material = glasses_.find(name, {});
         } else if (const std::optional<AbbePair> pair = fictitious(name)) {
             row.material = glass_of_pair(pair->n_d, pair->v_d);
@@ -68,7 +102,7 @@ void CodeVReader::set_glass(PrescriptionSurface& row, std::string_view text) {
                 name.substr(0, bar), bar == name.npos ? std::vector<std::string>{} : std::vector{name.substr(bar + 1)});
         }
     } catch (const InputError& error) {
-        lines_.fail(error.what());
+        lines_.fail(error);
     }
 }
 }  // namespace realcam::io

@@ -39,12 +39,13 @@ void CodeVReader::select(int surface) {
 
 void CodeVReader::read_row(const Words& words) {
     PrescriptionSurface& row = rows_[current_];
-    set_curvature(row, number(words, 1, *radius_mode_ ? "the radius" : "the curvature"), *radius_mode_);
-    row.thickness = unit_ * number(words, 2, "the thickness");
+    set_curvature(row, words, *radius_mode_);
+    row.thickness = unit_ * number_or_infinity(words, 2, "the thickness");
     for (std::size_t i = 3; i < words.size(); ++i) set_glass(row, words[i].text);
 }
 
-void CodeVReader::set_curvature(PrescriptionSurface& row, double value, bool is_radius) const {
+void CodeVReader::set_curvature(PrescriptionSurface& row, const Words& words, bool is_radius) const {
+    const double value = is_radius ? number_or_infinity(words, 1, "the radius") : number(words, 1, "the curvature");
     row.curvature = is_radius ? (value == 0 ? 0.0 : 1 / (unit_ * value)) : value / unit_;
     // Radii of 1e18 are planes too.
     if (std::fabs(row.curvature) < 1e-17) row.curvature = 0;
@@ -75,12 +76,18 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
                                               "LNS", "MOD", "NSS", "INT", "ARR", "GRI", "CUX", "RDX", "KX",  "AR"};
     static const std::set<std::string> tilts{"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE", "XOD", "YOD", "ZOD", "ADX",
                                              "ADY", "ARO", "GLB", "XGR", "YGR", "ZGR", "AGR", "BGR", "CGR"};
-    static const std::set<std::string> returns{"DAR", "BEN", "RET", "REV"};
+    static const std::set<std::string> returns{"DAR", "BEN", "RET"};
     static const std::set<std::string> rectangles{"REX", "REY", "ELX", "ELY", "REC", "ELL", "POL", "CIG", "REG", "ELG"};
     if (word == "STO") {
-        row_of(words).is_stop = true;
-    } else if (word == "ASP" || word == "SPH" || word == "CON") {
+        PrescriptionSurface& row = row_of(words);
+        for (PrescriptionSurface& other : rows_) other.is_stop = false;  // a lens has one, and this moves it
+        row.is_stop = true;
+    } else if (word == "ASP") {
         row_of(words);
+    } else if (word == "SPH" || word == "CON") {
+        PrescriptionSurface& row = row_of(words);
+        row.aspheric.clear();
+        if (word == "SPH") row.conic = 0;
     } else if (word == "K") {
         row_of(words).conic = number(words, 1, "the conic");
     } else if (word.size() == 1 && std::string_view("ABCDEFGHJ").find(word[0]) != std::string_view::npos) {
@@ -94,10 +101,10 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
         read_circle(words);
     } else if (word == "THI") {
         PrescriptionSurface& row = row_of(words);
-        row.thickness = unit_ * number(words, 1, "the thickness");
+        row.thickness = unit_ * number_or_infinity(words, 1, "the thickness");
     } else if (word == "RDY" || word == "CUY" || word == "RAD") {
         PrescriptionSurface& row = row_of(words);
-        set_curvature(row, number(words, 1, "the curvature"), word != "CUY");
+        set_curvature(row, words, word != "CUY");
     } else if (word == "GLA" || word == "RMD") {
         PrescriptionSurface& row = row_of(words);
         if (words.size() < 2) lines_.fail(word + " needs a value");
@@ -105,9 +112,9 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
     } else if (word == "PIM") {
         p_.paraxial_image = true;
     } else if (word == "PIK" || word == "UMY" || word == "UMR" || word == "HMY" || word == "CUS") {
-        p_.remarks.push_back("the values in the file are taken for those of its solves and pickups (" + word + ")");
+        remark("the values in the file are taken for those of its solves and pickups (" + word + ")");
     } else if (word == "COA" || word == "MLT") {
-        p_.remarks.push_back("coatings are left out (" + word + ")");
+        remark("coatings are left out (" + word + ")");
     } else if (shapes.contains(word)) {
         row_of(words);
         if (shaped_.insert({word, rows_[current_].number}).second)
@@ -140,5 +147,6 @@ void CodeVReader::read_circle(Words& words) {
     if (kind == "HOL") return foreign("a hole through which light passes unbent (CIR HOL)");
     row.blocks = true;
     (kind == "OBS" ? row.inner_semi_diameter : row.clear_semi_diameter) = radius;
+    row.is_open_outside = row.clear_semi_diameter == 0;
 }
 }  // namespace realcam::io

@@ -23,7 +23,9 @@ bool CodeVReader::read_specification(const std::string& word, const Words& words
     } else if (word == "DIM") {
         const std::string unit = words.size() > 1 ? upper_case(words[1].text).substr(0, 1) : "";
         if (unit != "M" && unit != "C" && unit != "I") lines_.fail("DIM: M (mm), C (cm) or I (inches) is wanted");
-        unit_ = unit == "M" ? 1 : unit == "C" ? 10 : 25.4;
+        const double millimetres = unit == "M" ? 1 : unit == "C" ? 10 : 25.4;
+        if (!rows_.empty() && millimetres != unit_) lines_.fail("DIM has to stand in front of the surfaces");
+        unit_ = millimetres;
     } else if (word == "WL") {
         wavelengths_ = numbers(words, 1, "WL");
     } else if (word == "REF") {
@@ -31,12 +33,13 @@ bool CodeVReader::read_specification(const std::string& word, const Words& words
         reference_ = lines_.whole_number_of(words[1].text, "the number of the reference wavelength", 1, 1000);
     } else if (word.size() == 3 && (word[0] == 'X' || word[0] == 'Y') && fields.contains(word.substr(1))) {
         p_.field_kind = fields.at(word.substr(1));
+        if (words.size() > kMostFileFields) lines_.fail(word + " has more than 1000 values");
         (word[0] == 'X' ? x_ : y_) = numbers(words, 1, word);
     } else if (word == "VUX" || word == "VLX" || word == "VUY" || word == "VLY") {
         vignetting_[word] = numbers(words, 1, word);
     } else if (word == "TEL" || word == "AFC" || word == "AFI") {
         if (words.size() < 2 || !upper_case(words[1].text).starts_with('N'))
-            p_.remarks.push_back(word + " (a telecentric object or an afocal image) is left out");
+            remark(word + " (a telecentric object or an afocal image) is left out");
     } else {
         return false;
     }
@@ -82,7 +85,9 @@ void CodeVReader::read_zoom(const Words& words) {
 }
 
 std::vector<double> CodeVReader::zoom_values(const Words& words, std::size_t from, const std::string& what) const {
-    std::vector<double> values = numbers(words, from, what);
+    std::vector<double> values;
+    for (std::size_t i = from; i < words.size(); ++i)
+        values.push_back(number_or_infinity(words, i, "each value of " + what));
     if (values.size() != static_cast<std::size_t>(positions_))
         lines_.fail(what + " has " + std::to_string(values.size()) + " values for " + std::to_string(positions_) +
                     " positions");

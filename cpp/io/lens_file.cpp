@@ -10,6 +10,7 @@
 #include "lens_text.hpp"
 #include "lens_zoom.hpp"
 #include "regular_file.hpp"
+#include "toml_document.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -157,20 +158,6 @@ void check_lens(const TomlTable& file, const toml::array& surfaces, const LensSy
     check_part(file, part("focus", "group"), surfaces, [&] { check_focusing(lens); });
 }
 
-/// A text of one line, fit for a terminal and a drawing.
-std::string read_line(const TomlTable& file, std::string_view key) {
-    const std::string text = file.text(key);
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto c = static_cast<unsigned char>(text[i]),
-                   next = static_cast<unsigned char>(text[std::min(i + 1, text.size() - 1)]);
-        // In UTF-8 the second block of control characters, U+0080 to U+009F, begins with C2.
-        if (c < 0x20 || c == 0x7f || (c == 0xc2 && next < 0xa0))
-            file.fail('"' + std::string(key) + "\" must be one line of text, without control characters",
-                      file.find(key));
-    }
-    return text;
-}
-
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
     const auto distance = file.number("film_distance_mm");
     if (distance && !(*distance > 0))
@@ -208,7 +195,7 @@ void set_rings(const TomlTable& file, LensSystem& lens) {
                   file.find("stop_semi_diameter_mm"));
 }
 
-LensSystem lens_from_table(const toml::table& root, const std::string& file) {
+LensSystem lens_from_table(const toml::table& root, const std::string& file, const KeepGoing& keep_going) {
     const TomlTable top(root, file);
     top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm", "glass", "coating",
                "default_coating", "surface", "iris", "focus", "allow_crossing", "zoom", "zoom_position",
@@ -218,10 +205,10 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     if (*format != kFormat)
         top.fail("format " + number_label(*format) + " is not known; this program reads format 1", top.find("format"));
     LensSystem lens;
-    lens.name = read_line(top, "name");
+    lens.name = top.line("name");
     if (!top.find("name")) top.fail("\"name\" is missing");
-    lens.title = read_line(top, "title");
-    lens.source = read_line(top, "source");
+    lens.title = top.line("title");
+    lens.source = top.line("source");
     lens.allow_crossing = top.flag("allow_crossing");
     lens.wavelength_nm = top.number("wavelength_nm").value_or(kLineD_nm);
     if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
@@ -235,6 +222,11 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     const toml::array* surfaces = root["surface"].as_array();
     if (!surfaces || !surfaces->is_array_of_tables())
         top.fail("the lens has no surfaces; tables [[surface]] are wanted");
+    // Each may hold a long table of a glass, which is copied.
+    if (surfaces->size() > static_cast<std::size_t>(kMaxSurfaces))
+        top.fail("the lens has " + std::to_string(surfaces->size()) + " surfaces; at most " +
+                     std::to_string(kMaxSurfaces) + " are supported",
+                 surfaces);
     const LensZoom zoom(top);
     std::vector<bool> has_thickness;
     for (std::size_t i = 0; i < surfaces->size(); ++i) {
@@ -247,7 +239,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file) {
     coatings.apply_default(lens, *surfaces);
     read_iris(top, lens);
     read_focusing(top, lens);
-    if (lens.stop_index() >= 0) zoom.apply(lens, has_thickness);
+    if (lens.stop_index() >= 0) zoom.apply(lens, has_thickness, keep_going);
     check_lens(top, *surfaces, lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
     set_film_distance(top, lens);
@@ -281,6 +273,7 @@ std::string suffix_of(std::string_view path) {
 LensFormat format_of_suffix(const std::string& suffix) {
     if (suffix == ".ZMX") return LensFormat::zemax;
     if (suffix == ".SEQ") return LensFormat::code_v;
+    if (suffix == ".LEN") return LensFormat::oslo;
     if (suffix == ".DAT") return LensFormat::pbrt;
     if (suffix == ".JSON") return LensFormat::optiland;
     if (suffix == ".ROA") return LensFormat::ray_optics;
@@ -300,7 +293,7 @@ std::string_view bundled_lens_text(const std::string& name) {
     for (const BundledFile& file : bundled_lens_files())
         if (file.name == name) return file.text;
     throw LensFileError("unknown lens " + in_quotes(name) + did_you_mean(name, lens_names()) +
-                        "; a bundled lens (`realcam lens list` names them) or the path of a lens file is wanted");
+                        "; a bundled lens or the path of a lens file is wanted");
 }
 
 bool is_lens_path(const std::string& name, const std::string& path) {
@@ -312,13 +305,8 @@ bool is_lens_path(const std::string& name, const std::string& path) {
            std::filesystem::is_regular_file(path, nothing);
 }
 
-LensSystem parse_lens(std::string_view text, const std::string& file) {
-    try {
-        return lens_from_table(toml::parse(text, file), file);
-    } catch (const toml::parse_error& error) {
-        throw LensFileError("not valid TOML: " + printable(error.description()), file,
-                            static_cast<int>(error.source().begin.line));
-    }
+LensSystem parse_lens(std::string_view text, const std::string& file, const KeepGoing& keep_going) {
+    return lens_from_table(parse_toml(text, file, raise_lens_file_error, keep_going), file, keep_going);
 }
 
 LensFormat lens_format_of(std::string_view path) {
@@ -329,14 +317,28 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
     const LensFormat format = lens_format_of(file);
     LensGlasses glasses(options);
     if (format == LensFormat::toml) {
-        LensSystem lens = parse_lens(bytes, file);
+        toml::table table;
+        try {
+            table = parse_toml(bytes, file, raise_lens_file_error, options.keep_going);
+        } catch (const LensFileError&) {
+            const std::string suffix = suffix_of(file);
+            if (suffix == ".TOML") throw;
+            const std::string why = suffix.empty()
+                                        ? "it has no ending"
+                                        : "its ending is " + in_quotes(file.substr(file.size() - suffix.size()));
+            throw LensFileError(
+                "is no lens file that is read: " + why + ", and its text is no TOML; " + kLensSuffixes + " is wanted",
+                file);
+        }
+        LensSystem lens = lens_from_table(table, file, options.keep_going);
         glasses.check_all_used();  // which says that this file names its glasses itself
         return lens;
     }
     const std::string text = decoded_lens_text(bytes, file);
     const Prescription prescription = format == LensFormat::zemax      ? read_zemax(text, file, glasses)
                                       : format == LensFormat::code_v   ? read_code_v(text, file, glasses)
-                                      : format == LensFormat::pbrt     ? read_pbrt(text, file, options.pbrt_thickness)
+                                      : format == LensFormat::oslo     ? read_oslo(text, file, glasses)
+                                      : format == LensFormat::pbrt     ? read_pbrt(text, file, options)
                                       : format == LensFormat::optiland ? read_optiland(text, file, glasses)
                                                                        : read_ray_optics(text, file, glasses);
     glasses.check_all_used();

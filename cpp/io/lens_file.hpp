@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../keep_going.hpp"
 #include "../optics/lens_system.hpp"
 
 namespace realcam::io {
@@ -27,6 +28,8 @@ struct LensReadOptions {
     PbrtThickness pbrt_thickness = PbrtThickness::by_first_row;
     /// Is called with a line of text for all that was left out or assumed. Empty: nobody listens.
     std::function<void(const std::string&)> warn;
+    /// Long files take seconds; where it returns false, reading ends by throwing Cancelled.
+    KeepGoing keep_going;
 };
 
 /// Whether `name` means a file: it is no bundled lens, and has a '/' or the suffix of a lens file, or there is a file
@@ -34,14 +37,15 @@ struct LensReadOptions {
 bool is_lens_path(const std::string& name, const std::string& path);
 
 /// Reads a lens: a bundled one by name, or a file by its path (see is_lens_path). The suffix says how to read it: .zmx
-/// (Zemax), .seq (CODE V), .dat (pbrt), .json (Optiland) or .roa (ray-optics), in any case; anything else is a lens
-/// file of realcam, TOML. The lens is focused at infinity, or as its file says, and wide open. Throws LensFileError,
-/// naming file, line and surface, and InputError where the options name a glass that the file does not have.
+/// (Zemax), .seq (CODE V), .len (OSLO), .dat (pbrt), .json (Optiland) or .roa (ray-optics), in any case; anything else
+/// is a lens file of realcam, TOML. The lens is focused at infinity, or as its file says, and wide open. Throws
+/// LensFileError, naming file, line and surface, and InputError where the options name a glass that the file does not
+/// have.
 LensSystem read_lens(const std::string& name_or_path, const LensReadOptions& options = {});
 
 /// Reads a lens from the text of a lens file of realcam (format 1, described in lenses/README.md).
 /// `file` is what messages call it.
-LensSystem parse_lens(std::string_view text, const std::string& file);
+LensSystem parse_lens(std::string_view text, const std::string& file, const KeepGoing& keep_going = {});
 
 /// Reads a lens from the bytes of any lens file, whose name says how.
 LensSystem parse_lens_file(std::string_view bytes, const std::string& file, const LensReadOptions& options = {});

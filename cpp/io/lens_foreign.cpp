@@ -24,9 +24,10 @@ void refuse_foreign(const std::vector<ForeignFeature>& features, const std::stri
                 (place(features[i]).empty() ? "" : " at " + place(features[i]));
     if (features.size() > kMostNamed) also += ", and " + std::to_string(features.size() - kMostNamed) + " more";
     const ForeignFeature& first = features.front();
-    throw LensFileError(
-        "has " + first.what + also + ", of which realcam has no model; --force (force=True) leaves it out", file,
-        first.line, first.surface);
+    LensReadError error("has " + first.what + also + ", of which realcam has no model", file, first.line,
+                        first.surface);
+    error.can_be_forced = true;
+    throw error;
 }
 
 }  // namespace realcam::io

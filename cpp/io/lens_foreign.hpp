@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "lens_error.hpp"
 #include "lens_file.hpp"
 #include "lens_prescription.hpp"
 

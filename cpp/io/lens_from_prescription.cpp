@@ -7,6 +7,7 @@
 
 #include "../optics/focus.hpp"
 #include "lens_asphere_terms.hpp"
+#include "lens_error.hpp"
 #include "lens_foreign.hpp"
 #include "lens_rims.hpp"
 #include "lens_states.hpp"
@@ -18,7 +19,7 @@ namespace {
 class Builder {
 public:
     Builder(const Prescription& p, const LensReadOptions& options)
-        : p_(p), options_(options), foreign_(p.foreign), kept_(kept_rows(p)) {}
+        : p_(p), options_(options), foreign_(p.foreign), kept_(kept_rows(p)), checkpoint_(options.keep_going) {}
 
     LensSystem build() {
         make_surfaces();
@@ -32,10 +33,12 @@ public:
         lens_.wavelength_nm = p_.wavelength_nm;
         if (!(lens_.wavelength_nm >= 100 && lens_.wavelength_nm <= 20000))
             fail("the wavelength is " + std::to_string(lens_.wavelength_nm) + " nm; 100 to 20000 nm is wanted");
+        check_materials();
         const std::size_t count = std::max<std::size_t>(1, p_.zoom_names.size());
         for (std::size_t k = 0; k < count; ++k) states_.push_back(lens_state(p_, kept_, lens_, k));
         set_rims();
         set_film_size();
+        set_open_rims();
         lens_ = joined_states(p_, states_);
         finish();
         return lens_;
@@ -49,6 +52,26 @@ private:
         if (options_.warn) options_.warn(p_.file + ": " + message);
     }
     const PrescriptionSurface& row_of(std::size_t surface) const { return p_.surfaces[kept_[surface].row]; }
+
+    /// Of a plane that light passes everywhere beyond a disc.
+    bool is_open_plane(std::size_t surface) const {
+        return kept_[surface].type == SurfaceType::aperture && row_of(surface).is_open_outside;
+    }
+
+    /// Here the surface is known by its number in the file; what is computed with the lens would name it by another.
+    void check_materials() const {
+        for (std::size_t i = 0; i < kept_.size(); ++i) {
+            if (kept_[i].type != SurfaceType::refracting) continue;
+            const double n = lens_.surfaces[i].material.index(lens_.wavelength_nm);
+            if (!(n > 0.1) || !(n < 100))
+                fail(
+                    "its material" +
+                        (lens_.surfaces[i].material.label.empty() ? ""
+                                                                  : ' ' + in_quotes(lens_.surfaces[i].material.label)) +
+                        " has no refractive index at " + std::to_string(std::lround(lens_.wavelength_nm)) + " nm",
+                    &row_of(i));
+        }
+    }
 
     void check_table() const {
         const auto bends = [](const KeptRow& k) {
@@ -65,6 +88,13 @@ private:
                             : "several surfaces are aperture stops; one has to be");
     }
 
+    /// Whether a row became a face of the lens, perhaps beside a stop.
+    bool bends_light(std::size_t row) const {
+        return std::any_of(kept_.begin(), kept_.end(), [&](const KeptRow& k) {
+            return k.row == row && (k.type == SurfaceType::refracting || k.type == SurfaceType::mirror);
+        });
+    }
+
     void make_surfaces() {
         for (const KeptRow& kept : kept_) {
             const PrescriptionSurface& row = p_.surfaces[kept.row];
@@ -72,7 +102,8 @@ private:
             surface.type = kept.type;
             surface.clear_semi_diameter = row.clear_semi_diameter;
             // Of a surface that is a stop too, the rim and the hole are the surface's.
-            surface.inner_semi_diameter = kept.type == SurfaceType::stop && row.is_stop ? 0 : row.inner_semi_diameter;
+            const bool is_extra_plane = kept.type == SurfaceType::stop && bends_light(kept.row);
+            surface.inner_semi_diameter = is_extra_plane ? 0 : row.inner_semi_diameter;
             if (surface.bends_light()) {
                 if (kept.type == SurfaceType::refracting) surface.material = row.material;
                 if (row.is_stop) stop_on_surface_ = row.number;
@@ -106,25 +137,30 @@ private:
     void set_rims() {
         std::vector<std::size_t> wanted;
         for (std::size_t i = 0; i < kept_.size(); ++i)
-            if (lens_.surfaces[i].type != SurfaceType::stop && !(lens_.surfaces[i].clear_semi_diameter > 0))
+            if (lens_.surfaces[i].type != SurfaceType::stop && !is_open_plane(i) &&
+                (row_of(i).is_open_outside || !(lens_.surfaces[i].clear_semi_diameter > 0)))
                 wanted.push_back(i);
         if (wanted.empty()) return;
         std::vector<double> rims(kept_.size(), 0.0);
         bool all = true;
         for (std::size_t k = 0; k < states_.size(); ++k) {
-            const RayRims found = rims_of_rays(states_[k].lens, states_[k].object_distance, p_.field_kind, p_.fields);
+            const RayRims found =
+                rims_of_rays(states_[k].lens, states_[k].object_distance, p_.field_kind, p_.fields, checkpoint_);
             all = all && found.all_rays_pass;
             for (std::size_t i = 0; i < rims.size(); ++i) rims[i] = std::max(rims[i], found.semi_diameters[i]);
         }
         std::string names;
         for (const std::size_t i : wanted) {
+            const double stated = row_of(i).clear_semi_diameter;
+            rims[i] = std::max(rims[i], stated);
             for (LensState& state : states_) state.lens.surfaces[i].clear_semi_diameter = rims[i];
             lens_.surfaces[i].clear_semi_diameter = rims[i];
             fold_again(i, rims[i]);
-            names += (names.empty() ? "" : ", ") + std::to_string(row_of(i).number);
+            if (!(stated > 0)) names += (names.empty() ? "" : ", ") + std::to_string(row_of(i).number);
         }
-        warn("states no clear semi-diameter of surface" + std::string(wanted.size() > 1 ? "s " : " ") + names +
-             ": those of the real marginal and field rays are taken" +
+        if (names.empty()) return;
+        warn("states no clear semi-diameter of surface" + std::string(names.find(',') != names.npos ? "s " : " ") +
+             names + ": those of the real marginal and field rays are taken" +
              (all ? "" : ", of which some do not pass the lens"));
     }
 
@@ -139,6 +175,38 @@ private:
             state.surfaces[i].conic = lens_.surfaces[i].conic;
             state.surfaces[i].aspheric = lens_.surfaces[i].aspheric;
         }
+    }
+
+    /// A plane that light passes everywhere beyond a disc gets a rim that stops no ray which the others let pass:
+    /// between two rims a straight line lies within the larger of them.
+    void set_open_rims() {
+        constexpr double kMargin = 1.25;  // faces are no planes at their vertices
+        for (std::size_t i = 0; i < kept_.size(); ++i) {
+            if (!is_open_plane(i)) continue;
+            double rim = 0;
+            for (const LensState& state : states_) rim = std::max(rim, kMargin * reach_of_light(state.lens, i));
+            if (row_of(i).inner_semi_diameter >= rim)
+                fail("its obscuration is larger than all of the light that passes the lens", &row_of(i));
+            for (LensState& state : states_) state.lens.surfaces[i].clear_semi_diameter = rim;
+            lens_.surfaces[i].clear_semi_diameter = rim;
+        }
+    }
+
+    /// How far from the axis light may be at a plane.
+    double reach_of_light(const LensSystem& lens, std::size_t plane) const {
+        const double film = 0.5 * std::hypot(lens.film_width, lens.film_height);
+        const auto rim = [&](std::size_t i) { return lens.surfaces[i].clear_semi_diameter; };
+        std::size_t before = plane, behind = plane + 1;
+        while (before > 0 && is_open_plane(before - 1)) --before;
+        while (behind < kept_.size() && is_open_plane(behind)) ++behind;
+        // Behind the last rim the film is the other end of the line; a larger one may be put there.
+        const double end = behind < kept_.size() ? rim(behind) : 2 * film;
+        if (before > 0) return std::max(rim(before - 1), end);
+        double distance = 0;
+        for (std::size_t i = plane; i < behind && i + 1 < kept_.size(); ++i) distance += lens.surfaces[i].thickness;
+        const double focal = std::fabs(first_order(lens, lens_.wavelength_nm).effective_focal_length);
+        // In front of all rims: whatever comes at 45 degrees, or at twice the field's slope.
+        return end + std::fabs(distance) * std::clamp(2 * film / focal, 1.0, 10.0);
     }
 
     void set_film_size() {
@@ -168,11 +236,11 @@ private:
         lens_.allow_crossing = true;
         try {
             check_all();
-            lens_.allow_crossing = crosses();
-        } catch (const LensFileError& error) {
+        } catch (const LensFileError& error) {  // which counts the surfaces of the lens
             const auto index = static_cast<std::size_t>(error.surface) - 1;
             fail(error.detail, error.surface > 0 && index < kept_.size() ? &row_of(index) : nullptr);
         }
+        lens_.allow_crossing = crosses();
     }
 
     void check_all() {
@@ -186,9 +254,10 @@ private:
     }
 
     /// Whether faces cross inside their clear semi-diameters, which is refused unless it is forced.
-    bool crosses() const {
+    bool crosses() {
         const int count = std::max(1, static_cast<int>(lens_.zoom.positions.size()));
         for (int i = 0; i < count; ++i) {
+            checkpoint_.pass(kWorkOfLens);
             const LensSystem lens = lens_.zoom.positions.empty() ? lens_ : at_zoom_position(lens_, i);
             std::string what;
             const PrescriptionSurface* row = nullptr;
@@ -204,8 +273,11 @@ private:
             if (!row) continue;
             if (!lens_.zoom.positions.empty())
                 what += " in zoom position \"" + lens.zoom.positions[static_cast<std::size_t>(i)].name + '"';
-            if (!options_.force)
-                fail(what + "; nobody can make such a lens, and --force (force=True) reads it all the same", row);
+            if (!options_.force) {
+                LensReadError error(what + "; nobody can make such a lens", p_.file, row->line, row->number);
+                error.can_be_forced = true;
+                throw error;
+            }
             warn("surface " + std::to_string(row->number) + ' ' + what);
             return true;
         }
@@ -220,6 +292,8 @@ private:
     std::vector<LensState> states_;
     int stop_on_surface_ = 0;
     std::set<int> curved_planes_;
+    Checkpoint checkpoint_;
+    static constexpr std::size_t kWorkOfLens = 1 << 14;  // of the checkpoint, where a lens is looked at as a whole
 };
 
 }  // namespace
@@ -228,7 +302,7 @@ LensSystem lens_from(const Prescription& prescription, const LensReadOptions& op
     try {
         return Builder(prescription, options).build();
     } catch (const InputError& error) {  // a glass without an index, a field that no ray reaches
-        throw LensFileError(error.what(), prescription.file);
+        throw LensReadError(error, prescription.file);
     }
 }
 

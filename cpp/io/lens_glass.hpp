@@ -1,10 +1,12 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "lens_error.hpp"
 #include "lens_file.hpp"
 
 namespace realcam::io {
@@ -35,12 +37,19 @@ class LensGlasses {
 public:
     explicit LensGlasses(const LensReadOptions& options) : options_(options) {}
 
+    const LensReadOptions& options() const { return options_; }
+
     /// A glass that the file itself defines.
     void define(const std::string& name, Glass glass) { own_.insert_or_assign(name, std::move(glass)); }
 
-    /// `catalogues`: those that the file lists, in its words; empty: any. `hint`: what the file says of it besides.
-    /// Throws InputError with the candidates.
+    /// `catalogues`: those that the file lists, in its words; empty: any. A name of six digits that no catalogue has is
+    /// the glass of that number (see glass_of_number). `hint`: what the file says of it besides.
+    /// Throws UnknownGlass with the candidates.
     Glass find(const std::string& name, const std::vector<std::string>& catalogues, const std::string& hint = {});
+    /// Whether one of the catalogues has exactly one glass of that name, and nobody has named another one for it.
+    std::optional<Glass> in_catalogue(const std::string& name, const std::vector<std::string>& catalogues) const;
+    /// Whether the options say what glass that is.
+    bool is_given(const std::string& name) const;
 
     /// Throws InputError where the options name a glass that the file did not ask for.
     void check_all_used() const;
@@ -56,6 +65,15 @@ struct AbbePair {
     double n_d, v_d;
 };
 AbbePair abbe_pair(const Glass& glass);
+
+/// n_d and V_d of a glass that is called by its number: 517642 is n_d = 1.517 and V_d = 64.2, as in MIL-G-174. Nothing
+/// where the name is not six digits.
+std::optional<AbbePair> glass_of_number(std::string_view name);
+
+/// Of a formula for n, by wavelength in um: a table with steps of 10 nm, between which the index is off by less than
+/// 1e-7, over the wavelengths from 0.3 to 15 um at which the formula has an index from 1 to 10. Throws InputError where
+/// it has none in the visible.
+Glass glass_of_formula(const std::function<double(double)>& index, std::string label);
 
 /// From n_d and V_d, of which 0 means no dispersion, with a label that says both. Throws InputError.
 Glass glass_of_pair(double n_d, double v_d);

@@ -3,15 +3,17 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "../error.hpp"
+#include "lens_error.hpp"
 #include "printable.hpp"
 
 namespace realcam::io {
 
-LensJson::LensJson(std::string_view text, std::string file) : file_(std::move(file)) {
-    Checkpoint checkpoint;
+LensJson::LensJson(std::string_view text, std::string file, const KeepGoing& keep_going) : file_(std::move(file)) {
+    Checkpoint checkpoint(keep_going);
     try {
         root_ = Json::parse(text, checkpoint, JsonNumbers::with_infinity);
+    } catch (const Cancelled&) {
+        throw;
     } catch (const std::runtime_error& error) {  // "line 3: ..."
         throw LensFileError("not valid JSON: " + printable(error.what()), file_);
     }
@@ -19,6 +21,10 @@ LensJson::LensJson(std::string_view text, std::string file) : file_(std::move(fi
 
 void LensJson::fail(const std::string& message) const {
     throw LensFileError(message, file_, 0, surface_);
+}
+
+void LensJson::fail(const InputError& cause) const {
+    throw LensReadError(cause, file_, 0, surface_);
 }
 
 double LensJson::number(const Json& value, const std::string& what) const {

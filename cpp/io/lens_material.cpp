@@ -2,6 +2,7 @@
 
 #include "glass_table.hpp"
 #include "lens_file.hpp"
+#include "lens_text.hpp"
 
 namespace realcam::io {
 
@@ -32,8 +33,9 @@ Glass read_material(const TomlTable& table, const std::optional<TomlTable>& glas
     const std::string name = table.text("material");
     if (glasses)
         if (const auto own = glasses->table(name)) {
+            glasses->check_name(name, own->raw());
             Glass glass = glass_from_table(*own);
-            glass.label = own->find("label") ? own->text("label") : name;
+            glass.label = own->find("label") ? own->line("label") : name;
             return glass;
         }
     try {
@@ -54,6 +56,10 @@ CoatingMaterial read_complex_index(const TomlTable& table, std::string_view key)
         material.label = number_label(pair[0]) + " + " + number_label(pair[1]) + " i";
         return material;
     }
+    if (rows->size() > kMostFileIndices)
+        table.fail("\"" + std::string(key) + "\" has " + std::to_string(rows->size()) + " points; at most " +
+                       std::to_string(kMostFileIndices) + " are read",
+                   node);
     CoatingMaterial material;
     for (const toml::node& row : *rows) {
         const toml::array* point = row.as_array();

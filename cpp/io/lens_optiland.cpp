@@ -16,7 +16,7 @@ namespace {
 class Reader {
 public:
     Reader(std::string_view text, const std::string& file, LensGlasses& glasses)
-        : json_(text, file), glasses_(glasses) {
+        : json_(text, file, glasses.options().keep_going), glasses_(glasses) {
         p_.file = file;
         p_.format = "Optiland";
     }
@@ -137,7 +137,7 @@ private:
                                      json_.number(first(abbe), "the Abbe number"));
             }
             if (type == "Material") {
-                // The file of the glass lies in the folder of its maker.
+                // The file of the glass lies in the folder of its maker, or of what is no glass.
                 std::string maker = material["reference"].text();
                 const std::string& path = material["filename"].text();
                 const std::size_t slash = path.find_last_of("/\\");
@@ -145,12 +145,14 @@ private:
                     const std::size_t folder = path.find_last_of("/\\", slash - 1);
                     maker = path.substr(folder == path.npos ? 0 : folder + 1,
                                         slash - (folder == path.npos ? 0 : folder + 1));
+                    for (const char* shelf : {"/main/", "/organic/", "/other/", "/3d/"})
+                        if (path.find(shelf) != path.npos) maker = "misc";
                 }
                 return glasses_.find(material["name"].text(),
                                      maker.empty() ? std::vector<std::string>{} : std::vector{maker});
             }
         } catch (const InputError& error) {
-            json_.fail(error.what());
+            json_.fail(error);
         }
         json_.fail("its material is of the type " + in_quotes(type) +
                    "; IdealMaterial, AbbeMaterial or Material is wanted");
@@ -165,6 +167,7 @@ private:
         if (!(outer.is_number() && std::isinf(outer.number(0)))) row.clear_semi_diameter = json_.number(outer, "r_max");
         row.inner_semi_diameter = json_.number_or(aperture["r_min"], "r_min", 0);
         row.blocks = true;
+        row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
     }
 
     void read_aperture(const Json& aperture) {

@@ -22,8 +22,9 @@ PbrtThickness pbrt_thickness_named(const std::string& name) {
                      in_quotes(name));
 }
 
-Prescription read_pbrt(std::string_view text, const std::string& file, PbrtThickness thickness) {
-    LensLines lines(text, file);
+Prescription read_pbrt(std::string_view text, const std::string& file, const LensReadOptions& options) {
+    const PbrtThickness thickness = options.pbrt_thickness;
+    LensLines lines(text, file, options.keep_going);
     Prescription p;
     p.file = file;
     p.format = "pbrt";
@@ -42,10 +43,11 @@ Prescription read_pbrt(std::string_view text, const std::string& file, PbrtThick
             lines.fail("has " + std::to_string(words.size()) +
                        " columns; radius, thickness, index and diameter are wanted");
         const auto value = [&](std::size_t i, const char* what) { return lines.number_of(words[i].text, what); };
+        const bool is_plane = is_infinity(words[0].text);
         PrescriptionSurface row;
         row.line = lines.number();
         row.number = number;
-        const double radius = value(0, "the radius"), index = value(2, "the index");
+        const double radius = is_plane ? kInfinity : value(0, "the radius"), index = value(2, "the index");
         row.is_stop = radius == 0;
         row.curvature = row.is_stop ? 0 : 1 / radius;
         row.thickness = value(1, "the thickness");

@@ -20,6 +20,9 @@ struct PrescriptionSurface {
     double clear_semi_diameter = 0;  ///< 0: the file does not say it
     double inner_semi_diameter = 0;
     bool blocks = false;  ///< it has an aperture that somebody gave it, so that it counts even where it bends no light
+    /// Its aperture is a disc that blocks, the inner semi-diameter, and light passes everywhere beyond it. The clear
+    /// semi-diameter, if any, is how large the surface is drawn.
+    bool is_open_outside = false;
 };
 
 /// How a file says how wide the light's cone is.

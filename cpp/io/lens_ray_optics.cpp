@@ -25,7 +25,7 @@ const std::string& class_of(const Json& object) {
 class Reader {
 public:
     Reader(std::string_view text, const std::string& file, LensGlasses& glasses)
-        : json_(text, file), glasses_(glasses) {
+        : json_(text, file, glasses.options().keep_going), glasses_(glasses) {
         p_.file = file;
         p_.format = "ray-optics";
     }
@@ -45,7 +45,9 @@ public:
         profiles_ = &model["profile_dict"];
         const Json& stop = sequence["stop_surface"];
         const std::size_t stop_index = stop.index(0);
-        const double object = json_.number(attributes(gaps[std::size_t{0}])["thi"], "the distance of the object");
+        const Json& gap = attributes(gaps[std::size_t{0}])["thi"];
+        const bool is_infinite = gap.is_number() && std::isinf(gap.number(0));
+        const double object = is_infinite ? kInfinity : json_.number(gap, "the distance of the object");
         p_.object_distance = unit_ * object >= kLongest ? kInfinity : unit_ * object;
         for (std::size_t i = 1; i + 1 < interfaces.size(); ++i)
             read_surface(interfaces[i], gaps[i], i, i == stop_index);
@@ -127,7 +129,7 @@ private:
                 return glasses_.find(a["gname"].text(), {module.substr(module.find('.') + 1)});
             if (type == "Glass" && !a["label"].text().empty()) return glasses_.find(a["label"].text(), {});
         } catch (const InputError& error) {
-            json_.fail(error.what());
+            json_.fail(error);
         }
         json_.fail("its medium is of the class " + in_quotes(type) + ", which is not known");
     }
@@ -161,6 +163,7 @@ private:
                 row.clear_semi_diameter = unit_ * value("radius");
             row.blocks = true;
         }
+        row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
         if (row.clear_semi_diameter == 0)
             row.clear_semi_diameter = unit_ * json_.number_or(a["max_aperture"], "max_aperture", 0);
     }

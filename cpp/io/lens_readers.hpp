@@ -17,7 +17,10 @@ Prescription read_zemax(std::string_view text, const std::string& file, LensGlas
 Prescription read_code_v(std::string_view text, const std::string& file, LensGlasses& glasses);
 
 /// pbrt, .dat.
-Prescription read_pbrt(std::string_view text, const std::string& file, PbrtThickness thickness);
+Prescription read_pbrt(std::string_view text, const std::string& file, const LensReadOptions& options);
+
+/// OSLO, .len.
+Prescription read_oslo(std::string_view text, const std::string& file, LensGlasses& glasses);
 
 /// Optiland's JSON.
 Prescription read_optiland(std::string_view text, const std::string& file, LensGlasses& glasses);

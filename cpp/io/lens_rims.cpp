@@ -57,7 +57,7 @@ LensSystem with_wide_rims(LensSystem lens, double largest_angle) {
 }  // namespace
 
 RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
-                     const std::vector<PrescriptionField>& fields) {
+                     const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint) {
     const std::size_t count = lens.surfaces.size();
     RayRims result{std::vector<double>(count, 0.0)};
     std::vector<PrescriptionField> all{{}};
@@ -81,6 +81,7 @@ RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind k
         try {
             const RayAimer aim(open, lens.wavelength_nm, {angle, object_distance});
             for (const Vec2<double> place : places) {
+                checkpoint.pass(1000 * count);
                 const AimedRay ray = aim(place);
                 if (ray.status != RayStatus::ok) {
                     result.all_rays_pass = false;

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "../checkpoint.hpp"
 #include "lens_prescription.hpp"
 
 namespace realcam::io {
@@ -15,7 +16,7 @@ struct RayRims {
 /// the fields' vignetting factors cut off. The lens's stop has its size; its other rims may be 0.
 /// `object_distance`: to the front vertex, mm.
 RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
-                     const std::vector<PrescriptionField>& fields);
+                     const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint);
 
 /// Of the fields, on the film, mm: by real chief rays, and where there is none by first-order optics.
 double largest_image_height(const LensSystem& lens, double object_distance, FieldKind kind,

@@ -57,6 +57,13 @@ void set_stop(const Prescription& p, const std::vector<KeptRow>& kept, LensSyste
              "the size of the aperture stop follows from nothing that the file says; "
              "an entrance pupil diameter, an f-number or the stop's semi-diameter is wanted",
              &p.surfaces[kept[static_cast<std::size_t>(stop)].row]);
+    // The stop's own aperture, where it is smaller than that: what passes the stop's plane is what it leaves.
+    const KeptRow& own = kept[static_cast<std::size_t>(stop)];
+    const PrescriptionSurface& row = p.surfaces[own.row];
+    const bool is_plane =
+        static_cast<std::size_t>(stop) + 1 >= kept.size() || kept[static_cast<std::size_t>(stop) + 1].row != own.row;
+    if (is_plane && row.blocks && !row.is_open_outside && row.clear_semi_diameter > 0)
+        radius = std::min(radius, row.clear_semi_diameter);
     surface.clear_semi_diameter = radius;
     lens.stop_semi_diameter = radius;
 }

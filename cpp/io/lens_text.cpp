@@ -88,11 +88,13 @@ bool LensLines::next(std::string_view& line) {
     const bool is_pair = rest_.substr(end).starts_with("\r\n");
     rest_.remove_prefix(std::min(end + (is_pair ? 2 : 1), rest_.size()));
     ++number_;
+    checkpoint_.pass(1 + end / 16);
     return true;
 }
 
 std::vector<LensWord> LensLines::words(std::string_view line) const {
     std::vector<LensWord> list;
+    checkpoint_.pass(1 + line.size() / 16);
     while (true) {
         line = without_blanks(line);
         if (line.empty()) return list;
@@ -125,6 +127,23 @@ int LensLines::whole_number_of(std::string_view word, const std::string& what, i
         fail(what + " must be a whole number from " + std::to_string(least) + " to " + std::to_string(most) +
              "; it is " + in_quotes(word));
     return static_cast<int>(*value);
+}
+
+bool is_infinity(std::string_view word) {
+    if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+    const std::string capital = word.size() < 10 ? upper_case(word) : std::string();
+    return capital == "INF" || capital == "INFINITY";
+}
+
+std::string short_list(const std::set<std::string>& names) {
+    constexpr std::size_t kMost = 12;
+    std::string text;
+    std::size_t count = 0;
+    for (const std::string& name : names) {
+        if (count++ == kMost) return text + " and " + std::to_string(names.size() - kMost) + " more";
+        text += (text.empty() ? "" : ", ") + name;
+    }
+    return text;
 }
 
 std::string upper_case(std::string_view text) {

@@ -18,16 +18,14 @@ public:
 
     Prescription prescription() {
         check_image();
+        glasses_are_stated_ = find_out_whether_glasses_are_stated();
         for (std::size_t i = 0; i < file_.surfaces.size(); ++i) convert(file_.surfaces[i], i);
         set_object();
         set_fields();
         set_wavelength();
         set_zoom();
-        if (!file_.unknown.empty()) {
-            std::string names;
-            for (const std::string& name : file_.unknown) names += (names.empty() ? "" : ", ") + name;
-            p_.remarks.push_back("lines of keywords that are not known were left out: " + names);
-        }
+        if (!file_.unknown.empty())
+            p_.remarks.push_back("lines of keywords that are not known were left out: " + short_list(file_.unknown));
         return std::move(p_);
     }
 
@@ -64,6 +62,7 @@ private:
         if (s.row.clear_semi_diameter == 0) s.row.clear_semi_diameter = s.diameter;
         convert_shape(s, add_foreign);
         convert_glass(s, fail, add_foreign);
+        glass_behind_.push_back(&s);
         p_.surfaces.push_back(s.row);
     }
 
@@ -102,6 +101,7 @@ private:
 
     template <class Fail, class Foreign>
     void convert_glass(ZemaxSurface& s, const Fail& fail, const Foreign& add_foreign) {
+        if (s.glass_kind == 2 && !s.glass.empty() && pick_up_glass(s, fail)) return;
         s.row.is_mirror = upper_case(s.glass) == "MIRROR";
         if (s.row.is_mirror) return;
         if (s.glass.empty()) {
@@ -118,12 +118,58 @@ private:
                                          std::to_string(s.row.number) + " is left out");
             } else {
                 if (s.glass_kind == 4) add_foreign("a glass with an offset");
-                s.row.material = glasses_.find(s.glass, file_.catalogues, s.hint);
+                s.row.material = named_glass(s);
             }
         } catch (const InputError& error) {
-            fail(error.what(), s.glass_line);
+            throw LensReadError(error, p_.file, s.glass_line, s.row.number);
         }
         medium_ = s.row.material;
+    }
+
+    /// A solve of the glass: that of a surface in front. False where the name of the glass has to tell.
+    template <class Fail>
+    bool pick_up_glass(ZemaxSurface& s, const Fail& fail) {
+        const int from = s.pickup;
+        const bool is_named = s.glass != "___BLANK";
+        const bool is_in_front = from > 0 && from <= static_cast<int>(glass_behind_.size());
+        const ZemaxSurface* source = is_in_front ? glass_behind_[static_cast<std::size_t>(from) - 1] : nullptr;
+        if (!source || source->glass.empty()) {
+            if (is_named) return false;
+            fail("picks up the glass of surface " + std::to_string(from) +
+                     (source ? ", which has none" : "; a surface of the lens in front of this one is wanted"),
+                 s.glass_line);
+        }
+        s.row.is_mirror = source->row.is_mirror;
+        s.row.material = source->row.material;
+        if (!s.row.is_mirror) medium_ = s.row.material;
+        return true;
+    }
+
+    Glass named_glass(const ZemaxSurface& s) {
+        try {
+            return glasses_.find(s.glass, file_.catalogues, s.hint);
+        } catch (const UnknownGlass& error) {
+            if (!glasses_are_stated_ || !states_a_glass(s) || !error.candidate.empty()) throw;
+            Glass stated = glass_of_pair(s.n_d, s.v_d);
+            if (told_.insert(s.glass).second)
+                p_.remarks.push_back("the glass " + in_quotes(s.glass) +
+                                     " is in no catalogue that the file lists: " + s.hint + " are taken from its line");
+            return stated;
+        }
+    }
+
+    /// The n_d and V_d in the line of a glass of a catalogue may be left of an earlier one. Where the file states those
+    /// of a glass that is known, they tell whether it states the others truly.
+    bool find_out_whether_glasses_are_stated() const {
+        for (const ZemaxSurface& s : file_.surfaces) {
+            if (s.glass.empty() || s.glass_kind != 0 || upper_case(s.glass) == "MIRROR") continue;
+            const std::optional<Glass> known = glasses_.in_catalogue(s.glass, file_.catalogues);
+            if (!known) continue;
+            const AbbePair pair = abbe_pair(*known);
+            // Makers' melts and editions differ by less.
+            if (std::fabs(pair.n_d - s.n_d) > 2e-3 || std::fabs(pair.v_d - s.v_d) > 1) return false;
+        }
+        return true;
     }
 
     void set_object() {
@@ -133,11 +179,7 @@ private:
             p_.foreign.push_back({"a curved object", object.row.line, 0});
         if (!object.glass.empty()) p_.foreign.push_back({"an object inside a glass", object.glass_line, 0});
         if (object.row.is_stop) throw LensFileError("the object is the aperture stop", p_.file, object.row.line, 0);
-        if (!file_.coatings.empty()) {
-            std::string names;
-            for (const std::string& name : file_.coatings) names += (names.empty() ? "" : ", ") + name;
-            p_.remarks.push_back("coatings are left out: " + names);
-        }
+        if (!file_.coatings.empty()) p_.remarks.push_back("coatings are left out: " + short_list(file_.coatings));
     }
 
     void set_fields() {
@@ -209,12 +251,15 @@ private:
     Prescription p_;
     LensGlasses& glasses_;
     Glass medium_ = Glass::air();  ///< behind the surfaces so far
+    std::vector<const ZemaxSurface*> glass_behind_;  ///< of the surfaces so far
+    bool glasses_are_stated_ = true;
+    std::set<std::string> told_;
 };
 
 }  // namespace
 
 Prescription read_zemax(std::string_view text, const std::string& file, LensGlasses& glasses) {
-    return Converter(zemax_file_of(text, file), glasses).prescription();
+    return Converter(zemax_file_of(text, file, glasses.options()), glasses).prescription();
 }
 
 }  // namespace realcam::io

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lens_file.hpp"
 #include "lens_prescription.hpp"
 
 namespace realcam::io {
@@ -17,10 +18,15 @@ struct ZemaxSurface {
     std::map<int, int> parameter_lines;
     std::string glass, hint;
     int glass_line = 0, glass_kind = 0;
-    double n_d = 0, v_d = 0, partial = 0;
+    int pickup = 0;  ///< the surface whose glass it takes, where the kind says so
+    double n_d = 0, v_d = 0, partial = 0;  ///< of a model glass; of others, what may be left of an earlier one
     double diameter = 0;
     bool has_thickness = false, at_infinity = false;
 };
+
+/// Whether the n_d and V_d in the line of a glass are those of a glass, and not what new files have there, 1.5 and 40,
+/// or the figures of something else.
+bool states_a_glass(const ZemaxSurface& s);
 
 /// What the lines of a .zmx file say.
 struct ZemaxFile {
@@ -39,6 +45,6 @@ struct ZemaxFile {
 };
 
 /// Throws LensFileError with the line for what is wrong in one.
-ZemaxFile zemax_file_of(std::string_view text, const std::string& file);
+ZemaxFile zemax_file_of(std::string_view text, const std::string& file, const LensReadOptions& options);
 
 }  // namespace realcam::io

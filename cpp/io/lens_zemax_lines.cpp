@@ -1,5 +1,5 @@
-// Zemax OpticStudio's .zmx: a line is a keyword of four letters and its values; "SURF n" begins a surface, whose lines
-// are indented. Surface 0 is the object, the last one the image.
+// Zemax OpticStudio's .zmx: a line is a keyword of four letters and its values; "SURF n" begins a surface, to which the
+// lines behind it belong that have a surface's keyword. Surface 0 is the object, the last one the image.
 
 #include <algorithm>
 
@@ -7,6 +7,12 @@
 #include "printable.hpp"
 
 namespace realcam::io {
+namespace {
+
+/// Keywords that are not known are named; a file that is none of Zemax has as many as lines.
+constexpr std::size_t kMostUnknown = 1000;
+
+}  // namespace
 
 bool is_harmless_in_zemax(const std::string& word, bool in_surface) {
     static const std::set<std::string> of_surface{
@@ -21,7 +27,8 @@ bool is_harmless_in_zemax(const std::string& word, bool in_surface) {
     return (in_surface ? of_surface : of_system).contains(word);
 }
 
-ZemaxReader::ZemaxReader(std::string_view text, const std::string& file) : lines_(text, file) {
+ZemaxReader::ZemaxReader(std::string_view text, const std::string& file, const LensReadOptions& options)
+    : lines_(text, file, options.keep_going) {
     out_.prescription.file = file;
     out_.prescription.format = "Zemax";
 }
@@ -49,13 +56,19 @@ double ZemaxReader::length(const Words& words, std::size_t i, const char* what) 
     return out_.unit * number(words, i, what);
 }
 
+double ZemaxReader::length_or_infinity(const Words& words, std::size_t i, const char* what) const {
+    if (i < words.size() && is_infinity(words[i].text)) return words[i].text.starts_with('-') ? -kInfinity : kInfinity;
+    return length(words, i, what);
+}
+
 int ZemaxReader::whole(const Words& words, const char* what, int least, int most) const {
     if (words.empty()) lines_.fail(std::string(what) + " is missing");
     return lines_.whole_number_of(words[0].text, what, least, most);
 }
 
 void ZemaxReader::foreign(const std::string& what) {
-    out_.prescription.foreign.push_back({what, lines_.number(), current_number()});
+    if (foreign_.emplace(what, current_number()).second)
+        out_.prescription.foreign.push_back({what, lines_.number(), current_number()});
 }
 
 int ZemaxReader::current_number() const {
@@ -65,7 +78,6 @@ int ZemaxReader::current_number() const {
 void ZemaxReader::read_line(std::string_view line) {
     std::string_view rest = without_blanks(line);
     if (rest.empty()) return;
-    const bool indented = line[0] == ' ' || line[0] == '\t';
     const std::string word = upper_case(rest.substr(0, rest.find_first_of(" \t")));
     rest = without_blanks(rest.substr(std::min(rest.size(), word.size())));
     if (word == "NAME" || word == "NOTE" || word == "COMM" || word == "COFN") {  // free text
@@ -76,12 +88,20 @@ void ZemaxReader::read_line(std::string_view line) {
         return;
     }
     if (word == "SURF") return begin_surface(lines_.words(rest));
-    if (!indented) in_surface_ = false, lines_.set_surface(0);
-    if (in_surface_ && is_harmless_in_zemax(word, true)) return;
-    if (in_surface_ ? read_surface_line(word, rest) : read_system_line(word, rest)) return;
-    // Behind the surfaces stand the operands of the merit function, and there are hundreds.
-    if (in_surface_ || out_.surfaces.empty())
-        if (!is_harmless_in_zemax(word, in_surface_)) out_.unknown.insert(printable(word).substr(0, 40));
+    // Indents mean nothing: programs other than OpticStudio leave them out. What a line belongs to is told by its word.
+    const bool is_indented = line[0] == ' ' || line[0] == '\t';
+    if (!out_.surfaces.empty()) {
+        lines_.set_surface(out_.surfaces.back().row.number);
+        in_surface_ = true;
+        has_indents_ = has_indents_ || is_indented;
+        if (read_surface_line(word, rest) || is_harmless_in_zemax(word, true)) return;
+    }
+    in_surface_ = false;
+    lines_.set_surface(0);
+    if (read_system_line(word, rest)) return;
+    // Behind the surfaces stand the operands of the merit function, and there are hundreds. They are not indented.
+    if (out_.surfaces.empty() || !has_indents_ || is_indented)
+        if (out_.unknown.size() < kMostUnknown) out_.unknown.insert(printable(word.substr(0, 40)));
 }
 
 void ZemaxReader::begin_surface(const Words& words) {
@@ -102,8 +122,8 @@ void ZemaxReader::begin_surface(const Words& words) {
     lines_.set_surface(number);
 }
 
-ZemaxFile zemax_file_of(std::string_view text, const std::string& file) {
-    return ZemaxReader(text, file).read();
+ZemaxFile zemax_file_of(std::string_view text, const std::string& file, const LensReadOptions& options) {
+    return ZemaxReader(text, file, options).read();
 }
 
 }  // namespace realcam::io

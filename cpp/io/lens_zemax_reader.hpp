@@ -7,7 +7,7 @@ namespace realcam::io {
 /// Reads a .zmx file line by line.
 class ZemaxReader {
 public:
-    ZemaxReader(std::string_view text, const std::string& file);
+    ZemaxReader(std::string_view text, const std::string& file, const LensReadOptions& options);
     ZemaxFile read();
 
 private:
@@ -16,6 +16,8 @@ private:
     double number(const Words& words, std::size_t i, const char* what) const;
     double number_or(const Words& words, std::size_t i, const char* what, double otherwise) const;
     double length(const Words& words, std::size_t i, const char* what) const;
+    /// The same, or infinity.
+    double length_or_infinity(const Words& words, std::size_t i, const char* what) const;
     int whole(const Words& words, const char* what, int least, int most) const;
     /// Notes what there is no model of, at this line and surface.
     void foreign(const std::string& what);
@@ -37,8 +39,9 @@ private:
 
     LensLines lines_;
     ZemaxFile out_;
-    bool in_surface_ = false;
+    bool in_surface_ = false, has_indents_ = false;
     std::set<std::string> zoom_foreign_;  ///< what has been named once
+    std::set<std::pair<std::string, int>> foreign_;  ///< the same, by surface
 };
 
 /// Keywords that say nothing about where light goes, or repeat what others say: names, solves, tolerances, drawing.

@@ -1,5 +1,6 @@
 // The lines of a .zmx file that are about all of the lens: unit, aperture, fields, wavelengths, configurations.
 
+#include <algorithm>
 #include <cmath>
 
 #include "lens_zemax_reader.hpp"
@@ -16,6 +17,7 @@ bool ZemaxReader::read_system_line(const std::string& word, std::string_view res
     const Words words = lines_.words(rest);
     const auto list = [&](std::vector<double>& values) {
         values.clear();
+        if (words.size() > kMostFileFields) lines_.fail(word + " has more than 1000 values");
         for (const LensWord& w : words) values.push_back(lines_.number_of(w.text, "each value of " + word));
     };
     if (word == "MODE") {
@@ -38,10 +40,14 @@ bool ZemaxReader::read_system_line(const std::string& word, std::string_view res
     } else if (word == "FLOA") {
         out_.prescription.aperture_kind = ApertureKind::stop_size;
     } else if (word == "GCAT") {
-        for (const LensWord& w : words) out_.catalogues.emplace_back(w.text);
+        for (const LensWord& w : words) {
+            if (out_.catalogues.size() >= 100) lines_.fail("GCAT lists more than 100 catalogues of glass");
+            out_.catalogues.emplace_back(w.text);
+        }
     } else if (word == "FTYP") {
         out_.field_type = whole(words, "the type of the fields", 0, 10);
-        out_.field_count = static_cast<std::size_t>(number_or(words, 2, "the number of fields", 0));
+        const double count = number_or(words, 2, "the number of fields", 0);
+        out_.field_count = static_cast<std::size_t>(std::clamp(count, 0.0, static_cast<double>(kMostFileFields)));
     } else if (word == "XFLN" || word == "XFLD") {
         list(out_.x);
     } else if (word == "YFLN" || word == "YFLD") {
@@ -53,7 +59,7 @@ bool ZemaxReader::read_system_line(const std::string& word, std::string_view res
     } else if (word == "WAVM") {
         out_.wavelengths[whole(words, "the number of the wavelength", 1, 1000)] = number(words, 1, "the wavelength");
     } else if (word == "WAVL") {
-        for (std::size_t i = 0; i < words.size(); ++i)
+        for (std::size_t i = 0; i < words.size() && i < kMostFileFields; ++i)
             out_.wavelengths[static_cast<int>(i) + 1] = number(words, i, "each wavelength");
     } else if (word == "PWAV") {
         out_.primary = whole(words, "the number of the primary wavelength", 1, 1000);
@@ -108,7 +114,7 @@ bool ZemaxReader::read_zoom_line(const std::string& word, std::string_view rest)
     const Words words = lines_.words(rest);
     if (words.size() < 3) lines_.fail(word + " needs a surface, a configuration and a value");
     const int position = lines_.whole_number_of(words[1].text, "the configuration", 1, out_.positions);
-    const double value = upper_case(words[2].text) == "INFINITY" ? kInfinity : number(words, 2, "the value");
+    const double value = is_infinity(words[2].text) ? kInfinity : number(words, 2, "the value");
     const auto set = [&](std::vector<double>& values) {
         values.resize(static_cast<std::size_t>(out_.positions), std::nan(""));
         values[static_cast<std::size_t>(position) - 1] = value;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../checkpoint.hpp"
 #include "../optics/best_focus.hpp"
 #include "../optics/lens_checks.hpp"
 #include "lens_text.hpp"
@@ -26,6 +27,10 @@ LensZoom::LensZoom(const TomlTable& file) : file_(file) {
     const toml::node* node = file.find("zoom");
     const toml::array* tables = node ? node->as_array() : nullptr;
     if (node && (!tables || !tables->is_array_of_tables())) file.fail("zoom positions are tables [[zoom]]", node);
+    if (tables && tables->size() > static_cast<std::size_t>(kMostFileZoomPositions))
+        file.fail("the lens has " + std::to_string(tables->size()) + " zoom positions; at most " +
+                      std::to_string(kMostFileZoomPositions) + " are read",
+                  node);
     for (std::size_t i = 0; tables && i < tables->size(); ++i) {
         Position position{TomlTable(*(*tables)[i].as_table(), file.file()), {}, {}};
         const TomlTable& table = position.table;
@@ -67,7 +72,7 @@ bool LensZoom::changes(int surface) const {
                        [&](const auto& entry) { return entry.first == surface; });
 }
 
-void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given) const {
+void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given, const KeepGoing& keep_going) const {
     if (positions_.empty()) return;
     const auto current = static_cast<std::size_t>(current_.value_or(0));
     const int count = static_cast<int>(lens.surfaces.size());
@@ -105,7 +110,10 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given) const {
         }
         to.film_distance = from.table.number("film_distance_mm").value_or(0);
         to.focus_distance = from.table.number("focus_distance_mm").value_or(kInfinity);
-        to.stop_semi_diameter = from.table.number("stop_semi_diameter_mm").value_or(0);
+        const auto stop = from.table.number("stop_semi_diameter_mm");
+        if (stop && !(*stop > 0))
+            from.table.fail("\"stop_semi_diameter_mm\" must be positive", from.table.find("stop_semi_diameter_mm"));
+        to.stop_semi_diameter = stop.value_or(0);  // 0: it does not change
         if ((from.table.find("stop_semi_diameter_mm") == nullptr) !=
             (positions_.front().table.find("stop_semi_diameter_mm") == nullptr))
             from.table.fail("either all zoom positions give the stop's semi-diameter, or none");
@@ -114,7 +122,10 @@ void LensZoom::apply(LensSystem& lens, const std::vector<bool>& given) const {
     if (zoom.positions[current].stop_semi_diameter > 0)
         lens.surfaces[static_cast<std::size_t>(lens.stop_index())].clear_semi_diameter =
             zoom.positions[current].stop_semi_diameter;
+    Checkpoint checkpoint(keep_going);
+    constexpr std::size_t kWork = 1 << 14;  // some milliseconds each
     for (std::size_t i = 0; i < positions_.size(); ++i) {
+        checkpoint.pass(kWork);
         const TomlTable& table = positions_[i].table;
         ZoomPosition& position = zoom.positions[i];
         if (table.find("film_distance_mm")) continue;

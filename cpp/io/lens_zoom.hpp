@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "../keep_going.hpp"
 #include "../optics/lens_system.hpp"
 #include "toml_table.hpp"
 
@@ -20,7 +21,8 @@ public:
 
     /// Sets the lens's zoom positions, and what its tables leave out to the current one. `given`: for each surface
     /// whether its table has a thickness. Film distances that are not given are those of the smallest axial spot.
-    void apply(LensSystem& lens, const std::vector<bool>& given) const;
+    /// Throws Cancelled where `keep_going` returns false.
+    void apply(LensSystem& lens, const std::vector<bool>& given, const KeepGoing& keep_going) const;
 
 private:
     struct Position {

@@ -2,7 +2,7 @@
 
 #include "bundled_sensors.hpp"
 #include "regular_file.hpp"
-#include "toml_table.hpp"
+#include "toml_document.hpp"
 
 namespace realcam::io {
 namespace {
@@ -156,7 +156,7 @@ std::string_view bundled_text(const std::string& name) {
     for (const BundledFile& file : bundled_sensor_files())
         if (file.name == name) return file.text;
     throw InputError("unknown sensor " + in_quotes(name) + did_you_mean(name, sensor_names()) +
-                     "; a bundled sensor (`realcam sensor list` names them) or the path of a .toml file is wanted");
+                     "; a bundled sensor or the path of a .toml file is wanted");
 }
 
 }  // namespace
@@ -167,19 +167,14 @@ std::vector<std::string> sensor_names() {
     return names;
 }
 
-Sensor parse_sensor(std::string_view text, const std::string& file) {
-    try {
-        return sensor_from_table(toml::parse(text, file), file);
-    } catch (const toml::parse_error& error) {
-        raise_input_error("not valid TOML: " + printable(error.description()), file,
-                          static_cast<int>(error.source().begin.line), 0);
-    }
+Sensor parse_sensor(std::string_view text, const std::string& file, const KeepGoing& keep_going) {
+    return sensor_from_table(parse_toml(text, file, raise_input_error, keep_going), file);
 }
 
-Sensor read_sensor(const std::string& name_or_path) {
+Sensor read_sensor(const std::string& name_or_path, const KeepGoing& keep_going) {
     if (name_or_path.find_first_of("/.") == std::string::npos)
         return parse_sensor(bundled_text(name_or_path), name_or_path);
-    return parse_sensor(text_of_file(name_or_path), name_or_path);
+    return parse_sensor(text_of_file(name_or_path), name_or_path, keep_going);
 }
 
 }  // namespace realcam::io

@@ -71,6 +71,20 @@ public:
         return *node->value<std::string>();
     }
 
+    /// A text that can stand in one line of a terminal, a drawing or a file: without control characters.
+    std::string line(std::string_view key) const {
+        std::string value = text(key);
+        if (printable(value) != value)
+            fail('"' + std::string(key) + "\" must be one line of text, without control characters", find(key));
+        return value;
+    }
+
+    /// The same for the name of the table under a key of this one.
+    void check_name(std::string_view key, const toml::node& node) const {
+        if (printable(key) != key)
+            fail("the name " + in_quotes(key) + " must be one line of text, without control characters", &node);
+    }
+
     /// False where the key is absent.
     bool flag(std::string_view key) const {
         const toml::node* node = find(key);

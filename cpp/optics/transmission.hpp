@@ -56,12 +56,11 @@ inline double axial_transmittance(const LensSystem& lens, double wavelength_nm) 
 }
 
 /// Share of the stop's area through which light from the axis at infinity passes: less than 1 where a central
-/// obstruction takes some of it, which the f-number does not know. By real rays along a radius, with the edges of
-/// shadows halved down to 1e-9 of the area.
+/// obstruction takes some of it, or a rim that is smaller than the beam, neither of which the f-number knows. By real
+/// rays along a radius, with the edges of shadows halved down to 1e-9 of the area. Where the stop lies in a focal
+/// plane, so that light from the axis meets one point of it, 1.
 inline double unobstructed_share(LensSystem lens, double wavelength_nm) {
-    if (std::none_of(lens.surfaces.begin(), lens.surfaces.end(),
-                     [](const Surface& surface) { return surface.inner_semi_diameter > 0; }))
-        return 1;
+    if (!std::isfinite(first_order(lens, wavelength_nm).entrance_pupil_diameter)) return 1;
     lens.iris.blades = 0;  // a round opening of the same area
     const RayAimer aim(lens, wavelength_nm, FieldPoint{0, kInfinity});
     const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
@@ -85,8 +84,8 @@ inline double unobstructed_share(LensSystem lens, double wavelength_nm) {
 }
 
 /// The f-number of a lens without losses that gives as bright a picture on the axis: f-number / sqrt(transmittance),
-/// the transmittance being that of the axial ray, and a central obstruction's share of the pupil a loss too. Infinite
-/// where no light passes, and where the lens has no f-number.
+/// the transmittance being that of the axial ray, and the share of the pupil that rims and obstructions take a loss
+/// too. Infinite where no light passes, and where the lens has no f-number.
 inline double t_stop(const LensSystem& lens, double wavelength_nm) {
     const double f_number = first_order(lens, wavelength_nm).f_number;
     if (!std::isfinite(f_number)) return kInfinity;

@@ -10,6 +10,7 @@
 #include "../io/lens_file.hpp"
 #include "../io/printable.hpp"
 #include "../io/readable_file.hpp"
+#include "../io/toml_document.hpp"
 #include "../render/effect_names.hpp"
 #include "names.hpp"
 #include "read_scene_request.hpp"
@@ -206,13 +207,8 @@ void check_environment(Vec3f v) {
 }
 
 ShotRequest parse_shot(std::string_view text, const std::string& path) {
-    try {
-        const toml::table table = toml::parse(text, path);
-        return ShotReader(table, path).read();
-    } catch (const toml::parse_error& error) {
-        ShotTable::fail_at("not valid TOML: " + io::printable(error.description()), path,
-                           static_cast<int>(error.source().begin.line), 0);
-    }
+    const toml::table table = io::parse_toml(text, path, ShotTable::fail_at);
+    return ShotReader(table, path).read();
 }
 
 ShotRequest read_shot_file(const std::string& path) {

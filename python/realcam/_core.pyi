@@ -56,6 +56,9 @@ class LensFileError(RealcamError):
     file: str
     line: int
     surface: int
+    glass: str
+    candidate: str
+    can_be_forced: bool
 
 class SceneFileError(RealcamError): ...
 class ImageFileError(RealcamError): ...

@@ -128,11 +128,40 @@ constexpr const char* kRayOptics = R"({"optical_model": {"attributes": {
   "field_of_view": {"attributes": {"key": ["field", "object", "angle"], "value": 5, "is_relative": true, "fields": [
     {"attributes": {"x": 0, "y": 1}}]}}}}}}})";
 
+constexpr const char* kOslo = R"(// OSLO 7.0
+LEN NEW "probe" 100 4
+EBR 5
+ANG 10
+UNI 1.0
+AIR
+TH 1e20
+NXT
+GLA BK7
+RD 51.68
+TH 3
+CC -0.3
+AD 1e-6
+AST
+AP CHK 6
+NXT
+AIR
+RD -80; TH 2; AP 6
+NXT
+PK GLA 1
+PK CVM 2 0.001
+PK TH -2
+NXT
+PY 0
+WV 0.58756 0.48613 0.65627
+END 4
+CFG NEW
+)";
+
 /// A lens file of any format, and the name that says which.
 std::string seed(Bytes& in, std::string& name) {
     const std::span<const io::BundledFile> files = io::bundled_lens_files();
     const std::string bundled(files[static_cast<std::size_t>(in.byte()) % files.size()].name);
-    switch (in.below(8)) {
+    switch (in.below(9)) {
         case 0: return name = "fuzz.dat", kPbrt;
         case 1: return name = "fuzz.json", kOptiland;
         case 2: return name = "fuzz.roa", kRayOptics;
@@ -140,6 +169,7 @@ std::string seed(Bytes& in, std::string& name) {
         case 4: name = "fuzz.zmx"; break;
         case 5:
         case 6: name = "fuzz.seq"; break;
+        case 7: return name = "fuzz.len", kOslo;
         default: return name = "fuzz.toml", std::string(kEveryKey) + kZoom;
     }
     if (in.chance(64)) return io::lens_text_for(io::parse_lens(std::string(kEveryKey) + kZoom, "seed.toml"), name).text;

@@ -9,9 +9,9 @@ from typing import Any, NoReturn
 import typer
 
 from .. import __version__
-from .._core import RealcamError, one_line
+from .._core import LensFileError, RealcamError, one_line
 from . import bench, cost, demo, lens, paper, sensor, view
-from .options import add_command_of_the_executable
+from .options import add_command_of_the_executable, advice_on
 
 # click's, which newer versions of typer bring along under a private name.
 _UsageError: Any = typer.BadParameter.__bases__[0]
@@ -56,6 +56,8 @@ def run() -> None:
         sys.exit(app(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
     except _UsageError as error:
         _fail(f"{error.format_message()} (--help lists the options)")
+    except LensFileError as error:
+        _fail(str(error) + advice_on(error))
     except RealcamError as error:
         _fail(str(error))
     except OSError as error:

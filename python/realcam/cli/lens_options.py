@@ -62,7 +62,7 @@ ThemeName = Annotated[str, typer.Option("--theme", help="light or dark.")]
 Width = Annotated[int, typer.Option("--width", help="Of the picture, in pixels.", min=200, max=20000)]
 
 
-SUFFIXES = (".toml", ".zmx", ".seq", ".dat", ".json", ".roa")  # of lens files
+SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of lens files
 
 
 def output_of(name: str, suffix: str) -> Path:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import typer
 
-from .._core import InputError, Lens
+from .._core import InputError, Lens, LensFileError
 
 
 def add_command_of_the_executable(app: typer.Typer, name: str, help: str) -> None:
@@ -45,6 +45,15 @@ def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str
         else:
             result[name] = number(n_d, "--glass") if n_d[0].isdigit() else glass
     return result
+
+
+def advice_on(error: LensFileError) -> str:
+    """What option settles it, as the end of its message; empty where none does."""
+    if error.can_be_forced:
+        return "; --force reads it all the same"
+    if not error.glass:
+        return ""
+    return f"; --glass {error.glass}={error.candidate or 'n_d,V_d'} names it"
 
 
 def lens(

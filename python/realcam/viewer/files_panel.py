@@ -18,7 +18,7 @@ from .elements import show_choice
 from .saving import save_lens, save_picture, save_shot
 from .window import Window
 
-LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".dat", ".json", ".roa")
+LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")
 MOST_UPLOADED = 2 * 1024 * 1024  # bytes
 _WANTED = f"a lens file ({' '.join(LENS_SUFFIXES)}) of at most {MOST_UPLOADED >> 20} MiB"
 
