@@ -9,10 +9,11 @@
 that is not on the path. An AGF file, the catalogue format in which makers publish for lens-design
 programs, adds the glasses that a maker no longer lists; where both have a name, the data sheet wins.
 
-`--extend` adds to the file what it lacks: the materials of OTHERS, and glasses of DIR, the folder data-nk/glass of the
-refractiveindex.info database (public domain), which has the makers' AGF catalogues of 2017 and later. It is in the
-wheel of `optiland`, as optiland/database/data-nk/glass. A glass whose name another maker has too is left out, so that no name
-of a lens file gets a second meaning.
+`--extend` adds to the file what it lacks: the materials of OTHERS, and glasses of DIR, the folder
+data-nk/glass of the refractiveindex.info database (public domain), which has the makers' AGF
+catalogues of 2017 and later. It is in the wheel of `optiland`, as optiland/database/data-nk/glass.
+A glass whose name another maker has too is left out, so that no name of a lens file gets a second
+meaning.
 
 Schott and Ohara publish the Sellmeier formula, whose coefficients are copied. Hoya, CDGM, Hikari and
 Sumita publish n^2 as a power series in the wavelength; a three-term Sellmeier formula is fitted to
