@@ -17,7 +17,9 @@ namespace {
 py::tuple read_shot(const py::object& path, const std::string& device, const py::object& progress) {
     shot::ShotRequest request;
     Camera camera;
+    Assembly scene;
     std::vector<std::string> notes;
+    const shot::PictureReaders readers = picture_readers();
     const std::string name = path_from(path);
     {
         const Unlocked unlocked;
@@ -26,10 +28,11 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
         request.lens_options.warn = [&](const std::string& note) { notes.push_back(note); };
         camera = shot::camera_of(request);
         request.lens_options = {};  // which must not outlive what they name
+        scene = shot::scene_of(request, readers, heed_signals);
     }
     for (const std::string& note : notes)
         if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) < 0) throw py::error_already_set();
-    shot::Shot shot = shot::set_up(request, std::move(camera), shot::scene_of(request, picture_readers()));
+    shot::Shot shot = shot::set_up(request, std::move(camera), std::move(scene));
     if (!request.exposure_time_s) {
         Session& session = session_for(device);
         const Progress report = progress_of(progress);

@@ -37,6 +37,7 @@ std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<
 }
 
 Environment read_environment(const std::string& path) {
+    const py::gil_scoped_acquire acquire;
     const auto pixels = pictures().attr("read_environment")(py::bytes(path)).cast<InputArray<float>>();
     Environment environment;
     environment.height = static_cast<std::int32_t>(pixels.shape(0));

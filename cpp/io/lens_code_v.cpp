@@ -109,11 +109,15 @@ void CodeVReader::remark(const std::string& what) {
 bool CodeVReader::changes_lens(const std::string& command, const Words& words) {
     // Of CODE V's commands those that make another lens of the one so far. Each is refused by its name: without what it
     // does, the file is read as a lens that nobody means.
-    static const std::set<std::string> changes{"DEL", "INS", "SCA", "FLY", "REV", "COP", "CPY", "MOV", "MER", "REP",
-                                               "EXC", "SWA", "INV", "FLI", "MIR", "AUT", "RES", "RUN", "SPL", "ADD"};
+    static const std::set<std::string> changes{"DEL", "INS", "SCA", "FLY", "REV", "COP", "CPY", "MOV",
+                                               "MER", "REP", "EXC", "SWA", "INV", "FLI", "MIR", "AUT",
+                                               "RES", "RUN", "SPL", "ADD", "DZO", "DEZ"};
     const std::string word = command.substr(0, 3);
     const bool is_second_lens = word == "LEN" && !rows_.empty();
-    if (!is_second_lens && command != "IN" && !changes.contains(word)) return false;
+    // SET VIG and SET APE compute figures from rays; SET THI and the like change the lens.
+    const std::string second = words.size() > 1 ? upper_case(words[1].text.substr(0, 3)) : "";
+    const bool sets = word == "SET" && second != "VIG" && second != "APE";
+    if (!is_second_lens && !sets && command != "IN" && !changes.contains(word)) return false;
     std::string text = printable(command.substr(0, 20));
     for (std::size_t i = 1; i < words.size() && i < 4; ++i) text += ' ' + printable(words[i].text.substr(0, 20));
     const std::string what = "the command " + text + ", which makes another lens";

@@ -71,9 +71,9 @@ Camera camera_of(const ShotRequest& request) {
     return camera;
 }
 
-Assembly scene_of(const ShotRequest& request, const PictureReaders& readers) {
-    Assembly scene =
-        with_request(io::read_scene(request.scene, {request.scale}, readers.texture), request.additions, readers);
+Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going) {
+    Assembly scene = with_request(io::read_scene(request.scene, {request.scale, {}, keep_going}, readers.texture),
+                                  request.additions, readers, keep_going);
     if (request.texture.empty() && !request.chooses_environment()) return scene;
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);

@@ -18,8 +18,9 @@ struct Shot {
 /// wrong before the scene is read: nobody should wait for a picture and be told then.
 Camera camera_of(const ShotRequest& request);
 
-/// The scene of a request in the environment of the request. Throws InputError, SceneFileError and ImageFileError.
-Assembly scene_of(const ShotRequest& request, const PictureReaders& readers);
+/// The scene of a request in the environment of the request. Throws InputError, SceneFileError and ImageFileError, and
+/// Cancelled where `keep_going` returns false.
+Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, const KeepGoing& keep_going = {});
 
 /// Places and focuses the camera as asked for, and otherwise as set_view says; brings daylight where there is no light.
 /// An environment that was asked for counts as light even where it is dark. Throws InputError.

@@ -18,8 +18,8 @@ using SharedScene = std::shared_ptr<const Scene>;
 
 class Builder {
 public:
-    Builder(Assembly scene, const SceneRequest& request, const PictureReaders& readers)
-        : scene_(std::move(scene)), request_(request), readers_(readers) {}
+    Builder(Assembly scene, const SceneRequest& request, const PictureReaders& readers, const KeepGoing& keep_going)
+        : scene_(std::move(scene)), request_(request), readers_(readers), keep_going_(keep_going) {}
 
     Assembly build() {
         add_objects();
@@ -38,7 +38,7 @@ private:
         std::map<std::pair<std::string, double>, Assembly> files;  // each is read once
         for (const ObjectRequest& wanted : request_.objects) {
             const auto [file, is_new] = files.try_emplace({wanted.file, wanted.scale});
-            if (is_new) file->second = io::read_scene(wanted.file, {wanted.scale}, readers_.texture);
+            if (is_new) file->second = io::read_scene(wanted.file, {wanted.scale, {}, keep_going_}, readers_.texture);
             Assembly object = file->second;
             if (!wanted.material.empty()) {
                 const MaterialRequest& material = find(wanted);
@@ -126,6 +126,7 @@ private:
     Assembly scene_;
     const SceneRequest& request_;
     const PictureReaders& readers_;
+    const KeepGoing& keep_going_;
     std::set<const MaterialRequest*> used_;  // by objects
     std::map<std::pair<std::string, io::TextureUse>, Texture> textures_;
 };
@@ -138,8 +139,9 @@ Texture read_texture(const std::string& path, io::TextureUse use, const PictureR
     return io::texture_of(std::move(*image), use, path);
 }
 
-Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers) {
-    return Builder(std::move(scene), request, readers).build();
+Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers,
+                      const KeepGoing& keep_going) {
+    return Builder(std::move(scene), request, readers, keep_going).build();
 }
 
 }  // namespace realcam::shot

@@ -1,4 +1,5 @@
 #pragma once
+#include "../keep_going.hpp"
 #include "../scene/assembly.hpp"
 #include "picture_readers.hpp"
 #include "scene_request.hpp"
@@ -6,8 +7,9 @@
 namespace realcam::shot {
 
 /// The scene with the objects, materials and lights of a shot file. A material takes the place of those of its name, in
-/// static geometry and objects. Throws InputError, SceneFileError and ImageFileError.
-Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers);
+/// static geometry and objects. Throws InputError, SceneFileError, ImageFileError, and Cancelled.
+Assembly with_request(Assembly scene, const SceneRequest& request, const PictureReaders& readers,
+                      const KeepGoing& keep_going = {});
 
 /// A picture as a texture. Throws InputError where it cannot be read.
 Texture read_texture(const std::string& path, io::TextureUse use, const PictureReaders& readers);

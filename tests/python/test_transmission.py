@@ -69,6 +69,7 @@ def jones_transmission(lens: rc.Lens, origin: Vector, direction: Vector) -> floa
 @pytest.mark.parametrize("name", [DOUBLE_GAUSS, "double-gauss-100mm", "sonnar-50mm", "tessar-50mm"])
 def test_the_t_stop_is_that_of_fresnels_terms_along_the_axis(name: str) -> None:
     lens = rc.Lens.load(name).with_coating("bare")
+    lens = lens.stopped_down(1.1 * lens.first_order().f_number)  # open, rims take some of the beam
     media = indices_of(lens, lens.wavelength_nm)
     product = math.prod(1 - ((a - b) / (a + b)) ** 2 for a, b in itertools.pairwise(media))
     expected = lens.first_order().f_number / math.sqrt(product)
@@ -210,6 +211,17 @@ def test_a_central_obstruction_counts_in_the_t_stop() -> None:
     expected = lens.first_order().f_number / math.sqrt(share * losses)
     # A grid of 300 knows areas to 1e-3; rays at f/6.7 meet surfaces near enough to the normal for 1e-3.
     assert lens.t_stop == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", [DOUBLE_GAUSS, "wide-22mm", "tessar-50mm"])
+def test_rims_that_are_smaller_than_the_stops_beam_count_in_the_t_stop(name: str) -> None:
+    lens = rc.Lens.load(name)
+    grid = lens.spot(0, object_distance_m=math.inf, pattern="grid", samples=300)
+    share = float(np.mean(np.asarray(grid.status) == rc.RayStatus.OK))
+    closed = lens.stopped_down(1.1 * lens.first_order().f_number)
+    without_rims = closed.t_stop / 1.1
+    # A grid of 300 knows areas to 1e-3.
+    assert (without_rims / lens.t_stop) ** 2 == pytest.approx(share, abs=1e-3)
 
 
 def test_mirrors_take_what_their_metal_takes() -> None:
