@@ -71,6 +71,7 @@ private:
     /// Solves follow from the marginal ray, which meets the surfaces one after the other.
     void resolve_solves();
     Glass medium_of(const OsloSurface& s);
+    Glass named_glass(const std::string& name);
     std::vector<double> wavelengths_um() const;
     void finish();
     void finish_aperture();
@@ -88,7 +89,7 @@ private:
     std::optional<double> beam_radius_;  ///< in the file's unit, at the first surface
     std::optional<std::pair<ApertureKind, double>> aperture_;
     std::optional<std::pair<FieldKind, double>> field_;
-    std::set<std::string> unknown_;
+    std::set<std::string> unknown_, shared_names_;
     std::set<std::pair<std::string, int>> foreign_;
 };
 

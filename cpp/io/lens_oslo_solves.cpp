@@ -47,10 +47,19 @@ void OsloReader::pick_up(OsloSurface& s, const OsloSurface::Pickup& pickup) {
     }
 }
 
+Glass OsloReader::named_glass(const std::string& name) {
+    // OSLO's files name no maker; its own search begins with Schott's catalogue, whose plain names others share.
+    const std::vector<std::string> first{"SCHOTT"};
+    if (!glasses_.in_catalogue(name, first)) return glasses_.find(name, {});
+    if (!glasses_.in_catalogue(name, {}) && shared_names_.insert(name).second)
+        p_.remarks.push_back("the glass " + in_quotes(name) + ", whose name several makers use, is taken for Schott's");
+    return glasses_.find(name, first);
+}
+
 Glass OsloReader::medium_of(const OsloSurface& s) {
     try {
         if (s.pair) return glass_of_pair(s.pair->n_d, s.pair->v_d);
-        if (!s.glass.empty()) return glasses_.find(s.glass, {});
+        if (!s.glass.empty()) return named_glass(s.glass);
         if (s.indices.empty() || s.is_mirror) return Glass::air();
         const std::vector<double> wavelengths = wavelengths_um();
         bool is_one = true;

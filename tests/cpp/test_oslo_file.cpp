@@ -95,6 +95,12 @@ TEST_CASE("glasses, mirrors and aspheres of an OSLO file") {
     CHECK(index(sampled, 656.27) == about(1.59, 1e-12));
     CHECK(index(lens_of(with("GLA BK7", "GLA MOD 1.7 30")), kLineD_nm) == about(1.7, 1e-12));
     CHECK(index(lens_of(with("GLA BK7", "GLA 517642")), kLineD_nm) == about(1.517, 1e-12));
+    // F4 is 1.616592 at Schott and 1.620047 at CDGM.
+    const Reading shared = read(with("GLA BK7", "GLA F4"), "a.len");
+    CHECK(index(shared.lens, kLineD_nm) == about(1.616592, 1e-6));
+    CHECK(shared.warns_of("taken for Schott's"));
+    const Reading named = read(with("GLA BK7", "GLA F4"), "a.len", with_glass("F4=cdgm:F4"));
+    CHECK(index(named.lens, kLineD_nm) == about(1.620047, 1e-6));
     const Reading unknown = read(with("GLA BK7", "GLA XBK77"), "a.len");
     CHECK(unknown.says("a.len:11: surface 1: unknown glass \"XBK77\""));
     CHECK(read(with("GLA BK7", "GLA 1.6 1.61"), "a.len").says("has 2 indices for 3 wavelengths"));
