@@ -277,6 +277,7 @@ def test_errors_say_what_settles_them_as_data_and_not_in_words(seq):
     assert (
         command("lens", "convert", seq("XY"), "-o", "a.toml").stderr.rstrip().endswith("; --glass XY=n_d,V_d names it")
     )
+    path.write_text(seq().read_text() + "DEL S1\n")
     for arguments in (("info", path), ("draw", path, "-o", path.with_suffix(".svg"))):
         assert command("lens", *arguments).stderr.count("--force") == 1
 
