@@ -43,9 +43,10 @@ public:
     PythonLiveView& operator=(const PythonLiveView&) = delete;
 
     FramePointer shoot(const Camera& camera, int spp, const std::string& tone, const std::vector<std::string>& effects,
-                       const std::string& illuminant) {
+                       const std::string& illuminant, const std::string& transport, float clamp_cd_m2) {
         const ToneCurve curve = tone_curve_from(tone);
-        const RenderSettings settings = settings_from(spp, seed_, max_bounces_, "paths", 0, 0, {}, effects, illuminant);
+        const RenderSettings settings =
+            settings_from(spp, seed_, max_bounces_, transport, clamp_cd_m2, 0, {}, effects, illuminant);
         const Unlocked unlocked;
         return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkUnderWay>());
     }
@@ -145,15 +146,17 @@ void bind_live(py::module_& m) {
         .def(
             "shoot",
             [](PythonLiveView& live, const Camera& camera, int spp, const std::string& tone,
-               const std::vector<std::string>& effects, const std::string& illuminant) {
-                return std::const_pointer_cast<LiveFrame>(live.shoot(camera, spp, tone, effects, illuminant));
+               const std::vector<std::string>& effects, const std::string& illuminant, const std::string& transport,
+               float clamp_cd_m2) {
+                return std::const_pointer_cast<LiveFrame>(
+                    live.shoot(camera, spp, tone, effects, illuminant, transport, clamp_cd_m2));
             },
             "camera"_a, py::kw_only(), "spp"_a = 1, "tone"_a = "film", "effects"_a = std::vector<std::string>(),
-            "illuminant"_a = "",
+            "illuminant"_a = "", "transport"_a = "paths", "clamp_cd_m2"_a = 0.0f,
             "Starts to take spp more samples of each pixel, developed with the camera's exposure time and ISO and a\n"
-            "tone curve (see Image.developed). effects: names of rc.effects(), but not \"auto\"; illuminant: as text, "
-            "of\n"
-            "dispersion and diffraction. Returns a LiveFrame at once, or when the oldest of those under way is there.\n"
+            "tone curve (see Image.developed). effects: names of rc.effects(), but not \"auto\"; illuminant: as text,\n"
+            "of dispersion and diffraction; transport and clamp_cd_m2: as rc.render has them. Returns a LiveFrame at\n"
+            "once, or when the oldest of those under way is there.\n"
             "Raises KeyboardInterrupt on Ctrl-C.")
         .def("show", &PythonLiveView::show, "scene"_a, py::call_guard<Unlocked>(),
              "Another scene for the frames to come. Made for every frame: of one that comes from the last by moved(),\n"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
+import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ._core import ImageFileError, InputError
@@ -28,20 +29,43 @@ def check_target(path: str | os.PathLike[str]) -> None:
         raise ImageFileError(f"{os.fspath(path)}: {why}")
 
 
-def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
-    """Writes a file through links, as a whole or not at all. Raises ImageFileError."""
+def write_whole(path: str | os.PathLike[str], content: bytes, *, replaces: bool = True) -> bool:
+    """Writes a file through links, as a whole or not at all; one that is replaced keeps its mode.
+
+    replaces: False where no file may be replaced; then a name that is taken is left as it is, and False is returned.
+    Raises ImageFileError.
+    """
+    check_target(path)
     with _errors_named(path):
         target = _followed(path)
-        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=".realcam-")
-        try:
-            with os.fdopen(handle, "wb") as file:
+        temporary = target.with_name(f".realcam-{secrets.token_hex(8)}")
+        # Not tempfile's, which are private: the system knows the umask, which a program can only ask for by setting it.
+        with temporary.open("xb") as file:
+            try:
+                with suppress(FileNotFoundError):
+                    os.fchmod(file.fileno(), stat.S_IMODE(target.stat().st_mode))
                 file.write(content)
-            umask = os.umask(0)
-            os.umask(umask)
-            Path(temporary).chmod(0o666 & ~umask)  # mkstemp makes private files
-            Path(temporary).replace(target)
-        finally:
-            Path(temporary).unlink(missing_ok=True)
+                file.close()
+                if replaces:
+                    temporary.replace(target)
+                else:
+                    _take_name(temporary, target)
+            except FileExistsError:
+                return False
+            finally:
+                temporary.unlink(missing_ok=True)
+    return True
+
+
+def _take_name(temporary: Path, target: Path) -> None:
+    """Raises FileExistsError where the name is taken, also by a link that leads nowhere."""
+    try:
+        os.link(temporary, target)
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        target.touch(exist_ok=False)
+        temporary.replace(target)
 
 
 def _why_no_file(target: Path) -> str:

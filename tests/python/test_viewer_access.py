@@ -92,6 +92,39 @@ def test_pages_of_other_sites_are_kept_out(origin: str, token: str | None) -> No
     assert not opens(client(token), f"/stream{query}", headers={"origin": origin})
 
 
+def test_no_site_shows_it_in_a_frame_and_no_refusal_tells_the_token() -> None:
+    for answer in (client(TOKEN).get(f"/?token={TOKEN}"), client(TOKEN).get("/?token=wrong"), client(None).get("/x")):
+        assert "frame-ancestors 'none'" in answer.headers["content-security-policy"]
+        assert answer.headers["x-frame-options"] == "DENY"
+        assert answer.headers["x-content-type-options"] == "nosniff"
+        assert answer.headers["referrer-policy"] == "no-referrer"
+        assert answer.headers["cross-origin-resource-policy"] == "same-origin"
+    refused = client(TOKEN).get("/?token=wrong")
+    assert refused.status_code == 403
+    assert "set-cookie" not in refused.headers
+
+
+@pytest.mark.parametrize("token", [None, TOKEN])
+@pytest.mark.parametrize(
+    ("site", "mode", "dest", "is_admitted"),
+    [
+        ("cross-site", "no-cors", "image", False),
+        ("cross-site", "navigate", "iframe", False),
+        ("cross-site", "cors", "empty", False),
+        ("same-site", "no-cors", "script", False),  # of another port of this machine
+        ("cross-site", "navigate", "document", True),  # a link in a mail
+        ("same-origin", "cors", "empty", True),
+        ("none", "navigate", "document", True),  # typed
+    ],
+)
+def test_what_other_sites_ask_for_in_passing(
+    token: str | None, site: str, mode: str, dest: str, is_admitted: bool
+) -> None:
+    headers = {"Sec-Fetch-Site": site, "Sec-Fetch-Mode": mode, "Sec-Fetch-Dest": dest}
+    answer = client(token).get(f"/?token={TOKEN}", headers=headers)
+    assert answer.status_code == (200 if is_admitted else 403)
+
+
 def test_its_own_page_is_let_in() -> None:
     own = {"origin": "http://127.0.0.1:8080"}
     assert client(None).get("/", headers=own).status_code == 200

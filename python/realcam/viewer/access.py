@@ -18,6 +18,14 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from .._core import InputError
 
 _COOKIE = "realcam_token"
+_HEADERS = (
+    (b"content-security-policy", b"frame-ancestors 'none'; base-uri 'self'; object-src 'none'"),
+    (b"x-frame-options", b"DENY"),  # the same for older browsers: nobody is to click on the page within another one
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),  # the page's address has the token
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+)
 
 
 def is_local(host: str) -> bool:
@@ -31,7 +39,7 @@ def is_local(host: str) -> bool:
 
 
 class Gate:
-    """ASGI middleware in front of all pages, files and sockets.
+    """ASGI middleware in front of all pages, files and sockets. Its answers forbid other sites to show them.
 
     token: wanted as ?token= or as the cookie that this sets; None where every program of this machine may come. Then
     pages of other sites that the user's browser shows are kept out by the Host and Origin headers: a site can point a
@@ -47,23 +55,24 @@ class Gate:
             return
         headers = Headers(scope=scope)
         by_query = parse_qs(scope.get("query_string", b"").decode("latin-1")).get("token", [""])[0]
-        if not self._is_admitted(headers, by_query):
-            await _refuse(scope, receive, send)
-            return
-        if scope["type"] == "http" and self._token and by_query:
+        is_admitted = self._is_admitted(headers, by_query)
+        more = list(_HEADERS)
+        if is_admitted and self._token and by_query:
+            more.append((b"set-cookie", f"{_COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/".encode()))
 
-            async def send_with_cookie(message: MutableMapping[str, Any]) -> None:
-                if message["type"] == "http.response.start":
-                    cookie = f"{_COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/"
-                    pairs: Any = message.get("headers") or []
-                    message["headers"] = [*pairs, (b"set-cookie", cookie.encode())]
-                await send(message)
+        async def send_with_headers(message: MutableMapping[str, Any]) -> None:
+            if message["type"] == "http.response.start":
+                message["headers"] = [*(message.get("headers") or []), *more]
+            await send(message)
 
-            await self._app(scope, receive, send_with_cookie)
-            return
-        await self._app(scope, receive, send)
+        app = self._app if is_admitted else _refuse
+        await app(scope, receive, send_with_headers)
 
     def _is_admitted(self, headers: Headers, by_query: str) -> bool:
+        # What another site's page asks for, but for a link to here that its reader follows.
+        is_link = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == "document"
+        if headers.get("sec-fetch-site") in ("cross-site", "same-site") and not is_link:
+            return False
         host, origin = headers.get("host", ""), headers.get("origin")
         try:
             if origin and urlsplit(origin).netloc != host:

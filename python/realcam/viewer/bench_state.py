@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-from .._core import Film, InputError, Lens
+from .._core import Film, InputError
 from .camera_controls import CameraControls
+from .lens_reading import lens_from
 from .pose import Pose
 
 _MOST_PIXELS = 4096  # each way
@@ -36,12 +35,9 @@ def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, An
 
 
 def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
-    """Raises InputError and LensFileError for what no state_of has written."""
-    with tempfile.TemporaryDirectory() as folder:
-        name = "".join(c for c in _text(state, "name") if c.isalnum() or c in "-_. ")[:60] or "lens"
-        path = Path(folder) / f"{name}.toml"
-        path.write_text(_text(state, "lens"), encoding="utf-8")
-        lens = Lens.load(path)
+    """Raises InputError for what no state_of has written."""
+    name = "".join(c for c in _text(state, "name") if c.isalnum() or c in "-_. ")[:60] or "lens"
+    lens, _ = lens_from(f"{name}.toml", _text(state, "lens").encode(errors="replace"))
     width_mm, height_mm, columns, rows = _numbers(state, "film", 4)
     if not (1 <= columns <= _MOST_PIXELS and 1 <= rows <= _MOST_PIXELS):
         raise InputError("the state that the page has kept has no film of so many pixels")

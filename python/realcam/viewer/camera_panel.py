@@ -25,7 +25,16 @@ MODELS = {
     "pinhole": "pinhole",
 }
 WIDTHS = (320, 480, 640, 960, 1280, 1920)
-NOISES = {4.0: "4 codes (draft)", 2.0: "2 codes", 1.0: "1 code", 0.5: "half a code (fine)"}
+NOISES = {4.0: "4 grey levels (draft)", 2.0: "2 grey levels", 1.0: "1 grey level", 0.5: "half a grey level (fine)"}
+FILMS = {
+    (36.0, 24.0): "36 × 24 mm (full frame)",
+    (23.6, 15.7): "23.6 × 15.7 mm (APS-C)",
+    (17.3, 13.0): "17.3 × 13 mm (Micro Four Thirds)",
+    (13.2, 8.8): "13.2 × 8.8 mm (1 inch)",
+    (9.8, 7.3): "9.8 × 7.3 mm (large phone)",
+    (56.0, 56.0): "56 × 56 mm (6 × 6)",
+    (127.0, 101.6): "127 × 101.6 mm (4 × 5 inches)",
+}
 _FOCUS_STEPS = 400  # of the slider, even in the inverse distance, as the travel of a focusing lens is
 
 
@@ -75,8 +84,30 @@ class CameraPanel:
                 "Refine to",
                 NOISES,
                 lambda value: self._run(self._bench.set_noise, float(value)),
-                "The noise at which the picture is done, in 8-bit codes",
+                "How much noise the picture may have when it is done, of the 255 levels from black to white",
             )
+            self._film = self._choice(
+                "Film",
+                FILMS,
+                lambda value: self._run(self._bench.set_film_mm, *value),
+                "Its pixels across stay as many",
+            )
+            with ui.row().classes("items-center w-full no-wrap"):
+                self._film_width = self._number("Film width (mm)", "film-width", self._set_film, "Of what is exposed")
+                self._film_height = self._number(
+                    "Film height (mm)", "film-height", self._set_film, "Of what is exposed"
+                )
+            with ui.row().classes("items-center w-full no-wrap"):
+                self._blades = self._number("Blades", "blades", self._set_iris, "0 for a round aperture")
+                self._rounding = self._number(
+                    "Rounding",
+                    "rounding",
+                    self._set_iris,
+                    "Of the aperture's sides: 0 for straight ones, 1 for a circle",
+                )
+                self._rotation = self._number(
+                    "Turned (°)", "rotation", self._set_iris, "By how much the blades are turned"
+                )
 
     def update(self) -> None:
         """On the server's loop."""
@@ -103,6 +134,14 @@ class CameraPanel:
         width = now.film.resolution[0]
         show_choice(self._width, {w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, width)
         self._noise.set_value(self._bench.noise_codes)
+        size = now.film.width_mm, now.film.height_mm
+        texts = FILMS if size in FILMS else {**FILMS, size: f"{size[0]:g} × {size[1]:g} mm"}
+        show_choice(self._film, dict(texts), size)
+        self._film_width.set_value(size[0])
+        self._film_height.set_value(size[1])
+        self._blades.set_value(now.lens.iris_blades)
+        self._rounding.set_value(now.lens.iris_rounding)
+        self._rotation.set_value(round(now.lens.iris_rotation_deg, 6))
 
     def show_sharp_range(self, sharp: SharpRange) -> None:
         """On the server's loop."""
@@ -140,6 +179,18 @@ class CameraPanel:
     def _set_iso(self, step: int) -> Awaitable[Any]:
         return self._change(iso=ISO.values[step])
 
+    async def _set_film(self) -> None:
+        width, height = _typed(self._film_width), _typed(self._film_height)
+        if width and height:
+            await self._run(self._bench.set_film_mm, width, height)
+            self.update()
+
+    async def _set_iris(self) -> None:
+        blades, rounding, rotation = _typed(self._blades), _typed(self._rounding), _typed(self._rotation)
+        if blades is not None and rounding is not None and rotation is not None:
+            await self._run(self._bench.edit, lambda lens: lens.with_iris(round(blades), rounding, rotation))
+            self.update()
+
     async def _set_compensation(self, event: GenericEventArguments) -> None:
         with contextlib.suppress(ValueError):  # what is not typed to its end
             value = float(str(_value(event)))  # a field of text, even where numbers are wanted
@@ -159,6 +210,13 @@ class CameraPanel:
     def _show(self, slider: RingSlider, ring: Ring, value: float, text: str) -> None:
         slider.set(ring.step_of(value), len(ring.values) - 1, text)
 
+    def _number(self, label: str, test_id: str, act: Callable[[], Awaitable[Any]], help: str) -> ui.number:
+        """A field whose number is taken when it has been typed: at Enter, or when the field is left."""
+        field = ui.number(label, format="%g").classes("grow").props(f'data-testid="{test_id}"')
+        field.tooltip(help)
+        field.on("change", act)
+        return field
+
     def _choice(self, name: str, options: dict[Any, str], act: Callable[[Any], Awaitable[Any]], help: str) -> ui.select:
         choice = ui.select(options, label=name).classes("w-full").props(f'data-testid="{name.lower()}"')
         choice.tooltip(help)
@@ -168,6 +226,12 @@ class CameraPanel:
 
         choice.on("update:model-value", chosen)
         return choice
+
+
+def _typed(field: ui.number) -> float | None:
+    """None where it holds no number."""
+    value = field.value
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
 
 
 def _value(event: GenericEventArguments) -> Any:

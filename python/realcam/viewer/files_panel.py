@@ -8,14 +8,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from nicegui import events, ui
+from nicegui import events, run, ui
 
 from .._core import InputError, Lens, LensFileError, RealcamError, lens_names
 from ..gallery import save_gallery
 from .access import Folders
 from .comparison import COMPARISONS, NOTHING
 from .elements import show_choice
-from .saving import save_lens, save_picture, save_shot
+from .lens_reading import lens_from
+from .save_panel import SavePanel
+from .shot_source import ShotSource
 from .window import Window
 
 LENS_SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")
@@ -38,8 +40,10 @@ def lens_preview(name: str) -> str:
 class FilesPanel:
     """Opens lenses and saves pictures, shots and lenses, in the folders that the server was started with."""
 
-    def __init__(self, window: Window, folders: Folders, source: Path, run: Callable[..., Awaitable[Any]]) -> None:
-        self._window, self._bench, self._folders, self._source, self._run = window, window.bench, folders, source, run
+    def __init__(
+        self, window: Window, folders: Folders, source: ShotSource, run_action: Callable[..., Awaitable[Any]]
+    ) -> None:
+        self._window, self._bench, self._run = window, window.bench, run_action
         with ui.element("section").classes("rc-controls").props('aria-label="Lens and files"'):
             with ui.row().classes("items-center w-full"):
                 self._lens = ui.select(lens_names(), label="Lens", with_input=True).classes("grow")
@@ -65,12 +69,7 @@ class FilesPanel:
             opens = ui.button("Open a lens file", color=None).props("flat no-caps").classes("rc-flat")
             opens.on("click", js_handler=f"() => getElement({upload.id}).$refs.qRef.pickFiles()")
             opens.tooltip(f"Of this or another program: {' '.join(LENS_SUFFIXES)}")
-            with ui.row().classes("items-end w-full"):
-                self._name = ui.input("Save as", value="picture.png").classes("grow").props('data-testid="save-name"')
-                self._name.tooltip("picture.png, .exr or .dng; shot.toml; lens.toml, .zmx or .seq")
-                self._what = ui.select(["picture", "shot", "lens"], value="picture").props('data-testid="save-what"')
-                self._what.on("update:model-value", self._propose)
-                ui.button("Save", on_click=self._save).props('no-caps data-testid="save"')
+            SavePanel(window, folders, source, self._say)
             self._said = ui.label().props('aria-live="polite" data-testid="said"')
 
     def update(self) -> None:
@@ -93,64 +92,26 @@ class FilesPanel:
     async def _upload(self, event: events.UploadEventArguments) -> None:
         suffix = Path(event.file.name).suffix.lower()
         if suffix not in LENS_SUFFIXES:
-            self._say(f'"{event.file.name}" is not opened: {_WANTED} is wanted')
+            self._say(f'"{event.file.name}" is not opened: {_WANTED} is wanted', True)
             return
-        content = await event.file.read()
-
-        def opened() -> str:
-            with tempfile.TemporaryDirectory() as folder:
-                path = Path(folder) / f"{Path(event.file.name).stem[:60]}{suffix}"
-                path.write_bytes(content)
-                try:
-                    lens, notes = Lens._load_with_notes(path)
-                except RealcamError as error:  # whose file the user does not know under that path
-                    raise InputError(str(error).replace(str(path), event.file.name)) from None
-            if not self._bench.set_lens(lens):
+        name, content = event.file.name, await event.file.read()
+        try:
+            # Not on the window's own thread: what the user does meanwhile need not wait for the file.
+            read = await run.io_bound(lens_from, name, content)
+            if read is None:  # the server is going down
+                return
+            lens, notes = read
+            if not await self._window.do(self._bench.set_lens, lens):
                 problem = self._bench.problem
                 raise InputError(problem.message if problem else "the lens does not fit the camera")
-            return "; ".join(
-                [f"Opened {event.file.name}", *(note.replace(str(path), event.file.name) for note in notes)]
-            )
+        except RealcamError as error:
+            self._say(str(error), True)
+        else:
+            self._say("; ".join([f"Opened {name}", *notes]))
 
-        await self._try(opened)
-
-    def _propose(self) -> None:
-        self._name.set_value({"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}[self._what.value])
-
-    async def _save(self) -> None:
-        what, bench = self._what.value, self._bench
-        try:
-            path = self._folders.inside(self._name.value)
-            is_there = path.exists()
-        except (RealcamError, OSError) as error:
-            self._say(str(error))
-            return
-        if is_there and not await _agreed(f"{path.name} is there already."):
-            return
-
-        def saved() -> str:
-            if what == "picture":
-                save_picture(bench.image(), path, bench.shot.tone)
-                return f"Wrote {path.name}"
-            if what == "shot":
-                written = save_shot(
-                    self._source, bench.controls, bench.switches.of_model(bench.controls.model).as_words(), path
-                )
-                return f"Wrote {' and '.join(file.name for file in written)}"
-            left_out = save_lens(bench.controls.set_lens, path)
-            return "; ".join([f"Wrote {path.name}", *(f"not in it: {what}" for what in left_out)])
-
-        await self._try(saved)
-
-    async def _try(self, action: Callable[[], str]) -> None:
-        """Says what the action returns, or why it could not be done."""
-        try:
-            self._say(await self._window.do(action))
-        except (RealcamError, OSError) as error:
-            self._say(str(error))
-
-    def _say(self, text: str) -> None:
+    def _say(self, text: str, is_problem: bool = False) -> None:
         self._said.set_text(text)
+        self._said.classes(add="rc-problem" if is_problem else "", remove="" if is_problem else "rc-problem")
 
     def _open_gallery(self) -> None:
         async def choose(name: str) -> None:
@@ -163,15 +124,3 @@ class FilesPanel:
                     preview = ui.element("img").props(f'src="/realcam-lenses/{name}.svg" alt="{name}" loading="lazy"')
                     preview.props('width="190" height="146"')  # or the buttons would move while the previews come
         dialog.open()
-
-
-async def _agreed(question: str) -> bool:
-    """Asks whether a file may be replaced."""
-    with ui.dialog() as dialog, ui.card():
-        ui.label(question)
-        with ui.row():
-            ui.button("Replace it", on_click=lambda: dialog.submit(True)).props("no-caps")
-            ui.button("Keep it", on_click=lambda: dialog.submit(False), color=None).props("no-caps flat autofocus")
-    answer = await dialog
-    dialog.delete()
-    return bool(answer)

@@ -31,7 +31,7 @@ class FollowUps:
         self._keeping = NewestTask("realcam-state", quiet_s=0.5)
 
     def close(self) -> None:
-        """Ends all threads after what they are doing."""
+        """Ends all threads after what they are doing, which is not waited for."""
         quick = self._drawing, self._tracing, self._keeping
         for task in (*quick, self._planning, self._measuring_levels, self._measuring_depth):
             task.close()

@@ -23,10 +23,7 @@ from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
 from .picture_loop import PictureLoop
 from .picture_request import Frame, PictureRequest
-from .remote import RemotePictureLoop
 from .ring_scales import Ring
-
-AnyPictureLoop = PictureLoop | RemotePictureLoop
 
 
 class LensBench:
@@ -35,9 +32,7 @@ class LensBench:
     A change that makes no camera leaves everything as it is, and is told as a Problem; the next that makes one ends it.
     """
 
-    def __init__(
-        self, shot: Shot, *, device: str = "auto", make_loop: Callable[..., AnyPictureLoop] = PictureLoop
-    ) -> None:
+    def __init__(self, shot: Shot, *, device: str = "auto") -> None:
         self.shot, self._device = shot, device
         self.listeners = Listeners()
         self.controls = CameraControls.of(shot.camera)
@@ -45,12 +40,12 @@ class LensBench:
         self.switches = Switches.of_shot(shot.effects)
         self.plan: Plan | None = None
         self.problem: Problem | None = None
-        self._without_pictures: Problem | None = None  # why no more come, until the next one does
         self.noise_codes = 1.0
         self.hovered: tuple[float, float] | None = None
         self.comparison = Comparison()
-        self._make_loop = make_loop
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
+        self._serial = 0  # of the picture that was asked for last
+        self._frame: Frame | None = None
         self._loops = {"a": self._new_loop("a")}
         self._follow_ups = FollowUps(shot, device, self.listeners)
 
@@ -73,7 +68,7 @@ class LensBench:
 
     def change(self, **changes: Any) -> bool:
         """Sets fields of CameraControls. Whether a camera came of it."""
-        return self._take(lambda: replace(self.controls, **changes))
+        return self._take(lambda: replace(self.controls, **changes), of="picture")
 
     @property
     def apertures(self) -> Ring:
@@ -82,7 +77,7 @@ class LensBench:
     def turn(self, ring: str, steps: int) -> bool:
         """Turns a ring or dial by thirds of a stop; see CameraControls.turned. Raises InputError."""
         turned = self.controls.turned(ring, steps)
-        return self._take(lambda: turned)
+        return self._take(lambda: turned, of="picture")
 
     def orbit(self, right: float, up: float) -> bool:
         """By shares of the picture's height: that much of it is about a radian."""
@@ -100,13 +95,13 @@ class LensBench:
     def focus_at(self, u: float, v: float) -> bool:
         """Focuses at what is at u, v of the picture."""
         distance = self._loops["a"].point(u, v).result().distance_m
-        return self._take(lambda: replace(self.controls, focus_m=distance).focused_within_reach())
+        return self._take(lambda: replace(self.controls, focus_m=distance).focused_within_reach(), of="picture")
 
     def meter_at(self, u: float, v: float) -> bool:
         """Exposes so that what is around u, v becomes middle grey."""
         illuminance = self._loops["a"].point(u, v).result().illuminance_lx
         if not illuminance > 0:
-            self._set_problem(Problem("there is no light where the meter looks"))
+            self.report(Problem("there is no light where the meter looks", of="picture"))
             return False
         now = self.controls
         wanted = middle_grey_lx_s(now.iso, now.compensation_ev)
@@ -114,7 +109,19 @@ class LensBench:
 
     def set_resolution(self, width: int) -> bool:
         """Pixels across; the height follows from the film."""
-        return self._take(lambda: replace(self.controls, film=of_width(self.controls.film, width)))
+        return self._take(lambda: replace(self.controls, film=of_width(self.controls.film, width)), of="picture")
+
+    def set_film_mm(self, width_mm: float, height_mm: float) -> bool:
+        """Another size of the film, with as many pixels across, which undo takes back as it does another lens."""
+
+        def changed() -> CameraControls:
+            film = self.controls.film.replace(width_mm=width_mm, height_mm=height_mm)
+            return replace(self.controls, film=of_width(film, film.resolution[0]))
+
+        if not self._take(changed, of="picture"):
+            return False
+        self._push()
+        return True
 
     def restore(self, state: dict[str, Any]) -> bool:
         """What a page has kept of the bench that it had before; see bench_state."""
@@ -223,8 +230,25 @@ class LensBench:
     # What comes of it.
 
     def image(self, slot: str = "a") -> Image:
-        """The picture with all its samples; waits for it."""
+        """The picture with the samples that it has at its whole resolution; waits for the first of them."""
         return self._loops[slot].image().result()
+
+    @property
+    def is_refined(self) -> bool:
+        """Whether the picture has the noise that is asked for, or as many samples as a picture may have."""
+        frame = self._frame
+        return frame is not None and frame.is_final and frame.serial >= self._serial
+
+    @property
+    def progress(self) -> str:
+        """How far the picture is on its way there, in words."""
+        frame = self._frame
+        if frame is None or frame.serial < self._serial:
+            return "it has just begun"
+        samples = f"{frame.samples} sample{'' if frame.samples == 1 else 's'} per pixel"
+        if frame.noise_codes is None:
+            return samples
+        return f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels, where {self.noise_codes:g} is asked for"
 
     def show_again(self) -> None:
         """Sends the picture as it is once more."""
@@ -234,8 +258,8 @@ class LensBench:
         for loop in self._loops.values():
             loop.jpeg_quality = quality
 
-    def _new_loop(self, slot: str) -> AnyPictureLoop:
-        return self._make_loop(
+    def _new_loop(self, slot: str) -> PictureLoop:
+        return PictureLoop(
             self.shot.scene,
             lambda frame: self._take_frame(slot, frame),
             self._take_failure,
@@ -245,12 +269,11 @@ class LensBench:
         )
 
     def _take_failure(self, serial: int, message: str) -> None:
-        if serial == 0:  # it is not about a picture
-            self._without_pictures = Problem(message)
-        self._set_problem(Problem(message))
+        self.report(Problem(message, of="picture"))
 
     def _take_frame(self, slot: str, frame: Frame) -> None:
         if slot == "a":
+            self._frame = frame
             with self._lock:
                 before = self.controls
                 if before.is_automatic:
@@ -258,13 +281,10 @@ class LensBench:
                     self.controls = replace(before, exposure_time_s=frame.exposure_time_s)
             if before.is_automatic and abs(math.log2(frame.exposure_time_s / before.exposure_time_s)) > 0.01:
                 self.listeners.controls()
-        if self._without_pictures:
-            self._without_pictures = None
-            self._set_problem(None)
         self.listeners.frame(slot, frame)
 
-    def _take(self, changed: Callable[[], CameraControls]) -> bool:
-        """Tries a change; where no camera comes of it, everything stays as it is."""
+    def _take(self, changed: Callable[[], CameraControls], *, of: str = "lens") -> bool:
+        """Tries a change; where no camera comes of it, everything stays as it is. of: see Problem."""
         before = self.controls
         try:
             controls = changed()
@@ -272,13 +292,13 @@ class LensBench:
         except RealcamError as error:
             # Messages count surfaces from 1.
             surface = error.surface - 1 if isinstance(error, LensFileError) and error.surface > 0 else None
-            self._set_problem(Problem(str(error), surface))
+            self.report(Problem(str(error), surface, of))
             return False
         with self._lock:
             if before.is_automatic and controls.is_automatic:
                 controls = replace(controls, exposure_time_s=self.controls.exposure_time_s)
             self.controls = controls
-        self._set_problem(None)
+        self.report(None)
         self._photograph()
         lens_changed = (before.lens, before.zoom, before.focus_m, before.f_number) != (
             controls.lens,
@@ -294,8 +314,8 @@ class LensBench:
             self.listeners.controls()
         return True
 
-    def _set_problem(self, problem: Problem | None) -> None:
-        problem = problem or self._without_pictures
+    def report(self, problem: Problem | None) -> None:
+        """Tells a problem, which ends with the next change that can be made; None: there is none any more."""
         if problem != self.problem:
             self.problem = problem
             self.listeners.problem(problem)
@@ -304,6 +324,9 @@ class LensBench:
         return PictureRequest(
             camera=controls.camera,
             effects=self.switches.of_model(controls.model).named(self.plan),
+            illuminant=self.shot.illuminant,
+            transport=self.shot.transport,
+            clamp_cd_m2=self.shot.clamp_cd_m2,
             tone=self.shot.tone,
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,
@@ -311,13 +334,13 @@ class LensBench:
         )
 
     def _photograph(self) -> None:
-        self._loops["a"].submit(self._request(self.controls))
+        self._serial = self._loops["a"].submit(self._request(self.controls))
         try:
             other = self.comparison.beside(self.controls)
             if other is not None:
                 self._loops["b"].submit(self._request(other))
         except RealcamError as error:
-            self._set_problem(Problem(f"the picture to compare with: {error}"))
+            self.report(Problem(f"the picture to compare with: {error}", of="picture"))
 
     def _draw(self) -> None:
         self._follow_ups.draw(self.controls.set_lens)

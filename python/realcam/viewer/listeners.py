@@ -13,10 +13,14 @@ from .picture_request import Frame
 
 @dataclass(frozen=True)
 class Problem:
-    """Why what was asked for last is not shown. surface: index of the lens's surface that is to blame, if one is."""
+    """Why what was asked for last is not shown.
+
+    surface: index of the lens's surface that is to blame, if one is. of: what it is told beside, "lens" or "picture".
+    """
 
     message: str
     surface: int | None = None
+    of: str = "lens"
 
 
 @dataclass

@@ -16,6 +16,7 @@ from .lens_bench import LensBench
 MOST_BYTES = 64 * 1024
 _SUMMED = {"orbit": ("x", "y"), "pan": ("x", "y"), "dolly": ("steps",)}  # of several that wait, the sum is done
 _REPLACED = ("hover",)  # of several that wait, the last one is done
+_OF_THE_PICTURE = ("orbit", "pan", "dolly", "focus", "meter", "turn", "switch", "rungs")
 
 Message = dict[str, Any]
 
@@ -58,6 +59,11 @@ def merged(waiting: Message, newer: Message) -> Message | None:
     if kind == "edit" and newer.get("gesture") and all(waiting.get(key) == newer.get(key) for key in same):
         return newer
     return None
+
+
+def subject(message: Message) -> str:
+    """What a message is about, "lens" or "picture"; see Problem."""
+    return "picture" if message["type"] in _OF_THE_PICTURE else "lens"
 
 
 def perform(message: Message, bench: LensBench) -> None:

@@ -25,8 +25,8 @@ class NewestTask:
         self._wake = threading.Condition()
         self._task: Callable[[], None] | None = None
         self._is_closed = False
-        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
-        self._thread.start()
+        self._name = name
+        threading.Thread(target=self._run, name=name, daemon=True).start()
 
     def submit(self, task: Callable[[], None]) -> None:
         with self._wake:
@@ -34,11 +34,10 @@ class NewestTask:
             self._wake.notify()
 
     def close(self) -> None:
-        """Ends the thread after the task that it is doing."""
+        """Ends the thread after the task that it is doing, which is not waited for."""
         with self._wake:
             self._is_closed = True
             self._wake.notify()
-        self._thread.join()
 
     def _run(self) -> None:
         while True:
@@ -58,4 +57,4 @@ class NewestTask:
             except Cancelled:
                 pass  # Python ends, and stops all work
             except Exception:
-                _log.exception("a task of thread %s failed", self._thread.name)
+                _log.exception("a task of thread %s failed", self._name)

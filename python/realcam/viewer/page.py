@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from nicegui import ui
@@ -19,10 +18,11 @@ from .elements import CostPanel, LensDrawing, PictureCanvas
 from .files_panel import FilesPanel
 from .plots_panel import PlotsPanel
 from .server_loop import call_on_loop
+from .shot_source import ShotSource
 from .window import Window
 
 
-def build_page(client: Client, window: Window, folders: Folders, source: Path) -> None:
+def build_page(client: Client, window: Window, folders: Folders, source: ShotSource) -> None:
     """Lays out the page and keeps it up to date. Call within the page's function."""
     loop, bench = asyncio.get_running_loop(), window.bench
     ui.add_head_html('<link rel="stylesheet" href="/realcam/page.css">')
@@ -79,11 +79,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: Path) -
     bench.listeners.controls = lambda: call_on_loop(loop, update_soon)
     bench.listeners.sharp_range = lambda sharp: call_on_loop(loop, camera.show_sharp_range, sharp)
 
-    async def close() -> None:
-        plots.close()
-        await asyncio.to_thread(window.close)
-
-    client.on_delete(close)
+    client.on_delete(plots.close)
 
 
 def _pick(event: GenericEventArguments, plots: PlotsPanel) -> None:

@@ -278,9 +278,16 @@ class PictureLoop:
 
     def _shoot(self, picture: _Growing, spp: int) -> NDArray[np.uint8]:
         request, camera = picture.request, self._camera(picture)
+        effects = self._effects(picture)
         start = time.perf_counter()
         frame = self._live.shoot(
-            camera, spp=spp, tone=request.tone, effects=self._effects(picture), illuminant=request.illuminant
+            camera,
+            spp=spp,
+            tone=request.tone,
+            effects=effects,
+            illuminant=request.illuminant_with(effects),
+            transport=request.transport,
+            clamp_cd_m2=request.clamp_cd_m2,
         )
         if picture.kept:
             self._wait_for(frame, picture)
@@ -369,7 +376,15 @@ class PictureLoop:
     def _collected(self, picture: _Growing) -> Image:
         request = picture.request
         camera = self._camera(picture).replace(exposure_time_s=picture.exposure_time_s)
-        return image_of(self._live._image(), camera, self._seed, "paths", 0.0, request.effects, request.illuminant)
+        return image_of(
+            self._live._image(),
+            camera,
+            self._seed,
+            request.transport,
+            request.clamp_cd_m2,
+            request.effects,
+            request.illuminant_with(request.effects),
+        )
 
     def _image(self) -> Image:
         picture = self._picture
@@ -385,9 +400,11 @@ class PictureLoop:
         return replace(image, pixels=image.pixels * ratio, camera=image.camera.replace(exposure_time_s=time_s))
 
     def _point(self, u: float, v: float) -> Point:
-        if self._picture is None or not self._picture.samples:
+        picture = self._picture
+        # While the first frame of more pixels is taken, it has no samples, and the frame before is kept.
+        if picture is None or not (picture.samples or picture.kept):
             raise InputError("there is no picture yet")
-        return point_at(u, v, *self._arrays(self._picture), self._picture.exposure_time_s)
+        return point_at(u, v, *self._arrays(picture), picture.exposure_time_s)
 
     def _measure_noise(self, picture: _Growing) -> None:
         if picture.noise.is_due(picture.samples):

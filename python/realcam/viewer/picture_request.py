@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from .._core import Camera, RenderStats
+
+
+def has_wavelengths(effects: Iterable[str]) -> bool:
+    """Whether effects, as shot files name them, are or may be such as an illuminant belongs to."""
+    return any(effect in ("auto", "dispersion", "diffraction") for effect in effects)
 
 
 @dataclass(frozen=True)
@@ -14,11 +20,17 @@ class PictureRequest:
     camera: Camera
     effects: tuple[str, ...] = ()
     illuminant: str = ""
+    transport: str = "paths"
+    clamp_cd_m2: float = 0.0
     tone: str = "film"
     is_automatic: bool = False  #: the exposure time follows the light
     compensation_ev: float = 0.0
     noise_codes: float = 1.0  #: the picture is refined until its noise is as small
     max_spp: int = 4096
+
+    def illuminant_with(self, effects: Iterable[str]) -> str:
+        """The illuminant where one of the effects has wavelengths; elsewhere none may be named."""
+        return self.illuminant if has_wavelengths(effects) else ""
 
     def is_same_picture(self, other: PictureRequest) -> bool:
         """Whether the samples of one can be developed for the other."""
@@ -27,6 +39,7 @@ class PictureRequest:
             mine.replace(exposure_time_s=1, iso=100) == others.replace(exposure_time_s=1, iso=100)
             and self.effects == other.effects
             and self.illuminant == other.illuminant
+            and (self.transport, self.clamp_cd_m2) == (other.transport, other.clamp_cd_m2)
         )
 
 

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import html
-import multiprocessing
-import os
-from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from functools import cache
 
 from nicegui import ui
 
@@ -16,28 +12,33 @@ from .close_look import PLOTS, Look, height_of, plot_svg
 from .newest_task import NewestTask
 from .server_loop import call_on_loop
 from .window import Window
+from .worker_process import WorkerProcess, WorkError
 
-
-@cache
-def plotting_process() -> ProcessPoolExecutor:
-    """Draws for all windows, where it does not keep the threads of the pictures from running."""
-    return ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"), initializer=os.nice, initargs=(10,))
+_LONGEST_S = 120.0  # on a machine that is busy with pictures
+#: Draws for all windows, where it does not keep the threads of the pictures from running.
+plotter = WorkerProcess()
 
 
 class PlotsPanel:
-    """One plot at a time, drawn on a thread of its own while the lens is changed."""
+    """One plot at a time, drawn while the lens is changed. Until it is, none is shown in its place."""
 
     def __init__(self, window: Window) -> None:
         self._bench = window.bench
         self._loop = asyncio.get_running_loop()
         self._task = NewestTask("realcam-plots")
         self._at = (0.5, 0.5)
+        self._look: Look | None = None
         with ui.element("section").classes("rc-controls").props('aria-label="A closer look"'):
             self._kind = ui.select({kind: title for kind, (title, _) in PLOTS.items()}, value="spot", label="Plot")
             self._kind.classes("w-full").props('data-testid="plot"').on("update:model-value", self.update)
             self._help = ui.label().classes("rc-note")
             self._place = ui.label().classes("rc-note").props('data-testid="plot-place"')
-            self._plot = ui.html("", sanitize=False).classes("w-full rc-plot").props('data-testid="plot-svg"')
+            with ui.element("div").classes("rc-plot-box"):
+                self._plot = ui.html("", sanitize=False).classes("w-full rc-plot").props('data-testid="plot-svg"')
+                self._busy = ui.row().classes("rc-busy").props('data-testid="plot-busy" role="status"')
+                with self._busy:
+                    ui.spinner(size="1.5rem")
+                    ui.label("is being drawn")
         self.update()
 
     def close(self) -> None:
@@ -51,21 +52,32 @@ class PlotsPanel:
     def update(self) -> None:
         """On the server's loop."""
         kind, controls = self._kind.value, self._bench.controls
+        if kind not in PLOTS:
+            return
         self._help.set_text(PLOTS[kind][1])
         height = height_of(*self._at, (controls.film.width_mm, controls.film.height_mm))
         self._place.set_text(f"{height:.3g} mm from the middle of the film; in the plane in focus")
         look = Look(kind, controls.set_lens, height)
-        self._task.submit(lambda: self._draw(look))
+        if look != self._look:
+            self._look = look
+            self._plot.classes(add="invisible")
+            self._busy.set_visibility(True)
+            self._task.submit(lambda: self._draw(look))
 
     def _draw(self, look: Look) -> None:
         try:
-            drawn = plotting_process().submit(plot_svg, look)
-        except BrokenExecutor:
-            raise
-        except RuntimeError:  # the server is going down
-            return
-        try:
-            content = drawn.result()
+            try:
+                content = plotter.call(plot_svg, look, seconds=_LONGEST_S)
+            except WorkError:  # by no fault of this plot, perhaps
+                content = plotter.call(plot_svg, look, seconds=_LONGEST_S)
+        except WorkError as error:
+            content = f'<p class="rc-problem">The plot is not there: drawing it {error}</p>'
         except RealcamError as error:
             content = f'<p class="rc-problem">{html.escape(str(error))}</p>'
-        call_on_loop(self._loop, self._plot.set_content, content)
+        call_on_loop(self._loop, self._show, look, content)
+
+    def _show(self, look: Look, content: str) -> None:
+        if look == self._look:
+            self._plot.set_content(content)
+            self._plot.classes(remove="invisible")
+            self._busy.set_visibility(False)

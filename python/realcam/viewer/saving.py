@@ -1,63 +1,77 @@
-"""Pictures, shot files and lens files that a window writes."""
+"""What a window saves: pictures, shot files and lens files, as the content of files."""
 
 from __future__ import annotations
 
 import math
 import os
+import tempfile
 from pathlib import Path
 from typing import Any
 
+import simplejpeg
 import tomlkit
 
 from .._core import InputError, Lens, Sensor, lens_names
-from ..files import write_whole
 from ..image import Image
 from .camera_controls import CameraControls, opened
+from .picture_request import has_wavelengths
+from .shot_source import ShotSource
 
-PICTURE_SUFFIXES = (".png", ".exr", ".dng")
+PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
+SUFFIXES = {"picture": PICTURE_SUFFIXES, "shot": (".toml",), "lens": (".toml", ".zmx", ".seq")}
 _FILES_OF_A_SHOT = ("scene", "environment", "texture")  # keys that name files beside it
+_JPEG_QUALITY = 95
 
 
-def save_picture(image: Image, path: Path, tone: str) -> None:
-    """Writes .png, .exr, or .dng as an ideal sensor records it. Raises InputError and ImageFileError."""
-    if path.suffix.lower() not in PICTURE_SUFFIXES:
-        raise InputError(f'"{path.name}": {", ".join(PICTURE_SUFFIXES)} is wanted')
-    if path.suffix.lower() == ".dng":
-        from .. import dng
-
-        dng.write(Sensor.load("ideal").expose(image), path)
-    else:
-        image.save(path, tone)
+def check_suffix(what: str, name: str) -> None:
+    """what: a key of SUFFIXES. Raises InputError where such a file cannot have that name."""
+    if Path(name).suffix.lower() not in SUFFIXES[what]:
+        *others, last = SUFFIXES[what]
+        wanted = f"{', '.join(others)} or {last}" if others else last
+        raise InputError(f'"{name:.80}": a {what} is a file whose name ends in {wanted}; one of these is wanted')
 
 
-def save_lens(lens: Lens, path: Path) -> list[str]:
-    """Writes .toml, .zmx or .seq; returns what such a file cannot say. Raises InputError and ImageFileError."""
-    if path.suffix.lower() not in (".toml", ".zmx", ".seq"):
-        raise InputError(f'"{path.name}": .toml, .zmx or .seq is wanted')
-    content, left_out = lens._file_content(path)
-    write_whole(path, content)
-    return left_out
+def picture_content(image: Image, name: str, tone: str) -> bytes:
+    """Of a .png, .jpg, .exr, or a .dng as an ideal sensor records it. Raises InputError and ImageFileError."""
+    check_suffix("picture", name)
+    suffix = Path(name).suffix.lower()
+    if suffix in (".jpg", ".jpeg"):
+        codes = image.developed(tone)
+        return bytes(simplejpeg.encode_jpeg(codes, quality=_JPEG_QUALITY, colorsubsampling="444"))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"picture{suffix}"
+        if suffix == ".dng":
+            from .. import dng
+
+            dng.write(Sensor.load("ideal").expose(image), path)
+        else:
+            image.save(path, tone)
+        return path.read_bytes()
 
 
-def save_shot(source: Path, controls: CameraControls, effects: list[str], path: Path) -> list[Path]:
-    """Writes the shot as it stands, from the file that it was read from; returns all files that were written.
+def lens_content(lens: Lens, name: str) -> tuple[bytes, list[str]]:
+    """Of a .toml, .zmx or .seq; and what such a file cannot say. Raises InputError."""
+    check_suffix("lens", name)
+    return lens._file_content(name)
 
-    A lens that is none of the bundled ones is written beside it. Raises InputError and ImageFileError.
+
+def shot_contents(source: ShotSource, controls: CameraControls, effects: list[str], path: Path) -> dict[Path, bytes]:
+    """Of the shot as it stands, and of its lens where that is none of the bundled ones: by the files to be written.
+
+    What the bench does not change stays as the source has it. Raises InputError.
     """
-    if path.suffix.lower() != ".toml":
-        raise InputError(f'"{path.name}": a shot file is a .toml')
-    shot: Any = tomlkit.parse(source.read_text(encoding="utf-8"))
+    check_suffix("shot", path.name)
+    shot: Any = tomlkit.parse(source.text)
     for key in _FILES_OF_A_SHOT:
         if key in shot:
-            shot[key] = os.path.relpath(source.parent / str(shot[key]), path.parent)
-    written = [path]
+            shot[key] = os.path.relpath(source.folder / str(shot[key]), path.absolute().parent)
+    contents = {}
     lens = controls.lens
     if lens.name in lens_names() and _is_bundled(lens):
         shot["lens"] = lens.name
     else:
         beside = path.with_name(f"{path.stem}-lens.toml")
-        lens.save(beside)
-        written.insert(0, beside)
+        contents[beside], _ = lens_content(lens, beside.name)
         shot["lens"] = f"./{beside.name}"
     for key in ("blades", "blade_rounding", "blade_rotation_deg", "zoom", "f_number"):
         shot.pop(key, None)  # the lens has them
@@ -75,8 +89,10 @@ def save_shot(source: Path, controls: CameraControls, effects: list[str], path: 
     shot["exposure_time_s"] = controls.exposure_time_s
     shot["iso"] = controls.iso
     shot["effects"] = effects
-    write_whole(path, tomlkit.dumps(shot).encode())
-    return written
+    if not has_wavelengths(effects):
+        shot.pop("illuminant", None)  # which belongs to effects that were switched off
+    contents[path] = tomlkit.dumps(shot).encode()
+    return contents
 
 
 def _is_bundled(lens: Lens) -> bool:

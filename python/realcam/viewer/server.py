@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
+import contextlib
+import logging
+import os
 import secrets
-from collections.abc import Callable
+import signal
+import socket
+import sys
+import threading
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,51 +18,43 @@ from fastapi import Response, WebSocket
 from nicegui import app, ui
 from nicegui.client import Client
 
-from .._core import DeviceError, LensFileError
+from .._core import DeviceError, InputError, LensFileError
 from ..shot import Shot
 from .access import BodyLimit, Folders, Gate, is_local
 from .files_panel import MOST_UPLOADED, lens_preview
 from .left_requests import LeftRequests
-from .lens_bench import AnyPictureLoop, LensBench
+from .lens_bench import LensBench
+from .lens_reading import reader
 from .page import build_page
-from .picture_loop import PictureLoop
-from .remote import RemotePictureLoop
-from .window import Window
+from .plots_panel import plotter
+from .shot_source import ShotSource
+from .windows import Windows
 
 _STATIC = Path(__file__).with_name("static")
 _RECONNECT_S = 30.0  # for so long a window whose connection is lost keeps what it has
 _MOST_MESSAGE = 1 << 20  # bytes, of the page's own socket, too
 _UNKNOWN_WINDOW = 4404  # see stream.js
-_MOST_WINDOWS = 16  # each has threads, a scene on the device and a picture
+_MOST_WINDOWS = 16
+_GOODBYE_S = 1  # for so long the server waits at its end for browsers to close their connections
 
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """source: the shot's file. folders: the only ones that are read and written.
+    """folders: the only ones that are read and written. token: "" makes one where it is wanted."""
 
-    token: "" makes one where it is wanted; with connect, it is that of the machine that photographs.
-    """
-
-    source: Path
     folders: tuple[Path, ...]
     host: str = "127.0.0.1"
     port: int = 8080
     device: str = "auto"
     token: str = ""
-    connect: tuple[str, int] | None = None  #: the machine that photographs, if it is not this one
     shows_browser: bool = True
 
 
-def serve(shot: Shot, settings: ServerSettings) -> None:
-    """Serves until Ctrl-C. Raises InputError and DeviceError before it begins."""
+def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
+    """Serves until Ctrl-C, which ends the program. Raises InputError for folders that are none."""
     folders = Folders(settings.folders)
-    is_open = is_local(settings.host) and (settings.connect is not None or not settings.token)
-    token = None if is_open else settings.token or secrets.token_urlsafe(24)
-    windows: dict[str, tuple[Client, Window]] = {}
-    make_loop: Callable[..., AnyPictureLoop] = PictureLoop
-    if settings.connect is not None:
-        make_loop = partial(RemotePictureLoop, address=settings.connect, token=settings.token)
-        make_loop(shot.scene, lambda _: None, lambda *_: None).close()  # so that a mistake is told at once
+    token = None if is_local(settings.host) and not settings.token else settings.token or secrets.token_urlsafe(24)
+    windows = Windows(_MOST_WINDOWS)
 
     app.add_middleware(BodyLimit, most=2 * MOST_UPLOADED)
     app.add_middleware(Gate, token=token)
@@ -67,21 +64,17 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
     app.add_static_files("/realcam", _STATIC)
 
     # By the title a page knows whether what it has kept is of this shot.
-    @ui.page("/", title=f"{settings.source.name} - realcam", response_timeout=30)
+    @ui.page("/", title=f"{source.name} - realcam", response_timeout=30)
     async def page(client: Client) -> None:
-        if len(windows) >= _MOST_WINDOWS and not await _close_left_window(windows):
-            ui.label("Too many windows are open; close one and load this page again.")
-            return
         try:
-            # On another thread, because the scene is made ready in the meantime.
-            bench = await asyncio.to_thread(LensBench, shot, device=settings.device, make_loop=make_loop)
+            window = await windows.open(client, partial(LensBench, shot, device=settings.device))
         except DeviceError as error:
             ui.label(str(error))
             return
-        window = Window(bench)
-        windows[window.key] = client, window
-        client.on_delete(lambda: windows.pop(window.key, None))
-        build_page(client, window, folders, settings.source.resolve())
+        if window is None:
+            ui.label("Too many windows are open; close one and load this page again.")
+            return
+        build_page(client, window, folders, source)
 
     # Not a coroutine: the server draws them on threads of its own.
     @app.get("/realcam-lenses/{name}.svg")
@@ -93,38 +86,58 @@ def serve(shot: Shot, settings: ServerSettings) -> None:
 
     @app.websocket("/realcam/stream/{key}")
     async def stream(socket: WebSocket, key: str) -> None:
-        if key not in windows:
+        window = windows.get(key)
+        if window is None:
             await socket.accept()
             await socket.close(_UNKNOWN_WINDOW, "the server does not know this window any more")
             return
-        _, window = windows[key]
         await window.stream.serve(socket)
 
     address = f"http://{_shown(settings.host)}:{settings.port}/" + (f"?token={token}" if token else "")
-    app.on_startup(lambda: print(f"realcam: the lens bench is at {address}", flush=True))
-    ui.run(
-        host=settings.host,
-        port=settings.port,
-        title="realcam",
-        language="en-US",
-        show=address if settings.shows_browser else False,
-        reload=False,
-        show_welcome_message=False,
-        reconnect_timeout=_RECONNECT_S,
-        binding_refresh_interval=None,
-        ws_max_size=_MOST_MESSAGE,
-        tailwind=True,
-    )
+
+    async def tell() -> None:
+        print(f"realcam: the lens bench is at {address}", flush=True)
+        for process in (reader, plotter):
+            threading.Thread(target=process.warm_up, daemon=True).start()
+
+    # Of connections that are cut at the end because nobody closes them.
+    logging.getLogger("uvicorn.error").addFilter(lambda record: "timeout graceful shutdown" not in record.getMessage())
+    with contextlib.suppress(KeyboardInterrupt):
+        ui.run(
+            host=settings.host,
+            port=settings.port,
+            title="realcam",
+            language="en-US",
+            show=address if settings.shows_browser else False,
+            reload=False,
+            show_welcome_message=False,
+            reconnect_timeout=_RECONNECT_S,
+            binding_refresh_interval=None,
+            ws_max_size=_MOST_MESSAGE,
+            tailwind=True,
+            timeout_graceful_shutdown=_GOODBYE_S,
+            # Called when the server listens; the startup handlers are called before that.
+            callback_notify=tell,
+            timeout_notify=10**9,
+        )
+    # Python would wait for what threads are doing: frames, plans and drawings that nobody is going to see.
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(128 + signal.SIGINT)
 
 
-async def _close_left_window(windows: dict[str, tuple[Client, Window]]) -> bool:
-    """The oldest one whose page has gone, if any has; it would have been kept for some time yet."""
-    for key, (client, window) in windows.items():
-        if not client.has_socket_connection:
-            del windows[key]
-            await asyncio.to_thread(window.close)
-            return True
-    return False
+def check_port(host: str, port: int) -> None:
+    """Raises InputError where the server could not listen."""
+    try:
+        for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
+            with socket.socket(family, kind, protocol) as listening:
+                listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                if family == socket.AF_INET6:
+                    listening.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 1)  # as the server does
+                listening.bind(address)
+                listening.listen()
+    except OSError as error:
+        raise InputError(f"cannot serve at {_shown(host)}:{port}: {error.strerror}; --host and --port choose") from None
 
 
 def _shown(host: str) -> str:

@@ -21,7 +21,7 @@ from .._core import Plan, RealcamError
 from .inbox import Inbox
 from .lens_bench import LensBench
 from .listeners import Problem
-from .messages import BadMessage, json_text, parsed, perform
+from .messages import BadMessage, json_text, parsed, perform, subject
 from .picture_request import Frame
 from .server_loop import call_on_loop
 
@@ -102,10 +102,11 @@ class PictureStream:
             except BadMessage:
                 raise
             except RealcamError as error:
-                self._offer_problem(Problem(str(error)))
+                self._bench.report(Problem(str(error), of=subject(message)))
             except Exception:
                 _log.exception("%.200s could not be done", message)
-                self._offer_problem(Problem("that could not be done; the server's log says more"))
+                text = "that could not be done; the server's log says more"
+                self._bench.report(Problem(text, of=subject(message)))
 
     async def _send(self, socket: WebSocket) -> None:
         while True:

@@ -11,7 +11,7 @@ export default {
   template: `
 <section class="rc-costs" aria-label="Effects and cost">
   <table class="rc-effects"><caption class="rc-hidden">Effects, and what the planner says of them</caption>
-    <thead><tr><th scope="col">Effect</th><th scope="col">Simulated</th><th scope="col">Size here</th></tr></thead>
+    <thead><tr><th scope="col">Effect</th><th scope="col">Simulated</th><th scope="col" title="By how much the effect changes this picture, and from how much on it is simulated">Size here</th></tr></thead>
     <tbody>
       <tr v-for="e in effects" :key="e.name" :title="e.help">
         <th scope="row">{{ e.name.replaceAll('_', ' ') }}</th>
@@ -20,7 +20,7 @@ export default {
           <option value="on">on</option><option value="off">off</option></select></td>
         <td class="rc-size" :title="rows[e.name]?.reason">{{ size(e.name) }}</td>
       </tr>
-      <tr v-for="row in others" :key="row.effect" :title="row.reason"><th scope="row">{{ row.effect }}</th><td>by the camera model</td>
+      <tr v-for="row in others" :key="row.effect" :title="row.reason"><th scope="row">{{ row.effect }}</th><td>set by Camera model</td>
         <td class="rc-size">{{ size(row.effect) }}</td></tr>
     </tbody></table>
   <p v-if="note" class="rc-note">{{ note }}</p>
@@ -32,10 +32,10 @@ export default {
     <p class="rc-note">{{ barText }}. {{ large(costs.samples_per_s) }} samples/s, {{ large(costs.rays_per_s) }} rays/s;
       {{ (100 * costs.passing_share).toFixed(1) }}% of the rays into the lens pass it.</p>
   </template>
-  <svg class="rc-noise" viewBox="0 0 ${W} ${H}" role="img" aria-label="Noise over time, both logarithmic">
+  <svg class="rc-noise" viewBox="0 0 ${W} ${H}" role="img" aria-label="Noise in grey levels of 255 over time, both logarithmic">
     <line x1="${LEFT}" y1="${H - BOTTOM}" x2="${W}" y2="${H - BOTTOM}" /><line x1="${LEFT}" y1="0" x2="${LEFT}" y2="${H - BOTTOM}" />
     <text x="${(W + LEFT) / 2}" y="${H - 4}" text-anchor="middle">time (s), {{ range[0] }} to {{ range[1] }}</text>
-    <text x="10" y="${(H - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 10 ${(H - BOTTOM) / 2})">noise (codes)</text>
+    <text x="10" y="${(H - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 10 ${(H - BOTTOM) / 2})">noise (levels)</text>
     <text x="${LEFT - 3}" y="9" text-anchor="end">{{ top }}</text><text x="${LEFT - 3}" y="${H - BOTTOM}" text-anchor="end">{{ bottom }}</text>
     <polyline class="rc-curve" :points="curve" />
     <g v-for="(rung, k) in placedRungs" :key="rung.name" class="rc-rung" :style="{ color: colour(k) }">
@@ -112,7 +112,9 @@ export default {
     planned: (row) => (!row ? "" : row.is_kept ? " (on)" : row.size > row.threshold ? " (off: see reasons)" : " (off)"),
     size(name) {
       const row = this.rows[name], short = (x) => (x === null ? "∞" : Number(x.toPrecision(2))); // JSON has no infinity
-      return row ? `${short(row.size)} ${row.unit} of ${short(row.threshold)}` : "";
+      if (!row) return "";
+      const unit = row.unit === "px" ? "pixel" : "grey level";
+      return `${short(row.size)} ${unit}${row.size === 1 ? "" : "s"}, counts from ${short(row.threshold)}`;
     },
     choose(effect, state) {
       this.states = { ...this.states, [effect]: state };

@@ -140,7 +140,7 @@ export default {
     this.ends = [
       this.stream.on("lens", (view) => this.show(view)),
       this.stream.on("rays", (rays) => { this.rays = Object.freeze(rays); }),
-      this.stream.on("problem", ({ problem }) => { this.problem = problem; }),
+      this.stream.on("problem", ({ problem }) => { this.problem = problem?.of === "lens" ? problem : null; }),
     ];
     this.undoes = (event) => this.undoByKey(event);
     window.addEventListener("keydown", this.undoes);
@@ -161,15 +161,12 @@ export default {
     setHistory(can_undo, can_redo) {
       this.history = { can_undo, can_redo };
     },
-    /// Glass and film fill the drawing; a film far behind the glass may lie outside.
+    /// Glass and film fill the drawing, wherever the film is.
     fit() {
-      const v = this.view, zs = v.surfaces.map((s) => s.z), rims = v.surfaces.map((s) => s.semi_diameter_mm);
-      const front = Math.min(...zs), back = Math.max(...zs), rim = Math.max(...rims);
-      const length = Math.max(back - front, 2 * rim);
-      const right = Math.min(Math.max(v.film.z, back) + 0.06 * length, back + 2.5 * length);
-      const half = 1.12 * Math.max(rim, v.film.z < right ? Math.min(v.film.half, 2 * rim) : 0);
-      const left = front - 0.3 * length;
-      this.box = [left, -half, right - left, 2 * half];
+      const v = this.view, zs = [...v.surfaces.map((s) => s.z), v.film.z], rims = v.surfaces.map((s) => s.semi_diameter_mm);
+      const front = Math.min(...zs), back = Math.max(...zs), half = 1.12 * Math.max(...rims, v.film.half);
+      const length = Math.max(back - front, half), left = front - 0.25 * length;
+      this.box = [left, -half, back + 0.05 * length - left, 2 * half];
     },
     faceClass(face) {
       const sign = !this.colours ? "" : face.sign > 0 ? "rc-positive" : face.sign < 0 ? "rc-negative" : "rc-plane";

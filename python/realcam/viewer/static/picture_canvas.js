@@ -40,19 +40,20 @@ export default {
       aria-label="Histogram of red, green and blue, from black to white"></canvas>
     <output class="rc-status" data-testid="status">{{ status }}</output>
   </div>
+  <p v-if="problem" class="rc-problem" role="alert" data-testid="picture-problem">{{ problem }}</p>
 </section>`,
   data: () => ({
     mode: "focus", peaking: false, clipping: false, magnifier: false, showsMagnifier: false, magnifierStyle: {},
-    wipe: 0.5, compares: false, isConnected: true, mark: null, header: null, clipped: 0,
+    wipe: 0.5, compares: false, isConnected: true, mark: null, header: null, clipped: 0, problem: "",
   }),
   computed: {
     status() {
       const h = this.header;
       if (!h) return "No picture yet";
-      const noise = h.noise_codes === null ? "" : `, noise ${h.noise_codes.toFixed(1)} codes`;
+      const noise = h.noise_codes === null ? "" : `, noise ${h.noise_codes.toFixed(1)} grey levels`;
       const done = h.is_final ? ", done" : h.is_preview ? ", preview" : "";
       const clipped = this.clipped > 0.0005 ? `, ${(100 * this.clipped).toFixed(1)}% clipped` : "";
-      return `${h.width} × ${h.height} pixels, ${h.samples} samples${noise}${clipped}${done}`;
+      return `${h.width} × ${h.height} pixels, ${h.samples} sample${h.samples === 1 ? "" : "s"}${noise}${clipped}${done}`;
     },
     /// As wide as the column, but no higher than most of the window.
     stageStyle() {
@@ -76,6 +77,7 @@ export default {
     this.ends = [
       this.stream.on("frame", (frame) => this.take(frame)),
       this.stream.on("connection", ({ isOpen }) => { this.isConnected = isOpen; }),
+      this.stream.on("problem", ({ problem }) => { this.problem = problem?.of === "picture" ? problem.message : ""; }),
     ];
     this.sendHover = oncePerFrame((u, v) => this.stream.send({ type: "hover", u, v }));
     this.drawMarksSoon = oncePerFrame(() => this.drawMarks());
@@ -139,7 +141,7 @@ export default {
         const marks = this.$refs.marks;
         marks.width = scratch.width;
         marks.height = scratch.height;
-        marks.getContext("2d").putImageData(marksOf(image, this), 0, 0);
+        marks.getContext("2d").putImageData(marksOf(image, { clipping: this.clipping, peaking: this.peaking, noise: this.header.noise_codes }), 0, 0);
       }
     },
     place(event) {

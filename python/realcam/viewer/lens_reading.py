@@ -1,0 +1,33 @@
+"""Lens files that a page brings, read where a file that crashes or delays its reader does no harm."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from .._core import InputError, Lens, RealcamError
+from .worker_process import WorkerProcess, WorkError
+
+_LONGEST_S = 10.0
+reader = WorkerProcess()
+
+
+def lens_from(name: str, content: bytes) -> tuple[Lens, list[str]]:
+    """The lens of a file, and what was left out of it. `name` is what the user calls it. Raises InputError.
+
+    Not to be called from the server's loop, because it waits.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{Path(name).stem[:60]}{Path(name).suffix.lower()}"
+        try:
+            path.write_bytes(content)
+            lens, notes = reader.call(_read, path, seconds=_LONGEST_S)
+        except WorkError as error:
+            raise InputError(f"{name}: reading it {error}") from None
+        except (RealcamError, OSError) as error:
+            raise InputError(str(error).replace(str(path), name)) from None
+    return lens, [note.replace(str(path), name) for note in notes]
+
+
+def _read(path: Path) -> tuple[Lens, list[str]]:
+    return Lens._load_with_notes(path)

@@ -1,0 +1,153 @@
+"""Saves pictures, shots and lenses: into the server's folders, or as downloads of the browser."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from nicegui import ui
+
+from .._core import InputError, RealcamError
+from ..files import write_whole
+from .access import Folders
+from .saving import PICTURE_SUFFIXES, check_suffix, lens_content, picture_content, shot_contents
+from .shot_source import ShotSource
+from .window import Window
+
+_PROPOSED = {"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}
+
+
+class SavePanel:
+    """say: shows a text; its second argument is whether it tells of a problem."""
+
+    def __init__(self, window: Window, folders: Folders, source: ShotSource, say: Callable[[str, bool], None]) -> None:
+        self._window, self._bench, self._folders, self._source, self._say = window, window.bench, folders, source, say
+        with ui.row().classes("items-end w-full"):
+            self._name = ui.input("Save as", value="picture.png").classes("grow").props('data-testid="save-name"')
+            self._name.tooltip(f"A picture is {', '.join(PICTURE_SUFFIXES)}; a shot .toml; a lens .toml, .zmx or .seq")
+            self._what = ui.select(list(_PROPOSED), value="picture").props('data-testid="save-what"')
+            self._what.on("update:model-value", lambda: self._name.set_value(_PROPOSED.get(self._what.value, "")))
+            save = ui.button("Save", on_click=lambda: self._try(self._save)).props('no-caps data-testid="save"')
+            save.tooltip(f"In {folders.first}, or in another folder that was named when the lens bench was started")
+            download = ui.button("Download", color=None).props('no-caps flat data-testid="download"').classes("rc-flat")
+            download.on("click", lambda: self._try(self._download))
+            download.tooltip("To where the browser keeps its downloads")
+
+    async def _try(self, action: Callable[[str, str], Any]) -> None:
+        name, what = self._name.value, self._what.value
+        try:
+            if not isinstance(name, str) or what not in _PROPOSED:
+                raise InputError("the name of a file is wanted")
+            check_suffix(what, name)
+            await action(what, name)
+        except (RealcamError, OSError) as error:
+            self._say(str(error), True)
+
+    async def _save(self, what: str, name: str) -> None:
+        path = self._folders.inside(name)
+        contents, left_out = (None, []) if what == "picture" else await self._window.do(self._contents, what, path)
+        # A file beside the one that was named is looked at as that one is: it could be a link that leads elsewhere.
+        targets = {self._folders.inside(str(file)): file for file in contents or [path]}
+        agreed: set[Path] = set()
+        if not await self._agree(targets, agreed):
+            return
+        if contents is None:
+            contents = {path: await self._picture(name)}
+        if await self._write({target: contents[file] for target, file in targets.items()}, agreed):
+            names = " and ".join(target.name for target in targets)
+            self._say("; ".join([f"Wrote {names}", *(f"not in it: {part}" for part in left_out)]), False)
+
+    async def _agree(self, targets: Any, agreed: set[Path]) -> bool:
+        """Asks for those that are there already and were not asked for yet. Raises OSError."""
+        there = [target for target in targets if target not in agreed and target.exists()]
+        if there and not await _answer(" ".join(f"{target.name} is there already." for target in there)):
+            return False
+        agreed.update(there)
+        return True
+
+    async def _write(self, contents: dict[Path, bytes], agreed: set[Path]) -> bool:
+        """All of them or none that is new. Whether they were written. Raises ImageFileError."""
+        new: set[Path] = set()
+        try:
+            while True:
+                waiting = [target for target in contents if target not in new]
+                if not await self._agree(waiting, agreed):
+                    break
+                for target in waiting:
+                    replaces = target in agreed
+                    if not await self._window.do(write_whole, target, contents[target], replaces=replaces):
+                        break  # another window was quicker; its file is asked for
+                    if not replaces:
+                        new.add(target)
+                else:
+                    new.clear()
+                    return True
+        finally:
+            for target in new:
+                target.unlink(missing_ok=True)
+        return False
+
+    async def _download(self, what: str, name: str) -> None:
+        path = self._source.folder / Path(name).name
+        left_out: list[str] = []
+        if what == "picture":
+            contents = {path: await self._picture(name)}
+        else:
+            contents, left_out = await self._window.do(self._contents, what, path)
+        for file, content in contents.items():
+            ui.download.content(content, file.name)
+        self._say("; ".join([f"Downloaded {path.name}", *(f"not in it: {part}" for part in left_out)]), False)
+
+    def _contents(self, what: str, path: Path) -> tuple[dict[Path, bytes], list[str]]:
+        """Of a shot or a lens; and what such files cannot say."""
+        bench = self._bench
+        if what == "lens":
+            content, left_out = lens_content(bench.controls.set_lens, path.name)
+            return {path: content}, left_out
+        effects = bench.switches.of_model(bench.controls.model).as_words()
+        return shot_contents(self._source, bench.controls, effects, path), []
+
+    async def _picture(self, name: str) -> bytes:
+        """When it has the noise that is asked for, or the user wants it as it is. Raises Cancelled."""
+        await self._refined()
+        return await self._window.do(lambda: picture_content(self._bench.image(), name, self._bench.shot.tone))
+
+    async def _refined(self) -> None:
+        bench = self._bench
+        if bench.is_refined:
+            return
+        with ui.dialog().props("persistent") as dialog, ui.card():
+            progress = ui.label().props('data-testid="save-progress"')
+            with ui.row():
+                ui.button("Save it as it is", on_click=lambda: dialog.submit(True)).props("no-caps")
+                ui.button("Do not save", on_click=lambda: dialog.submit(False), color=None).props("no-caps flat")
+
+        async def asked() -> Any:
+            return await dialog
+
+        answer = asyncio.ensure_future(asked())
+        try:
+            while not (bench.is_refined or answer.done() or dialog.is_deleted):
+                progress.set_text(f"The picture is being refined: {bench.progress}")
+                await asyncio.wait([answer], timeout=0.2)
+        finally:
+            answer.cancel()
+            if not dialog.is_deleted:
+                dialog.close()
+                dialog.delete()
+        if not bench.is_refined and not (answer.done() and not answer.cancelled() and answer.result()):
+            raise InputError("not saved")
+
+
+async def _answer(question: str) -> bool:
+    """Asks whether files may be replaced."""
+    with ui.dialog() as dialog, ui.card():
+        ui.label(question)
+        with ui.row():
+            ui.button("Replace it", on_click=lambda: dialog.submit(True)).props("no-caps")
+            ui.button("Keep it", on_click=lambda: dialog.submit(False), color=None).props("no-caps flat autofocus")
+    answer = await dialog
+    dialog.delete()
+    return bool(answer)

@@ -1,0 +1,113 @@
+"""Work in a process of its own, which may crash, never end, or be ended."""
+
+from __future__ import annotations
+
+import fcntl
+import multiprocessing
+import os
+import resource
+import signal
+import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from typing import Any, TypeVar
+
+from .._core import InputError
+
+T = TypeVar("T")
+_NICENESS = 10  # pictures go before
+_MOST_BYTES = 4 << 30  # of memory that the process may take
+_PROCESSES = multiprocessing.get_context("spawn")
+
+
+class WorkError(InputError):
+    """Work that was not done in time, or crashed. `str` says which, as the end of a sentence about it."""
+
+
+class WorkerProcess:
+    """Calls functions one at a time, in a process that is begun when it is wanted, and anew when it is gone.
+
+    The process ends with its parent, whatever it does at that time and however the parent ends.
+    """
+
+    def __init__(self) -> None:
+        self._turn = threading.Lock()
+        self._process: BaseProcess | None = None
+        self._line: Connection | None = None
+
+    def call(self, function: Callable[..., T], *arguments: Any, seconds: float) -> T:
+        """What the function gives or raises. Both it and its values must be such as can be pickled.
+
+        Raises WorkError after so many seconds, in which the process is begun, too, if it has to be.
+        """
+        with self._turn:
+            line = self._begun()
+            try:
+                line.send((function, arguments))
+                if not line.poll(seconds):
+                    raise WorkError(f"took longer than {seconds:g} s")
+                is_done, value = line.recv()
+            except (EOFError, OSError):
+                self._end()
+                raise WorkError("crashed") from None
+            except BaseException:
+                self._end()
+                raise
+        if not is_done:
+            raise value
+        result: T = value
+        return result
+
+    def warm_up(self) -> None:
+        """Begins the process, so that the first call need not wait for it."""
+        with self._turn:
+            self._begun()
+
+    def _begun(self) -> Connection:
+        if self._line and self._process and self._process.is_alive():
+            return self._line
+        self._end()
+        self._line, theirs = _PROCESSES.Pipe()
+        self._process = _PROCESSES.Process(target=_work, args=(theirs,), name="realcam-worker", daemon=True)
+        self._process.start()
+        theirs.close()
+        return self._line
+
+    def _end(self) -> None:
+        if self._line:
+            self._line.close()
+        if self._process:
+            self._process.kill()
+            self._process.join()
+        self._process = self._line = None
+
+
+def _work(line: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal's Ctrl-C is the parent's
+    _end_with_parent()
+    os.nice(_NICENESS)
+    resource.setrlimit(resource.RLIMIT_DATA, (_MOST_BYTES, _MOST_BYTES))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    while True:
+        try:
+            function, arguments = line.recv()
+        except EOFError:
+            return
+        try:
+            answer = True, function(*arguments)
+        except Exception as error:
+            answer = False, error
+        line.send(answer)
+
+
+def _end_with_parent() -> None:
+    """Has the kernel send SIGIO, which ends a process, when the pipe to the parent closes: no code has to run."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    signal.signal(signal.SIGIO, signal.SIG_DFL)
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+    flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)
+    if not parent.is_alive():  # since before
+        os._exit(1)

@@ -1,0 +1,110 @@
+"""Work in a process of its own: what crashes, never ends, or is left without its parent."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from realcam.viewer.worker_process import WorkerProcess, WorkError
+
+WAIT_S = 60.0  # for what takes a second on a quiet machine
+LONG = pow, 7, 10**9  # runs for minutes without letting any other thread of its process run
+
+
+@pytest.fixture
+def worker() -> Iterator[WorkerProcess]:
+    made = WorkerProcess()
+    yield made
+    made._end()
+
+
+def is_there(pid: int) -> bool:
+    try:
+        return " Z " not in Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2][:3]
+    except OSError:
+        return False
+
+
+def test_what_it_gives_and_what_it_raises(worker: WorkerProcess) -> None:
+    assert worker.call(pow, 2, 10, seconds=WAIT_S) == 1024
+    with pytest.raises(ValueError, match="invalid literal"):
+        worker.call(int, "x", seconds=WAIT_S)
+    pid = worker.call(os.getpid, seconds=WAIT_S)
+    assert pid != os.getpid()
+    assert worker.call(os.getpid, seconds=WAIT_S) == pid
+
+
+def test_work_that_crashes_and_the_next(worker: WorkerProcess) -> None:
+    for crash in ((signal.raise_signal, signal.SIGSEGV), (os._exit, 3)):
+        with pytest.raises(WorkError, match="crashed"):
+            worker.call(*crash, seconds=WAIT_S)
+        assert worker.call(pow, 2, 10, seconds=WAIT_S) == 1024
+
+
+def test_a_process_that_was_killed_at_rest_is_no_error(worker: WorkerProcess) -> None:
+    os.kill(worker.call(os.getpid, seconds=WAIT_S), signal.SIGKILL)
+    time.sleep(0.5)
+    assert worker.call(pow, 2, 10, seconds=WAIT_S) == 1024
+
+
+@pytest.mark.parametrize("long", [(time.sleep, 1e6), LONG], ids=["sleeps", "computes"])
+def test_work_that_never_ends_and_the_next(worker: WorkerProcess, long: tuple) -> None:
+    pid = worker.call(os.getpid, seconds=WAIT_S)
+    with pytest.raises(WorkError, match="longer than 1 s"):
+        worker.call(*long, seconds=1)
+    assert not is_there(pid)
+    assert worker.call(pow, 2, 10, seconds=WAIT_S) == 1024
+
+
+def test_work_that_takes_all_memory(worker: WorkerProcess) -> None:
+    with pytest.raises(MemoryError):
+        worker.call(bytearray, 1 << 40, seconds=WAIT_S)
+
+
+def test_threads_take_turns(worker: WorkerProcess) -> None:
+    answers: dict[int, int] = {}
+
+    def ask(k: int) -> None:
+        answers[k] = worker.call(pow, k, 2, seconds=WAIT_S)
+
+    threads = [threading.Thread(target=ask, args=(k,)) for k in range(20)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(WAIT_S)
+    assert answers == {k: k * k for k in range(20)}
+
+
+PARENT = """
+import threading, time, os
+from realcam.viewer.worker_process import WorkerProcess
+if __name__ == "__main__":
+    worker = WorkerProcess()
+    print(worker.call(os.getpid, seconds=60), flush=True)
+    threading.Thread(target=lambda: worker.call(pow, 7, 10**9, seconds=600), daemon=True).start()
+    time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM])
+def test_it_ends_with_its_parent(tmp_path: Path, end: signal.Signals) -> None:
+    """While it computes, and however the parent ends."""
+    (tmp_path / "parent.py").write_text(PARENT)
+    with subprocess.Popen([sys.executable, str(tmp_path / "parent.py")], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        pid = int(parent.stdout.readline())
+        time.sleep(1)
+        assert is_there(pid)
+        parent.send_signal(end)
+        parent.wait(WAIT_S)
+    deadline = time.monotonic() + 10
+    while is_there(pid):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
