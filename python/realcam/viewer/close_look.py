@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import analysis
-from .._core import InputError, Lens
+from .._core import Lens
 from ..analysis import kinds
 from ..analysis.fields import Bundles
 from ..drawing.themes import LIGHT
@@ -55,10 +55,3 @@ def plot_svg(look: Look) -> str:
 def height_of(u: float, v: float, film_mm: tuple[float, float]) -> float:
     """Distance from the middle of the film, mm, of a place in the picture."""
     return math.hypot((u - 0.5) * film_mm[0], (v - 0.5) * film_mm[1])
-
-
-def checked_kind(kind: str) -> str:
-    """Raises InputError."""
-    if kind not in PLOTS:
-        raise InputError(f'there is no plot "{kind:.40}"')
-    return kind

@@ -22,7 +22,7 @@ from .lens_view import drawn_heights_mm
 from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
 from .picture_loop import PictureLoop
-from .picture_request import Frame, PictureRequest
+from .picture_request import MOST_SPP, Frame, PictureRequest
 from .ring_scales import Ring
 
 
@@ -248,7 +248,14 @@ class LensBench:
         samples = f"{frame.samples} sample{'' if frame.samples == 1 else 's'} per pixel"
         if frame.noise_codes is None:
             return samples
-        return f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels, where {self.noise_codes:g} is asked for"
+        wanted = (
+            frame.samples * (frame.noise_codes / self.noise_codes) ** 2
+        )  # noise falls with the root of their number
+        left_s = frame.seconds * max(0.0, min(wanted, MOST_SPP) / frame.samples - 1)
+        return (
+            f"{samples}, noise {frame.noise_codes:.1f} of 255 grey levels where {self.noise_codes:g} is asked for, "
+            f"about {f'{left_s:.0f} s' if left_s < 100 else f'{left_s / 60:.0f} minutes'} to go"
+        )
 
     def show_again(self) -> None:
         """Sends the picture as it is once more."""

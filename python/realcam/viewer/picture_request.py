@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from .._core import Camera, RenderStats
 
+MOST_SPP = 4096  # with which a picture is done, however noisy it still is
+
 
 def has_wavelengths(effects: Iterable[str]) -> bool:
     """Whether effects, as shot files name them, are or may be such as an illuminant belongs to."""
@@ -26,7 +28,7 @@ class PictureRequest:
     is_automatic: bool = False  #: the exposure time follows the light
     compensation_ev: float = 0.0
     noise_codes: float = 1.0  #: the picture is refined until its noise is as small
-    max_spp: int = 4096
+    max_spp: int = MOST_SPP
 
     def illuminant_with(self, effects: Iterable[str]) -> str:
         """The illuminant where one of the effects has wavelengths; elsewhere none may be named."""

@@ -10,7 +10,7 @@ from typing import Any
 from nicegui import ui
 
 from .._core import InputError, RealcamError
-from ..files import write_whole
+from ..files import check_target, write_whole
 from .access import Folders
 from .saving import PICTURE_SUFFIXES, check_suffix, lens_content, picture_content, shot_contents
 from .shot_source import ShotSource
@@ -50,6 +50,8 @@ class SavePanel:
         contents, left_out = (None, []) if what == "picture" else await self._window.do(self._contents, what, path)
         # A file beside the one that was named is looked at as that one is: it could be a link that leads elsewhere.
         targets = {self._folders.inside(str(file)): file for file in contents or [path]}
+        for target in targets:
+            check_target(target)
         agreed: set[Path] = set()
         if not await self._agree(targets, agreed):
             return

@@ -28,6 +28,7 @@ from .lens_reading import reader
 from .page import build_page
 from .plots_panel import plotter
 from .shot_source import ShotSource
+from .strange_requests import tell_in_one_line
 from .windows import Windows
 
 _STATIC = Path(__file__).with_name("static")
@@ -97,9 +98,10 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
 
     async def tell() -> None:
         print(f"realcam: the lens bench is at {address}", flush=True)
-        for process in (reader, plotter):
-            threading.Thread(target=process.warm_up, daemon=True).start()
+        for process, module in ((reader, "realcam.viewer.lens_reading"), (plotter, "realcam.viewer.close_look")):
+            threading.Thread(target=process.warm_up, args=(module,), daemon=True).start()
 
+    tell_in_one_line()
     # Of connections that are cut at the end because nobody closes them.
     logging.getLogger("uvicorn.error").addFilter(lambda record: "timeout graceful shutdown" not in record.getMessage())
     with contextlib.suppress(KeyboardInterrupt):
