@@ -108,6 +108,18 @@ def test_a_click_focuses_at_its_point(bench: LensBench) -> None:
         assert np.argmax(sharp) == round(3 * u - 0.5)
 
 
+def test_what_was_reported_ends_with_the_next_change(bench: LensBench) -> None:
+    told = Told(bench)
+    bench.report(Problem("there is no light where the meter looks", of="picture"))
+    assert told.problems[-1] == Problem("there is no light where the meter looks", of="picture")
+    assert bench.change(iso=200)
+    assert told.problems[-1] is None
+    assert not bench.edit(lambda lens: lens_edits.with_value(lens, 99, "radius_mm", 1.0))
+    assert told.problems[-1].of == "lens"
+    assert not bench.change(focus_m=-1.0)
+    assert told.problems[-1].of == "picture"
+
+
 def test_metering_makes_its_point_grey_however_often(bench: LensBench) -> None:
     """Middle grey is 10 lx s over the ISO speed (ISO 12232)."""
     told = Told(bench)

@@ -106,7 +106,7 @@ def test_resolution_and_noise(bench: BenchPage) -> None:
     bench.choose("resolution", "320 pixels across")
     until(lambda: bench.picture().shape, lambda shape: shape[1] == 320, "the canvas's size")
     until(lambda: bench.status, lambda text: text.startswith("320 × 213"), "the refined size")
-    bench.choose("refine to", "4 codes (draft)")
+    bench.choose("refine to", "4 grey levels (draft)")
     until(lambda: bench.status, lambda text: text.endswith("done"), "done")
 
 
@@ -177,6 +177,39 @@ def test_peaking_clipping_and_the_histogram(bench: BenchPage) -> None:
     until(lambda: bench.status, lambda text: "clipped" in text, "the status says so")
 
 
+SYNTHETIC = """
+async ({noise, told, contrast}) => {
+    const { marksOf } = await import("/realcam/exposure_marks.js");
+    const width = 256, height = 192, image = new ImageData(width, height);
+    let state = 1;
+    const random = () => (state = (state * 1664525 + 1013904223) % 4294967296) / 4294967296;
+    const gauss = () => Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
+    for (let k = 0; k < width * height; ++k) {
+        const isLight = ((k % width >> 4) + (Math.floor(k / width) >> 4)) % 2;
+        const value = 128 + contrast * (isLight - 0.5) + noise * gauss();
+        image.data.set([value, value, value, 255], 4 * k);
+    }
+    const marks = marksOf(image, { clipping: false, peaking: true, noise: told });
+    let edges = 0, marked = 0, others = 0, wrong = 0;
+    for (let y = 2; y < height - 2; ++y) for (let x = 2; x < width - 2; ++x) {
+        const isEdge = [x, y].some((p) => p % 16 === 0 || p % 16 === 15), is = marks.data[4 * (y * width + x) + 3] > 0;
+        if (isEdge) { edges += 1; marked += is; } else { others += 1; wrong += is; }
+    }
+    return [marked / edges, wrong / others];
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("noise", "told", "contrast"), [(20, 20, 0), (20, None, 0), (8, 8, 0), (4, 4, 130), (4, None, 130), (0, 0, 60)]
+)
+def test_peaking_marks_edges_and_no_noise(bench: BenchPage, noise: float, told: float | None, contrast: float) -> None:
+    """Of normal noise, four deviations are exceeded by 6e-5 of the pixels, and that of neighbours by fewer."""
+    marked, wrong = bench.page.evaluate(SYNTHETIC, {"noise": noise, "told": told, "contrast": contrast})
+    assert wrong < 1e-4
+    assert marked > 0.9 if contrast else marked < 1e-4
+
+
 # The lens.
 
 
@@ -244,6 +277,51 @@ def test_undo_and_redo(bench: BenchPage) -> None:
 
 
 @pytest.mark.parametrize("field", ["radius_mm", "thickness_mm", "semi_diameter_mm"])
+def test_the_film_is_in_the_drawing(bench: BenchPage) -> None:
+    """However far it is behind the glass."""
+    for name in ("telephoto-200mm-inner-focus", "singlet-100mm", "phone-4mm"):
+        focal = rc.Lens.load(name).first_order().effective_focal_length_mm
+        bench.page.get_by_role("button", name="Gallery").click()
+        bench.page.get_by_role("button", name=name, exact=True).click()
+        until(lambda: bench.figure("effective_focal_length_mm"), lambda f, w=focal: abs(f - w) < 0.02 * w, name)
+        drawing, film = (bench.page.locator(s).bounding_box() for s in ("svg.rc-section", "svg.rc-section .rc-film"))
+        assert drawing["x"] <= film["x"] <= drawing["x"] + drawing["width"]
+        assert drawing["y"] <= film["y"] + 1
+        assert film["y"] + film["height"] <= drawing["y"] + drawing["height"] + 1
+
+
+def test_aspheric_coefficients_are_shown_whole(bench: BenchPage) -> None:
+    bench.page.get_by_role("button", name="Gallery").click()
+    bench.page.get_by_role("button", name="phone-4mm", exact=True).click()
+    cells = bench.page.locator('[data-cell*="-a"]')
+    until(cells.count, bool, "aspheric coefficients")
+    cut = cells.evaluate_all("all => all.filter((c) => c.scrollWidth > c.clientWidth).map((c) => c.value)")
+    assert cut == []
+    values = cells.evaluate_all("all => all.map((c) => c.value)")
+    assert any("e-" in value for value in values)
+
+
+def test_blades_and_film_are_chosen(bench: BenchPage) -> None:
+    bench.test_id("blades").fill("6")
+    bench.test_id("blades").press("Enter")
+    until(lambda: bench.page.evaluate("JSON.stringify(sessionStorage)"), lambda s: "blades = 6" in s, "six blades")
+    bench.test_id("rounding").fill("0.5")
+    bench.test_id("rounding").press("Enter")
+    until(lambda: bench.page.evaluate("JSON.stringify(sessionStorage)"), lambda s: "rounding = 0.5" in s, "rounded")
+    bench.test_id("blades").fill("2")
+    bench.test_id("blades").press("Enter")
+    until(bench.test_id("problem").count, lambda count: count == 1, "two blades are none")
+    before = bench.picture().astype(int)
+    bench.choose("film", "17.3 × 13 mm (Micro Four Thirds)")
+    until(lambda: bench.picture().shape[:2], lambda shape: shape == (round(120 * 13 / 17.3), 120), "the film's shape")
+    assert bench.test_id("film-width").input_value() == "17.3"
+    bench.page.get_by_role("button", name="Undo").click()
+    until(lambda: bench.picture().shape, lambda shape: shape == before.shape, "the film of before")
+    bench.test_id("film-width").fill("48")
+    bench.test_id("film-width").press("Enter")
+    until(lambda: bench.picture().shape[:2], lambda shape: shape == (60, 120), "a wide film")
+
+
 def test_dragging_in_the_drawing(bench: BenchPage, field: str) -> None:
     surface = 1 if field == "thickness_mm" else 0
     bench.cell(surface, "radius_mm").focus()
@@ -306,6 +384,31 @@ def test_rays_of_the_point_under_the_mouse(bench: BenchPage) -> None:
     until(rays, lambda now: now != before, "other rays")
 
 
+def plot(bench: BenchPage) -> str:
+    """The plot that is shown; none while one is drawn."""
+    return "" if bench.test_id("plot-busy").is_visible() else str(bench.test_id("plot-svg").inner_html())
+
+
+def test_a_plot_is_of_its_title_and_of_the_lens_as_it_stands(bench: BenchPage) -> None:
+    first = until(lambda: plot(bench), lambda svg: "<svg" in svg, "a plot")
+    bench.choose("plot", "MTF")
+    bench.test_id("plot-busy").wait_for()
+    assert "<svg" not in bench.test_id("plot-svg").inner_html()  # nothing old under the new title
+    of_mtf = until(lambda: plot(bench), lambda svg: "<svg" in svg, "the MTF")
+    assert shapes(of_mtf) != shapes(first)
+    before = bench.figure("effective_focal_length_mm")
+    bench.edit(0, "radius_mm", "27.5")
+    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - before) > 0.5, "edited")
+    until(lambda: shapes(plot(bench)), lambda now: now and now != shapes(of_mtf), "of the edited lens")
+    bench.page.get_by_role("button", name="Undo").click()
+    until(lambda: shapes(plot(bench)), lambda now: now == shapes(of_mtf), "of the lens as before")
+
+
+def shapes(svg: str) -> list[str]:
+    """The paths of a plot, without names, which are drawn by lot."""
+    return re.findall(r' d="([^"]*)"', svg)
+
+
 def test_a_closer_look(bench: BenchPage) -> None:
     until(lambda: bench.page.locator("[data-testid=plot-svg] svg").count(), bool, "a plot")
     for title in ("Ray fan", "MTF", "Distortion", "Relative illumination", "Pupil shapes"):
@@ -323,14 +426,14 @@ def test_a_closer_look(bench: BenchPage) -> None:
 def test_saving(bench: BenchPage, server: Server) -> None:
     bench.turn("aperture", "ArrowRight", 6)
     bench.until_text("aperture-text", lambda text: text == "Aperture f/4")
-    for suffix in ("png", "exr", "dng"):
+    for suffix in ("png", "jpg", "exr", "dng"):
         save(bench, "picture", f"saved.{suffix}")
         assert (server.shot.parent / f"saved.{suffix}").stat().st_size > 1000
     save(bench, "shot", "saved.toml")
     shot = rc.Shot.load(server.shot.parent / "saved.toml")
     assert shot.camera.lens.first_order().f_number == pytest.approx(4, rel=0.05)
     bench.choose("save-what", "picture")
-    for k, name in enumerate(("../outside.png", "/tmp/outside.png", "saved.jpg", "")):
+    for k, name in enumerate(("../outside.png", "/tmp/outside.png", "saved.gif", "")):
         bench.test_id("save-name").fill(name)
         bench.test_id("save").click()
         bench.until_text("said", lambda text: "wanted" in text or "outside the folders" in text)
@@ -462,6 +565,32 @@ def test_the_keyboard_alone(bench: BenchPage) -> None:
     bench.until_text("shutter-text", lambda text: text == "Shutter 1/5 s")
     page.keyboard.press("m")
     bench.until_text("shutter-text", lambda text: text != "Shutter 1/5 s")
+
+
+def test_a_click_soon_after_a_movement_focuses(browser: playwright.Browser, tmp_path: Path) -> None:
+    """While the first frame of all pixels is taken, which here takes a second or more."""
+    server = Server(bench_shots.write_panels_shot(tmp_path, width=1920, more="max_bounces = 8\n"))
+    bench = BenchPage(browser, server.url)
+    try:
+        for wait_s, distance in ((0.2, "0.6"), (0.5, "20"), (0.8, "0.6"), (1.1, "20")):
+            box = bench.canvas.bounding_box()
+            x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+            bench.page.mouse.move(x, y)
+            bench.page.mouse.down()
+            for step in range(8):
+                bench.page.mouse.move(x + 3 * (step % 2), y + step)
+                time.sleep(0.02)
+            bench.page.mouse.move(x, y)
+            bench.page.mouse.up()
+            time.sleep(wait_s)
+            bench.click_picture(1 / 6 if distance == "0.6" else 5 / 6, 0.5)
+            text = bench.until_text("focus-text", lambda text, d=distance: text.startswith(f"Focus {d}"[:8]))
+            assert float(text.split()[1]) == pytest.approx(float(distance), rel=0.1)
+            assert bench.test_id("problem").count() == bench.test_id("picture-problem").count() == 0
+    finally:
+        bench.close()
+        server.stop()
+    assert server.complaints() == []
 
 
 def test_the_mouse_moves_the_camera(bench: BenchPage) -> None:

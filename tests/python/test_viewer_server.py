@@ -320,7 +320,7 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
         return bench.page.evaluate("window.seenFrames")
 
     try:
-        bench.choose("refine to", "4 codes (draft)")
+        bench.choose("refine to", "4 grey levels (draft)")
         done(bench)
         bench.page.evaluate(
             """() => {

@@ -22,7 +22,7 @@ LONG = pow, 7, 10**9  # runs for minutes without letting any other thread of its
 def worker() -> Iterator[WorkerProcess]:
     made = WorkerProcess()
     yield made
-    made._end()
+    made.end()
 
 
 def is_there(pid: int) -> bool:

@@ -104,6 +104,14 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
     tell_in_one_line()
     # Of connections that are cut at the end because nobody closes them.
     logging.getLogger("uvicorn.error").addFilter(lambda record: "timeout graceful shutdown" not in record.getMessage())
+    status = 128 + signal.SIGINT
+
+    def end(*_: object) -> None:
+        nonlocal status
+        status = 128 + signal.SIGTERM
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, end)  # which the server calls when it has shut down
     with contextlib.suppress(KeyboardInterrupt):
         ui.run(
             host=settings.host,
@@ -122,10 +130,12 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             callback_notify=tell,
             timeout_notify=10**9,
         )
+    for process in (reader, plotter):
+        process.end()
     # Python would wait for what threads are doing: frames, plans and drawings that nobody is going to see.
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(128 + signal.SIGINT)
+    os._exit(status)
 
 
 def check_port(host: str, port: int) -> None:

@@ -52,10 +52,10 @@ class WorkerProcess:
                     raise WorkError(f"took longer than {seconds:g} s")
                 is_done, value = line.recv()
             except (EOFError, OSError):
-                self._end()
+                self._forget()
                 raise WorkError("crashed") from None
             except BaseException:
-                self._end()
+                self._forget()
                 raise
         if not is_done:
             raise value
@@ -67,22 +67,27 @@ class WorkerProcess:
         with contextlib.suppress(WorkError):
             self.call(_import, module, seconds=_LONGEST_IMPORT_S)
 
+    def end(self) -> None:
+        """Ends the process, whatever it does; a call that waits for it raises WorkError."""
+        process = self._process
+        if process:
+            process.kill()
+            process.join()
+
     def _begun(self) -> Connection:
         if self._line and self._process and self._process.is_alive():
             return self._line
-        self._end()
+        self._forget()
         self._line, theirs = _PROCESSES.Pipe()
         self._process = _PROCESSES.Process(target=_work, args=(theirs,), name="realcam-worker", daemon=True)
         self._process.start()
         theirs.close()
         return self._line
 
-    def _end(self) -> None:
+    def _forget(self) -> None:
         if self._line:
             self._line.close()
-        if self._process:
-            self._process.kill()
-            self._process.join()
+        self.end()
         self._process = self._line = None
 
 

@@ -1,0 +1,174 @@
+"""How the lens bench's server and its processes end, and what they do to each other."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("nicegui")
+playwright = pytest.importorskip("playwright.sync_api")
+
+from . import bench_shots  # noqa: E402
+from .bench_pages import CHROMIUM, BenchPage, Server, fetch, until  # noqa: E402
+
+pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
+
+
+def is_there(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def workers(server: Server) -> list[int]:
+    found = []
+    for line in subprocess.check_output(["ps", "-e", "-o", "pid=,ppid=,args="], text=True).splitlines():
+        pid, parent, command = line.split(maxsplit=2)
+        if int(parent) == server.process.pid and "spawn_main" in command:
+            found.append(int(pid))
+    return found
+
+
+def has_plot(bench: BenchPage) -> bool:
+    return "<svg" in bench.test_id("plot-svg").inner_html()
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Server:
+    server = Server(bench_shots.write_panels_shot(tmp_path, width=480))
+    yield server
+    server.stop()
+    assert server.complaints() == [], server.complaints()
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_it_ends_at_once_and_nothing_is_left(browser: playwright.Browser, own: Server, end: signal.Signals) -> None:
+    """With a page that is open, while it plots, plans, measures and refines."""
+    bench = BenchPage(browser, own.url)
+    try:
+        until(lambda: workers(own), lambda found: len(found) == 2, "both processes")
+        bench.choose("refine to", "half a grey level (fine)")
+        bench.choose("plot", "MTF")
+        bench.page.get_by_role("button", name="Measure the levels of simulation").click()
+        time.sleep(0.5)
+        left = workers(own)
+        own.process.send_signal(end)
+        # It takes 0.3 s on a quiet machine; what was wrong took as long as what was under way.
+        own.process.wait(6)
+        until(lambda: [pid for pid in left if is_there(pid)], lambda pids: not pids, "processes are left", 6)
+        bench.complaints.clear()  # the browser says that nobody answers
+    finally:
+        bench.close()
+
+
+def test_a_plotting_process_that_is_killed_comes_again(browser: playwright.Browser, own: Server) -> None:
+    bench = BenchPage(browser, own.url)
+    try:
+        until(lambda: has_plot(bench), bool, "the first plot")
+        for title in ("MTF", "Distortion"):
+            for pid in workers(own):
+                os.kill(pid, signal.SIGKILL)
+            bench.choose("plot", title)
+            bench.test_id("plot-busy").wait_for(state="hidden")
+            until(lambda: has_plot(bench), bool, title)
+    finally:
+        bench.close()
+
+
+def test_a_plot_that_is_not_done_keeps_nobody(browser: playwright.Browser, own: Server) -> None:
+    """Of a window that is closed meanwhile."""
+    bench, other = BenchPage(browser, own.url), BenchPage(browser, own.url)
+    stopped: list[int] = []
+    try:
+        until(lambda: has_plot(other), bool, "the first plot")
+        stopped = workers(own)
+        for pid in stopped:
+            os.kill(pid, signal.SIGSTOP)  # as on a machine that is busy
+        other.choose("plot", "Ray fan")
+        other.test_id("plot-busy").wait_for()
+        other.close()
+        deadline = time.monotonic() + 35  # 30 s after it is gone a window is closed
+        while time.monotonic() < deadline:
+            begun = time.monotonic()
+            fetch(f"{own.url}realcam/page.css", 10)
+            assert time.monotonic() - begun < 5
+            time.sleep(0.5)
+        before = bench.text("iso-text")
+        bench.turn("iso", "ArrowRight", 3)
+        bench.until_text("iso-text", lambda text: text != before)
+    finally:
+        for pid in stopped:
+            os.kill(pid, signal.SIGCONT)
+        bench.close()
+
+
+def test_lens_files_that_hurt_their_reader_keep_nobody(
+    browser: playwright.Browser, own: Server, tmp_path: Path
+) -> None:
+    bench = BenchPage(browser, own.url)
+    try:
+        for name, content in (
+            ("dots.toml", b"a." * 500_000 + b"b = 1"),
+            ("ampersands.seq", b"RDM;LEN\n" + b"x&\n" * 600_000),
+        ):
+            (tmp_path / name).write_bytes(content)
+            bench.page.locator("[data-testid=upload] input[type=file]").set_input_files(tmp_path / name)
+            before = bench.text("iso-text")
+            bench.turn("iso", "ArrowRight")
+            bench.until_text("iso-text", lambda text, before=before: text != before)
+            bench.until_text("said", lambda text, name=name: name in text and "Opened" not in text)
+    finally:
+        bench.close()
+
+
+def test_a_port_in_use_is_told_in_one_line(tmp_path: Path) -> None:
+    shot = bench_shots.write_panels_shot(tmp_path)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        command = [sys.executable, "-m", "realcam", "view", str(shot), "--no-browser", "--port", str(port)]
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert ended.returncode == 2
+    assert ended.stdout == ""
+    assert len(ended.stderr.splitlines()) == 1
+    assert f"127.0.0.1:{port}" in ended.stderr
+    assert "in use" in ended.stderr
+
+
+def test_as_many_windows_as_may_be_however_fast_they_are_asked_for(own: Server) -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    def threads() -> int:
+        return len(list(Path(f"/proc/{own.process.pid}/task").iterdir()))
+
+    before = threads()
+    with ThreadPoolExecutor(60) as pool:
+        list(pool.map(lambda _: fetch(own.url, 120), range(60)))
+    # A window has ten and the backend's; 60 of them had 600 more.
+    assert threads() - before < 16 * 16
+
+
+def test_what_is_no_event_of_a_page_is_one_line_of_the_log(own: Server) -> None:
+    websockets = pytest.importorskip("websockets.sync.client")
+    page = fetch(own.url).decode()
+    client = page.split("/_nicegui/client/")[1].split("/")[0]
+    address = f"ws://127.0.0.1:{own.port}/_nicegui_ws/socket.io/?client_id={client}&EIO=4&transport=websocket"
+    address += "&document_id=d&tab_id=t&next_message_id=0&implicit_handshake=true"
+    with websockets.connect(address, proxy=None) as line:
+        line.recv(timeout=30)
+        line.send("40")
+        line.recv(timeout=30)
+        for k in range(60):
+            event = f'{{"id":{k},"client_id":"{client}","listener_id":"x","args":["\\"\\\\ud800"]}}'
+            line.send(f'42["event",{event}]')
+        line.send('42["event",{}]')
+        line.send('42["handshake",5]')
+        time.sleep(1)
+    until(lambda: own.said, lambda said: "could not be understood" in said, "one line")

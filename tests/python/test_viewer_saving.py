@@ -1,0 +1,182 @@
+"""What the page saves, and what it leaves alone."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import realcam as rc
+
+pytest.importorskip("nicegui")
+playwright = pytest.importorskip("playwright.sync_api")
+
+from .bench_pages import CHROMIUM, BenchPage, Server, until  # noqa: E402
+
+pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
+
+
+def ask_to_save(bench: BenchPage, what: str, name: str, button: str = "save") -> None:
+    if what != "picture":
+        bench.choose("save-what", what)
+    bench.test_id("save-name").fill(name)
+    bench.test_id(button).click()
+
+
+def answer(bench: BenchPage, text: str) -> None:
+    bench.page.get_by_role("button", name=text).click()
+    bench.page.locator(".q-dialog").wait_for(state="detached")
+
+
+def edited(bench: BenchPage) -> None:
+    before = bench.figure("effective_focal_length_mm")
+    bench.edit(0, "radius_mm", "27.5")
+    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - before) > 0.5, "edited")
+
+
+@pytest.fixture
+def folder(server: Server, request: pytest.FixtureRequest) -> Path:
+    """A folder of the test's own within that of the server."""
+    made = server.shot.parent / request.node.name.replace("[", "-").replace("]", "")
+    made.mkdir()
+    return made
+
+
+def test_the_lens_beside_a_shot_is_asked_for_too(bench: BenchPage, folder: Path) -> None:
+    (folder / "shot-lens.toml").write_text("precious")
+    edited(bench)
+    for reply, is_kept in (("Keep it", True), ("Replace it", False)):
+        ask_to_save(bench, "shot", f"{folder.name}/shot.toml")
+        bench.page.get_by_text("shot-lens.toml is there already").wait_for()
+        answer(bench, reply)
+        if not is_kept:
+            bench.until_text("said", lambda text: text.startswith("Wrote"))
+        assert ((folder / "shot-lens.toml").read_text() == "precious") == is_kept
+        assert (folder / "shot.toml").exists() != is_kept
+    assert rc.Shot.load(folder / "shot.toml").camera.lens.surfaces[0].radius_of_curvature_mm == 27.5
+
+
+def test_nothing_is_written_through_a_link_out_of_the_folders(bench: BenchPage, folder: Path, tmp_path: Path) -> None:
+    victim = tmp_path / "victim.toml"
+    victim.write_text("of somebody else")
+    (folder / "shot-lens.toml").symlink_to(victim)
+    (folder / "lens.toml").symlink_to(tmp_path / "not-there.toml")
+    edited(bench)
+    ask_to_save(bench, "shot", f"{folder.name}/shot.toml")
+    bench.until_text("said", lambda text: "shot-lens.toml" in text and "outside the folders" in text)
+    ask_to_save(bench, "lens", f"{folder.name}/lens.toml")
+    bench.until_text("said", lambda text: "lens.toml" in text and "outside the folders" in text)
+    assert victim.read_text() == "of somebody else"
+    assert not (tmp_path / "not-there.toml").exists()
+    assert not (folder / "shot.toml").exists()
+
+
+def test_two_windows_that_save_one_new_name(browser: Any, server: Server, bench: BenchPage, folder: Path) -> None:
+    """The one that comes later is asked, even if neither saw the file of the other when it asked for its own."""
+    edited(bench)
+    other = BenchPage(browser, server.url)
+    try:
+        for page in (bench, other):
+            page.choose("save-what", "lens")
+            page.test_id("save-name").fill(f"{folder.name}/mine.toml")
+        for page in (bench, other):
+            page.test_id("save").click(no_wait_after=True)
+
+        def seen() -> list[bool]:
+            return [page.page.get_by_text("mine.toml is there already").is_visible() for page in (bench, other)]
+
+        until(seen, lambda asked: sum(asked) == 1, "one is asked")
+        first, second = (other, bench) if seen()[0] else (bench, other)
+        first.until_text("said", lambda text: text == "Wrote mine.toml")
+        answer(second, "Keep it")
+    finally:
+        other.close()
+    radius = rc.Lens.load(folder / "mine.toml").surfaces[0].radius_of_curvature_mm
+    assert (radius == 27.5) == (first is bench)
+
+
+@pytest.mark.parametrize("name", ["picture.png", "picture.jpg", "lens.toml"])
+def test_a_file_that_is_replaced_keeps_its_permissions(bench: BenchPage, folder: Path, name: str) -> None:
+    path = folder / name
+    path.write_text("private")
+    path.chmod(0o600)
+    ask_to_save(bench, "lens" if "lens" in name else "picture", f"{folder.name}/{name}")
+    answer(bench, "Replace it")
+    bench.until_text("said", lambda text: text == f"Wrote {name}")
+    assert path.read_bytes() != b"private"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+
+
+def error_of(path: Path, reference: rc.Image) -> float:
+    oiio = pytest.importorskip("OpenImageIO")
+    codes = oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8)[..., :3].astype(float)
+    return float(np.sqrt(np.mean((codes - reference.developed()) ** 2)))
+
+
+def test_a_picture_is_saved_with_the_noise_that_is_asked_for(browser: Any, server: Server, folder: Path) -> None:
+    """Though it is saved as soon as the page is there, when it has one sample."""
+    shot = rc.Shot.load(server.shot)
+    bench = BenchPage(browser, server.url)
+    try:
+        bench.choose("resolution", "640 pixels across")
+        ask_to_save(bench, "picture", f"{folder.name}/refined.png")
+        bench.until_text("said", lambda text: text == "Wrote refined.png")
+    finally:
+        bench.close()
+    camera = shot.camera.replace(film=shot.camera.film.replace(resolution=(640, 427)))
+    reference = rc.render(shot.scene, camera, effects=(), spp=1024, seed=9, device="cpu")
+    # One level of noise is asked for; 0.4 is that of the rounding of both.
+    assert error_of(folder / "refined.png", reference) < 1.8
+
+
+def test_a_picture_that_is_being_refined_is_saved_as_it_is_or_not(bench: BenchPage, folder: Path) -> None:
+    bench.choose("resolution", "1920 pixels across")
+    bench.choose("refine to", "half a grey level (fine)")
+    ask_to_save(bench, "picture", f"{folder.name}/soon.png")
+    bench.until_text("save-progress", lambda text: "sample" in text)
+    answer(bench, "Do not save")
+    bench.until_text("said", lambda text: text == "not saved")
+    assert list(folder.iterdir()) == []
+    ask_to_save(bench, "picture", f"{folder.name}/soon.png")
+    bench.until_text("save-progress", lambda text: "sample" in text)
+    answer(bench, "Save it as it is")
+    bench.until_text("said", lambda text: text == "Wrote soon.png")
+    assert (folder / "soon.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("suffix", ["png", "jpg", "jpeg", "exr", "dng"])
+def test_a_picture_is_downloaded(bench: BenchPage, server: Server, tmp_path: Path, suffix: str) -> None:
+    bench.until_picture(lambda p: True, "the picture")
+    with bench.page.expect_download() as asked:
+        ask_to_save(bench, "picture", f"mine.{suffix}", "download")
+    assert asked.value.suggested_filename == f"mine.{suffix}"
+    asked.value.save_as(tmp_path / f"mine.{suffix}")
+    oiio = pytest.importorskip("OpenImageIO")
+    assert oiio.ImageBuf(str(tmp_path / f"mine.{suffix}")).spec().width > 0
+    assert not (server.shot.parent / f"mine.{suffix}").exists()
+
+
+def test_a_shot_is_downloaded_with_its_lens(bench: BenchPage, server: Server) -> None:
+    edited(bench)
+    files = []
+    bench.page.on("download", files.append)
+    ask_to_save(bench, "shot", "mine.toml", "download")
+    until(lambda: (bench.page.wait_for_timeout(50), len(files))[1], lambda count: count == 2, "both files")
+    there = server.shot.parent / "downloaded"
+    there.mkdir()
+    for file in files:
+        file.save_as(server.shot.parent / file.suggested_filename)  # where its scene is
+    shot = rc.Shot.load(server.shot.parent / "mine.toml")
+    assert shot.camera.lens.surfaces[0].radius_of_curvature_mm == 27.5
+
+
+def test_an_unknown_ending_is_told_where_one_looks(bench: BenchPage, folder: Path) -> None:
+    for what, name in (("picture", "x.gif"), ("shot", "x.png"), ("lens", "x.txt")):
+        ask_to_save(bench, what, f"{folder.name}/{name}")
+        bench.until_text("said", lambda text, name=name: name in text and "wanted" in text)
+        said = bench.test_id("said")
+        assert said.is_visible()
+        assert "rc-problem" in (said.get_attribute("class") or "")
+    assert list(folder.iterdir()) == []
