@@ -74,6 +74,9 @@ UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(f
         descriptor = open(temporary_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode);
         if (descriptor < 0) fail(errno);
     }
+    // What is replaced may be private. Some file systems have no modes to set.
+    struct stat before{};
+    if (stat(target_.c_str(), &before) == 0) static_cast<void>(fchmod(descriptor, before.st_mode & 07777));
     file_ = fdopen(descriptor, "wb");
     // A buffer could be emptied, in vain, by whoever closes the picture, and the error be lost.
     std::setvbuf(file_, nullptr, _IONBF, 0);

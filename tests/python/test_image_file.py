@@ -227,6 +227,15 @@ def test_written_files_have_ordinary_permissions(image: rc.Image, tmp_path: Path
     assert (tmp_path / "picture.png").stat().st_mode & 0o777 == 0o640
 
 
+@pytest.mark.parametrize("suffix", [".png", ".exr"])
+def test_a_file_that_is_replaced_keeps_its_permissions(image: rc.Image, tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"picture{suffix}"
+    path.write_text("private")
+    path.chmod(0o600)
+    image.save(path)
+    assert path.stat().st_mode & 0o777 == 0o600
+
+
 def test_unknown_tone_curve(image: rc.Image, tmp_path: Path) -> None:
     with pytest.raises(rc.InputError, match="film or linear"):
         image.save(tmp_path / "picture.png", tone="sepia")

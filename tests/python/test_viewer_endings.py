@@ -30,7 +30,7 @@ def is_there(pid: int) -> bool:
 
 def workers(server: Server) -> list[int]:
     found = []
-    for line in subprocess.check_output(["ps", "-e", "-o", "pid=,ppid=,args="], text=True).splitlines():
+    for line in subprocess.check_output(["ps", "-e", "-ww", "-o", "pid=,ppid=,args="], text=True).splitlines():
         pid, parent, command = line.split(maxsplit=2)
         if int(parent) == server.process.pid and "spawn_main" in command:
             found.append(int(pid))

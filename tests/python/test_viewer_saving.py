@@ -120,15 +120,17 @@ def test_a_picture_is_saved_with_the_noise_that_is_asked_for(browser: Any, serve
     shot = rc.Shot.load(server.shot)
     bench = BenchPage(browser, server.url)
     try:
-        bench.choose("resolution", "640 pixels across")
+        bench.choose("refine to", "2 grey levels")
+        bench.choose("resolution", "480 pixels across")
         ask_to_save(bench, "picture", f"{folder.name}/refined.png")
-        bench.until_text("said", lambda text: text == "Wrote refined.png")
+        until(lambda: bench.text("said"), lambda text: text == "Wrote refined.png", "saved", 240)
     finally:
         bench.close()
-    camera = shot.camera.replace(film=shot.camera.film.replace(resolution=(640, 427)))
+    camera = shot.camera.replace(film=shot.camera.film.replace(resolution=(480, 320)))
     reference = rc.render(shot.scene, camera, effects=(), spp=1024, seed=9, device="cpu")
-    # One level of noise is asked for; 0.4 is that of the rounding of both.
-    assert error_of(folder / "refined.png", reference) < 1.8
+    # The noise that is told is that of the error or more, to a fifth (test_viewer_picture_loop.py); 0.4 is that of the
+    # rounding of both. One sample has five times as much.
+    assert error_of(folder / "refined.png", reference) < 2.8
 
 
 def test_a_picture_that_is_being_refined_is_saved_as_it_is_or_not(bench: BenchPage, folder: Path) -> None:
@@ -161,11 +163,9 @@ def test_a_picture_is_downloaded(bench: BenchPage, server: Server, tmp_path: Pat
 def test_a_shot_is_downloaded_with_its_lens(bench: BenchPage, server: Server) -> None:
     edited(bench)
     files = []
-    bench.page.on("download", files.append)
+    bench.page.on("download", lambda file: files.append(file))
     ask_to_save(bench, "shot", "mine.toml", "download")
     until(lambda: (bench.page.wait_for_timeout(50), len(files))[1], lambda count: count == 2, "both files")
-    there = server.shot.parent / "downloaded"
-    there.mkdir()
     for file in files:
         file.save_as(server.shot.parent / file.suggested_filename)  # where its scene is
     shot = rc.Shot.load(server.shot.parent / "mine.toml")

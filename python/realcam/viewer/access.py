@@ -159,7 +159,7 @@ class Folders:
         except (OSError, RuntimeError, ValueError):  # a link to itself; a name that no file can have
             raise InputError(f'"{name!a:.80}" cannot be the name of a file') from None
         if not self._holds(path):
-            raise InputError(f'"{name:.80}" is outside the folders that the server was started with')
+            raise InputError(f'"{name[-80:]}" is outside the folders that the server was started with')
         return path
 
     def _holds(self, path: Path) -> bool:
