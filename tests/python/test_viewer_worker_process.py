@@ -63,6 +63,34 @@ def test_work_that_never_ends_and_the_next(worker: WorkerProcess, long: tuple) -
     assert worker.call(pow, 2, 10, seconds=WAIT_S) == 1024
 
 
+def test_ctrl_c_is_not_for_it(worker: WorkerProcess) -> None:
+    pid = worker.call(os.getpid, seconds=WAIT_S)
+    os.kill(pid, signal.SIGINT)
+    time.sleep(0.5)
+    assert worker.call(os.getpid, seconds=WAIT_S) == pid
+
+
+def test_one_that_is_ended_does_no_more(worker: WorkerProcess) -> None:
+    """Nor does it begin anew for whoever waited for it."""
+    pid = worker.call(os.getpid, seconds=WAIT_S)
+    told: list[str] = []
+
+    def ask() -> None:
+        for _ in range(2):
+            try:
+                worker.call(time.sleep, 1e6, seconds=WAIT_S)
+            except WorkError as error:
+                told.append(str(error))
+
+    thread = threading.Thread(target=ask)
+    thread.start()
+    time.sleep(0.5)
+    worker.end()
+    thread.join(WAIT_S)
+    assert told == ["crashed", "is not done any more"]
+    assert not is_there(pid)
+
+
 def test_work_that_takes_all_memory(worker: WorkerProcess) -> None:
     with pytest.raises(MemoryError):
         worker.call(bytearray, 1 << 40, seconds=WAIT_S)

@@ -21,4 +21,4 @@ def measured_levels(scene: Scene, camera: Camera, device: str) -> tuple[list[dic
     levels = [
         {"name": rung.name, "points": [[pixels * p.seconds, p.rmse] for p in rung.pictures]} for rung in cost.rungs
     ]
-    return levels, f"against a reference with noise of {cost.reference_noise_codes:.2g} codes"
+    return levels, f"against a reference with noise of {cost.reference_noise_codes:.2g} grey levels"

@@ -35,7 +35,9 @@ class WorkerProcess:
     """
 
     def __init__(self) -> None:
-        self._turn = threading.Lock()
+        self._turn = threading.Lock()  # of calls
+        self._beginning = threading.Lock()  # of what is below, while it changes
+        self._is_ended = False
         self._process: BaseProcess | None = None
         self._line: Connection | None = None
 
@@ -68,31 +70,43 @@ class WorkerProcess:
             self.call(_import, module, seconds=_LONGEST_IMPORT_S)
 
     def end(self) -> None:
-        """Ends the process, whatever it does; a call that waits for it raises WorkError."""
-        process = self._process
-        if process:
-            process.kill()
-            process.join()
+        """Ends the process for good, whatever it does; a call that waits for it raises WorkError, as do later ones."""
+        with self._beginning:
+            self._is_ended = True
+            self._kill()
 
     def _begun(self) -> Connection:
         if self._line and self._process and self._process.is_alive():
             return self._line
         self._forget()
-        self._line, theirs = _PROCESSES.Pipe()
-        self._process = _PROCESSES.Process(target=_work, args=(theirs,), name="realcam-worker", daemon=True)
-        self._process.start()
-        theirs.close()
-        return self._line
+        with self._beginning:
+            if self._is_ended:
+                raise WorkError("is not done any more")
+            self._line, theirs = _PROCESSES.Pipe()
+            self._process = _PROCESSES.Process(target=_work, args=(theirs,), name="realcam-worker", daemon=True)
+            # A terminal's Ctrl-C is the parent's: the process is begun with what this thread does not hear.
+            heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                self._process.start()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, heard)
+            theirs.close()
+            return self._line
 
     def _forget(self) -> None:
         if self._line:
             self._line.close()
-        self.end()
+        self._kill()
         self._process = self._line = None
+
+    def _kill(self) -> None:
+        process = self._process
+        if process:
+            process.kill()
+            process.join()
 
 
 def _work(line: Connection) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal's Ctrl-C is the parent's
     _end_with_parent()
     os.nice(_NICENESS)
     resource.setrlimit(resource.RLIMIT_DATA, (_MOST_BYTES, _MOST_BYTES))
