@@ -60,7 +60,7 @@ class PlotsPanel:
         look = Look(kind, controls.set_lens, height)
         if look != self._look:
             self._look = look
-            self._plot.classes(add="invisible")
+            self._plot.set_content("")
             self._busy.set_visibility(True)
             self._task.submit(lambda: self._draw(look))
 
@@ -79,5 +79,4 @@ class PlotsPanel:
     def _show(self, look: Look, content: str) -> None:
         if look == self._look:
             self._plot.set_content(content)
-            self._plot.classes(remove="invisible")
             self._busy.set_visibility(False)
