@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam.bench import frame_scene
+from realcam.viewer.noise_measurement import NoiseMeasurement
 from realcam.viewer.pace import Pace
 from realcam.viewer.picture_loop import PictureLoop
 from realcam.viewer.picture_request import Frame, PictureRequest
@@ -336,3 +337,26 @@ def test_closing_ends_it_in_the_middle_of_everything(scene: rc.Scene) -> None:
         assert asked.done()
         with pytest.raises(rc.RealcamError):
             watched.loop.point(0.5, 0.5).result(1)
+
+
+def test_the_noise_of_parts_is_where_it_is() -> None:
+    """Of a picture whose right half is noisy: each part tells that of the mean of all its samples."""
+    random = np.random.default_rng(3)
+    grey = 0.1 / 0.01  # lx, which 0.01 s at ISO 100 expose to middle grey
+    deviation = np.zeros((160, 320, 1), np.float32)
+    deviation[:, 160:] = 0.1 * grey
+    first, second = (grey + deviation * random.standard_normal((160, 320, 3)).astype(np.float32) for _ in range(2))
+    measured = NoiseMeasurement()
+    assert measured.tiles(0.01, 100, "linear") is None
+    measured.add(8, first)
+    measured.add(16, 0.5 * (first + second))
+    tiles = np.array(measured.tiles(0.01, 100, "linear"))
+    assert tiles.shape == (16, 16)
+    assert tiles[:, :8].max() < 0.3
+    # The mean of two has the deviation of one over the root of two; 118 codes per middle grey, at the slope of sRGB.
+    codes = [rc._core.develop(np.full((1, 1, 3), 0.1 * f, np.float32), 100, "linear")[0, 0, 0] for f in (0.8, 1.2)]
+    slope = (float(codes[1]) - float(codes[0])) / 0.4
+    expected = 0.1 * slope / math.sqrt(2)
+    # 600 numbers a part: within 3% of it in the mean of all, and four of their own deviations each.
+    assert tiles[:, 8:].mean() == pytest.approx(expected, rel=0.1)
+    assert measured.codes(0.01, 100, "linear") == pytest.approx(math.sqrt(np.mean(tiles**2)), rel=0.05)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .._core import develop
 
+_TILES = 16
 _ROUNDING = 1 / 6  # variance of the difference of two 8-bit codes that are rounded
 
 
@@ -35,6 +36,24 @@ class NoiseMeasurement:
         and of all n of them s^2 (1/m - 1/n). So it is n/m - 1 times the variance of the later mean. A longer exposure
         shows more noise.
         """
+        squares = self._squares(exposure_time_s, iso, tone)
+        return None if squares is None else math.sqrt(max(0.0, float(np.mean(squares))))
+
+    def tiles(self, exposure_time_s: float, iso: float, tone: str) -> list[list[float]] | None:
+        """The same of each of _TILES x _TILES parts of the picture, or of its pixels where there are fewer."""
+        squares = self._squares(exposure_time_s, iso, tone)
+        if squares is None:
+            return None
+        means = squares.mean(axis=2)
+        for axis, length in enumerate(means.shape):
+            starts = np.unique(np.linspace(0, length, min(_TILES, length), endpoint=False).astype(int))
+            counts = np.diff([*starts, length])
+            means = np.add.reduceat(means, starts, axis=axis) / np.expand_dims(counts, 1 - axis)
+        rows: list[list[float]] = np.sqrt(np.maximum(0, means)).round(1).tolist()
+        return rows
+
+    def _squares(self, exposure_time_s: float, iso: float, tone: str) -> NDArray[np.float32] | None:
+        """Estimates of the variance, (height, width, 3), some of which are below 0."""
         if len(self._pictures) < 2:
             return None
         (samples, before), (all_samples, after) = self._pictures
@@ -42,5 +61,5 @@ class NoiseMeasurement:
             develop(illuminance * np.float32(exposure_time_s), iso, tone).astype(np.float32)
             for illuminance in (before, after)
         ]
-        variance = max(0.0, float(np.mean((codes[1] - codes[0]) ** 2)) - _ROUNDING)
-        return math.sqrt(variance * samples / (all_samples - samples))
+        squares: NDArray[np.float32] = ((codes[1] - codes[0]) ** 2 - _ROUNDING) * (samples / (all_samples - samples))
+        return squares

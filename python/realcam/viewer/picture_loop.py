@@ -50,6 +50,7 @@ class _Growing:
     refines_from: float = 0.0  #: time.perf_counter()
     is_given_up: bool = False  #: and its samples with it
     noise_codes: float | None = None
+    noise_tiles: list[list[float]] | None = None
     costs: Costs | None = None
     noise: NoiseMeasurement = field(default_factory=NoiseMeasurement)
     kept: _Arrays | None = None  #: of the last frame, where the next one is slow
@@ -345,10 +346,10 @@ class PictureLoop:
         if request.is_automatic:
             self._meter(picture)
         # The picture first: its noise takes two pictures more to be developed.
-        picture.noise_codes = None
+        picture.noise_codes = picture.noise_tiles = None
         picture.is_final = self._is_good_enough(picture)
         self._develop(picture)
-        picture.noise_codes = self._noise_codes(picture)
+        self._tell_noise(picture)
         if self._is_good_enough(picture) and not picture.is_final:
             picture.is_final = True
             self._develop(picture)
@@ -410,14 +411,16 @@ class PictureLoop:
         if picture.noise.is_due(picture.samples):
             exposure, _ = self._arrays(picture)
             picture.noise.add(picture.samples, exposure / np.float32(picture.exposure_time_s))
-            picture.noise_codes = self._noise_codes(picture)
+            self._tell_noise(picture)
             if picture.noise_codes is not None:
                 picture.costs = Costs.of(self._collected(picture).stats, picture.spent_s)
         picture.is_final = self._is_good_enough(picture)
 
-    def _noise_codes(self, picture: _Growing) -> float | None:
+    def _tell_noise(self, picture: _Growing) -> None:
         request = picture.request
-        return picture.noise.codes(self._camera(picture).exposure_time_s, request.camera.iso, request.tone)
+        developed = self._camera(picture).exposure_time_s, request.camera.iso, request.tone
+        picture.noise_codes = picture.noise.codes(*developed)
+        picture.noise_tiles = picture.noise.tiles(*developed)
 
     def _is_good_enough(self, picture: _Growing) -> bool:
         request = picture.request
@@ -437,6 +440,7 @@ class PictureLoop:
             is_preview=codes.shape[1::-1] != whole,
             is_final=picture.is_final,
             noise_codes=picture.noise_codes,
+            noise_tiles=picture.noise_tiles,
             seconds=time.perf_counter() - picture.begun,
             exposure_time_s=self._camera(picture).exposure_time_s,
             costs=picture.costs,

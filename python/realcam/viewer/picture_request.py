@@ -89,6 +89,7 @@ class Frame:
     seconds: float  #: from the request to this frame
     exposure_time_s: float
     costs: Costs | None
+    noise_tiles: list[list[float]] | None = None  #: the noise of parts of the picture, rows from above
 
 
 @dataclass(frozen=True)

@@ -84,12 +84,7 @@ class WorkerProcess:
                 raise WorkError("is not done any more")
             self._line, theirs = _PROCESSES.Pipe()
             self._process = _PROCESSES.Process(target=_work, args=(theirs,), name="realcam-worker", daemon=True)
-            # A terminal's Ctrl-C is the parent's: the process is begun with what this thread does not hear.
-            heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            try:
-                self._process.start()
-            finally:
-                signal.pthread_sigmask(signal.SIG_SETMASK, heard)
+            self._process.start()
             theirs.close()
             return self._line
 
@@ -107,6 +102,7 @@ class WorkerProcess:
 
 
 def _work(line: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal's Ctrl-C is the parent's
     _end_with_parent()
     os.nice(_NICENESS)
     resource.setrlimit(resource.RLIMIT_DATA, (_MOST_BYTES, _MOST_BYTES))

@@ -4,8 +4,6 @@ const CLIPPED = 254; // JPEG moves codes by one or two
 const PEAKING = 44; // codes by which the brightness of a pixel differs from its neighbours' where an edge is sharp
 const SURE = 4; // standard deviations of the noise by which an edge has to stand out of it
 const NOISE_GAIN = Math.sqrt(20); // of the Laplacian below: the root of the sum of its squared weights
-const MOST_LINES = 0.07; // share of a patch that may be edges where nothing else tells how noisy it is
-const PATCH = 32; // pixels across in which the noise is taken to be the same
 
 /// Counts of 64 bins for red, green, blue.
 export function histogramOf(image) {
@@ -24,12 +22,12 @@ export function clippedShare(image) {
   return count / (data.length / 4);
 }
 
-/// Marks in a picture of the same size: what is clipped as red stripes, sharp edges in yellow. noise: of the picture,
-/// in codes, as it was measured; null where it was not yet.
+/// Marks in a picture of the same size: what is clipped as red stripes, sharp edges in yellow. noise: of parts of the
+/// picture, in codes, as rows of numbers; without it nothing tells edges from noise, and no edge is marked.
 export function marksOf(image, { clipping, peaking, noise = null }) {
   const { width, height, data } = image;
   const marks = new ImageData(width, height);
-  const isEdge = peaking ? sharpEdges(image, noise) : null;
+  const isEdge = peaking && noise ? sharpEdges(image, noise) : null;
   for (let y = 0; y < height; ++y)
     for (let x = 0; x < width; ++x) {
       const k = y * width + x, i = 4 * k;
@@ -66,23 +64,13 @@ function sharpEdges({ width, height, data }, noise) {
       bends[k] = Math.abs(4 * even[k] - even[k - 1] - even[k + 1] - even[k - width] - even[k + width]);
     }
   const stands = new Uint8Array(width * height);
-  for (let top = 0; top < height; top += PATCH)
-    for (let left = 0; left < width; left += PATCH) {
-      const right = Math.min(left + PATCH, width), below = Math.min(top + PATCH, height);
-      // Half of a patch bends less than its noise does in the median. A patch full of edges would pass for noisy: where
-      // the noise was measured, over the whole picture, it is at most a few times as large as that anywhere.
-      const all = [];
-      for (let y = top; y < below; ++y) for (let x = left; x < right; ++x) all.push(bends[y * width + x]);
-      all.sort((a, b) => a - b);
-      const median = all[all.length >> 1];
-      let deviation = median / (0.6745 * NOISE_GAIN);
-      if (noise !== null) deviation = Math.max(noise, Math.min(deviation, 3 * noise));
-      const least = Math.max(PEAKING, SURE * NOISE_GAIN * deviation);
-      // Of few samples, most of which meet no light, the median says nothing.
-      if (noise === null && median < 2 && all[Math.floor((1 - MOST_LINES) * all.length)] > least) continue;
-      for (let y = top; y < below; ++y)
-        for (let x = left; x < right; ++x) stands[y * width + x] = bends[y * width + x] > least ? 1 : 0;
+  for (let y = 0; y < height; ++y) {
+    const row = noise[Math.floor((y * noise.length) / height)];
+    for (let x = 0; x < width; ++x) {
+      const deviation = row[Math.floor((x * row.length) / width)];
+      stands[y * width + x] = bends[y * width + x] > Math.max(PEAKING, SURE * NOISE_GAIN * deviation) ? 1 : 0;
     }
+  }
   const isEdge = new Uint8Array(width * height);
   for (let y = 1; y + 1 < height; ++y)
     for (let x = 1; x + 1 < width; ++x) {

@@ -141,7 +141,7 @@ export default {
         const marks = this.$refs.marks;
         marks.width = scratch.width;
         marks.height = scratch.height;
-        marks.getContext("2d").putImageData(marksOf(image, { clipping: this.clipping, peaking: this.peaking, noise: this.header.noise_codes }), 0, 0);
+        marks.getContext("2d").putImageData(marksOf(image, { clipping: this.clipping, peaking: this.peaking, noise: this.header.noise_tiles }), 0, 0);
       }
     },
     place(event) {
