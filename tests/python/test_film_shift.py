@@ -115,7 +115,9 @@ def test_films_say_their_shift_and_keep_it(tmp_path: Path) -> None:
 @pytest.mark.pictures
 def test_shot_files_and_the_command_line_shift_the_film(tmp_path: Path) -> None:
     shot = tmp_path / "shot.toml"
-    shot.write_text(f'format = 1\nscene = "{DEMO}"\nfilm_mm = [12, 8]\nfilm_shift_mm = [1.5, -2]\nresolution = [24, 16]\n')
+    shot.write_text(
+        f'format = 1\nscene = "{DEMO}"\nfilm_mm = [12, 8]\nfilm_shift_mm = [1.5, -2]\nresolution = [24, 16]\n'
+    )
     assert rc.Shot.load(shot).camera.film.shift_mm == (1.5, -2)
     pictures = []
     for name, words in (("shot", [shot]), ("options", [DEMO, "--film", "12x8", "--film-shift", "1.5,-2"])):

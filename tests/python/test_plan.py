@@ -313,7 +313,9 @@ def test_both_programs_plan_alike(shot_file: Path) -> None:
     # The command measures times, which are never the same twice.
     printed = command("plan", str(shot_file), "--device", "cpu").stdout
     without_times = re.sub(r"(  left out|  kept) *\+[0-9.e+]+%", r"\1", printed)
-    assert re.sub(" +", " ", without_times).replace(" time ", " ") == re.sub(" +", " ", str(plan)).replace(" time ", " ")
+    assert re.sub(" +", " ", without_times).replace(" time ", " ") == re.sub(" +", " ", str(plan)).replace(
+        " time ", " "
+    )
 
 
 def test_shot_files_may_ask_for_a_plan(shot_file: Path) -> None:

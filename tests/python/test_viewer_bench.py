@@ -334,6 +334,7 @@ CHANGES: dict[str, Callable[[LensBench], object]] = {
     "a lens of which a group moves": lambda b: b.set_lens(rc.Lens.load("macro-105mm")) and b.change(focus_m=0.45),
     "an edit": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 0, "radius_mm", 30.0)),
     "an asphere": lambda b: b.edit(lambda lens: lens_edits.with_value(lens, 0, "a4", 1e-7)),
+    "a shifted film": lambda b: b.change(film=b.controls.film.replace(shift_mm=(2.0, -1.0))),
     "an effect": lambda b: b.switch("dispersion", "on") or True,
 }
 

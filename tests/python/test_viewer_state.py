@@ -26,7 +26,7 @@ def test_all_that_was_set_comes_back(focus_m: float) -> None:
         f_number=5.6,
         focus_m=focus_m,
         pose=Pose((1, 2, 3), (0, 0.5, 0), (0, 0, 1)),
-        film=rc.Film(20, 10, (100, 50)),
+        film=rc.Film(20, 10, (100, 50), shift_mm=(1.5, -2.0)),
         exposure_time_s=0.5,
         iso=400.0,
         compensation_ev=-1.0,

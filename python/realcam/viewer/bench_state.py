@@ -23,6 +23,7 @@ def state_of(controls: CameraControls, switches: dict[str, str]) -> dict[str, An
         "zoom": controls.zoom,
         "f_number": controls.f_number,
         "focus_m": None if math.isinf(controls.focus_m) else controls.focus_m,
+        "film_shift_mm": list(controls.film.shift_mm),
         "film": [controls.film.width_mm, controls.film.height_mm, *controls.film.resolution],
         "pose": [*controls.pose.position_m, *controls.pose.look_at_m, *controls.pose.up],
         "model": controls.model,
@@ -41,10 +42,11 @@ def restored(before: CameraControls, state: dict[str, Any]) -> CameraControls:
     width_mm, height_mm, columns, rows = _numbers(state, "film", 4)
     if not (1 <= columns <= _MOST_PIXELS and 1 <= rows <= _MOST_PIXELS):
         raise InputError("the state that the page has kept has no film of so many pixels")
+    right_mm, up_mm = _numbers(state, "film_shift_mm", 2) if "film_shift_mm" in state else (0.0, 0.0)
     x, y, z, u, v, w, *up = _numbers(state, "pose", 9)
     controls = replace(
         before.with_lens(lens),
-        film=Film(width_mm, height_mm, (int(columns), int(rows))),
+        film=Film(width_mm, height_mm, (int(columns), int(rows)), shift_mm=(right_mm, up_mm)),
         pose=Pose((x, y, z), (u, v, w), (up[0], up[1], up[2])),
         f_number=None if state.get("f_number") is None else _number(state, "f_number"),
         focus_m=math.inf if state.get("focus_m") is None else _number(state, "focus_m"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,8 +49,3 @@ def plot_svg(look: Look) -> str:
     svg = content.getvalue()
     # The page may be light or dark, and change while the plot is shown.
     return svg[svg.index("<svg") :].replace(LIGHT.text, "currentColor").replace(_GRID, "var(--rc-grid)")
-
-
-def height_of(u: float, v: float, film_mm: tuple[float, float]) -> float:
-    """Distance from the middle of the film, mm, of a place in the picture."""
-    return math.hypot((u - 0.5) * film_mm[0], (v - 0.5) * film_mm[1])

@@ -29,10 +29,15 @@ def lens_view(lens: Lens) -> dict[str, Any]:
     }
 
 
+def height_of(u: float, v: float, film: Film) -> float:
+    """Distance from the lens's axis, mm, of a place in the picture."""
+    right, up = film.shift_mm
+    return math.hypot((u - 0.5) * film.width_mm + right, (0.5 - v) * film.height_mm + up)
+
+
 def drawn_heights_mm(film: Film, place: tuple[float, float] | None) -> tuple[float, ...]:
-    """On the film, of the middle and of that place of the picture (u and v, 0 to 1)."""
-    u, v = place or (0.5 + 0.35, 0.5 + 0.35)
-    height = math.hypot((u - 0.5) * film.width_mm, (v - 0.5) * film.height_mm)
+    """From the lens's axis, of the axis and of that place of the picture (u and v, 0 to 1)."""
+    height = height_of(*(place or (0.5 + 0.35, 0.5 + 0.35)), film)
     return (0.0, height) if height > 5e-4 * math.hypot(film.width_mm, film.height_mm) else (0.0,)
 
 

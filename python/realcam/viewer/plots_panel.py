@@ -8,7 +8,8 @@ import html
 from nicegui import ui
 
 from .._core import RealcamError
-from .close_look import PLOTS, Look, height_of, plot_svg
+from .close_look import PLOTS, Look, plot_svg
+from .lens_view import height_of
 from .newest_task import NewestTask
 from .server_loop import call_on_loop
 from .window import Window
@@ -55,8 +56,8 @@ class PlotsPanel:
         if kind not in PLOTS:
             return
         self._help.set_text(PLOTS[kind][1])
-        height = height_of(*self._at, (controls.film.width_mm, controls.film.height_mm))
-        self._place.set_text(f"{height:.3g} mm from the middle of the film; in the plane in focus")
+        height = height_of(*self._at, controls.film)
+        self._place.set_text(f"{height:.3g} mm from the lens's axis; in the plane in focus")
         look = Look(kind, controls.set_lens, height)
         if look != self._look:
             self._look = look

@@ -84,6 +84,7 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
     shot["model"] = controls.model
     shot["focus_m"] = controls.focus_m
     shot["film_mm"] = [film.width_mm, film.height_mm]
+    shot["film_shift_mm"] = list(film.shift_mm)
     shot["resolution"] = list(film.resolution)
     shot["position_m"], shot["look_at_m"], shot["up"] = list(pose.position_m), list(pose.look_at_m), list(pose.up)
     shot["exposure_time_s"] = controls.exposure_time_s
