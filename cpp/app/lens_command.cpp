@@ -58,11 +58,15 @@ void add_lens_command(CLI::App& app) {
         ->type_name("METRES");
     add_lens_options(*info, options->file);
     info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");
+    info->footer(
+        "Examples:\n  realcam lens info tessar-50mm\n  realcam lens info double-gauss-50mm --f-number 8 --focus 2\n"
+        "  realcam lens info my-lens.zmx --json");
     info->callback([options] { run_info(*options); });
 
     CLI::App* list = lens->add_subcommand("list", "Name the bundled lenses");
     const auto list_as_json = std::make_shared<bool>(false);
     list->add_flag("--json", *list_as_json, "Print JSON");
+    list->footer("Examples:\n  realcam lens list\n  realcam lens list --json");
     list->callback([list_as_json] { run_list(*list_as_json); });
 }
 

@@ -9,6 +9,7 @@
 #include "lens_command.hpp"
 #include "lens_words.hpp"
 #include "render_command.hpp"
+#include "usage_error.hpp"
 
 namespace {
 
@@ -29,6 +30,7 @@ int run(int argc, char** argv) {
     CLI::App* devices = app.add_subcommand("devices", "List the devices that render");
     const auto as_json = std::make_shared<bool>(false);
     devices->add_flag("--json", *as_json, "Print JSON");
+    devices->footer("Examples:\n  realcam devices\n  realcam devices --json");
     devices->callback([as_json] { realcam::app::list_devices(*as_json); });
     if (argc == 1) {
         std::fputs(app.help().c_str(), stdout);
@@ -40,7 +42,7 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& success) {  // --help and --version
         return app.exit(success);
     } catch (const CLI::ParseError& error) {
-        return fail(std::string(error.what()) + " (--help lists the options)");
+        return fail(realcam::app::usage_message(app, error));
     }
 }
 

@@ -11,15 +11,18 @@
 #include "../image_io/image_file.hpp"
 #include "../io/free_memory.hpp"
 #include "../io/json_writer.hpp"
+#include "../io/one_line.hpp"
 #include "../plan/make_plan.hpp"
 #include "../plan/plan_text.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/take_picture.hpp"
 #include "../shot/shot.hpp"
+#include "exposure_notice.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "progress_bar.hpp"
+#include "render_json.hpp"
 #include "render_options.hpp"
 #include "render_summary.hpp"
 #include "values.hpp"
@@ -73,15 +76,18 @@ public:
         shot::Shot shot = set_up_shot(request, std::move(camera));
         std::string decisions;
         if (request.settings.effects.is_automatic) decisions = follow_plan(*session, shot, request);
-        for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens))
-            say("warning: " + notice);
+        for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
         // Until here nothing is on disk, and a signal may simply end the program.
         const Interrupt interrupt;
         const Image image = expose(*session, shot, request);
-        if (!image.shortfall.empty()) say("warning: " + image.shortfall);
+        if (!image.shortfall.empty()) warn(image.shortfall);
+        if (const std::string notice = exposure_notice(image, shot.camera, request.tone); !notice.empty()) warn(notice);
         write(image, shot, request, decisions);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        std::fputs(summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose).c_str(), stdout);
+        const std::string figures =
+            words_.as_json ? render_as_json(shot, request, image, words_.outputs, decisions, warnings_, seconds)
+                           : summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose);
+        std::fputs(figures.c_str(), stdout);
     }
 
     void plan(bool as_json) {
@@ -95,7 +101,12 @@ public:
     }
 
 private:
-    shot::Shot set_up_shot(const shot::ShotRequest& request, Camera camera) const {
+    void warn(const std::string& text) {
+        say("warning: " + text);
+        warnings_.push_back(io::one_line(text));
+    }
+
+    shot::Shot set_up_shot(const shot::ShotRequest& request, Camera camera) {
         shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
         if (shot.has_daylight)
             say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
@@ -104,14 +115,15 @@ private:
     }
 
     /// Returns what was decided. What cannot be planned is taken as it stands.
-    std::string follow_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request) const {
+    std::string follow_plan(Session& session, shot::Shot& shot, shot::ShotRequest& request) {
         try {
             const Plan plan = planned(session, shot, request, false);
             apply(plan, shot.camera, request.settings);
-            if (words_.explains) std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
+            if (words_.explains && !words_.as_json)
+                std::fputs((text_of(plan, io::name_of(plan.model)) + '\n').c_str(), stdout);
             return summary_of(plan);
         } catch (const NothingToPlan& nothing) {
-            say("warning: " + std::string(nothing.what()) + "; the picture has the effects that are named");
+            warn(std::string(nothing.what()) + "; the picture has the effects that are named");
             request.settings.effects = without_plan(request.settings.effects);
             return "";
         }
@@ -153,7 +165,7 @@ private:
         return json.end().end().finish() + '\n';
     }
 
-    Assembly read_scene(const shot::ShotRequest& request) const {
+    Assembly read_scene(const shot::ShotRequest& request) {
         std::vector<std::string> pictures;
         const shot::PictureReaders readers = {[&](const std::string& path, std::span<const std::uint8_t> bytes) {
                                                   pictures.push_back(path);
@@ -165,7 +177,7 @@ private:
         check_apart(words_.outputs, pictures);
         const std::vector<std::string>& warnings = scene.static_geometry->warnings;
         constexpr std::size_t kShown = 10;
-        for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) say("warning: " + warnings[i]);
+        for (std::size_t i = 0; i < std::min(kShown, warnings.size()); ++i) warn(warnings[i]);
         if (warnings.size() > kShown) say("and " + std::to_string(warnings.size() - kShown) + " more warnings");
         return scene;
     }
@@ -211,6 +223,7 @@ private:
     }
 
     const RenderWords& words_;
+    std::vector<std::string> warnings_;  ///< that were told
 };
 
 }  // namespace
@@ -219,6 +232,11 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Photograph a scene through a lens");
     const auto words = std::make_shared<RenderWords>();
     add_render_options(*command, *words);
+    command->footer(
+        "Examples:\n  realcam render scene.glb -o picture.png\n"
+        "  realcam render scene.glb -o picture.png -o film.exr --lens tessar-50mm --f-number 5.6 --focus 2.5\n"
+        "  realcam render scene.obj -o picture.png --position 0,1.5,4 --look-at 0,1,0 --exposure-time 1/125 --iso 400\n"
+        "  realcam render shot.toml -o picture.png --spp auto --noise-codes 1 --json");
     command->callback([words] { Run{*words}.photograph(); });
 }
 
@@ -228,6 +246,10 @@ void add_plan_command(CLI::App& app) {
     const auto as_json = std::make_shared<bool>(false);
     add_shot_options(*command, *words);
     command->add_flag("--json", *as_json, "Print JSON");
+    command->footer(
+        "Examples:\n  realcam plan shot.toml\n  realcam plan scene.glb --lens tessar-50mm --f-number 16 --quality "
+        "draft "
+        "--json");
     command->callback([=] { Run{*words}.plan(*as_json); });
 }
 

@@ -108,6 +108,10 @@ void read_sample_words(const RenderWords& w, shot::ShotRequest& request) {
     read("--seconds", w.seconds, request.noise.seconds);
     if (!w.max_spp.empty())
         request.noise.max_spp = static_cast<std::int64_t>(parse_whole("--max-spp", w.max_spp, 1u << 31));
+    const bool says_of_noise = !w.noise.empty() || !w.noise_codes.empty() || !w.seconds.empty() || !w.max_spp.empty();
+    if (says_of_noise && !request.has_noise_goal)
+        throw InputError(
+            "--noise, --noise-codes, --seconds and --max-spp say how far --spp auto goes; it is not asked for");
     settle_noise_goal(request);
 }
 
@@ -218,6 +222,7 @@ void add_render_options(CLI::App& command, RenderWords& w) {
     add_shot_options(command, w);
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
     command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
+    command.add_flag("--json", w.as_json, "Print the picture's figures and settings as JSON, in place of the text");
     command.option_defaults()->group(group);
     command.add_option("-o,--output", w.outputs, "Picture to write, .png or .exr; may be repeated")
         ->type_name("FILE")
@@ -231,6 +236,8 @@ PlanThresholds thresholds_of(const RenderWords& w) {
     PlanThresholds result = *thresholds;
     if (!w.threshold_px.empty()) result.pixels = parse_number("--threshold-px", w.threshold_px);
     if (!w.threshold_codes.empty()) result.codes = parse_number("--threshold-codes", w.threshold_codes);
+    if (!(result.pixels > 0) || !(result.codes > 0))
+        throw InputError("--threshold-px and --threshold-codes must be above 0");
     return result;
 }
 
@@ -248,6 +255,7 @@ shot::ShotRequest understand(const RenderWords& w) {
     read_sample_words(w, request);
     read_settings_words(w, request.settings);
     read_layer_words(w, request.settings);
+    thresholds_of(w);  // nobody should wait for a scene and be told then
     return request;
 }
 

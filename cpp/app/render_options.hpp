@@ -16,7 +16,7 @@ struct RenderWords {
         tone, spp, noise, noise_codes, seconds, max_spp, seed, max_bounces, transport, clamp, threads, layers, effects,
         quality, threshold_px, threshold_codes, illuminant, device = "auto";
     std::vector<std::string> outputs;
-    bool verbose = false, explains = false;
+    bool verbose = false, explains = false, as_json = false;
     LensWords lens_file;
 };
 

@@ -23,7 +23,8 @@ std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples,
         });
         return points;
     }
-    if (!(samples >= 1 && samples <= 2048)) throw InputError("samples must lie between 1 and 2048");
+    if (!(samples >= 1 && samples <= kMaxPatternSamples))
+        throw InputError("samples must lie between 1 and " + std::to_string(kMaxPatternSamples));
     const RayLoop loop{heed_signals};
     if (pattern == "grid") return square_grid(samples, loop);
     if (pattern == "rings") return gauss_rings(samples, loop);

@@ -12,6 +12,8 @@ namespace realcam::bindings {
 
 // What the analyses of one object point ask of the user alike.
 
+inline constexpr int kMaxPatternSamples = 2048;
+
 /// Places on the stop: of a pattern's name and its samples, or `pupil`, an array of shape (N, 2). Throws InputError.
 std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples,
                                      const std::optional<InputArray<double>>& pupil);

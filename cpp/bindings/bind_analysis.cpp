@@ -6,6 +6,7 @@
 #include "analysis_arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "restored_arrays.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
@@ -133,6 +134,45 @@ Spot make_spot(const LensSystem& lens, double field_deg, std::optional<double> o
 }
 
 }  // namespace
+
+template <>
+struct LastEnumerator<RayStatus> : LastIs<RayStatus::bad_input> {};
+template <>
+struct RestoredCheck<PupilPoint> : AnyMembers {};
+template <>
+struct RestoredCheck<AimedRay> : AnyMembers {};
+template <>
+struct RestoredCheck<FieldRays> {
+    static void check(const FieldRays& rays) { require_restored(rays.rays.size() == rays.pattern.size()); }
+};
+template <>
+struct RestoredCheck<Wavefront> {
+    static void check(const Wavefront& w) { require_restored(w.opd.size() == w.rays.pattern.size()); }
+};
+template <>
+struct RestoredCheck<PythonWavefront> {
+    static void check(const PythonWavefront& w) {
+        require_restored(w.columns >= 0 && w.columns <= kMaxPatternSamples);
+        if (w.columns == 0) return;
+        for (const PupilPoint& point : w.wavefront.rays.pattern)
+            require_restored(point.cell >= 0 && point.cell < w.columns * w.columns);
+    }
+};
+template <>
+struct RestoredCheck<SpotSize> : AnyMembers {};
+template <>
+struct RestoredCheck<Spot> {
+    static void check(const Spot& spot) { require_restored(spot.points.size() == spot.rays.pattern.size()); }
+};
+template <>
+struct RestoredCheck<AimedRays> {
+    static void check(const AimedRays& aimed) {
+        const py::ssize_t count = restored_length(aimed.status);
+        for (const Array* vectors : {&aimed.origins_mm, &aimed.directions})
+            check_restored_array(*vectors, {'f', {count, 3}});
+        check_restored_array(aimed.status, {'i', {count}});
+    }
+};
 
 void bind_analysis(py::module_& m) {
     py::class_<AimedRays> aimed_rays(m, "AimedRays", "Rays of one object point, in front of the lens. Lens frame.");

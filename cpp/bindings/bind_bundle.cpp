@@ -5,6 +5,7 @@
 #include "analysis_arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "restored_arrays.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
@@ -114,6 +115,21 @@ py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_
 }
 
 }  // namespace
+
+template <>
+struct RestoredCheck<ChiefRay> : AnyMembers {};
+template <>
+struct RestoredCheck<RayBundle> {
+    static void check(const RayBundle& b) {
+        const py::ssize_t count = restored_length(b.energy), pieces = restored_length(b.edge_entry_mm);
+        for (const Array* numbers : {&b.energy, &b.path_mm, &b.amplitude})
+            check_restored_array(*numbers, {'f', {count}});
+        for (const Array* pairs : {&b.entry_mm, &b.points_mm, &b.slopes})
+            check_restored_array(*pairs, {'f', {count, 2}});
+        check_restored_array(b.directions, {'f', {count, 3}});
+        for (const Array* edge : {&b.edge_entry_mm, &b.edge_slopes}) check_restored_array(*edge, {'f', {pieces, 2, 2}});
+    }
+};
 
 void bind_bundle(py::module_& m) {
     py::class_<RayBundle> bundle(m, "RayBundle",

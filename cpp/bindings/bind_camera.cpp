@@ -174,7 +174,7 @@ void bind_camera(py::module_& m) {
         m, "Camera",
         "Lens, film, pose and exposure. position is the middle of the film (the sensor), in front of which the whole\n"
         "lens is: entrance_pupil_position_m says from where the scene is seen.");
-    def_hashable_value(camera_class, [](const Camera& camera) { validate(camera); });
+    def_hashable_value(camera_class);
     camera_class
         .def(
             py::init(&make_camera), "lens"_a, py::kw_only(), "film"_a = py::none(), "position"_a = Triple{0, 0, 0},

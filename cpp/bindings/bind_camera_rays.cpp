@@ -10,6 +10,7 @@
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/lens_rays.hpp"
 #include "bindings.hpp"
+#include "restored_arrays.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
@@ -100,6 +101,17 @@ CameraRaysResult next_chunk(RayChunks& chunks) {
 }
 
 }  // namespace
+
+template <>
+struct RestoredCheck<CameraRaysResult> {
+    static void check(const CameraRaysResult& rays) {
+        const py::ssize_t count = restored_length(rays.weights);
+        for (const py::object* vectors : {&rays.origins_m, &rays.directions})
+            check_restored_array(*vectors, {'f', {count, 3}});
+        check_restored_array(rays.weights, {'f', {count}});
+        check_restored_array(rays.pixels, {'i', {count}});
+    }
+};
 
 void bind_camera_rays(py::module_& m) {
     py::class_<CameraRaysResult> rays(

@@ -9,6 +9,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "coating_from.hpp"
+#include "restored_arrays.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
@@ -149,6 +150,24 @@ std::string text_of(const Coating& coating) {
     return text + (coating.layers.empty() ? "" : ", " + counted(coating.layers.size(), "layer")) + '>';
 }
 
+}  // namespace
+
+template <>
+struct RestoredCheck<CoatingResponse> {
+    static void check(const CoatingResponse& r) {
+        require_restored(py::isinstance<py::array>(r.reflectance_s));
+        const auto first = py::reinterpret_borrow<py::array>(r.reflectance_s);
+        const std::vector<py::ssize_t> shape(first.shape(), first.shape() + first.ndim());
+        for (const py::object* shares : {&r.reflectance_s, &r.reflectance_p, &r.transmittance_s, &r.transmittance_p,
+                                         &r.absorptance_s, &r.absorptance_p})
+            check_restored_array(*shares, {'f', shape});
+        for (const py::object* amplitudes : {&r.r_s, &r.r_p, &r.t_s, &r.t_p})
+            check_restored_array(*amplitudes, {'c', shape});
+    }
+};
+
+namespace {
+
 void bind_response(py::module_& m) {
     py::class_<CoatingResponse> type(m, "CoatingResponse",
                                      "What a coated surface does to light, as arrays of the shape of angles and "
@@ -174,7 +193,7 @@ void bind_response(py::module_& m) {
 
 void bind_layer(py::module_& m) {
     py::class_<CoatingLayer> type(m, "CoatingLayer", "One homogeneous film.");
-    def_hashable_value(type, [](const CoatingLayer& layer) { check_coating(layered_coating({layer})); });
+    def_hashable_value(type);
     type.def(py::init(&make_layer), "material"_a, py::kw_only(), "thickness_nm"_a = py::none(),
              "thickness_waves"_a = py::none(), "design_wavelength_nm"_a = py::none(),
              "material: index, complex n + ik (k > 0 absorbs), (n_d, V_d), [(wavelength_nm, n, k), ...] with straight "
@@ -195,7 +214,7 @@ void bind_coating(py::module_& m) {
     bind_response(m);
     bind_layer(m);
     py::class_<Coating> type(m, "Coating", "What covers a surface of a lens. A value.");
-    def_hashable_value(type, [](const Coating& coating) { check_coating(coating); });
+    def_hashable_value(type);
     type.def(py::init(&make_coating), "layers"_a = std::vector<CoatingLayer>{}, py::kw_only(), "metal"_a = py::none(),
              "reflectance"_a = py::none(), "name"_a = "",
              "layers: CoatingLayers from the air inwards: the first touches the medium of the lower index at the d "

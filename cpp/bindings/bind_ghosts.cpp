@@ -42,6 +42,13 @@ std::vector<Ghost> ghosts_of(const LensSystem& lens, double film_reflectance) {
 
 }  // namespace
 
+template <>
+struct RestoredCheck<Ghost> {
+    static void check(const Ghost& ghost) {
+        require_restored(0 <= ghost.second && ghost.second < ghost.first && ghost.first <= kMaxSurfaces);
+    }
+};
+
 void bind_ghosts(py::module_& m) {
     py::class_<Ghost> ghost(m, "Ghost",
                             "Light that two surfaces reflect on its way to the film: first `first`, back towards the "

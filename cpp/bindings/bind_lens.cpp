@@ -374,7 +374,7 @@ void bind_lens(py::module_& m) {
     m.def("glass_names", &io::catalogue_full_names, "Names of the glasses of the catalogue, as \"schott:N-BK7\".");
     py::class_<LensSystem> lens_class(m, "Lens",
                                       "A lens in one state of its rings. A value: every change returns a new Lens.");
-    def_hashable_value(lens_class, [](const LensSystem& lens) { validate(lens); });
+    def_hashable_value(lens_class);
     lens_class
         .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,

@@ -135,14 +135,14 @@ void bind_live(py::module_& m) {
         .def_property_readonly("samples", &LiveFrame::samples, "Per pixel, collected up to this frame.");
     py::class_<PythonLiveView>(
         m, "LiveView",
-        "A scene before a camera that changes with every frame, on one GPU (device=\"cuda\", \"cuda:1\") or the CPU\n"
-        "(\"cpu\"); \"auto\" is a GPU where there is one.\n\n"
+        "A scene before a camera that changes with every frame, on one device: \"auto\" (a GPU if there is one), "
+        "\"cpu\",\n\"cuda\" or \"cuda:1\".\n\n"
         "Only what changed is prepared again; samples are collected for as long as scene, lens, film and pose of the\n"
         "camera stay the same. Frames are taken one behind the other without waiting: up to three are under way on a\n"
         "GPU, one on the CPU. Not for two threads at once, but for cancel(). Raises InputError, DeviceError where the\n"
         "device is not there.")
         .def(py::init<const Assembly&, const std::string&, std::int64_t, int>(), "scene"_a, py::kw_only(),
-             "device"_a = "cuda", "seed"_a = 0, "max_bounces"_a = 1)
+             "device"_a = "auto", "seed"_a = 0, "max_bounces"_a = 1)
         .def(
             "shoot",
             [](PythonLiveView& live, const Camera& camera, int spp, const std::string& tone,
@@ -154,9 +154,10 @@ void bind_live(py::module_& m) {
             "camera"_a, py::kw_only(), "spp"_a = 1, "tone"_a = "film", "effects"_a = std::vector<std::string>(),
             "illuminant"_a = "", "transport"_a = "paths", "clamp_cd_m2"_a = 0.0f,
             "Starts to take spp more samples of each pixel, developed with the camera's exposure time and ISO and a\n"
-            "tone curve (see Image.developed). effects: names of rc.effects(), but not \"auto\"; illuminant: as text,\n"
-            "of dispersion and diffraction; transport and clamp_cd_m2: as rc.render has them. Returns a LiveFrame at\n"
-            "once, or when the oldest of those under way is there.\n"
+            "tone curve (see Image.developed). effects: names of rc.effects(), but not \"auto\", as planning takes longer\n"
+            "than a frame (rc.plan says what it would choose); illuminant: as text, of dispersion and diffraction;\n"
+            "transport and clamp_cd_m2: as rc.render has them. Returns a LiveFrame at once, or when the oldest of those\n"
+            "under way is there.\n"
             "Raises KeyboardInterrupt on Ctrl-C.")
         .def("show", &PythonLiveView::show, "scene"_a, py::call_guard<Unlocked>(),
              "Another scene for the frames to come. Made for every frame: of one that comes from the last by moved(),\n"

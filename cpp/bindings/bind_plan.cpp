@@ -70,6 +70,11 @@ Planned plan(const Assembly& scene, const Camera& camera, const std::string& dev
 
 }  // namespace
 
+template <>
+struct RestoredCheck<Decision> : AnyMembers {};
+template <>
+struct RestoredCheck<Planned> : AnyMembers {};
+
 void bind_plan(py::module_& m) {
     py::class_<Decision> decision(m, "PlanDecision", "One thing that a picture may have or do without.");
     def_value(decision);

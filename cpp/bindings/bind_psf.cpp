@@ -16,6 +16,17 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
+template <>
+struct RestoredCheck<PsfColour> : AnyMembers {};
+template <>
+struct RestoredCheck<Psf> {
+    static void check(const Psf& psf) {
+        require_restored(psf.size >= 2 && psf.pitch_um > 0 && std::isfinite(psf.pitch_um) && !psf.colours.empty());
+        const auto size = static_cast<std::size_t>(psf.size);
+        require_restored(psf.values.size() == size * size);
+    }
+};
+
 namespace {
 
 using Wavelengths = std::variant<double, std::vector<double>>;

@@ -88,7 +88,7 @@ void bind_scene(py::module_& m) {
         "Triangles, materials and lights, and instances of other scenes, any number of each;\n"
         "metres, right-handed, y up. A value: what changes it returns a new one. Materials and warnings are\n"
         "those of static geometry; objects bring their own along.");
-    def_value(scene_class, [](const Assembly& scene) { SceneChecks().check(scene); });
+    def_value(scene_class);
     scene_class
         .def_static(
             "load", &load, "path"_a, py::kw_only(), "scale"_a = 1.0, "objects"_a = std::vector<std::string>{},

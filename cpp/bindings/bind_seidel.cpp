@@ -11,6 +11,13 @@ namespace realcam::bindings {
 
 using namespace py::literals;
 
+template <>
+struct RestoredCheck<ParaxialRay> : AnyMembers {};
+template <>
+struct RestoredCheck<SeidelRow> : AnyMembers {};
+template <>
+struct RestoredCheck<SeidelTable> : AnyMembers {};
+
 namespace {
 
 template <class F>

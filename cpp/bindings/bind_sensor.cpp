@@ -290,7 +290,7 @@ void bind_sensor(py::module_& m) {
     m.def("sensor_names", &io::sensor_names, "Names of the bundled sensors.");
     py::class_<Sensor> type(m, "Sensor",
                             "An image sensor, by the linear model of EMVA standard 1288 (docs/sensor.md). A value.");
-    def_hashable_value(type, [](const Sensor& sensor) { validate(sensor); });
+    def_hashable_value(type);
     type.def_static(
             "load",
             [](const py::object& name) {

@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "device_array.hpp"
+#include "restored_arrays.hpp"
 #include "short_text.hpp"
 #include "value_methods.hpp"
 
@@ -141,6 +142,19 @@ TraceResult trace(const LensSystem& lens, const py::object& origins, const py::o
 }
 
 }  // namespace
+
+template <>
+struct RestoredCheck<TraceResult> {
+    static void check(const TraceResult& result) {
+        const py::ssize_t count = restored_length(result.status);
+        for (const py::object* vectors : {&result.origins_mm, &result.directions})
+            check_restored_array(*vectors, {'f', {count, 3}});
+        check_restored_array(result.optical_path_mm, {'f', {count}});
+        for (const py::object* numbers : {&result.status, &result.surface_index})
+            check_restored_array(*numbers, {'i', {count}});
+        if (!result.transmission.is_none()) check_restored_array(result.transmission, {'f', {count}});
+    }
+};
 
 void bind_trace(py::module_& m) {
     const std::pair<const char*, RayStatus> statuses[] = {

@@ -100,6 +100,9 @@ inline auto members(const Material& m) {
 inline auto members(Material& m) {
     return members_detail::of_material(m);
 }
+inline auto members(const Triangle& t) {
+    return std::tie(t.vertices[0], t.vertices[1], t.vertices[2], t.material);
+}
 inline auto members(const Assembly& x) {
     return std::tie(x.static_geometry, x.instances);
 }

@@ -7,10 +7,10 @@
 
 namespace realcam::bindings {
 
-/// Gives a class ==, copy, deepcopy and pickle. `check` is called with what was unpickled, and throws where it makes no
-/// sense. Copies go the way of pickles: for results whose arrays the user may write to.
-template <class T, class... Options, class Check>
-void def_result(pybind11::class_<T, Options...>& type, Check&& check) {
+/// Gives a class ==, copy, deepcopy and pickle. What is unpickled is checked (restored.hpp). Copies go the way of
+/// pickles: for results whose arrays the user may write to.
+template <class T, class... Options>
+void def_result(pybind11::class_<T, Options...>& type) {
     namespace py = pybind11;
     using namespace py::literals;
     type.def(
@@ -27,25 +27,13 @@ void def_result(pybind11::class_<T, Options...>& type, Check&& check) {
             py::module_::import("realcam.pickling").attr("restored"),
             py::make_tuple(name, kStateFormat, py::module_::import("realcam").attr("__version__"), state));
     });
-    type.def_static(
-        "_restored",
-        [check](const py::object& state) {
-            T value = StateReader().made<T>(state);
-            check(value);
-            return value;
-        },
-        "state"_a);
-}
-
-template <class T, class... Options>
-void def_result(pybind11::class_<T, Options...>& type) {
-    def_result(type, [](const T&) {});
+    type.def_static("_restored", [](const py::object& state) { return StateReader().made<T>(state); }, "state"_a);
 }
 
 /// The same for a value, which nothing changes: its copies are the same object.
-template <class T, class... Options, class... Check>
-void def_value(pybind11::class_<T, Options...>& type, Check&&... check) {
-    def_result(type, std::forward<Check>(check)...);
+template <class T, class... Options>
+void def_value(pybind11::class_<T, Options...>& type) {
+    def_result(type);
     type.def("__copy__", [](const pybind11::object& self) { return self; });
     type.def(
         "__deepcopy__", [](const pybind11::object& self, const pybind11::object&) { return self; },
@@ -53,9 +41,9 @@ void def_value(pybind11::class_<T, Options...>& type, Check&&... check) {
 }
 
 /// The same, and hash(): for values small enough to be keys.
-template <class T, class... Options, class... Check>
-void def_hashable_value(pybind11::class_<T, Options...>& type, Check&&... check) {
-    def_value(type, std::forward<Check>(check)...);
+template <class T, class... Options>
+void def_hashable_value(pybind11::class_<T, Options...>& type) {
+    def_value(type);
     type.def("__hash__", [](const T& self) { return hash_of(self); });
 }
 

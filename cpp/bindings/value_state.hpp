@@ -2,10 +2,11 @@
 #include <pybind11/numpy.h>
 
 #include <map>
+#include <typeindex>
 
-#include "../error.hpp"
+#include "../io/printable.hpp"
 #include "arrays.hpp"
-#include "value_compare.hpp"
+#include "restored_values.hpp"
 
 namespace realcam::bindings {
 
@@ -86,7 +87,8 @@ private:
     std::map<const void*, std::size_t> written_;
 };
 
-/// Reads what StateWriter wrote. Throws InputError for anything else.
+/// Reads what StateWriter wrote. Throws a realcam::Error for anything else, and pybind11's errors where a Python object
+/// is of another type. What it returns is as good as what a constructor makes (restored.hpp).
 class StateReader {
 public:
     template <class T>
@@ -95,11 +97,11 @@ public:
         if constexpr (std::is_arithmetic_v<T>)
             value = state.cast<T>();
         else if constexpr (std::is_enum_v<T>)
-            value = static_cast<T>(state.cast<std::int64_t>());
+            read_enumerator(value, state);
         else if constexpr (std::same_as<T, std::string>)
-            value = state.cast<pybind11::bytes>();
+            read_text(value, state);
         else if constexpr (std::derived_from<T, pybind11::object>)
-            value = state.cast<T>();
+            read_object(value, state);
         else if constexpr (std::same_as<T, Glass>)
             value = made<Glass>(state);
         else if constexpr (is_shared<T>)
@@ -115,7 +117,7 @@ public:
     template <class T>
     T made(const pybind11::handle& state) {
         if constexpr (std::same_as<T, Glass>) {
-            return Glass::from_parts(made<Glass::Parts>(state));
+            return restored_glass(made<Glass::Parts>(state));
         } else {
             T value{};
             read(value, state);
@@ -124,16 +126,34 @@ public:
     }
 
 private:
-    static void require(bool good) {
-        if (!good) throw InputError("what was pickled is damaged, or another version's");
+    template <class T>
+    void read_enumerator(T& value, const pybind11::handle& state) {
+        const auto number = state.cast<std::int64_t>();
+        require_restored(is_enumerator<T>(number));
+        value = static_cast<T>(number);
+    }
+
+    /// An array has the right numbers already; it is not made of something else.
+    template <class T>
+    void read_object(T& value, const pybind11::handle& state) {
+        require_restored(pybind11::isinstance<T>(state));
+        value = pybind11::reinterpret_borrow<T>(state);
+    }
+
+    void read_text(std::string& value, const pybind11::handle& state) {
+        value = state.cast<pybind11::bytes>();
+        require_restored(any_bytes_ || io::is_utf8(value));
     }
 
     template <class T, std::size_t... i>
     void read_members(T& value, const pybind11::handle& state, std::index_sequence<i...>) {
         const auto items = state.cast<pybind11::tuple>();
-        require(items.size() == sizeof...(i));
+        require_restored(items.size() == sizeof...(i));
         const auto to = members(value);
+        const bool outside = std::exchange(any_bytes_, any_bytes_ || has_names_of_files<T>);
         (read(std::get<i>(to), items[i]), ...);
+        any_bytes_ = outside;
+        RestoredCheck<T>::check(value);
     }
 
     template <class T>
@@ -143,13 +163,15 @@ private:
             if constexpr (requires { values.resize(size); })
                 values.resize(size);
             else
-                require(values.size() == size);
+                require_restored(values.size() == size);
         };
         if constexpr (is_flat<Item>) {
+            require_restored(pybind11::isinstance<pybind11::array_t<std::uint8_t>>(state));
             const auto bytes = state.cast<InputArray<std::uint8_t>>();
-            require(bytes.ndim() == 2 && bytes.shape(1) == static_cast<pybind11::ssize_t>(sizeof(Item)));
+            require_restored(bytes.ndim() == 2 && bytes.shape(1) == static_cast<pybind11::ssize_t>(sizeof(Item)));
             resize(static_cast<std::size_t>(bytes.shape(0)));
             if (bytes.size() > 0) std::memcpy(values.data(), bytes.data(), static_cast<std::size_t>(bytes.size()));
+            for (const Item& item : values) check_copied(item);
         } else {
             const auto items = state.cast<pybind11::tuple>();
             resize(items.size());
@@ -162,19 +184,25 @@ private:
         if (state.is_none()) return pointer.reset();
         if (pybind11::isinstance<pybind11::int_>(state)) {
             const auto number = state.cast<std::size_t>();
-            require(number < read_.size());
-            pointer = std::static_pointer_cast<T>(read_[number]);
+            // One of another type, or of which this is a part: none that was written has such.
+            require_restored(number < read_.size() && read_[number].value && read_[number].type == typeid(T));
+            pointer = std::static_pointer_cast<T>(read_[number].value);
             return;
         }
         const std::size_t number = read_.size();
-        read_.emplace_back();
+        read_.push_back({nullptr, typeid(T)});
         auto value = std::make_shared<std::remove_const_t<T>>();
         read(*value, state);
-        read_[number] = value;
+        read_[number].value = value;
         pointer = std::move(value);
     }
 
-    std::vector<std::shared_ptr<const void>> read_;
+    struct Shared {
+        std::shared_ptr<const void> value;  ///< null while it is read
+        std::type_index type;
+    };
+    std::vector<Shared> read_;
+    bool any_bytes_ = false;  ///< whether texts may be other than UTF-8
 };
 
 }  // namespace realcam::bindings

@@ -48,6 +48,18 @@ JsonWriter& JsonWriter::number(double value) {
     return *this;
 }
 
+JsonWriter& JsonWriter::truth(bool value) {
+    before_value();
+    text_ += value ? "true" : "false";
+    return *this;
+}
+
+JsonWriter& JsonWriter::null() {
+    before_value();
+    text_ += "null";
+    return *this;
+}
+
 void JsonWriter::before_value() {
     if (!after_key_ && !closers_.empty()) {
         if (!first_) text_ += ',';

@@ -14,6 +14,8 @@ public:
     JsonWriter& text(const std::string& value);
     /// null where the number is infinite or NaN: JSON has neither.
     JsonWriter& number(double value);
+    JsonWriter& truth(bool value);
+    JsonWriter& null();
 
     std::string finish() const { return text_; }
 

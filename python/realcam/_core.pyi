@@ -1274,7 +1274,7 @@ class LiveFrame:
 
 @final
 class LiveView:
-    def __init__(self, scene: Scene, *, device: str = "cuda", seed: int = 0, max_bounces: int = 1) -> None: ...
+    def __init__(self, scene: Scene, *, device: str = "auto", seed: int = 0, max_bounces: int = 1) -> None: ...
     def shoot(
         self,
         camera: Camera,

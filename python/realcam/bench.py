@@ -97,7 +97,9 @@ def pass_share(threads: int) -> Result:
         lens = Lens.load(name)
         width, height = lens.film_mm
         film = Film(width, height, (300, max(1, round(300 * height / width))))
-        stats = render(speck, Camera(lens, film=film), spp=16, max_bounces=0, device="cpu", threads=threads).stats
+        stats = render(
+            speck, Camera(lens, film=film), effects=(), spp=16, max_bounces=0, device="cpu", threads=threads
+        ).stats
         shares[name] = round(stats.passed_rays / stats.sampled_rays, 4)
     return {"share": shares, "worst": min(shares.values())}
 
@@ -192,13 +194,12 @@ def frame(threads: int) -> Result:
     cameras = {model: frame_camera(model) for model in ("full", "thick", "thin", "pinhole")}
     cpu: dict[str, list[float]] = {model: [] for model in cameras}
     wall: dict[str, list[float]] = {model: [] for model in cameras}
-    render(
-        scene, cameras["pinhole"], spp=1, device="cpu", threads=threads
-    )  # builds the scene's BVH, which is no part of a picture
+    # Builds the scene's BVH, which is no part of a picture.
+    render(scene, cameras["pinhole"], effects=(), spp=1, device="cpu", threads=threads)
     for _ in range(5):  # in turns, so that what else the machine does falls on all alike
         for model, camera in cameras.items():
             start = time.process_time(), time.perf_counter()
-            render(scene, camera, spp=20, max_bounces=0, device="cpu", threads=threads)
+            render(scene, camera, effects=(), spp=20, max_bounces=0, device="cpu", threads=threads)
             cpu[model].append(time.process_time() - start[0])
             wall[model].append(time.perf_counter() - start[1])
     best = {model: min(times) for model, times in cpu.items()}
@@ -283,13 +284,15 @@ def gpu_paths(threads: int) -> Result:
     seconds: dict[str, list[float]] = {}
     for _ in range(4):  # in turns; the first round warms up
         for model in ("pinhole", "thin", "thick", "full"):
-            stats = render(scene, gpu_camera(model), spp=256, max_bounces=0, device="cuda").stats
+            stats = render(scene, gpu_camera(model), effects=(), spp=256, max_bounces=0, device="cuda").stats
             seconds.setdefault(model, []).append(stats.seconds - stats.setup_seconds)
     paths = 256 * 1920 * 1280
     best = {model: min(times) for model, times in seconds.items()}
     rays = {}
     for bounces in (1, 4, 8):
-        runs = [render(scene, gpu_camera(), spp=64, max_bounces=bounces, device="cuda").stats for _ in range(3)]
+        runs = [
+            render(scene, gpu_camera(), effects=(), spp=64, max_bounces=bounces, device="cuda").stats for _ in range(3)
+        ]
         rays[str(bounces)] = _giga(max(run.scene_rays / (run.seconds - run.setup_seconds) for run in runs))
     lens_alone = paths / _core._gpu_lens_ray_rates(gpu_camera(), "cuda")["generated"]
     return {
@@ -318,7 +321,7 @@ def _frames_per_second(shoot: Callable[[int], _core.LiveFrame]) -> float:
 def gpu_frames(threads: int) -> Result:
     """Frames per second of a live view, 640 x 640 pixels of 20 samples, while camera, focus or stop change; a stop."""
     del threads
-    view = _core.LiveView(_gpu_scene(), max_bounces=0)
+    view = _core.LiveView(_gpu_scene(), device="cuda", max_bounces=0)
     lens = Lens.load("double-gauss-50mm").focused(5.0)
 
     def camera(lens: Lens = lens, x: float = 0.0) -> Camera:
@@ -373,11 +376,11 @@ def gpu_objects(threads: int) -> Result:
     seconds: dict[str, list[float]] = {}
     for _ in range(4):  # in turns; the first round warms up
         for name, scene in scenes.items():
-            stats = render(scene, camera, spp=256, max_bounces=0, device="cuda").stats
+            stats = render(scene, camera, effects=(), spp=256, max_bounces=0, device="cuda").stats
             seconds.setdefault(name, []).append(stats.seconds - stats.setup_seconds)
     hits = {name: _core._gpu_hit_rates(scene, camera, "cuda") for name, scene in scenes.items()}
 
-    scene, view = scenes["objects"], _core.LiveView(scenes["objects"], max_bounces=0)
+    scene, view = scenes["objects"], _core.LiveView(scenes["objects"], device="cuda", max_bounces=0)
     small = Camera(camera.lens, film=Film(24, 24, (640, 640)), position=(0, 1.5, 4), look_at=(0, 0.3, -4))
     matrix = np.eye(4)
 

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from . import _core, denoiser, image_file
-from ._core import Camera, RenderStats
+from ._core import Camera, InputError, RenderStats
+from .pickling import set_checked_state
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,27 @@ class Image:
     denoiser: str = ""
     plan: str = ""
     shortfall: str = ""
+
+    def __post_init__(self) -> None:
+        pixels, depth = self.pixels, self.depth
+        is_picture = isinstance(pixels, np.ndarray) and pixels.dtype.kind == "f" and pixels.shape[2:] == (3,)
+        if not is_picture or pixels.size == 0:
+            raise InputError("pixels must be an array of (H, W, 3) floats")
+        if not isinstance(depth, np.ndarray) or depth.dtype.kind != "f" or depth.shape != pixels.shape[:2]:
+            raise InputError("depth must be an array of (H, W) floats, for the pixels' H and W")
+        if not isinstance(self.layers, Mapping):
+            raise InputError("layers must be a mapping of names to arrays")
+        for name, layer in self.layers.items():
+            if not isinstance(layer, np.ndarray) or layer.shape[:2] != depth.shape:
+                raise InputError(f"the layer {name!r:.40} must be an array for the pixels' H and W")
+        if not isinstance(self.camera, Camera):
+            raise InputError("camera must be a Camera")
+        for names in (self.object_names, self.material_names):
+            if not isinstance(names, tuple) or not all(isinstance(name, str) for name in names):
+                raise InputError("object_names and material_names must be tuples of texts")
+
+    def __setstate__(self, state: Any) -> None:
+        set_checked_state(self, state)
 
     def __eq__(self, other: object) -> bool:
         """Whether pictures, cameras and settings are the same; what it cost to take them does not count."""

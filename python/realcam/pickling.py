@@ -1,7 +1,12 @@
-"""What pickles of realcam's objects name: how they are read again."""
+"""What pickles of realcam's objects name: how they are read again.
+
+A pickle is input as any other: what it says goes through the checks of a new object, and what they refuse is an
+InputError.
+"""
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -12,19 +17,51 @@ FORMAT = _core._STATE_FORMAT
 
 
 def restored(kind: str, state_format: int, version: str, state: Any) -> Any:
-    """The object that was pickled. Raises InputError where another version of realcam wrote it in another way."""
-    if state_format != FORMAT:
+    """The object that was pickled.
+
+    Raises InputError where the state is damaged, or another version of realcam wrote it in another way.
+    """
+    made_by = version if isinstance(version, str) and len(version) <= 20 and version.isprintable() else "?"
+    type_ = getattr(_core, kind, None) if isinstance(kind, str) else None
+    if not isinstance(type_, type) or not hasattr(type_, "_restored"):
+        raise _core.InputError(f"realcam {_core.__version__} pickles no such object; realcam {made_by} wrote it")
+    if not isinstance(state_format, int) or state_format != FORMAT:
+        other = f"{state_format:d}" if isinstance(state_format, int) and abs(state_format) < 10**9 else "?"
         raise _core.InputError(
-            f"this {kind} was pickled by realcam {version} in format {state_format}; realcam {_core.__version__} "
-            f"reads format {FORMAT} only"
+            f"this {kind} was pickled by realcam {made_by} in format {other}; realcam {_core.__version__} reads format "
+            f"{FORMAT} only"
         )
+    why = "it is damaged"
     try:
-        return getattr(_core, kind)._restored(state)
-    except (RuntimeError, TypeError, AttributeError) as error:
-        raise _core.InputError(f"this {kind} was pickled by realcam {version} and cannot be read: {error}") from None
+        return type_._restored(state)
+    except _core.RealcamError as error:
+        why = str(error)
+    except (RuntimeError, TypeError, ValueError, AttributeError, OverflowError):
+        pass  # pybind11's words about types of C++
+    raise _core.InputError(f"this {kind} was pickled by realcam {made_by} and cannot be read: {why}")
+
+
+def set_checked_state(value: Any, state: Any) -> None:
+    """`__setstate__` of a picture, a frozen dataclass: its fields go through __init__, and must make metadata.
+
+    Raises InputError. What is not a field (a cached property) is left out.
+    """
+    names = {field.name for field in dataclasses.fields(value)}
+    why = "it is damaged"
+    try:
+        made = type(value)(**{name: item for name, item in state.items() if name in names})
+        made.metadata()
+    except _core.RealcamError as error:
+        why = str(error)
+    except (TypeError, ValueError, AttributeError):
+        pass  # Python's words about its arguments
+    else:
+        vars(value).update(vars(made))
+        return
+    raise _core.InputError(f"this {type(value).__name__} cannot be read from its pickle: {why}")
 
 
 def same_arrays(one: Any, other: Any) -> bool:
     """Whether two arrays have the same type, shape and numbers, NaN included."""
     a, b = np.asarray(one), np.asarray(other)
-    return a.dtype == b.dtype and a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=a.dtype.kind == "f"))
+    return a.dtype == b.dtype and a.shape == b.shape and bool(np.array_equal(a, b, equal_nan=a.dtype.kind in "fc"))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 from . import _core
-from ._core import Camera, Plan, Scene
+from ._core import Camera, NothingToPlan, Plan, Scene
 from .effect_names import effect_list
 
 
@@ -48,3 +50,33 @@ def plan(
         threshold_codes,
         times,
     )
+
+
+class Settled(NamedTuple):
+    """What a picture is taken with once "auto" is decided."""
+
+    camera: Camera
+    effects: list[str]
+    illuminant: str
+    summary: str  # Plan.summary; empty: nothing was left to decide
+
+
+def settled(
+    scene: Scene, camera: Camera, effects: list[str], illuminant: str, stacklevel: int, **settings: Any
+) -> Settled:
+    """Decides where "auto" is among the effects. `settings`: of plan.
+
+    Warns, `stacklevel` calls up, where there is nothing to plan; raises what plan raises else.
+    """
+    if "auto" not in effects:
+        return Settled(camera, effects, illuminant, "")
+    summary = ""
+    try:
+        choice = plan(scene, camera, effects=effects, **settings)
+        camera, effects, summary = camera.replace(model=choice.model), choice.effects, choice.summary
+    except NothingToPlan as nothing:
+        warnings.warn(f"{nothing}; the picture has the effects that are named", stacklevel=stacklevel + 1)
+        effects = [name for name in effects if name != "auto"]
+    if not {"dispersion", "diffraction"} & set(effects):
+        illuminant = ""
+    return Settled(camera, effects, illuminant, summary)

@@ -8,12 +8,14 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core, demosaicing, dng, image_file
 from ._core import Film, InputError, Sensor
+from .pickling import set_checked_state
 
 if TYPE_CHECKING:
     from .image import Image
@@ -49,6 +51,17 @@ class RawImage:
         mosaic = self.mosaic
         if not isinstance(mosaic, np.ndarray) or mosaic.dtype != np.uint16 or mosaic.ndim != 2 or mosaic.size == 0:
             raise InputError("mosaic must be an array of (H, W) numbers of the type uint16")
+        if not isinstance(self.sensor, Sensor):
+            raise InputError("sensor must be a Sensor")
+        if not isinstance(self.image_metadata, Mapping):
+            raise InputError("image_metadata must be a mapping of names to texts")
+        for name in ("iso", "exposure_time_s", "pixel_pitch_um"):
+            number = getattr(self, name)
+            if not (isinstance(number, Real) and 1e-37 <= float(number) <= 1e38):
+                raise InputError(f"{name} must be a positive number, from 1e-37 to 1e38")
+
+    def __setstate__(self, state: Any) -> None:
+        set_checked_state(self, state)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, RawImage):

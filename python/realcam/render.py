@@ -6,11 +6,11 @@ import warnings
 from collections.abc import Callable, Iterable
 
 from . import _core
-from ._core import Camera, NothingToPlan, Scene
+from ._core import Camera, Scene
 from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
 from .noise import Samples, noise_request
-from .planning import plan
+from .planning import settled
 
 ProgressCallback = Callable[[float], bool | None]
 
@@ -81,28 +81,20 @@ def render(
     """
     warn_of_no_light(scene)
     request = noise_request(spp, noise, noise_codes, seconds, max_spp)
-    wanted, light = effect_list(effects), illuminant_text(illuminant)
-    decisions = ""
-    if "auto" in wanted:
-        try:
-            choice = plan(
-                scene,
-                camera,
-                device=device,
-                seed=seed,
-                max_bounces=max_bounces,
-                threads=threads,
-                effects=wanted,
-                quality=quality,
-                threshold_px=threshold_px,
-                threshold_codes=threshold_codes,
-            )
-            camera, wanted, decisions = camera.replace(model=choice.model), choice.effects, choice.summary
-        except NothingToPlan as nothing:
-            warnings.warn(f"{nothing}; the picture has the effects that are named", stacklevel=2)
-            wanted = [name for name in wanted if name != "auto"]
-        if not {"dispersion", "diffraction"} & set(wanted):
-            light = ""
+    camera, wanted, light, decisions = settled(
+        scene,
+        camera,
+        effect_list(effects),
+        illuminant_text(illuminant),
+        stacklevel=2,
+        device=device,
+        seed=seed,
+        max_bounces=max_bounces,
+        threads=threads,
+        quality=quality,
+        threshold_px=threshold_px,
+        threshold_codes=threshold_codes,
+    )
     warn_of_effects(camera, wanted)
 
     def taken(callback: ProgressCallback | None) -> Image:

@@ -13,6 +13,7 @@ from ._core import Camera, Scene
 from .effect_names import Illuminant, effect_list, illuminant_text
 from .image import Image, image_of, layer_names
 from .noise import noise_request
+from .planning import Settled, settled
 from .render import warn_of_effects, warn_of_no_light
 
 
@@ -35,10 +36,12 @@ class Session:
     while not good_enough(session.image()):
         session.add(16)
 
-    device, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects and illuminant are those of render;
-    add() after add() takes the samples that one render of as many would take. Threads take turns, and cancel() ends
-    the turn of another. Raises InputError, SceneFileError and DeviceError; after one of these the picture begins anew.
-    Warns of a scene without light.
+    device, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, quality, threshold_px, threshold_codes
+    and illuminant are those of render, and so are their defaults; add() after add() takes the samples that one render
+    of as many would take. Effects "auto" are planned for each new picture, anew where set() brings another scene or
+    another view, which takes some hundredths of a second: for pictures that change all the time, name them.
+    Threads take turns, and cancel() ends the turn of another. Raises InputError, SceneFileError and DeviceError; after
+    one of these the picture begins anew. Warns of a scene without light.
     """
 
     def __init__(
@@ -53,26 +56,51 @@ class Session:
         clamp_cd_m2: float = 0.0,
         threads: int = 0,
         layers: str | Iterable[str] = (),
-        effects: str | Iterable[str] = (),
+        effects: str | Iterable[str] = "auto",
+        quality: str = "photo",
+        threshold_px: float | None = None,
+        threshold_codes: float | None = None,
         illuminant: Illuminant | None = None,
     ) -> None:
         self._seed, self._transport, self._clamp_cd_m2 = seed, transport, clamp_cd_m2
-        self._effects, self._illuminant = effect_list(effects), illuminant_text(illuminant)
-        self._core = _core._Session(
+        self._device, self._max_bounces, self._threads = device, max_bounces, threads
+        self._layers = layer_names(layers)
+        self._asked_effects, self._asked_illuminant = effect_list(effects), illuminant_text(illuminant)
+        self._thresholds = {"quality": quality, "threshold_px": threshold_px, "threshold_codes": threshold_codes}
+        self._asked_camera = camera
+        self._settled = self._plan(scene, camera)  # raises for what is no scene or camera
+        self._core = self._begin(scene, self._settled)
+        warn_of_no_light(scene)
+        warn_of_effects(camera, self._settled.effects)
+
+    def _plan(self, scene: Scene, camera: Camera) -> Settled:
+        return settled(
             scene,
             camera,
-            device,
-            seed,
-            max_bounces,
-            transport,
-            clamp_cd_m2,
-            threads,
-            layer_names(layers),
-            self._effects,
-            self._illuminant,
+            self._asked_effects,
+            self._asked_illuminant,
+            stacklevel=4,
+            device=self._device,
+            seed=self._seed,
+            max_bounces=self._max_bounces,
+            threads=self._threads,
+            **self._thresholds,
         )
-        warn_of_no_light(scene)
-        warn_of_effects(camera, self._effects)
+
+    def _begin(self, scene: Scene, now: Settled) -> _core._Session:
+        return _core._Session(
+            scene,
+            now.camera,
+            self._device,
+            self._seed,
+            self._max_bounces,
+            self._transport,
+            self._clamp_cd_m2,
+            self._threads,
+            self._layers,
+            now.effects,
+            now.illuminant,
+        )
 
     @property
     def scene(self) -> Scene:
@@ -81,8 +109,13 @@ class Session:
 
     @property
     def camera(self) -> Camera:
-        """The camera that was set last."""
+        """The camera that was set last. Its model is the one that was planned, where the effects are "auto"."""
         return self._core.camera
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Those that the picture has: named, or planned."""
+        return tuple(self._settled.effects)
 
     def set(self, *, scene: Scene | None = None, camera: Camera | None = None) -> None:
         """Another scene or camera; None keeps the one that was set last.
@@ -91,9 +124,31 @@ class Session:
         the same lens and film, its pose. Either begins a new picture. Another exposure time or ISO only develops the
         samples anew. Raises KeyboardInterrupt on Ctrl-C.
         """
-        self._core.set(self.scene if scene is None else scene, self.camera if camera is None else camera)
+        new_scene = self.scene if scene is None else scene
+        asked = self._asked_camera if camera is None else camera
+        if "auto" in self._asked_effects and isinstance(asked, Camera):
+            if asked.model == self.camera.model:  # made of self.camera: the model of it was planned
+                asked = asked.replace(model=self._asked_camera.model)
+            now = self._settled_for(new_scene, asked, is_other_scene=scene is not None)
+        else:
+            now = self._settled._replace(camera=asked)
+        if (now.effects, now.illuminant) == (self._settled.effects, self._settled.illuminant):
+            self._core.set(new_scene, now.camera)
+        else:
+            self._core = self._begin(new_scene, now)
+        self._asked_camera, self._settled = asked, now
         if scene is not None:
             warn_of_no_light(scene)
+
+    def _settled_for(self, scene: Scene, asked: Camera, is_other_scene: bool) -> Settled:
+        """Planned anew, but where only the dials of the exposure were turned."""
+
+        def exposed_alike(camera: Camera) -> Camera:
+            return camera.replace(exposure_time_s=asked.exposure_time_s, iso=asked.iso)
+
+        if is_other_scene or asked != exposed_alike(self._asked_camera):
+            return self._plan(scene, asked)
+        return self._settled._replace(camera=exposed_alike(self._settled.camera))
 
     def add(self, spp: int = 1) -> None:
         """Takes spp samples more of each pixel, 1 to 16777216, and returns when they are there.
@@ -131,8 +186,9 @@ class Session:
             self._seed,
             self._transport,
             self._clamp_cd_m2,
-            self._effects,
-            self._illuminant,
+            self._settled.effects,
+            self._settled.illuminant,
+            self._settled.summary,
         )
         return replace(image, spp=round(float(self.samples.mean())))
 

@@ -68,10 +68,11 @@ set(files quad.obj empty.obj shot.toml wrong.toml a.png a.exr b.png c.png d.png 
 expect_files(${files})
 
 expect(0 "render.*lens.*devices")
-expect(2 "subcommand is required" lens)
+expect(2 "a command is missing; info, list are known" lens)
 expect(2 "scene is required" render)
 expect(2 "output is required" render quad.obj)
-expect(2 "not expected: --foo" render quad.obj -o x.png --foo)
+expect(2 "unknown option --foo \\(" render quad.obj -o x.png --foo)
+expect(2 "unknown option --exposur-time \\(did you mean \"--exposure-time\"" render quad.obj --exposur-time=1/50)
 expect(2 "\"\\.jpg\" is not written; \\.png .* or \\.exr .* is wanted" render quad.obj -o x.jpg)
 expect(2 "\"gone\" does not exist" render quad.obj -o gone/x.png)
 expect(2 "\"quad\\.obj\" is not a folder" render quad.obj -o quad.obj/x.png)

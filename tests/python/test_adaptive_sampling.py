@@ -100,7 +100,7 @@ def test_what_cannot_be_reached_is_said(device: str) -> None:
         image = rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=0.001, max_spp=64, device=device)
     assert image.shortfall
     assert 8 < image.spp <= 64
-    session = rc.Session(half_noisy(), camera(), device=device)
+    session = rc.Session(half_noisy(), camera(), device=device, effects=())
     reached = session.add_until(0.001, max_spp=64)
     assert not reached.is_reached
     assert reached.noise > 0.001
@@ -127,7 +127,7 @@ def test_the_same_bits_on_any_number_of_threads_and_after_add() -> None:
         return rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=0.02, threads=threads, device="cpu")
 
     assert image(1) == image(2)
-    session = rc.Session(half_noisy(), camera(), device="cpu")
+    session = rc.Session(half_noisy(), camera(), device="cpu", effects=())
     session.add(8)
     session.add_until(0.02)
     np.testing.assert_allclose(session.image().pixels, image(0).pixels, rtol=1e-6)

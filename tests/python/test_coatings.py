@@ -9,7 +9,6 @@ import mpmath
 import numpy as np
 import pytest
 import realcam as rc
-import tmm
 from numpy.typing import NDArray
 
 from ..measurement import Measurement, hold
@@ -45,6 +44,7 @@ def drawn_stack(rng: np.random.Generator) -> tuple[list[complex], list[float]]:
 
 
 def test_films_agree_with_tmm() -> None:
+    tmm = pytest.importorskip("tmm")
     rng = np.random.default_rng(20)
     worst, residue, cases = 0.0, 0.0, 0
     for _ in range(800):
@@ -81,6 +81,7 @@ def test_films_agree_with_tmm() -> None:
 
 @pytest.mark.parametrize("metal", ["aluminium", "silver"])
 def test_mirrors_agree_with_tmm(metal: str) -> None:
+    tmm = pytest.importorskip("tmm")
     enhanced = [rc.CoatingLayer(1.38, thickness_waves=0.25, design_wavelength_nm=550)]
     enhanced.append(rc.CoatingLayer(2.35, thickness_waves=0.25, design_wavelength_nm=550))
     for layers, angle, wavelength in itertools.product(([], enhanced), (0, 30, 75, 89), (400, 550, 700)):
@@ -250,6 +251,7 @@ def test_light_passes_both_ways_alike() -> None:
 
 def test_layers_are_counted_from_the_air() -> None:
     """On both faces of a plate: light meets the first layer first when it enters, and last when it leaves."""
+    tmm = pytest.importorskip("tmm")
     films = rc.Coating([layer(1.38, 100), layer(2.1, 130)])
     entering = films.response(20, 500, inside=1.6)
     theirs = tmm.coh_tmm("s", [1, 1.38, 2.1, 1.6], [np.inf, 100, 130, np.inf], np.radians(20), 500)

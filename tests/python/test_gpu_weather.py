@@ -306,14 +306,14 @@ assert rc.render(scene, camera, spp=1, device="cpu").spp == 1
 @pytest.mark.gpu
 def test_a_gpu_lost_under_a_live_view() -> None:
     code = """
-live = rc.LiveView(scene)
+live = rc.LiveView(scene, device="cuda")
 # Few pixels leave multiprocessors free for the kernel that falls; all those samples take them seconds.
 few = rc.Camera(lens, film=rc.Film(36, 24, (20, 10)), position=(0, 1, 3), look_at=(0, 0.6, -2))
 live.shoot(few, spp=1).codes
 fall = fall_of(0)
 frame = live.shoot(few, spp=1 << 23)
 fall()
-for shoot in (lambda: frame.codes, lambda: live.shoot(camera, spp=1).codes, lambda: rc.LiveView(scene)):
+for shoot in (lambda: frame.codes, lambda: live.shoot(camera, spp=1).codes, lambda: rc.LiveView(scene, device="cuda")):
     try:
         shoot()
     except rc.DeviceError as error:

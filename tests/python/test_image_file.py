@@ -12,11 +12,12 @@ import zlib
 from pathlib import Path
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 import realcam as rc
 
 from . import scenes
+
+oiio = pytest.importorskip("OpenImageIO")
 
 pytestmark = pytest.mark.pictures
 ROOT = Path(__file__).resolve().parents[2]

@@ -84,7 +84,7 @@ def test_a_name_that_is_none() -> None:
         with pytest.raises(rc.InputError, match=r"unknown layer.*all, or some of depth, normal"):
             rc.render(two_walls(), camera(), effects=(), spp=1, layers=[wrong])
     with pytest.raises(rc.InputError, match="unknown layer"):
-        rc.Session(two_walls(), camera(), layers="colour")
+        rc.Session(two_walls(), camera(), layers="colour", effects=())
 
 
 def test_a_slanted_plane(device: str) -> None:
@@ -354,7 +354,7 @@ def test_variance_scales_with_samples_and_exposure(device: str) -> None:
 
 
 def test_layers_of_a_session_grow_with_its_samples(device: str) -> None:
-    session = rc.Session(two_walls(), camera(), device=device, seed=2, layers="all")
+    session = rc.Session(two_walls(), camera(), device=device, seed=2, layers="all", effects=())
     for spp in (16, 16, 32):
         session.add(spp)
         session.image()

@@ -5,15 +5,12 @@ import re
 import subprocess
 import sys
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
 import realcam as rc
 
-SHARED = Path(__file__).parents[3] / "shared"
-LENS_FILES = SHARED / "lens-files"
-needs_files = pytest.mark.skipif(not LENS_FILES.is_dir(), reason="the lens files of other programs are not here")
+from . import foreign_lenses
 
 SEQ = """RDM;LEN
 TITLE 'Probe'
@@ -188,26 +185,26 @@ def test_commands(seq, tmp_path):
     assert drawn.returncode == 0, drawn.stderr
 
 
-# Focal lengths, mm, as far as the files' titles and patents state them; the glass that no catalogue here has, and why
-# one stands for it.
+# Focal lengths, mm, as far as catalogues and patents state them; the glass that no catalogue here has, and why one
+# stands for it.
 CLAIMS = {
-    "CODV_49664.seq": ({}, False, 35.0, 0.02),  # "ACH 25 X 35": diameter and focal length
-    "CODV_65564.seq": ({}, False, 1.5, 0.01),  # stock number 65564, EPD 1, f/1.5
-    "HoO-V2C18Ex03.zmx": ({}, False, 80.0, 0.1),  # its f-number is 4, its first mirror 20 mm wide
-    "US05331467-1.zmx": ({}, False, 1000.0, 1.0),
-    "US05831776-1.zmx": ({}, True, None, 0),  # fused silica; its rims cross
-    "US08427765-1.ZMX": ({"L-TIM28_MOLD": "ohara:S-TIM28"}, False, None, 0),
-    "thorlabs-354710-C.zmx": ({"D-ZK3M": "cdgm:D-ZK3"}, False, 1.49, 0.005),  # "f=1.49mm, D-ZK3 Asphere"
-    "HoO-V2C18Ex46.zmx": ({}, True, None, 0),  # tilted
-    "asp46.seq": ({}, False, None, 0),  # an asphere without power in its middle
+    "achromat-25x35.seq": ({}, False, 35.0, 0.02),
+    "achromat-1.5mm.seq": ({}, False, 1.5, 0.01),  # a pupil of 1 mm, f/1.5
+    "two-mirrors.zmx": ({}, False, 80.0, 0.1),  # its f-number is 4, its first mirror 20 mm wide
+    "us5331467-1.zmx": ({}, False, 1000.0, 1.0),
+    "us5831776-1.zmx": ({}, True, None, 0),  # fused silica; its rims cross
+    "us8427765-1.zmx": ({"L-TIM28_MOLD": "ohara:S-TIM28"}, False, None, 0),
+    "moulded-asphere.zmx": ({"D-ZK3M": "cdgm:D-ZK3"}, False, 1.49, 0.005),
+    "tilted-mirrors.zmx": ({}, True, None, 0),
+    "asphere-without-power.seq": ({}, False, None, 0),
+    "double-gauss-100mm.seq": ({}, False, 100.0038, 6e-5),
 }
 
 
-@needs_files
-@pytest.mark.parametrize("name", sorted(CLAIMS))
-def test_files_of_other_programs(name):
+@pytest.mark.parametrize("name", foreign_lenses.NAMES)
+def test_files_of_other_programs(name, tmp_path):
     glass, force, focal_length_mm, tolerance_mm = CLAIMS[name]
-    path = LENS_FILES / name
+    path = foreign_lenses.write_foreign_lens(name, tmp_path)
     if glass:
         with pytest.raises(rc.LensFileError, match="unknown glass"):
             load_quietly(path)
@@ -220,7 +217,7 @@ def test_files_of_other_programs(name):
         assert data.effective_focal_length_mm == pytest.approx(focal_length_mm, abs=tolerance_mm)
     text = path.read_bytes()
     text = text.decode("utf-16") if text[:2] == b"\xff\xfe" else text.decode("latin-1")
-    # The aperture that the file prints.
+    # The aperture that the file states.
     for pattern, value in (
         (r"(?m)^(?:ENPD|EPD) +(\S+)", data.entrance_pupil_diameter_mm),
         (r"(?m)^FNUM +(\S+)", data.f_number),
@@ -230,17 +227,10 @@ def test_files_of_other_programs(name):
             assert value == pytest.approx(float(found[1]), rel=1e-9)
 
 
-@needs_files
-def test_every_file_has_a_claim():
-    names = {path.name for path in LENS_FILES.iterdir() if path.suffix.lower() in {".zmx", ".seq"}}
-    assert names == set(CLAIMS)
-
-
-@pytest.mark.skipif(not (SHARED / "truth").is_dir(), reason="the CODE V listing is not here")
-def test_code_v_double_gauss():
-    lens = load_quietly(SHARED / "truth" / "ag_dblgauss.seq")
+def test_code_v_double_gauss(tmp_path):
+    lens = load_quietly(foreign_lenses.write_foreign_lens("double-gauss-100mm.seq", tmp_path))
     data = lens.first_order()
-    # ag_dblgauss.lis, to its printed digits.
+    # CODE V's listing, to its printed digits.
     assert data.effective_focal_length_mm == pytest.approx(100.0038, abs=6e-5)
     assert data.back_focal_distance_mm == pytest.approx(61.4875, abs=6e-5)
     assert data.front_focal_distance_mm == pytest.approx(-29.3208, abs=6e-5)

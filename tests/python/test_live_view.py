@@ -38,7 +38,7 @@ def test_devices_of_a_live_view(scene: rc.Scene) -> None:
 @pytest.mark.skipif(HAS_GPU, reason="there is a GPU")
 def test_without_a_gpu_the_reason_is_given(scene: rc.Scene) -> None:
     with pytest.raises(rc.DeviceError, match=r"driver|CUDA|GPU"):
-        rc.LiveView(scene)
+        rc.LiveView(scene, device="cuda")
 
 
 @on_each
@@ -170,7 +170,7 @@ def test_wrong_frames_are_refused(scene: rc.Scene) -> None:
 @needs_gpu
 @pytest.mark.gpu
 def test_the_picture_on_the_gpu_is_that_of_render(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene, seed=3, max_bounces=1)
+    live = rc.LiveView(scene, seed=3, max_bounces=1, device="cuda")
     with pytest.raises(rc.InputError, match="no picture yet"):
         live.picture()
     for _ in range(2):
@@ -238,7 +238,7 @@ def seconds_of_one_sample(live: rc.LiveView) -> float:
 @needs_gpu
 @pytest.mark.gpu
 def test_cancel_takes_milliseconds(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene, max_bounces=8)
+    live = rc.LiveView(scene, max_bounces=8, device="cuda")
     one_sample = seconds_of_one_sample(live)
     for _ in range(3):
         frame = live.shoot(WIDE, spp=1 << 18)  # minutes
@@ -258,7 +258,7 @@ def test_cancel_takes_milliseconds(scene: rc.Scene) -> None:
 @needs_gpu
 @pytest.mark.gpu
 def test_cancel_from_another_thread(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene, max_bounces=8)
+    live = rc.LiveView(scene, max_bounces=8, device="cuda")
     one_sample = seconds_of_one_sample(live)
     frames = [live.shoot(WIDE, spp=1 << 18) for _ in range(3)]
     # The fourth waits for the first, which the stop ends.
@@ -277,7 +277,7 @@ def test_cancel_from_another_thread(scene: rc.Scene) -> None:
 @needs_gpu
 @pytest.mark.gpu
 def test_cancel_leaves_a_whole_frame_or_none(scene: rc.Scene) -> None:
-    live, spp = rc.LiveView(scene, seed=3), 2048
+    live, spp = rc.LiveView(scene, seed=3, device="cuda"), 2048
     live.shoot(camera(), spp=1).codes  # noqa: B018
     live.cancel()
     start = time.perf_counter()
@@ -318,7 +318,7 @@ def test_cancel_leaves_a_whole_frame_or_none(scene: rc.Scene) -> None:
 @needs_gpu
 @pytest.mark.gpu
 def test_cancel_by_many_threads_at_once(scene: rc.Scene) -> None:
-    live = rc.LiveView(scene, max_bounces=8)
+    live = rc.LiveView(scene, max_bounces=8, device="cuda")
     for _ in range(10):
         frame = live.shoot(WIDE, spp=1 << 18)
         threads = [threading.Thread(target=live.cancel) for _ in range(4)]
@@ -337,7 +337,7 @@ def test_cancel_by_many_threads_at_once(scene: rc.Scene) -> None:
 def test_a_view_left_alone_counts_past_two_to_the_31() -> None:
     sky = rc.Scene.from_arrays([[0, 0, 1e5], [1e-3, 0, 1e5], [0, 1e-3, 1e5]], [[0, 1, 2]]).with_environment(100.0)
     pixel = rc.Camera(LENS, film=rc.Film(1e-3, 1e-3, (1, 1)), model="pinhole", exposure_time_s=0.01)
-    live = rc.LiveView(sky, max_bounces=0)
+    live = rc.LiveView(sky, max_bounces=0, device="cuda")
     live.shoot(pixel, spp=1)
     first = live.picture()[0].numpy()
     for i in range(129):

@@ -196,7 +196,7 @@ def test_a_session_begins_anew_where_the_time_matters(device: str) -> None:
     still = FLOOR.with_instance(BOX, shifted(0, 0, -3), name="box").with_environment(500)
     moving = still.moved("box", [shifted(0, 0, -3), shifted(1, 0, -3)], times_s=[0, 1])
     cam = camera()
-    session = rc.Session(still, cam, device=device)
+    session = rc.Session(still, cam, device=device, effects=())
     session.add(4)
     session.set(camera=cam.replace(exposure_time_s=0.1, shutter_opens_s=0.3))
     assert session.image().spp == 4

@@ -271,9 +271,10 @@ def test_a_camera_that_sees_nothing_has_no_plan() -> None:
         rc.plan(behind, camera_of(), device="cpu")
 
 
-def test_sessions_want_names() -> None:
+def test_live_views_want_names() -> None:
+    camera = camera_of(film=rc.Film(3.6, 2.4, (6, 4)))
     with pytest.raises(rc.InputError, match='"auto" is for pictures that are planned first'):
-        rc.Session(board(3.0), camera_of(film=rc.Film(3.6, 2.4, (6, 4))), device="cpu", effects="auto")
+        rc.LiveView(board(3.0), device="cpu").shoot(camera, effects=["auto"])
 
 
 def test_a_lamp_behind_an_object_makes_neither_ghosts_nor_stars() -> None:

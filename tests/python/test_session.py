@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import threading
 import time
 
@@ -24,7 +25,7 @@ def room(lamp: float = 50.0) -> rc.Scene:
 
 
 def test_added_samples_are_those_of_one_render(device: str) -> None:
-    session = rc.Session(room(), camera(), device=device, seed=5, max_bounces=2)
+    session = rc.Session(room(), camera(), device=device, seed=5, max_bounces=2, effects=())
     for spp in (256, 256, 88):
         session.add(spp)
     whole = rc.render(room(), camera(), effects=(), spp=600, device=device, seed=5, max_bounces=2)
@@ -39,8 +40,71 @@ def test_added_samples_are_those_of_one_render(device: str) -> None:
     assert image.stats.seconds >= image.stats.setup_seconds > 0
 
 
+def test_the_defaults_are_those_of_render() -> None:
+    """Of what both take; of a live view, which takes names of effects with each frame, the device."""
+    ours, theirs = (inspect.signature(function).parameters for function in (rc.Session, rc.render))
+    shared = set(ours) & set(theirs)
+    assert shared >= {"device", "seed", "max_bounces", "effects", "quality", "transport", "layers", "illuminant"}
+    assert {name: ours[name].default for name in shared} == {name: theirs[name].default for name in shared}
+    assert "device: str = 'auto'" in (rc.LiveView.__init__.__doc__ or "")
+
+
+def lamps() -> tuple[rc.Scene, rc.Camera]:
+    """A bright lamp, which wants ghosts of a coated lens, and a camera that can turn away from it."""
+    lens = rc.Lens.load("double-gauss-50mm").focused(3.0).with_coating("bare")
+    lamp = scenes.quad((0.3, 0.4, -2), 0.05, emission=1e5)
+    view = rc.Camera(lens, film=rc.Film(36, 27, (40, 30)), exposure_time_s=0.01)
+    return scenes.scene_of(scenes.quad((0, 0, -3), 3, diffuse=0.6), lamp).with_environment(50.0), view
+
+
+def test_a_session_plans_as_render_does() -> None:
+    scene, view = lamps()
+    session = rc.Session(scene, view, device="cpu")
+    whole = rc.render(scene, view, spp=8, device="cpu")
+    assert whole.effects
+    assert session.effects == whole.effects
+    session.add(8)
+    assert session.image() == whole
+    assert session.image().plan == whole.plan != ""
+    named = rc.Session(scene, view, device="cpu", effects=())
+    assert named.effects == ()
+    named.add(8)
+    assert named.image() == rc.render(scene, view, spp=8, device="cpu", effects=())
+
+
+def test_a_session_plans_anew_for_another_picture() -> None:
+    scene, view = lamps()
+    away = view.replace(position=(0, 0, -2.5), look_at=(0, 0, -3))
+    session = rc.Session(scene, view, device="cpu")
+    before = session.effects
+    session.set(camera=session.camera.replace(position=(0, 0, -2.5), look_at=(0, 0, -3)))
+    session.add(4)
+    whole = rc.render(scene, away, spp=4, device="cpu")
+    assert session.image() == whole
+    assert session.effects == whole.effects != before
+    # The dials of the exposure begin no new picture, and change no plan.
+    session.set(camera=session.camera.replace(iso=800))
+    assert session.image().spp == 4
+    assert session.effects == whole.effects
+    dull = scenes.scene_of(scenes.quad((0, 0, -3), 3, diffuse=0.6)).with_environment(50.0)
+    session.set(scene=dull)
+    assert session.effects == rc.render(dull, away.replace(iso=800), spp=1, device="cpu").effects
+
+
+def test_what_cannot_be_set_changes_nothing() -> None:
+    scene, view = lamps()
+    session = rc.Session(scene, view, device="cpu")
+    before = (session.effects, session.camera)
+    with pytest.raises(rc.InputError):
+        session.set(camera="a camera")  # type: ignore[arg-type]
+    with pytest.raises(rc.InputError):
+        session.set(scene=3)  # type: ignore[arg-type]
+    assert (session.effects, session.camera) == before
+    session.add(1)
+
+
 def test_samples_of_each_pixel(device: str) -> None:
-    session = rc.Session(room(), camera(), device=device)
+    session = rc.Session(room(), camera(), device=device, effects=())
     assert (session.samples.shape, session.samples.dtype) == ((30, 40), np.int64)
     assert (session.samples == 0).all()
     with pytest.raises(rc.InputError, match="no picture yet"):
@@ -51,7 +115,7 @@ def test_samples_of_each_pixel(device: str) -> None:
 
 
 def test_another_picture_begins_anew_and_another_exposure_does_not(device: str) -> None:
-    session = rc.Session(room(), camera(), device=device)
+    session = rc.Session(room(), camera(), device=device, effects=())
     session.add(8)
     before = session.image()
     session.set(camera=camera(exposure_time_s=0.25, iso=800))
@@ -74,7 +138,7 @@ def test_another_picture_begins_anew_and_another_exposure_does_not(device: str) 
 def test_an_object_moves_in_a_session(device: str) -> None:
     ball = scenes.sphere(0.4, 12, rc.Material(diffuse=(0.5, 0.2, 0.2)), inward=False)
     scene, matrix = room().with_instance(ball, name="ball"), np.eye(4)
-    session = rc.Session(scene, camera(), device=device)
+    session = rc.Session(scene, camera(), device=device, effects=())
     session.add(4)
     for x in (0.0, 0.7):
         matrix[:3, 3] = x, 0, -2.4
@@ -87,7 +151,7 @@ def test_an_object_moves_in_a_session(device: str) -> None:
 
 
 def test_what_makes_no_picture_is_refused_and_what_was_collected_stays(device: str) -> None:
-    session = rc.Session(room(), camera(), device=device)
+    session = rc.Session(room(), camera(), device=device, effects=())
     session.add(2)
     for spp in (0, -1, 1 << 25):
         with pytest.raises(rc.InputError, match="spp"):
@@ -99,9 +163,9 @@ def test_what_makes_no_picture_is_refused_and_what_was_collected_stays(device: s
     session.add(2)  # of the camera that was set before, from its first sample on
     assert (session.samples == 2).all()
     with pytest.raises(rc.InputError, match="seed"):
-        rc.Session(room(), camera(), device=device, seed=-1)
+        rc.Session(room(), camera(), device=device, seed=-1, effects=())
     with pytest.raises(rc.InputError, match="toaster"):
-        rc.Session(room(), camera(), device="toaster")
+        rc.Session(room(), camera(), device="toaster", effects=())
     with pytest.raises(rc.ArgumentError, match="camera must be a Camera"):
         session.set(camera=3)  # type: ignore[arg-type]
 
@@ -109,7 +173,7 @@ def test_what_makes_no_picture_is_refused_and_what_was_collected_stays(device: s
 def test_a_scene_without_light_is_told() -> None:
     dark = scenes.scene_of(scenes.quad((0, 0, -3), 3))
     with pytest.warns(UserWarning, match="no light") as told:
-        session = rc.Session(dark, camera(4, 3), device="cpu")
+        session = rc.Session(dark, camera(4, 3), device="cpu", effects=())
     with pytest.warns(UserWarning, match="no light") as told_again:
         session.set(scene=scenes.scene_of(scenes.quad((0, 0, -3), 2)))
     assert {warning.filename for warning in (*told, *told_again)} == {__file__}
@@ -118,7 +182,7 @@ def test_a_scene_without_light_is_told() -> None:
 def test_a_stop_keeps_what_was_taken(device: str) -> None:
     """Pixels then differ in their samples, and each is divided by its own: a constant field stays constant."""
     sky, wide = scenes.sky(), camera(400, 300)
-    session = rc.Session(sky, wide, device=device, max_bounces=0)
+    session = rc.Session(sky, wide, device=device, max_bounces=0, effects=())
     stop = threading.Timer(0.3, session.cancel)
     stop.start()
     with pytest.raises(rc.Cancelled):
@@ -140,7 +204,7 @@ def test_a_stop_keeps_what_was_taken(device: str) -> None:
 
 
 def test_the_samples_after_a_stop_are_others(device: str) -> None:
-    session = rc.Session(room(), camera(200, 150), device=device, seed=3)
+    session = rc.Session(room(), camera(200, 150), device=device, seed=3, effects=())
     stop = threading.Timer(0.2, session.cancel)
     stop.start()
     with pytest.raises(rc.Cancelled):
@@ -155,7 +219,7 @@ def test_the_samples_after_a_stop_are_others(device: str) -> None:
 
 
 def test_threads_take_turns() -> None:
-    session = rc.Session(room(), camera(), device="cpu")
+    session = rc.Session(room(), camera(), device="cpu", effects=())
     threads = [threading.Thread(target=session.add, args=(8,)) for _ in range(6)]
     for thread in threads:
         thread.start()
@@ -168,7 +232,7 @@ def test_threads_take_turns() -> None:
 
 
 def test_cancel_ends_the_turn_of_another_thread_and_no_other() -> None:
-    session = rc.Session(room(), camera(300, 200), device="cpu")
+    session = rc.Session(room(), camera(300, 200), device="cpu", effects=())
     session.cancel()  # nothing is under way
     session.add(1)
     ended: list[float] = []
@@ -186,13 +250,13 @@ def test_cancel_ends_the_turn_of_another_thread_and_no_other() -> None:
     assert ended
     session.add(1)
     assert session.samples.min() >= 2
-    other = rc.Session(room(), camera(30, 20), device="cpu")
+    other = rc.Session(room(), camera(30, 20), device="cpu", effects=())
     session.cancel()
     other.add(1)
 
 
 def test_sessions_do_not_disturb_render_and_each_other() -> None:
-    one, two = (rc.Session(room(lamp), camera(), device="cpu") for lamp in (50.0, 5000.0))
+    one, two = (rc.Session(room(lamp), camera(), device="cpu", effects=()) for lamp in (50.0, 5000.0))
     expected = [rc.render(room(lamp), camera(), effects=(), spp=16, device="cpu").pixels for lamp in (50.0, 5000.0)]
     for _ in range(2):
         one.add(8)

@@ -67,9 +67,9 @@ LONG_CALLS = {
         rc.render(room(), camera, effects=(), spp=1, device="cpu")
         """,
     "metering": 'while True: camera.metered(room(), device="cpu", max_bounces=64)',
-    "a session": 'rc.Session(room(), camera, device="cpu", max_bounces=64).add(256)',
+    "a session": 'rc.Session(room(), camera, device="cpu", max_bounces=64, effects=()).add(256)',
     "a session in another thread": """
-        session = rc.Session(room(), camera, device="cpu")
+        session = rc.Session(room(), camera, device="cpu", effects=())
         threading.Thread(target=lambda: session.add(4096), daemon=True).start()
         time.sleep(0.3)
         session.image()
@@ -157,7 +157,7 @@ def test_progress_is_told_while_the_scene_is_made_ready() -> None:
 
 AT_WORK = {
     "render": 'rc.render(room(), camera, effects=(), spp=64, device="cpu")',
-    "session": 'rc.Session(room(), camera, device="cpu").add(64)',
+    "session": 'rc.Session(room(), camera, device="cpu", effects=()).add(64)',
     "live": "live.shoot(camera, spp=64).codes",
     "generate_rays": "camera.generate_rays(spp=20)",
     "trace": "camera.lens.trace(np.full((3_000_000, 3), (0.0, 0.0, 80.0)), np.full((3_000_000, 3), (0.0, 0.0, -1.0)))",

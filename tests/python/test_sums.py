@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 import realcam as rc
 
@@ -121,6 +120,7 @@ def test_exposure_scales_with_time_over_18_orders(device: str, backend: str) -> 
 @pytest.mark.parametrize("time_s", [1e-9, 1e9, 1e30, 1e38])
 def test_nothing_becomes_infinite(time_s: float, device: str, tmp_path: Path) -> None:
     """The brightest lights that a scene may have, one of them 1e-7 m off a wall; and the files of the picture."""
+    oiio = pytest.importorskip("OpenImageIO")
     wall = scenes.quad((0, 0, -2), 3, diffuse=1.0, specular=1.0, shininess=1e9)
     lamp = scenes.quad((0, 0.3, -1.2), 0.1, emission=1e20)
     scene = scenes.scene_of(wall, lamp).with_point_light((0.01, 0.01, -2 + 1e-7), (1e20,) * 3).with_environment(1e20)

@@ -57,7 +57,7 @@ def test_a_clamp_cuts_off_what_comes_by_a_bounce_and_is_told() -> None:
     assert image.metadata()["realcam:transport"] == "whitted"
     plain = rc.render(scene, scenes.pinhole(), effects=(), spp=1).metadata()
     assert not {"realcam:clamp_cd_m2", "realcam:transport"} & plain.keys()
-    session = rc.Session(scene, scenes.pinhole(), device="cpu", max_bounces=2, clamp_cd_m2=0.5)
+    session = rc.Session(scene, scenes.pinhole(), device="cpu", max_bounces=2, clamp_cd_m2=0.5, effects=())
     session.add(32)
     np.testing.assert_array_equal(session.image().pixels, clamped.astype(np.float32))
 

@@ -10,10 +10,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 import realcam as rc
 from realcam_command import executable
+
+oiio = pytest.importorskip("OpenImageIO")
 
 ROOT = Path(__file__).resolve().parents[2]
 pytestmark = pytest.mark.pictures

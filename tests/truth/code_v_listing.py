@@ -1,18 +1,18 @@
 """Figures of case A: CODE V 10.8, listing of "Double Gauss F/2 - Available Glasses" (29-Jun-17), lengths in
 mm.
 
-The few that the tests need are copied here; the listing itself lies in ../shared/truth, where it is at hand.
+What the tests need of it is here and, of all its rays, in code_v_rays.csv.
 """
 
 from __future__ import annotations
 
-import re
+import csv
 from dataclasses import dataclass
 from pathlib import Path
 
 import realcam as rc
 
-LISTING = Path(__file__).resolve().parents[3] / "shared" / "truth" / "ag_dblgauss.lis"
+RAYS = Path(__file__).with_name("code_v_rays.csv")
 
 FIRST_ORDER = {
     "effective_focal_length_mm": 100.0038,
@@ -60,15 +60,12 @@ SKEW_AT_14_DEGREES: list[Row] = [
 
 def rays_of_the_listing() -> list[tuple[float, list[Row]]]:
     """All rays of the analysis "ssp": the tangent of the field angle, and the rows of surfaces 1 to 11."""
-    rays: list[tuple[float, list[Row]]] = []
-    for line in LISTING.read_text(encoding="latin-1").split("CODE V> ana")[-1].splitlines():
-        numbers = [float(x) for x in re.findall(r"[-+]?\d+\.\d+(?:E[-+]\d+)?", line)]
-        if line.startswith(" OBJ"):
-            rays.append((numbers[-1], []))
-        elif rays and re.match(r"^ {2,3}\d{1,2} ", line) and len(numbers) == 8:
-            x, y, z, tan_x, tan_y, length, incidence, refraction = numbers
-            rays[-1][1].append((x, y, z, tan_x, tan_y, length, incidence, refraction))
-    return rays
+    rays: dict[str, tuple[float, list[Row]]] = {}
+    with RAYS.open(newline="") as file:
+        for ray, tangent, _surface, *numbers in list(csv.reader(file))[1:]:
+            x, y, z, tan_x, tan_y, length, incidence, refraction = map(float, numbers)
+            rays.setdefault(ray, (float(tangent), []))[1].append((x, y, z, tan_x, tan_y, length, incidence, refraction))
+    return list(rays.values())
 
 
 # The indices that the listing prints at 656.3, 587.6 and 486.1 nm.

@@ -79,8 +79,6 @@ def test_skew_ray_of_the_edge_of_the_field(trace: Trace) -> None:
 
 
 def test_every_ray_of_the_listing(trace: Trace) -> None:
-    if not listing.LISTING.is_file():
-        pytest.skip(f"the listing is not at hand ({listing.LISTING.name} beside the repository)")
     rays = listing.rays_of_the_listing()
     assert len(rays) == 9
     assert all(len(rows) == 11 for _, rows in rays)

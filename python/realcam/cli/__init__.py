@@ -11,6 +11,7 @@ import typer
 from .. import __version__
 from .._core import LensFileError, RealcamError, one_line
 from . import bench, cost, demo, lens, paper, sensor, view
+from .help_texts import finish_help
 from .options import add_command_of_the_executable, advice_on
 
 # click's, which newer versions of typer bring along under a private name.
@@ -21,6 +22,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # defaults in the help stand in [brackets]
+    context_settings={"help_option_names": ["-h", "--help"]},  # of all commands below, too
 )
 add_command_of_the_executable(app, "render", "Photograph a scene through a lens.")
 add_command_of_the_executable(app, "plan", "Say which effects a shot calls for, and why.")
@@ -52,10 +54,12 @@ def run() -> None:
     """Runs the command line; the user's mistakes end in one line on stderr and exit code 2, Ctrl-C in 130."""
     warnings.showwarning = _show_warning
     warnings.simplefilter("always", UserWarning)
+    command = typer.main.get_command(app)
+    finish_help(command)
     try:
-        sys.exit(app(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
+        sys.exit(command(sys.argv[1:] or ["--help"], prog_name="realcam", standalone_mode=False))
     except _UsageError as error:
-        _fail(f"{error.format_message()} (--help lists the options)")
+        _fail(_usage_message(error))
     except LensFileError as error:
         _fail(str(error) + advice_on(error))
     except RealcamError as error:
@@ -67,6 +71,20 @@ def run() -> None:
     except (KeyboardInterrupt, typer.Abort):
         print("realcam: stopped", file=sys.stderr)
         sys.exit(130)
+
+
+def _usage_message(error: Any) -> str:
+    """What is wrong, what was meant, and where the options stand."""
+    context = error.ctx
+    commands = getattr(context.command, "commands", None) if context else None
+    where = f"{context.command_path if context else 'realcam'} --help lists the {'commands' if commands else 'options'}"
+    near = getattr(error, "possibilities", None)
+    if near:
+        meant = " or ".join(sorted(near))
+        return f"{error.message.rstrip('.')} (did you mean {meant}?) ({where})"
+    if commands and error.format_message().startswith("Missing command"):
+        return f"a command is missing; {', '.join(commands)} are known ({where})"
+    return f"{error.format_message()} ({where})"
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

@@ -8,7 +8,8 @@ from typing import Annotated, Optional
 import typer
 from rich.console import Console
 
-from .._core import InputError, devices
+from .._core import devices
+from .options import check_known
 
 
 def bench(
@@ -17,11 +18,11 @@ def bench(
         typer.Argument(
             help="lens-rays, lens-setup, pass-share, camera-models, frame, sensor; gpu-lens-rays, gpu-hits, gpu-paths, "
             "gpu-frames, gpu-objects [all].",
-            metavar="[BENCHMARK]...",
+            metavar="BENCHMARK",
             show_default=False,
         ),
     ] = None,
-    threads: Annotated[int, typer.Option(help="0: all.", min=0, max=4096)] = 0,
+    threads: Annotated[int, typer.Option(metavar="N", help="0: all.", min=0, max=4096)] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit.")] = False,
 ) -> None:
     """Measure rays through the lens, pupil set-up, sampling efficiency, a frame and a sensor on this machine."""
@@ -30,8 +31,7 @@ def bench(
     has_gpu = any(line.startswith("cuda") for line in devices())
     wanted = names or [name for name in BENCHMARKS if has_gpu or name not in GPU_BENCHMARKS]
     for name in wanted:
-        if name not in BENCHMARKS:
-            raise InputError(f'unknown benchmark "{name}"; one of {", ".join(BENCHMARKS)} is wanted')
+        check_known(name, BENCHMARKS, "benchmark")
     results: dict[str, object] = {}
     status = Console(stderr=True)
     for name in wanted:

@@ -16,13 +16,24 @@ def cost(
     shot: Annotated[Path, typer.Argument(help="A shot file, .toml.", metavar="SHOT")],
     figure: Annotated[
         Optional[list[Path]],  # noqa: UP045
-        typer.Option("--figure", "-o", help="Error over time as .svg, or as .html with the table; may be repeated."),
+        typer.Option(
+            "--figure",
+            "-o",
+            metavar="FILE",
+            help="Error over time as .svg, or as .html with the table; may be repeated.",
+        ),
     ] = None,
-    size: Annotated[int, typer.Option(help="Pixels of the longer side.", min=8, max=4096)] = 320,
-    most_spp: Annotated[int, typer.Option(help="Each level is taken with 1, 4, 16, ... samples.", min=4)] = 256,
-    reference_spp: Annotated[int, typer.Option(help="Samples of what they are compared with.", min=16)] = 4096,
-    device: Annotated[str, typer.Option(help="auto (a GPU if there is one), cpu, cuda, or cuda:1.")] = "auto",
-    threads: Annotated[int, typer.Option(help="0: all.", min=0, max=4096)] = 0,
+    size: Annotated[int, typer.Option(metavar="PIXELS", help="Pixels of the longer side.", min=8, max=4096)] = 320,
+    most_spp: Annotated[
+        int, typer.Option(metavar="N", help="Each level is taken with 1, 4, 16, ... samples.", min=4)
+    ] = 256,
+    reference_spp: Annotated[
+        int, typer.Option(metavar="N", help="Samples of what they are compared with.", min=16)
+    ] = 4096,
+    device: Annotated[
+        str, typer.Option(metavar="DEVICE", help="auto (a GPU if there is one), cpu, cuda, or cuda:1.")
+    ] = "auto",
+    threads: Annotated[int, typer.Option(metavar="N", help="0: all.", min=0, max=4096)] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Take a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects."""

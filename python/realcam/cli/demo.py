@@ -17,9 +17,10 @@ from .._core import InputError, Lens
 
 def demo(
     output: Annotated[
-        Path, typer.Option("--output", "-o", help="Folder for the pictures; made where it is missing.")
+        Path,
+        typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the pictures; made where it is missing."),
     ] = Path("realcam-demo"),
-    spp: Annotated[int, typer.Option(help="Samples per pixel.", min=1, max=2**24)] = 48,
+    spp: Annotated[int, typer.Option(metavar="N", help="Samples per pixel.", min=1, max=2**24)] = 48,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load

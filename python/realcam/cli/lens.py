@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from pathlib import Path
 from typing import Annotated, Optional
@@ -15,7 +16,9 @@ app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
 
 Circle = Annotated[
     Optional[float],  # noqa: UP045
-    typer.Option("--circle-of-confusion", help="Largest blur that is sharp, in mm [the film's diagonal / 1500]."),
+    typer.Option(
+        "--circle-of-confusion", metavar="MM", help="Largest blur that is sharp, in mm [the film's diagonal / 1500]."
+    ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null.")]
 
@@ -29,7 +32,7 @@ lens_plots.register(app)
 def draw(
     name: lens_options.LensName,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="A .svg, .png or .pdf file [LENS.svg, here].")
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .svg, .png or .pdf file [LENS.svg, here].")
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,
@@ -44,8 +47,9 @@ def draw(
     states: Annotated[
         str,
         typer.Option(
+            metavar="WHICH",
             help="rows: zoom positions, or farthest and nearest focus, one below the other; ghost: the nearest "
-            "focus as outlines in the same drawing; one: as --focus says."
+            "focus as outlines in the same drawing; one: as --focus says.",
         ),
     ] = "one",
     theme: lens_options.ThemeName = "light",
@@ -116,9 +120,9 @@ def photo(
     circle: Circle = None,
     exposure_time: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option("--exposure-time", help="In seconds, 1/125 or 0.008: also print exposure values."),
+        typer.Option("--exposure-time", metavar="TIME", help="In seconds, 1/125 or 0.008: also print exposure values."),
     ] = None,
-    iso: Annotated[float, typer.Option("--iso", help="Sensitivity, for exposure values.")] = 100.0,
+    iso: Annotated[float, typer.Option("--iso", metavar="ISO", help="Sensitivity, for exposure values.")] = 100.0,
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
@@ -128,6 +132,8 @@ def photo(
     """Print photographers' figures: depth of field, angle of view, breathing, T-stop, exposure value."""
     from ..photography import photographic_figures
 
+    if not 0 < iso < math.inf:
+        raise InputError("--iso: a positive number is wanted")
     lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)
     figures = photographic_figures(
         lens,
@@ -146,14 +152,19 @@ def compare(
     first: lens_options.LensName,
     second: Annotated[str, typer.Argument(help="Another one.", metavar="LENS")],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Also draw both at one scale: .svg, .png or .pdf.")
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .png or .pdf."),
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,
     circle: Circle = None,
     mtf: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option("--mtf", help="Also the MTF at these frequencies, in periods per mm: 10,30. Takes seconds."),
+        typer.Option(
+            "--mtf",
+            metavar="PER_MM",
+            help="Also the MTF at these frequencies, in periods per mm: 10,30. Takes seconds.",
+        ),
     ] = None,
     wavelengths: lens_options.Wavelengths = None,
     radius_colours: lens_options.RadiusColours = False,
@@ -206,7 +217,7 @@ def compare(
 @app.command("convert")
 def convert(
     name: lens_options.LensName,
-    output: Annotated[Path, typer.Option("--output", "-o", help="A .toml, .zmx or .seq file.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx or .seq file.")],
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
@@ -224,8 +235,10 @@ def gallery(
         Optional[list[str]],  # noqa: UP045
         typer.Argument(help="Lenses, bundled or files [all that are bundled].", metavar="LENS"),
     ] = None,
-    output: Annotated[Path, typer.Option("--output", "-o", help="A .png, .svg or .pdf file.")] = Path("lenses.png"),
-    columns: Annotated[int, typer.Option(help="Drawings side by side.", min=1, max=50)] = 6,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .svg or .pdf file.")] = Path(
+        "lenses.png"
+    ),
+    columns: Annotated[int, typer.Option(metavar="N", help="Drawings side by side.", min=1, max=50)] = 6,
     theme: lens_options.ThemeName = "light",
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,

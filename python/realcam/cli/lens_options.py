@@ -13,9 +13,18 @@ from . import options
 LensName = Annotated[
     str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")
 ]
-FNumber = Annotated[Optional[float], typer.Option("--f-number", help="Close the diaphragm to this f-number.")]  # noqa: UP045
-Focus = Annotated[Optional[str], typer.Option("--focus", help="Object plane to film in metres, or inf.")]  # noqa: UP045
-Zoom = Annotated[Optional[str], typer.Option("--zoom", help="Zoom position, by its name in `realcam lens info`.")]  # noqa: UP045
+FNumber = Annotated[
+    Optional[float],  # noqa: UP045
+    typer.Option("--f-number", metavar="N", help="Close the diaphragm to this f-number."),
+]
+Focus = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option("--focus", metavar="METRES", help="Object plane to film in metres, or inf."),
+]
+Zoom = Annotated[
+    Optional[str],  # noqa: UP045
+    typer.Option("--zoom", metavar="NAME", help="Zoom position, by its name in `realcam lens info`."),
+]
 Glasses = Annotated[
     Optional[list[str]],  # noqa: UP045
     typer.Option(
@@ -37,20 +46,28 @@ PbrtThickness = Annotated[
     ),
 ]
 
-Rays = Annotated[int, typer.Option(help="Rays of each bundle.", min=0, max=101)]
+Rays = Annotated[int, typer.Option(metavar="N", help="Rays of each bundle.", min=0, max=101)]
 RaysFrom = Annotated[
-    str, typer.Option("--rays-from", help="object: bundles of points of it; film: what points of the film send out.")
+    str,
+    typer.Option(
+        "--rays-from", metavar="WHERE", help="object: bundles of points of it; film: what points of the film send out."
+    ),
 ]
 Fields = Annotated[
-    str, typer.Option("--fields", help="Places in the field, as shares of the height of the film's corner.")
+    str,
+    typer.Option(
+        "--fields", metavar="SHARES", help="Places in the field, as shares of the height of the film's corner."
+    ),
 ]
 FieldsDeg = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--fields-deg", help="Places in the field as angles before the lens, in degrees, instead."),
+    typer.Option(
+        "--fields-deg", metavar="DEGREES", help="Places in the field as angles before the lens, in degrees, instead."
+    ),
 ]
 Wavelengths = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--wavelengths", help="Of the rays, in nm: 486,588,656 [the lens's]."),
+    typer.Option("--wavelengths", metavar="NM", help="Of the rays, in nm: 486,588,656 [the lens's]."),
 ]
 RadiusColours = Annotated[
     bool, typer.Option("--radius-colours", help="Faces by the sign of their radius: blue positive, red negative.")
@@ -58,8 +75,8 @@ RadiusColours = Annotated[
 Marks = Annotated[
     bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F').")
 ]
-ThemeName = Annotated[str, typer.Option("--theme", help="light or dark.")]
-Width = Annotated[int, typer.Option("--width", help="Of the picture, in pixels.", min=200, max=20000)]
+ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="light or dark.")]
+Width = Annotated[int, typer.Option("--width", metavar="PIXELS", help="Of the picture, in pixels.", min=200, max=20000)]
 
 
 SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of lens files

@@ -15,15 +15,25 @@ from . import lens_options, options
 
 ObjectDistance = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--object-distance", help="Object plane to front vertex in metres, or inf [the plane in focus]."),
+    typer.Option(
+        "--object-distance",
+        metavar="METRES",
+        help="Object plane to front vertex in metres, or inf [the plane in focus].",
+    ),
 ]
 Fields = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--fields-deg", help="Field angles in degrees, with commas between [up to the film's corner]."),
+    typer.Option(
+        "--fields-deg",
+        metavar="DEGREES",
+        help="Field angles in degrees, with commas between [up to the film's corner].",
+    ),
 ]
 Wavelengths = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--wavelengths", help="In nm, with commas between [F line, the design wavelength, C line]."),
+    typer.Option(
+        "--wavelengths", metavar="NM", help="In nm, with commas between [F line, the design wavelength, C line]."
+    ),
 ]
 
 
@@ -34,14 +44,16 @@ def register(app: typer.Typer) -> None:
 
 
 def plot(
-    kind: Annotated[str, typer.Argument(help="What to plot: one of those below.", metavar="KIND")],
+    kind: Annotated[str, typer.Argument(help="What to plot: one of those above.", metavar="KIND")],
     name: Annotated[
         Optional[str],  # noqa: UP045
         typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS"),
     ] = None,
     output: Annotated[
         Optional[list[Path]],  # noqa: UP045
-        typer.Option("--output", "-o", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated."),
+        typer.Option(
+            "--output", "-o", metavar="FILE", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated."
+        ),
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,
@@ -53,18 +65,23 @@ def plot(
     wavelengths: Wavelengths = None,
     frequencies: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option("--frequencies", help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest."),
+        typer.Option(
+            "--frequencies",
+            metavar="PER_MM",
+            help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest.",
+        ),
     ] = None,
     method: Annotated[
         Optional[str],  # noqa: UP045
         typer.Option(
             "--method",
+            metavar="NAME",
             help="mtf, mtf-field, mtf-focus: diffraction or geometric (rays alone). psf: direct, fft or geometric.",
         ),
     ] = None,
     object_distance: ObjectDistance = None,
     theme: lens_options.ThemeName = "light",
-    size: Annotated[str, typer.Option("--size", help="small or large.")] = "large",
+    size: Annotated[str, typer.Option("--size", metavar="NAME", help="small or large.")] = "large",
     as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON.")] = False,
 ) -> None:
     """Plot one thing about a lens, or write its numbers.
@@ -76,13 +93,15 @@ def plot(
     from ..analysis import kinds, numbers
     from ..figure_files import check_figure_target, save_figure
 
-    if kind not in kinds.KINDS:
-        raise InputError(f'unknown plot "{kind}"; one of {", ".join(kinds.KINDS)} is wanted')
+    options.check_known(kind, kinds.KINDS, "plot")
     if name is None:
         raise InputError(f"realcam lens plot {kind}: the name of a lens is missing")
     targets = output or ([] if as_json else [Path(f"{kind}.svg")])
     for target in targets:
-        if target.suffix.lower() in (".json", ".csv"):
+        suffix = target.suffix.lower()
+        if suffix not in (".svg", ".png", ".pdf", ".json", ".csv"):
+            raise InputError(f"{target}: unknown suffix; .svg, .png, .pdf, .json or .csv is wanted")
+        if suffix in (".json", ".csv"):
             numbers.check_numbers_target(target)
         else:
             check_figure_target(target)
@@ -114,7 +133,7 @@ def report(
     name: lens_options.LensName,
     output: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option("--output", "-o", help="A .pdf or .html file [LENS.pdf, here]."),
+        typer.Option("--output", "-o", metavar="FILE", help="A .pdf or .html file [LENS.pdf, here]."),
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import typer
 
@@ -28,6 +29,16 @@ def number(text: str, what: str) -> float:
     if math.isnan(value):
         raise InputError(f'{what}: "{text}" is not a number')
     return value
+
+
+def check_known(word: str, known: Iterable[str], what: str) -> None:
+    """Raises InputError where a word is none of those, with the ones that are near."""
+    names = list(known)
+    if word in names:
+        return
+    near = difflib.get_close_matches(word, names)
+    meant = f" (did you mean {' or '.join(near)}?)" if near else ""
+    raise InputError(f'unknown {what} "{word:.40}"{meant}; one of {", ".join(names)} is wanted')
 
 
 def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str]:

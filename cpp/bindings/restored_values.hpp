@@ -1,0 +1,214 @@
+#pragma once
+#include "../camera/camera.hpp"
+#include "../camera/sensor.hpp"
+#include "../optics/coating_checks.hpp"
+#include "../optics/lens_checks.hpp"
+#include "../optics/paraxial.hpp"
+#include "../render/image.hpp"
+#include "../scene/scene_checks.hpp"
+#include "material.hpp"
+#include "restored.hpp"
+
+namespace realcam::bindings {
+
+// What holds for values of the core that come out of a pickle. Results of a calculation are in the file that binds
+// them.
+
+template <class T>
+struct RestoredCheck<Vec2<T>> : AnyMembers {};
+template <class T>
+struct RestoredCheck<Vec3<T>> : AnyMembers {};
+template <class T>
+struct RestoredCheck<Affine<T>> : AnyMembers {};
+template <>
+struct RestoredCheck<Color> : AnyMembers {};
+
+// A lens.
+
+template <>
+struct LastEnumerator<Glass::Formula> : LastIs<Glass::Formula::table> {};
+template <>
+struct LastEnumerator<CoatingKind> : LastIs<CoatingKind::reflectance> {};
+template <>
+struct LastEnumerator<SurfaceType> : LastIs<SurfaceType::aperture> {};
+
+template <>
+struct RestoredCheck<Glass::TablePoint> : AnyMembers {};
+template <>
+struct RestoredCheck<Glass::Parts> : AnyMembers {};  // by what makes a glass of them
+
+/// Made as anybody makes one. Throws InputError.
+inline Glass restored_glass(Glass::Parts parts) {
+    const auto made = [&] {
+        if (parts.formula == Glass::Formula::table) return Glass::table(std::move(parts.points));
+        if (parts.formula == Glass::Formula::cauchy) return Glass::cauchy(std::move(parts.coefficients));
+        require_restored(parts.coefficients.size() % 2 == 0);
+        std::vector<Glass::SellmeierTerm> terms;
+        for (std::size_t i = 0; i + 1 < parts.coefficients.size(); i += 2)
+            terms.push_back({parts.coefficients[i], parts.coefficients[i + 1]});
+        return Glass::sellmeier(terms);
+    };
+    require_restored(parts.formula == Glass::Formula::table ? parts.coefficients.empty() : parts.points.empty());
+    Glass glass = made();
+    glass.label = std::move(parts.label);
+    return glass;
+}
+
+template <>
+struct RestoredCheck<CoatingMaterial::Point> : AnyMembers {};
+template <>
+struct RestoredCheck<CoatingMaterial> : AnyMembers {};  // by the coating, which says in which layer
+template <>
+struct RestoredCheck<CoatingLayer> {
+    static void check(const CoatingLayer& layer) { check_coating(layered_coating({layer})); }
+};
+template <>
+struct RestoredCheck<Coating> {
+    static void check(const Coating& coating) {
+        // Also where the kind does not use it: whoever asks for the index of a material relies on its points.
+        check_coating(metal_mirror(coating.metal));
+        check_coating(coating);
+    }
+};
+template <>
+struct RestoredCheck<Surface> {
+    /// As far as it can be said without its lens.
+    static void check(const Surface& surface) {
+        if (!std::isfinite(surface.curvature)) throw InputError("a radius of curvature of 0 is no surface");
+        if (surface.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
+            throw InputError("a surface has more aspheric coefficients than " + std::to_string(kMaxAsphericTerms));
+    }
+};
+template <>
+struct RestoredCheck<IrisShape> : AnyMembers {};
+template <>
+struct RestoredCheck<FocusingRule> : AnyMembers {};
+template <>
+struct RestoredCheck<ZoomPosition> : AnyMembers {};
+template <>
+struct RestoredCheck<ZoomRange> : AnyMembers {};
+template <>
+struct RestoredCheck<LensSystem> {
+    static void check(const LensSystem& lens) {
+        validate(lens);
+        if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
+        if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
+            throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
+        if (!(lens.stop_semi_diameter >= 0 && lens.stop_semi_diameter <= kLongest))
+            throw LensFileError("the radius of the lens's open stop must be a length of 0 or more");
+        if (std::isnan(lens.focus_distance)) throw LensFileError("the focus distance is no number");
+        if (!(lens.focusing.nearest_mm >= 0)) throw LensFileError("the nearest focus must be 0 or a distance");
+    }
+};
+template <>
+struct RestoredCheck<FirstOrder> : AnyMembers {};
+
+// A camera and what is behind it.
+
+template <>
+struct LastEnumerator<CameraModel> : LastIs<CameraModel::full_lens_double> {};
+
+template <>
+struct RestoredCheck<Film> {
+    static void check(const Film& film) { validate(film); }
+};
+template <>
+struct RestoredCheck<Pose> : AnyMembers {};
+template <>
+struct RestoredCheck<PoseKey> : AnyMembers {};
+template <>
+struct RestoredCheck<Shutter> : AnyMembers {};
+template <>
+struct RestoredCheck<Camera> {
+    static void check(const Camera& camera) { validate(camera); }
+};
+
+template <>
+struct RestoredCheck<QuantumEfficiency> : AnyMembers {};
+template <>
+struct RestoredCheck<SensorPoint> : AnyMembers {};
+template <>
+struct RestoredCheck<SensorConversion> : AnyMembers {};
+template <>
+struct RestoredCheck<SensorNoise> : AnyMembers {};
+template <>
+struct RestoredCheck<Sensor> {
+    static void check(const Sensor& sensor) { validate(sensor); }
+};
+
+template <>
+struct RestoredCheck<RenderStats> : AnyMembers {};
+
+// A scene.
+
+template <>
+struct LastEnumerator<MaterialModel> : LastIs<MaterialModel::metallic_roughness> {};
+template <>
+struct LastEnumerator<FresnelTerm> : LastIs<FresnelTerm::physical> {};
+template <>
+struct LastEnumerator<TextureEncoding> : LastIs<TextureEncoding::linear> {};
+
+template <>
+inline constexpr bool has_names_of_files<Scene> = true;
+template <>
+inline constexpr bool has_names_of_files<Instance> = true;
+template <>
+inline constexpr bool has_names_of_files<PythonMaterial> = true;
+
+template <>
+struct RestoredCheck<Triangle> : AnyMembers {};
+template <>
+struct RestoredCheck<TextureReference> : AnyMembers {};
+template <>
+struct RestoredCheck<Material> : AnyMembers {};
+template <>
+struct RestoredCheck<ScenePointLight> : AnyMembers {};
+template <>
+struct RestoredCheck<SunLight> : AnyMembers {};
+template <>
+struct RestoredCheck<Environment> : AnyMembers {};
+template <>
+struct RestoredCheck<Texture> {
+    static void check(const Texture& texture) {
+        const std::size_t texels = static_cast<std::size_t>(std::max(texture.width, 0)) *
+                                   static_cast<std::size_t>(std::max(texture.height, 0));
+        const std::size_t numbers = texture.rgba.empty() ? texture.linear_rgba.size() : texture.rgba.size();
+        if (texels == 0 || numbers != 4 * texels) throw InputError("a texture is not of the size that it states");
+        for (const float number : texture.linear_rgba)
+            if (!(number >= 0) || !std::isfinite(number))
+                throw InputError("a texture must hold finite numbers, none below 0");
+    }
+};
+template <>
+struct RestoredCheck<Motion> {
+    static void check(const Motion& motion) {
+        if (const std::string why = motion_error(motion); !why.empty()) throw InputError(why);
+    }
+};
+template <>
+struct RestoredCheck<Scene> : AnyMembers {};
+template <>
+struct RestoredCheck<Instance> : AnyMembers {};
+template <>
+struct RestoredCheck<Assembly> {
+    static void check(const Assembly& scene) {
+        SceneChecks().check(scene);
+        for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+            const std::ptrdiff_t whole = scene.instances[i].part_of;
+            if (whole < Instance::kNoWhole || whole >= static_cast<std::ptrdiff_t>(i))
+                throw InputError(label(scene, i) + " is a part of instance " + std::to_string(whole) +
+                                 "; one that comes before it is wanted");
+        }
+    }
+};
+template <>
+struct RestoredCheck<PythonMaterial> {
+    /// Its numbers are checked with the scene that it comes into.
+    static void check(const PythonMaterial& material) {
+        for (const auto member : kMaterialTextures)
+            if ((material.values.*member).texture != -1)
+                throw InputError("a material without a scene has textures of one");
+    }
+};
+
+}  // namespace realcam::bindings

@@ -1,0 +1,39 @@
+"""What `--help` shows at its end: a line or some to start from, for each command that is Python."""
+
+from __future__ import annotations
+
+EXAMPLES: dict[str, tuple[str, ...]] = {
+    "lens plot": (
+        "realcam lens plot mtf-field tessar-50mm -o mtf.svg -o mtf.csv",
+        "realcam lens plot spot double-gauss-50mm --f-number 4 --focus 2 --fields-deg 0,10,20",
+    ),
+    "lens report": ("realcam lens report tessar-50mm --f-number 5.6 -o tessar.pdf",),
+    "lens draw": (
+        "realcam lens draw fisheye-6mm-220deg -o fisheye.svg",
+        "realcam lens draw double-gauss-50mm --focus 0.6 --f-number 2.8 --marks --theme dark",
+    ),
+    "lens photo": (
+        "realcam lens photo double-gauss-50mm --focus 3 --f-number 5.6",
+        "realcam lens photo tessar-50mm --exposure-time 1/125 --iso 400 --json",
+    ),
+    "lens compare": ("realcam lens compare tessar-50mm sonnar-50mm --mtf 10,30 -o both.svg",),
+    "lens convert": ("realcam lens convert tessar-50mm -o tessar.zmx",),
+    "lens gallery": (
+        "realcam lens gallery -o lenses.png",
+        "realcam lens gallery tessar-50mm sonnar-50mm --columns 2 -o two.svg",
+    ),
+    "sensor list": ("realcam sensor list",),
+    "sensor info": ("realcam sensor info sony-imx071-color",),
+    "expose": (
+        "realcam render scene.glb -o film.exr",
+        "realcam expose film.exr --sensor sony-imx071-color --iso 800 -o raw.dng -o raw.png",
+    ),
+    "demo": ("realcam demo -o pictures --spp 200",),
+    "bench": ("realcam bench lens-rays frame --json",),
+    "cost": ("realcam cost shot.toml -o cost.html",),
+    "paper": ("realcam paper -o paper.html",),
+    "view": (
+        "realcam view",
+        "realcam view shot.toml --port 8081 --no-browser",
+    ),
+}

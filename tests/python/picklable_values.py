@@ -1,0 +1,109 @@
+"""One or several of each kind of value that can be pickled: for tests of values, and for `./run fuzz pickles`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import realcam as rc
+
+
+def floor_scene() -> rc.Scene:
+    corners = [(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)]
+    return rc.Scene.from_arrays(corners, [(0, 2, 1), (0, 3, 2)])
+
+
+def lens() -> rc.Lens:
+    return rc.Lens.load("double-gauss-50mm").focused(1.5).stopped_down(4)
+
+
+def camera() -> rc.Camera:
+    return rc.Camera(lens(), film=rc.Film(36, 24, (12, 8)), position=(0, 1, 2), look_at=(0, 0, 0), iso=400)
+
+
+def scene() -> rc.Scene:
+    chair = floor_scene()
+    matrices = np.stack([np.eye(4)] * 3)
+    matrices[:, 0, 3] = [1, 2, 3]
+    return (
+        floor_scene()
+        .with_instance(chair, matrices, name="chair")
+        .with_sun((0, -1, 0), (1, 2, 3))
+        .with_environment(np.arange(24.0).reshape(2, 4, 3))
+    )
+
+
+def image() -> rc.Image:
+    return rc.render(floor_scene().with_environment(100), camera(), effects=(), spp=2, device="cpu")
+
+
+ORIGINS, DIRECTIONS = np.full((4, 3), (0.0, 0.0, 80.0)), np.array([[0, 0.01 * i, -1] for i in range(4)])
+
+# Each made twice is equal, and differs from its neighbour here.
+MAKERS: dict[str, list[Callable[[], Any]]] = {
+    "Glass": [lambda: rc.Glass.named("N-BK7"), lambda: rc.Glass.constant(1.5), lambda: rc.Glass.table([(500, 1.5)])],
+    "Surface": [
+        lambda: lens().surfaces[0],
+        lambda: lens().surfaces[0].replace(coating="bare"),
+        lambda: rc.Stop(clear_semi_diameter_mm=3),
+    ],
+    "Coating": [
+        lambda: rc.Coating.named("quarter_wave"),
+        lambda: rc.Coating.quarter_wave(1.45),
+        lambda: rc.Coating(metal="silver"),
+        lambda: rc.Coating(reflectance=0.9),
+        lambda: rc.Coating(
+            [rc.CoatingLayer("N-BK7", thickness_nm=50)], name="a name that nobody would type twice, long"
+        ),
+    ],
+    "CoatingLayer": [
+        lambda: rc.CoatingLayer(1.38, thickness_nm=90),
+        lambda: rc.CoatingLayer(1.38 + 1j, thickness_nm=90),
+    ],
+    "CoatingResponse": [
+        lambda: rc.Coating().response(0, 550, inside=1.5),
+        lambda: rc.Coating().response(0, 550, inside=1.6),
+    ],
+    "Lens": [lens, lambda: lens().with_coating("bare"), lambda: lens().focused(2), lambda: lens().stopped_down(8)],
+    "FirstOrder": [lambda: lens().first_order(), lambda: lens().stopped_down(8).first_order()],
+    "Film": [lambda: rc.Film(), lambda: rc.Film(resolution=(960, 641))],
+    "Camera": [camera, lambda: rc.Camera(lens())],
+    "Material": [lambda: rc.Material(), lambda: rc.Material(emission=(1, 0, 0))],
+    "Scene": [scene, floor_scene, lambda: scene().moved("chair 1", np.eye(4))],
+    "Spot": [lambda: lens().spot(10), lambda: lens().spot(10, samples=3), lambda: lens().spot(11)],
+    "Wavefront": [lambda: lens().wavefront(10, samples=8), lambda: lens().wavefront(11, samples=8)],
+    "PSF": [lambda: lens().psf(10, size=16), lambda: lens().psf(11, size=16), lambda: lens().psf(10, 500, size=16)],
+    "Seidel": [lambda: lens().seidel(10), lambda: lens().seidel(11)],
+    "Ghost": [lambda: lens().ghost(4, 2), lambda: lens().ghost(4, 1)],
+    "AimedRays": [lambda: lens().aim([(0, 0), (0, 0.5)]), lambda: lens().aim([(0, 0), (0, 0.6)])],
+    "TraceResult": [lambda: lens().trace(ORIGINS, DIRECTIONS), lambda: lens().trace(ORIGINS, 2 * DIRECTIONS[::-1])],
+    "CameraRays": [lambda: camera().generate_rays(), lambda: camera().generate_rays(seed=1)],
+    "Sensor": [
+        lambda: rc.Sensor.load(),
+        lambda: rc.Sensor.load("sony-imx900-mono"),
+        lambda: rc.Sensor.load().replace(adc_bits=14),
+    ],
+    "RayBundle": [
+        lambda: lens().bundle(10, spokes=8, nodes=2),
+        lambda: lens().bundle(11, spokes=8, nodes=2),
+    ],
+    "RawImage": [lambda: rc.Sensor.load().expose(image()), lambda: rc.Sensor.load().expose(image(), seed=1)],
+    "Image": [
+        image,
+        lambda: rc.render(floor_scene().with_environment(100), camera(), effects=(), spp=2, seed=1, device="cpu"),
+    ],
+}
+
+
+def plan() -> rc.Plan:
+    return rc.plan(floor_scene().with_environment(100), camera(), device="cpu")
+
+
+# All of them: also those that take a while, or are never the same again.
+ALL_MAKERS: dict[str, list[Callable[[], Any]]] = {
+    **MAKERS,
+    "RenderStats": [lambda: image().stats],
+    "Plan": [plan],
+    "PlanDecision": [lambda: plan().decisions[0]],
+}

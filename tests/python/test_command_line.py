@@ -1,0 +1,252 @@
+"""The command line as a stranger meets it: help, mistyped words, figures as JSON, and pictures that show nothing."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+from realcam import cli
+from realcam.cli.examples import EXAMPLES
+from realcam.cli.help_texts import finish_help
+from realcam_command import executable
+
+TREE = typer.main.get_command(cli.app)
+finish_help(TREE)
+OF_THE_EXECUTABLE = ["render", "plan", "devices", "lens list", "lens info"]
+QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
+
+pictures = pytest.mark.pictures  # a build without picture files has no executable
+
+
+def commands(command: Any = TREE, words: tuple[str, ...] = ()) -> Iterator[str]:
+    """All that are Python, and the groups."""
+    name = " ".join(words)
+    if name not in OF_THE_EXECUTABLE:
+        yield name
+    for word, below in getattr(command, "commands", {}).items():
+        yield from commands(below, (*words, word))
+
+
+def said(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
+    """Exit code, stdout and stderr of the command line that is Python."""
+    monkeypatch.setattr("sys.argv", ["realcam", *words])
+    with pytest.raises(SystemExit) as ended:
+        cli.run()
+    return int(ended.value.code or 0), *capsys.readouterr()
+
+
+def run(*words: object, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([executable(), *map(str, words)], capture_output=True, text=True, cwd=folder)
+
+
+def refusal(*words: object) -> str:
+    done = run(*words)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done
+    return done.stderr
+
+
+@pytest.mark.parametrize("name", sorted(commands()))
+def test_help(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    code, text, errors = said([*name.split(), "-h"], monkeypatch, capsys)
+    assert (code, errors) == (0, "")
+    assert said([*name.split(), "--help"], monkeypatch, capsys)[1] == text
+    assert text.startswith(f"Usage: realcam {name}".rstrip())
+    assert "-h, --help" in text
+    assert not re.search(r"<\w+(\[|>| range)", text), "a type of Python"
+    assert not re.search(r"\w\.\.\.$", text, re.M), "a line that was cut off"
+    has_examples = name in EXAMPLES
+    assert ("\n  Examples:\n    realcam " in text) == has_examples
+    assert has_examples or name in ("", "lens", "sensor")
+
+
+@pictures
+@pytest.mark.parametrize("name", OF_THE_EXECUTABLE)
+def test_help_of_the_executable(name: str) -> None:
+    text = run(*name.split(), "-h")
+    assert text.returncode == 0
+    assert run(*name.split(), "--help").stdout == text.stdout
+    examples = re.findall(rf"(?m)^  realcam ({name}\b.*)$", text.stdout.partition("Examples:\n")[2])
+    assert examples
+    for example in examples:
+        for option in re.findall(r"(?<= )--?[a-z][a-z-]*", example):
+            assert re.search(rf"(^|[ ,]){option}\b", text.stdout, re.M), f"{example}: {option}"
+
+
+@pytest.mark.parametrize(
+    "name, example", [(name, line) for name, lines in EXAMPLES.items() for line in lines if f" {name} " in f"{line} "]
+)
+def test_examples_are_command_lines(name: str, example: str) -> None:
+    words = shlex.split(example)[1:]
+    command: Any = TREE
+    for word in name.split():
+        assert words.pop(0) == word
+        command = command.commands[word]
+    command.make_context(name, words)  # raises for what the command does not take
+
+
+@pytest.mark.parametrize(
+    "words, meant",
+    [
+        ("rendr scene.glb", "Did you mean 'render'"),
+        ("lens drow", "Did you mean 'draw'"),
+        ("lens lst", "Did you mean 'list'"),
+        ("lens draw tessar-50mm --f-numbr 8", r"--f-numbr \(did you mean --f-number\?\) \(realcam lens draw --help"),
+        ("lens photo tessar-50mm --exposur-time 1/50", "did you mean --exposure-time"),
+        ("cost shot.toml --devise cpu", "did you mean --device"),
+        ("lens", "a command is missing; list, info, .* are known"),
+        ("sensor", "a command is missing; list, info are known"),
+        ("lens draw", r"Missing argument .*realcam lens draw --help lists the options"),
+        ("bench --threads many", "--threads"),
+        ("lens plot mtf-feild tessar-50mm", r'unknown plot "mtf-feild" \(did you mean mtf-field'),
+        ("bench lens-ray", r"did you mean lens-rays"),
+        ("paper --only snel", r"did you mean snell"),
+        ("lens photo tessar-50mm --iso -3", "--iso: a positive number is wanted"),
+        ("lens plot mtf tessar-50mm -o mtf.txt", r"\.json or \.csv is wanted"),
+    ],
+)
+def test_mistyped_words(
+    words: str, meant: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, output, errors = said(words.split(), monkeypatch, capsys)
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert errors.startswith("realcam: error: ")
+    assert re.search(meant, errors), errors
+
+
+@pictures
+@pytest.mark.parametrize(
+    "words, meant",
+    [
+        ("render scene.glb -o a.png --exposur-time 1/50", 'option --exposur-time (did you mean "--exposure-time"'),
+        ("render scene.glb -o a.png --exposur-time=1/50", 'option --exposur-time (did you mean "--exposure-time"'),
+        # Also where something else is missing.
+        ("render scene.glb --outptu a.png", 'option --outptu (did you mean "--output"'),
+        ("render --f-numbr 8", '(did you mean "--f-number"'),
+        ("render scene.glb", "--output is required (realcam render --help lists the options)"),
+        ("lens info tessar-50mm --jsn", '(did you mean "--json"'),
+        ("rendr", 'unknown command "rendr" (did you mean "render"'),
+        ("lens lst", 'unknown command "lst" (did you mean "list"'),
+        ("render quad.obj -o a.png --noise 0.1", "say how far --spp auto goes"),
+        ("render quad.obj -o a.png --quality best", '--quality: "best": draft, photo or reference is wanted'),
+        ("render quad.obj -o a.png --threshold-px 0", "must be above 0"),
+        ("lens", "a command is missing; info, list are known (realcam lens --help lists the commands)"),
+        ("render scene.glb -o a.png --spp 4 --spp 8", "--spp is given more than once (realcam render --help"),
+        ("render scene.glb -o a.png --zzzzzzzzzzzzzz", "unknown option --zzzzzzzzzzzzzz (realcam render --help"),
+    ],
+)
+def test_mistyped_words_for_the_executable(words: str, meant: str) -> None:
+    assert meant in refusal(*words.split())
+
+
+def render(folder: Path, *words: object) -> tuple[dict[str, Any], str]:
+    """The figures of a small picture, and what was told on the way."""
+    (folder / "quad.obj").write_text(QUAD)
+    settings = ["--resolution", "48x32", "--device", "cpu", "--effects", "none", "--json"]
+    settings += [] if "--spp" in words else ["--spp", "4"]
+    done = run("render", "quad.obj", "-o", "a.png", *settings, *words, folder=folder)
+    assert done.returncode == 0, done.stderr
+    figures: dict[str, Any] = json.loads(done.stdout)
+    return figures, done.stderr
+
+
+@pictures
+def test_figures_of_a_picture_as_json(tmp_path: Path) -> None:
+    figures, told = render(tmp_path, "--seed", 3, "--iso", 200, "--f-number", 4, "--focus", 3, "-o", "b.exr")
+    assert figures["pictures"] == ["a.png", "b.exr"]
+    assert figures["lens"]["name"] == "double-gauss-50mm"
+    assert figures["lens"]["f_number"] == pytest.approx(4)
+    assert figures["lens"]["focus_distance_m"] == pytest.approx(3)
+    assert figures["camera"]["resolution"] == [48, 32]
+    assert figures["camera"]["film_mm"] == [36, 24]
+    assert (figures["spp"], figures["seed"], figures["noise"]) == (4, 3, None)
+    assert figures["exposure"]["iso"] == 200
+    assert figures["exposure"]["is_metered"] is True
+    # The meter has a picture of its own, with other samples.
+    assert figures["exposure"]["stops_above_middle_grey"] == pytest.approx(0, abs=0.3)
+    assert figures["has_daylight"] is True
+    assert "daylight" in told
+    assert figures["effects"] == []
+    assert figures["time_s"]["all"] >= figures["time_s"]["picture"] > 0
+    assert figures["rays"]["sampled"] >= figures["rays"]["passed"] > 0
+    assert "CPU" in figures["device"]
+    assert figures["warnings"] == []
+
+
+@pictures
+def test_noise_that_was_asked_for_is_in_the_json(tmp_path: Path) -> None:
+    reached, _ = render(tmp_path, "--spp", "auto", "--noise", "0.2", "--environment", "100")
+    assert reached["noise"] == {"wanted": 0.2, "unit": "share", "is_reached": True, "shortfall": ""}
+    missed, told = render(tmp_path, "--spp", "auto", "--noise-codes", "0.001", "--max-spp", "32")
+    assert missed["noise"]["is_reached"] is False
+    assert missed["noise"]["shortfall"] in told
+    assert missed["warnings"] == [missed["noise"]["shortfall"]]
+
+
+@pictures
+def test_pictures_that_show_nothing_are_told(tmp_path: Path) -> None:
+    """By how many stops, and what to change: the figures of the metered picture give both."""
+    light = ["--environment", "100"]
+    metered, told = render(tmp_path, *light)
+    assert "nearly all" not in told
+    time_s = metered["exposure"]["exposure_time_s"]
+    for stops, word, wanted in ((-6, "black", "a higher --iso or a smaller --f-number"), (7, "white", "a lower --iso")):
+        figures, told = render(tmp_path, *light, "--exposure-time", time_s * 2**stops)
+        [warning] = figures["warnings"]
+        assert f"realcam: warning: {warning}\n" in told
+        assert f"nearly all {word}, {abs(stops)} stops {'below' if stops < 0 else 'above'} middle grey" in warning
+        assert wanted in warning
+        numerator, _, denominator = re.search(r"auto or about ([\d.]+)(/([\d.]+))?", warning).groups()  # type: ignore[union-attr]
+        advised = float(numerator) / float(denominator or 1)
+        assert math.log2(advised / time_s) == pytest.approx(0, abs=0.2)
+    # Two stops more or less are a matter of taste.
+    assert "nearly all" not in render(tmp_path, *light, "--exposure-time", time_s * 4)[1]
+    assert "nearly all" not in render(tmp_path, *light, "--exposure-time", time_s / 4)[1]
+    dark, told = render(tmp_path, "--environment", "0", "--exposure-time", "1")
+    assert dark["warnings"] == ["the picture is black: no light reaches the film"]
+    assert dark["exposure"]["stops_above_middle_grey"] is None
+
+
+@pictures
+@pytest.mark.slow
+def test_a_closed_diaphragm_before_a_fixed_shutter_is_told(tmp_path: Path) -> None:
+    """The demo's shutter is right for f/2.1, and f/8 takes four stops of its light."""
+    demo = Path(__file__).resolve().parents[2] / "scenes" / "demo.toml"
+    small = ["--resolution", "60x40", "--spp", "8", "--effects", "none", "--device", "cpu"]
+    for f_number, is_told in ((2.1, False), (4, False), (8, True), (16, True)):
+        done = run("render", demo, "-o", "a.png", "--f-number", f_number, *small, folder=tmp_path)
+        assert ("nearly all black" in done.stderr) == is_told, done.stderr
+
+
+@pictures
+def test_a_small_lit_thing_before_nothing_is_no_black_picture(tmp_path: Path) -> None:
+    (tmp_path / "lamp.mtl").write_text("newmtl lamp\nKd 0 0 0\nKe 100 100 100\n")
+    (tmp_path / "lamp.obj").write_text(
+        "mtllib lamp.mtl\nusemtl lamp\n" + QUAD.replace("1 ", "0.05 ").replace("f 0.05", "f 1")
+    )
+    done = run(
+        *("render", "lamp.obj", "-o", "a.png", "--position", "0,0,4", "--look-at", "0,0,0", "--effects", "none"),
+        *("--resolution", "60x40", "--spp", "4", "--focus", "4", "--device", "cpu"),
+        folder=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "nearly all" not in done.stderr
+
+
+@pictures
+def test_the_two_programs_say_the_same_of_what_is_the_executables(tmp_path: Path) -> None:
+    """`realcam` of the Python package hands over, options, mistakes and all."""
+    environment = {**os.environ, "PYTHONPATH": str(Path(cli.__file__).parents[2])}
+    for words in (["render", "-h"], ["render", "x.glb", "--outptu", "y.png"]):
+        ours = subprocess.run([sys.executable, "-m", "realcam", *words], capture_output=True, env=environment)
+        theirs = subprocess.run([executable(), *words], capture_output=True)
+        assert (ours.returncode, ours.stdout, ours.stderr) == (theirs.returncode, theirs.stdout, theirs.stderr)
