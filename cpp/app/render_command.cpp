@@ -108,6 +108,7 @@ private:
 
     shot::Shot set_up_shot(const shot::ShotRequest& request, Camera camera) {
         shot::Shot shot = set_up(request, std::move(camera), read_scene(request));
+        if (const std::string notice = shot::view_notice(shot); !notice.empty()) say(notice);
         if (shot.has_daylight)
             say("the scene holds no light; it gets daylight: a sun of 80 klux from the upper left, and a sky of 5000 "
                 "cd/m^2");
@@ -171,7 +172,9 @@ private:
                                                   pictures.push_back(path);
                                                   return image_io::read_image(path, bytes);
                                               },
-                                              [](const std::string& path) { return image_io::read_environment(path); }};
+                                              [](const std::string& path, const image_io::WarnOf& warn) {
+                                                  return image_io::read_environment(path, warn);
+                                              }};
         Assembly scene =
             with_memory_for("while reading " + request.scene, [&] { return shot::scene_of(request, readers); });
         check_apart(words_.outputs, pictures);

@@ -37,6 +37,15 @@ void read_environment_word(const std::string& word, shot::ShotRequest& request) 
     request.environment_file = word;
 }
 
+void read_environment_words(const RenderWords& w, shot::ShotRequest& request) {
+    if (!w.environment.empty()) read_environment_word(w.environment, request);
+    EnvironmentChange& change = request.environment_change;
+    if (!w.environment_scale.empty()) change.scale = parse_number("--environment-scale", w.environment_scale);
+    if (!w.environment_rotation.empty())
+        change.rotation_deg = parse_number("--environment-rotation", w.environment_rotation);
+    check_environment_change(request);
+}
+
 void read_camera_words(const RenderWords& w, shot::ShotRequest& request) {
     if (!w.lens.empty()) {
         request.lens = w.lens;
@@ -52,6 +61,12 @@ void read_camera_words(const RenderWords& w, shot::ShotRequest& request) {
     if (!w.film.empty()) request.film_mm = parse_size("--film", w.film);
     if (!w.film_shift.empty()) request.film_shift_mm = parse_shift("--film-shift", w.film_shift);
     if (!w.resolution.empty()) request.resolution = parse_resolution("--resolution", w.resolution);
+    if (!w.camera.empty()) {  // in place of what a shot file says of the view
+        request.view.camera = w.camera;
+        request.view.position_m = request.view.look_at_m = std::nullopt;
+        request.motion.clear();
+    }
+    if (w.camera.empty() && !(w.position.empty() && w.look_at.empty())) request.view.camera.clear();
     if (!w.position.empty()) request.view.position_m = parse_point("--position", w.position);
     if (!w.look_at.empty()) request.view.look_at_m = parse_point("--look-at", w.look_at);
     if (!w.up.empty()) request.view.up = parse_point("--up", w.up);
@@ -161,6 +176,9 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
     option("--film-shift", w.film_shift,
            "The film's middle from the lens's axis, mm to the right and up as the picture shows it [0,0]", "X,Y");
     option("--resolution", w.resolution, "Pixels [960 along the longer side]", "WxH");
+    option("--camera", w.camera,
+           "Camera of a glTF whose place, direction and motion to take, by the name of its node; or none [the first]",
+           "NAME");
     option("--position", w.position,
            "Middle of the film, metres [in front of look-at, along +z, such that the scene fills the film]", "X,Y,Z");
     option("--look-at", w.look_at, "Point in the middle of the picture [middle of the scene]", "X,Y,Z");
@@ -184,6 +202,9 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
         "--environment", w.environment,
         "Light from all around: cd/m^2, or a latitude-longitude picture [the scene's light; daylight if it has none]",
         "CD_M2|FILE");
+    option("--environment-scale", w.environment_scale, "By which the environment's light is multiplied [1]", "FACTOR");
+    option("--environment-rotation", w.environment_rotation,
+           "Degrees by which the environment is turned about the vertical, counterclockwise from above [0]", "DEGREES");
     command.option_defaults()->group("Picture");
     option("--spp", w.spp, "Samples per pixel, or auto: as many as the noise needs, by tile of the film [64]", "N");
     option("--noise", w.noise, "Of --spp auto: noise as a share of a tile's light, such as 0.01", "SHARE");
@@ -249,7 +270,7 @@ shot::ShotRequest understand(const RenderWords& w) {
         request.scene = w.scene;
     }
     if (!w.scale.empty()) request.scale = parse_number("--scale", w.scale);
-    if (!w.environment.empty()) read_environment_word(w.environment, request);
+    read_environment_words(w, request);
     read_camera_words(w, request);
     if (!w.tone.empty()) request.tone = parse_tone(w.tone);
     read_sample_words(w, request);

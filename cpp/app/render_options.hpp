@@ -11,10 +11,10 @@ namespace realcam::app {
 
 /// The words of `render` as they were typed; empty: not given.
 struct RenderWords {
-    std::string scene, lens, film, film_shift, resolution, position, look_at, up, focus, f_number, blades,
+    std::string scene, lens, film, film_shift, resolution, camera, position, look_at, up, focus, f_number, blades,
         blade_rounding, blade_rotation, exposure_time, shutter_opens, readout_time, iso, model, scale, environment,
-        tone, spp, noise, noise_codes, seconds, max_spp, seed, max_bounces, transport, clamp, threads, layers, effects,
-        quality, threshold_px, threshold_codes, illuminant, device = "auto";
+        environment_scale, environment_rotation, tone, spp, noise, noise_codes, seconds, max_spp, seed, max_bounces,
+        transport, clamp, threads, layers, effects, quality, threshold_px, threshold_codes, illuminant, device = "auto";
     std::vector<std::string> outputs;
     bool verbose = false, explains = false, as_json = false;
     LensWords lens_file;

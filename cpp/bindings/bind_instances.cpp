@@ -124,6 +124,15 @@ py::tuple motions_of(const Assembly& scene) {
     return py::tuple(list);
 }
 
+py::tuple cameras_of(const Assembly& scene) {
+    constexpr double kDegrees = 57.29577951308232;
+    py::list list;
+    for (const SceneCamera& camera : scene.cameras)
+        list.append(py::make_tuple(text_from(camera.name), matrix_of(camera.scene_from_camera),
+                                   kDegrees * camera.vertical_field_rad));
+    return py::tuple(list);
+}
+
 }  // namespace
 
 void bind_instances(py::class_<Assembly>& scene) {
@@ -152,6 +161,12 @@ void bind_instances(py::class_<Assembly>& scene) {
              "without motion.")
         .def_property_readonly("instances", &instances_of,
                                "For each its name and (4, 4) scene_from_object; of one that moves, at time 0.")
+        .def_property_readonly(
+            "cameras", &cameras_of,
+            "Cameras of a glTF, for each (name, (4, 4) scene_from_camera at time 0, vertical field of "
+            "view in\n"
+            "degrees): they look along -z, y upwards. Of an orthographic one the field is 0. See "
+            "Camera.framing.")
         .def_property_readonly("motions", &motions_of,
                                "For each instance None, or (times_s, (K, 4, 4) scene_from_object) of one that moves.");
 }

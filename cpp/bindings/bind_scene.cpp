@@ -6,6 +6,7 @@
 
 #include "../io/scene_file.hpp"
 #include "../scene/bounding_box.hpp"
+#include "../scene/environment_change.hpp"
 #include "../scene/scene_checks.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"
@@ -40,9 +41,11 @@ Assembly with_valid_static_geometry(const Assembly& scene, Change&& change) {
     return changed;
 }
 
-Environment environment_from(const py::object& radiance) {
+/// `warnings` gets what the reader of a picture put up with.
+Environment environment_from(const py::object& radiance, std::vector<std::string>& warnings) {
     if (py::isinstance<py::str>(radiance) || py::hasattr(radiance, "__fspath__"))
-        return picture_readers().environment(path_from(radiance));
+        return picture_readers().environment(path_from(radiance),
+                                             [&](const std::string& warning) { warnings.push_back(warning); });
     Environment environment;
     if (py::isinstance<py::array>(radiance) && radiance.cast<py::array>().ndim() == 3) {
         const auto pixels = radiance.cast<InputArray<float>>();
@@ -100,18 +103,27 @@ void bind_scene(py::module_& m) {
         .def_static(
             "from_arrays", &scene_from_arrays, "vertices_m"_a, "triangles"_a, py::kw_only(), "normals"_a = py::none(),
             "uvs"_a = py::none(), "triangle_materials"_a = py::none(), "materials"_a = std::vector<PythonMaterial>{},
+            "colors"_a = py::none(),
             "vertices_m: (V, 3) float; triangles: (T, 3) int; normals: (V, 3) unit, zero for flat; uvs: (V, 2);\n"
-            "triangle_materials: (T,) indices into materials. Raises InputError or SceneFileError.")
+            "triangle_materials: (T,) indices into materials; colors: (V, 3) or (V, 4), linear Rec. 709, by which the\n"
+            "materials' diffuse or base colours, and a fourth number by which their opacity is multiplied.\n"
+            "Raises InputError or SceneFileError.")
         .def(
             "with_environment",
-            [](const Assembly& scene, const py::object& radiance) {
-                return with_valid_static_geometry(
-                    scene, [&](Scene& changed) { changed.environment = environment_from(radiance); });
+            [](const Assembly& scene, const py::object& radiance, double scale, double rotation_deg) {
+                return with_valid_static_geometry(scene, [&](Scene& changed) {
+                    changed.environment =
+                        realcam::changed(environment_from(radiance, changed.warnings), {scale, rotation_deg});
+                });
             },
-            "radiance"_a,
+            "radiance"_a, py::kw_only(), "scale"_a = 1.0, "rotation_deg"_a = 0.0,
             "The scene in light from all around: a number or (r, g, b) in cd/m^2, or an (H, W, 3) latitude-longitude "
             "image\n"
-            "(row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment).")
+            "(row 0 up, its middle column towards -z), or the path of one (see realcam.read_environment). Its light "
+            "is\n"
+            "multiplied by scale, and an image turned about the vertical by rotation_deg, counterclockwise as seen "
+            "from\n"
+            "above: at 90 its middle column lies towards -x. Raises InputError and ImageFileError.")
         .def(
             "with_sun",
             [](const Assembly& scene, const Triple& direction, const Colour& illuminance) {

@@ -23,8 +23,9 @@ std::optional<Vec3d> vector_if(const std::optional<Triple>& v) {
 }
 
 Camera framed(Camera camera, const Assembly& scene, const std::optional<Triple>& position,
-              const std::optional<Triple>& look_at, const Triple& up, std::optional<double> focus_m) {
-    set_view(camera, scene, {vector_if(position), vector_if(look_at), vector_of(up), focus_m});
+              const std::optional<Triple>& look_at, const Triple& up, std::optional<double> focus_m,
+              const std::string& scene_camera) {
+    set_view(camera, scene, {vector_if(position), vector_if(look_at), vector_of(up), focus_m, scene_camera});
     return camera;
 }
 
@@ -60,9 +61,12 @@ void bind_view(py::module_& m) {
                     "the largest part of the lens's film that has its shape. Raises InputError.");
     py::reinterpret_borrow<py::class_<Camera>>(m.attr("Camera"))
         .def("framing", &framed, "scene"_a, py::kw_only(), "position"_a = py::none(), "look_at"_a = py::none(),
-             "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(),
+             "up"_a = Triple{0, 1, 0}, "focus_distance_m"_a = py::none(), "scene_camera"_a = "",
              "The camera where it has the scene in its picture, in focus: position, look_at and focus_distance_m as\n"
-             "given, and what is None chosen. It looks at the middle of the scene, in front of it along +z\n"
+             "given, and what is None chosen. scene_camera: the name of one of scene.cameras, whose place, direction\n"
+             "and motion to take, or \"none\"; where nothing is said of the view it is the first of them. Without one, "
+             "it\n"
+             "looks at the middle of the scene, in front of it along +z\n"
              "(-y where up is z) where the scene fills nine tenths of the film, and focuses on the first surface on\n"
              "its axis. Of the camera itself lens, film, model and exposure stay. Raises InputError.")
         .def("metered", &metered, "scene"_a, py::kw_only(), "device"_a = "auto", "max_bounces"_a = 1,

@@ -82,14 +82,14 @@ namespace members_detail {
 
 template <class M>
 auto of_material(M& m) {
-    static_assert(count<Material>() == 34, "name what was added");
+    static_assert(count<Material>() == 36, "name what was added");
     return std::tie(m.model, m.diffuse, m.specular, m.emission, m.emits_on_both_sides, m.opacity, m.opacity_cutoff,
-                    m.only_shadows, m.opacity_texture, m.diffuse_texture, m.specular_texture, m.emission_texture, m.ior,
-                    m.transmission, m.filter, m.absorption, m.is_thin, m.shininess, m.mirror, m.fresnel, m.metallic,
-                    m.roughness, m.specular_weight, m.clearcoat, m.clearcoat_roughness, m.metallic_roughness_texture,
-                    m.normal_texture, m.normal_scale, m.transmission_texture, m.specular_weight_texture,
-                    m.clearcoat_texture, m.clearcoat_roughness_texture, m.clearcoat_normal_texture,
-                    m.clearcoat_normal_scale);
+                    m.only_shadows, m.vertex_opacity, m.vertex_emission, m.opacity_texture, m.diffuse_texture,
+                    m.specular_texture, m.emission_texture, m.ior, m.transmission, m.filter, m.absorption, m.is_thin,
+                    m.shininess, m.mirror, m.fresnel, m.metallic, m.roughness, m.specular_weight, m.clearcoat,
+                    m.clearcoat_roughness, m.metallic_roughness_texture, m.normal_texture, m.normal_scale,
+                    m.transmission_texture, m.specular_weight_texture, m.clearcoat_texture,
+                    m.clearcoat_roughness_texture, m.clearcoat_normal_texture, m.clearcoat_normal_scale);
 }
 
 }  // namespace members_detail
@@ -104,10 +104,10 @@ inline auto members(const Triangle& t) {
     return std::tie(t.vertices[0], t.vertices[1], t.vertices[2], t.material);
 }
 inline auto members(const Assembly& x) {
-    return std::tie(x.static_geometry, x.instances);
+    return std::tie(x.static_geometry, x.instances, x.cameras);
 }
 inline auto members(Assembly& x) {
-    return std::tie(x.static_geometry, x.instances);
+    return std::tie(x.static_geometry, x.instances, x.cameras);
 }
 
 }  // namespace realcam::bindings

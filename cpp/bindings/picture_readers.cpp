@@ -1,6 +1,11 @@
 #include "picture_readers.hpp"
 
+#include <pybind11/stl.h>
+
+#include <array>
 #include <cstring>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -31,14 +36,20 @@ std::optional<io::DecodedImage> read_texture(const std::string& path, std::span<
     const auto encoded = py::memoryview::from_memory(bytes.data(), static_cast<py::ssize_t>(bytes.size()));
     const py::object result = pictures().attr("read_texture")(py::bytes(path), encoded);
     if (result.is_none()) return std::nullopt;
-    const auto [pixels, is_linear] = result.cast<std::pair<py::array, bool>>();
-    if (py::isinstance<py::array_t<float>>(pixels)) return image_of<float>(pixels, is_linear);
-    return image_of<std::uint8_t>(pixels, is_linear);
+    const auto [pixels, is_linear, rec709] =
+        result.cast<std::tuple<py::array, bool, std::optional<std::array<double, 9>>>>();
+    io::DecodedImage image = py::isinstance<py::array_t<float>>(pixels) ? image_of<float>(pixels, is_linear)
+                                                                        : image_of<std::uint8_t>(pixels, is_linear);
+    image.rec709 = rec709;
+    return image;
 }
 
-Environment read_environment(const std::string& path) {
+Environment read_environment(const std::string& path, const std::function<void(const std::string&)>& warn) {
     const py::gil_scoped_acquire acquire;
-    const auto pixels = pictures().attr("read_environment")(py::bytes(path)).cast<InputArray<float>>();
+    const auto [pixels, warnings] = pictures()
+                                        .attr("read_environment")(py::bytes(path))
+                                        .cast<std::pair<InputArray<float>, std::vector<std::string>>>();
+    for (const std::string& warning : warnings) warn(warning);
     Environment environment;
     environment.height = static_cast<std::int32_t>(pixels.shape(0));
     environment.width = static_cast<std::int32_t>(pixels.shape(1));

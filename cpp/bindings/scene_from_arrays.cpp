@@ -1,5 +1,6 @@
 #include "scene_from_arrays.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "../scene/scene_checks.hpp"
@@ -29,7 +30,8 @@ InputArray<std::int64_t> indices_from(const py::object& sequence, const char* wh
 
 Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object& triangle_corners,
                            const std::optional<InputArray<float>>& normals, const std::optional<InputArray<float>>& uvs,
-                           const py::object& material_of_triangle, const std::vector<PythonMaterial>& materials) {
+                           const py::object& material_of_triangle, const std::vector<PythonMaterial>& materials,
+                           const std::optional<InputArray<float>>& colors) {
     const InputArray<std::int64_t> triangles = indices_from(triangle_corners, "triangles");
     std::optional<InputArray<std::int64_t>> triangle_materials;
     if (!material_of_triangle.is_none()) triangle_materials = indices_from(material_of_triangle, "triangle_materials");
@@ -52,6 +54,13 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
         const auto t = uvs->unchecked<2>();
         for (py::ssize_t i = 0; i < t.shape(0); ++i) scene.uvs.push_back({t(i, 0), t(i, 1)});
     }
+    if (colors) {
+        const bool has_alpha = colors->ndim() == 2 && colors->shape(1) == 4;
+        if (!has_alpha) check_shape(*colors, 3, "colors, but for their alpha,");
+        const auto c = colors->unchecked<2>();
+        for (py::ssize_t i = 0; i < c.shape(0); ++i)
+            scene.colors.push_back({{c(i, 0), c(i, 1), c(i, 2)}, has_alpha ? c(i, 3) : 1.0f});
+    }
     if (triangle_materials && (triangle_materials->ndim() != 1 || triangle_materials->shape(0) != triangles.shape(0)))
         throw InputError("triangle_materials must hold one index for each triangle");
     const auto corners = triangles.unchecked<2>();
@@ -64,6 +73,9 @@ Assembly scene_from_arrays(const InputArray<double>& vertices, const py::object&
     };
     scene.materials.resize(materials.empty() ? 1 : materials.size());
     for (std::size_t i = 0; i < materials.size(); ++i) set_material(scene, i, materials[i]);
+    const bool is_transparent =
+        std::any_of(scene.colors.begin(), scene.colors.end(), [](const VertexColor& color) { return color.alpha < 1; });
+    for (Material& material : scene.materials) material.vertex_opacity = is_transparent;
     for (py::ssize_t i = 0; i < corners.shape(0); ++i) {
         checkpoint.pass();
         Triangle triangle{};

@@ -2,6 +2,7 @@
 // Pictures in files, through OpenImageIO.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,16 +23,21 @@ namespace realcam::image_io {
 std::optional<io::DecodedImage> read_image(const std::string& path, std::span<const std::uint8_t> encoded_bytes,
                                            const KeepGoing& keep_going = {});
 
+/// What a reader put up with, in one line.
+using WarnOf = std::function<void(const std::string& message)>;
+
 /// A latitude-longitude picture (row 0 up, the middle column towards -z) as light from infinity. Floating-point values
-/// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Throws ImageFileError, also where a value is
-/// none from 0 to 1e20, and Cancelled.
-Environment read_environment(const std::string& path, const KeepGoing& keep_going = {});
+/// (EXR, HDR) are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Colours of other primaries, as an EXR or HDR
+/// names them, become those of Rec. 709; an EXR that says it is an environment map (attribute `envmap`) has the
+/// directions of OpenEXR, and may be a cube map. Negative numbers become 0, with a warning. Throws ImageFileError, also
+/// where these are more than a twentieth of the light, or a value is none up to 1e20, and Cancelled.
+Environment read_environment(const std::string& path, const WarnOf& warn = {}, const KeepGoing& keep_going = {});
 
 /// An exposed picture in somebody else's memory.
 struct PictureView {
     int width = 0, height = 0;
     const float* exposure = nullptr;  ///< height * width * 3, lux seconds
-    const float* depth = nullptr;     ///< height * width, metres
+    const float* depth = nullptr;  ///< height * width, metres
 
     struct Layer {
         realcam::Layer layer;

@@ -5,9 +5,9 @@
 
 namespace realcam::image_io {
 
-/// Name of the OpenImageIO reader for what a file begins with: "png", "jpeg", "openexr", "hdr", "tiff", "bmp", or
-/// "targa" by the suffix of `path`, because that format has no mark. Empty for anything else: OpenImageIO's readers of
-/// rarer formats crash on broken files.
+/// Name of the reader for what a file begins with, as OpenImageIO has it: "png", "jpeg", "openexr", "hdr", "tiff",
+/// "bmp", or "targa" by the suffix of `path`, because that format has no mark. Empty for anything else: OpenImageIO's
+/// readers of rarer formats crash on broken files.
 std::string image_format(std::span<const std::uint8_t> first_bytes, const std::string& path);
 
 /// Bytes that image_format looks at.

@@ -21,7 +21,9 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<con
     }
     const std::string format = image_format(beginning, path);
     if (format.empty()) throw Error(std::string("is no picture; ") + kReadFormats + " is wanted");
-    auto picture = format == "png" ? open_png(path, bytes) : open_with_openimageio(format, path, bytes);
+    auto picture = format == "png"   ? open_png(path, bytes)
+                   : format == "hdr" ? open_radiance(path, bytes)
+                                     : open_with_openimageio(format, path, bytes);
     picture->encoded_size = path.empty() ? bytes.size() : std::filesystem::file_size(path);
     if (picture->width < 1 || picture->height < 1 || picture->channels < 1)
         throw Error("is no flat picture with colours");

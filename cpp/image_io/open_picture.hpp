@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -8,8 +10,16 @@
 
 #include "../error.hpp"
 #include "../keep_going.hpp"
+#include "color_primaries.hpp"
 
 namespace realcam::image_io {
+
+/// What the directions of a picture are, where its file says so.
+enum class EnvironmentMap {
+    none,      ///< it does not: a latitude-longitude picture is as realcam has them
+    lat_long,  ///< OpenEXR's latitude-longitude map, whose middle column lies towards +z
+    cube,      ///< OpenEXR's cube map: six squares below each other, +x, -x, +y, -y, +z and -z
+};
 
 /// A picture file, opened and not yet decoded.
 class OpenPicture {
@@ -22,6 +32,9 @@ public:
     bool is_wide = false;    ///< more than 8 bits a value
     bool has_associated_alpha = false;  ///< colours are multiplied by alpha
     std::size_t encoded_size = 0;       ///< bytes of the file
+    std::size_t encoded_pixels = 0;     ///< where the file has other pixels than those that are read; 0: as many
+    std::optional<std::array<double, 9>> rec709;  ///< by rows, to linear Rec. 709, where colours are others
+    EnvironmentMap environment_map = EnvironmentMap::none;
     std::vector<std::pair<std::string, std::string>> entries;  ///< of its metadata, those named "realcam:..."
 
     std::size_t pixel_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
@@ -36,8 +49,9 @@ public:
 /// the reason alone.
 std::unique_ptr<OpenPicture> open_picture(const std::string& path, std::span<const std::uint8_t> bytes);
 
-/// The parts of open_picture: a PNG, and what OpenImageIO reads as `format`.
+/// The parts of open_picture: a PNG, a Radiance picture, and what OpenImageIO reads as `format`.
 std::unique_ptr<OpenPicture> open_png(const std::string& path, std::span<const std::uint8_t> bytes);
+std::unique_ptr<OpenPicture> open_radiance(const std::string& path, std::span<const std::uint8_t> bytes);
 std::unique_ptr<OpenPicture> open_with_openimageio(const std::string& format, const std::string& path,
                                                    std::span<const std::uint8_t> bytes);
 

@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "../error.hpp"
 #include "../io/decoded_image.hpp"
 #include "../io/free_memory.hpp"
+#include "../io/printable.hpp"
+#include "environment_map.hpp"
 #include "image_file.hpp"
 #include "open_picture.hpp"
 
@@ -26,9 +30,13 @@ void check_size(const OpenPicture& picture, std::size_t most_pixels, std::size_t
         "has " + std::to_string(picture.width) + " x " + std::to_string(picture.height) + " pixels";
     if (picture.pixel_count() > most_pixels)
         throw Error(size + "; at most " + std::to_string(most_pixels >> 20) + " million are read");
-    if (picture.pixel_count() / kMostPixelsPerByte > picture.encoded_size)
+    const std::size_t encoded = picture.encoded_pixels > 0 ? picture.encoded_pixels : picture.pixel_count();
+    if (encoded > most_pixels)
+        throw Error("has a data window of " + std::to_string(encoded) + " pixels; at most " +
+                    std::to_string(most_pixels >> 20) + " million are read");
+    if (encoded / kMostPixelsPerByte > picture.encoded_size)
         throw Error(size + ", and " + std::to_string(picture.encoded_size) + " bytes cannot hold so many");
-    if (picture.pixel_count() * bytes_per_pixel > io::free_memory())
+    if ((picture.pixel_count() + picture.encoded_pixels) * bytes_per_pixel > io::free_memory())
         throw Error(size + ", more than the free memory holds");
 }
 
@@ -73,7 +81,8 @@ io::DecodedImage decode(OpenPicture& picture, const KeepGoing& keep_going) {
     constexpr std::size_t of_codes = 4, of_floats = 4 * sizeof(float) + of_codes;
     check_size(picture, kMostTexturePixels, picture.is_wide ? of_floats : of_codes);
     if (!picture.is_wide) return {picture.width, picture.height, decode_codes(picture, keep_going)};
-    return {picture.width, picture.height, decode_floats(picture, keep_going), picture.is_linear};
+    return {picture.width, picture.height, decode_floats(picture, keep_going), picture.is_linear,
+            picture.channels < 3 ? std::nullopt : picture.rec709};
 }
 
 Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going) {
@@ -87,24 +96,62 @@ Environment decode_environment(OpenPicture& picture, const KeepGoing& keep_going
     picture.read(grey ? 1 : 3, 3, &environment.pixels.data()->r, keep_going);
     const auto light = [&](float v) { return linear ? v : io::linear_of_srgb(v); };
     for (Color& p : environment.pixels) p = {light(p.r), light(grey ? p.r : p.g), light(grey ? p.r : p.b)};
-    return environment;
+    if (picture.rec709 && !grey)
+        apply_matrix(*picture.rec709, &environment.pixels.data()->r, environment.pixels.size(), 3);
+    return environment_of(picture.environment_map, std::move(environment), keep_going);
 }
 
-/// Throws ImageFileError where a pixel holds what no scene may: it would be darkened, or brightened, unnoticed.
-void check_light(const Environment& environment, const std::string& path) {
-    constexpr float kBrightest = 1e20f;  // as io::validate has it for scenes
-    const auto is_light = [](float v) { return v >= 0 && v <= kBrightest; };
-    const auto is_wrong = [&](const auto& p) { return !is_light(p.r) || !is_light(p.g) || !is_light(p.b); };
-    const auto& pixels = environment.pixels;
-    const auto first = std::find_if(pixels.begin(), pixels.end(), is_wrong);
-    if (first == pixels.end()) return;
-    char values[64];
-    std::snprintf(values, sizeof values, "(%.4g, %.4g, %.4g)", double(first->r), double(first->g), double(first->b));
-    const auto place = first - pixels.begin();
-    throw ImageFileError(path + ": " + std::to_string(std::count_if(first, pixels.end(), is_wrong)) +
-                         " pixels are no light, the first in row " + std::to_string(place / environment.width) +
-                         ", column " + std::to_string(place % environment.width) + ": " + values +
-                         "; numbers from 0 to 1e20 cd/m^2 are wanted");
+constexpr float kBrightest = 1e20f;  // as io::validate has it for scenes
+
+/// Which pixels of an environment are no light, for messages.
+struct PixelCount {
+    std::size_t count = 0, first = 0;
+
+    void add(std::size_t pixel) {
+        if (count++ == 0) first = pixel;
+    }
+    std::string text(const Environment& environment) const {
+        const Color& p = environment.pixels[first];
+        const auto width = static_cast<std::size_t>(environment.width);
+        char values[64];
+        std::snprintf(values, sizeof values, "(%.4g, %.4g, %.4g)", double(p.r), double(p.g), double(p.b));
+        return (count == 1 ? ", in row " : ", the first in row ") + std::to_string(first / width) + ", column " +
+               std::to_string(first % width) + ": " + values;
+    }
+};
+
+std::string pixels_are(std::size_t count) {
+    return std::to_string(count) + (count == 1 ? " pixel is" : " pixels are");
+}
+
+/// Conversions of colours and sharpening leave numbers a little below 0 where there is hardly any light of a colour:
+/// they become 0. Throws ImageFileError where a pixel holds what no scene may, or where negative numbers are more than
+/// a twentieth of the light: it would be darkened, or brightened, unnoticed.
+void settle_light(Environment& environment, const std::string& path, const WarnOf& warn) {
+    constexpr double kMostNegative = 0.05;
+    PixelCount wrong, negative;
+    double light = 0, missing = 0;
+    for (std::size_t i = 0; i < environment.pixels.size(); ++i) {
+        const Color& p = environment.pixels[i];
+        bool is_wrong = false, is_negative = false;
+        for (const float v : {p.r, p.g, p.b}) {
+            is_wrong |= !(v >= -kBrightest && v <= kBrightest);
+            is_negative |= v < 0;
+            (v < 0 ? missing : light) += static_cast<double>(std::fabs(v));
+        }
+        if (is_wrong) wrong.add(i);
+        if (is_negative) negative.add(i);
+    }
+    if (wrong.count > 0)
+        throw ImageFileError(path + ": " + pixels_are(wrong.count) + " no light" + wrong.text(environment) +
+                             "; numbers from 0 to 1e20 cd/m^2 are wanted");
+    if (negative.count == 0) return;
+    const std::string text = pixels_are(negative.count) + " negative" + negative.text(environment);
+    if (missing > kMostNegative * light)
+        throw ImageFileError(path + ": " + text +
+                             "; numbers from 0 to 1e20 cd/m^2 are wanted, and these are more than roundings");
+    for (Color& p : environment.pixels) p = {std::max(p.r, 0.0f), std::max(p.g, 0.0f), std::max(p.b, 0.0f)};
+    if (warn) warn(path + ": " + text + "; 0 is taken for negative numbers");
 }
 
 }  // namespace
@@ -120,7 +167,7 @@ std::optional<io::DecodedImage> read_image(const std::string& path, std::span<co
     }
 }
 
-Environment read_environment(const std::string& path, const KeepGoing& keep_going) {
+Environment read_environment(const std::string& path, const WarnOf& warn, const KeepGoing& keep_going) {
     Environment environment;
     try {
         environment = decode_environment(*open_picture(path, {}), keep_going);
@@ -129,7 +176,7 @@ Environment read_environment(const std::string& path, const KeepGoing& keep_goin
     } catch (const Error& error) {
         throw ImageFileError(path + ": " + error.what() + "; a latitude-longitude picture was wanted");
     }
-    check_light(environment, path);
+    settle_light(environment, path, warn);
     return environment;
 }
 
@@ -139,9 +186,13 @@ FilmFile read_film(const std::string& path, const KeepGoing& keep_going) {
         if (!picture->is_linear || picture->channels < 3)
             throw Error("holds no exposure; an .exr that realcam has written is wanted");
         check_size(*picture, kMostTexturePixels, 3 * sizeof(float));
+        for (const auto& [name, value] : picture->entries)
+            if (!io::is_utf8(name) || !io::is_utf8(value))
+                throw Error("its metadata " + io::in_quotes(name) + " is no valid UTF-8 text: " + io::in_quotes(value));
         FilmFile film{picture->width, picture->height, std::vector<float>(3 * picture->pixel_count()),
                       picture->entries};
         picture->read(3, 3, film.exposure.data(), keep_going);
+        if (picture->rec709) apply_matrix(*picture->rec709, film.exposure.data(), picture->pixel_count(), 3);
         return film;
     } catch (const Cancelled&) {
         throw;

@@ -28,6 +28,17 @@ void put_mean_into_alpha(std::vector<Value>& rgba, Value white) {
         rgba[i + 3] = std::min(static_cast<Value>((rgba[i] + rgba[i + 1] + rgba[i + 2]) / 3), white);
 }
 
+/// Colours that the new primaries cannot show, the nearest of which has a negative number, keep 0 there.
+void convert(std::vector<float>& rgba, const std::array<double, 9>& rec709) {
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+        const double in[3] = {double(rgba[i]), double(rgba[i + 1]), double(rgba[i + 2])};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double out = rec709[3 * c] * in[0] + rec709[3 * c + 1] * in[1] + rec709[3 * c + 2] * in[2];
+            rgba[i + c] = static_cast<float>(std::max(out, 0.0));
+        }
+    }
+}
+
 }  // namespace
 
 Texture texture_of(DecodedImage image, TextureUse use, std::string name) {
@@ -48,6 +59,7 @@ Texture texture_of(DecodedImage image, TextureUse use, std::string name) {
         return texture;
     }
     texture.linear_rgba = std::move(std::get<std::vector<float>>(image.rgba));
+    if (use == TextureUse::colour && image.rec709) convert(texture.linear_rgba, *image.rec709);
     for (std::size_t i = 0; encoded && i < texture.linear_rgba.size(); ++i)
         if (i % 4 != 3) texture.linear_rgba[i] = linear_of_srgb(texture.linear_rgba[i]);
     return texture;

@@ -1,7 +1,9 @@
 #pragma once
 // A picture as its file holds it. What its numbers mean follows from what it is used for.
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,6 +21,8 @@ struct DecodedImage {
     std::variant<std::vector<std::uint8_t>, std::vector<float>> rgba;
     /// Floating-point numbers in the file: as colours they are light itself, and not sRGB codes.
     bool is_linear = false;
+    /// By rows: what takes its colours to linear Rec. 709, where the file says that they are others.
+    std::optional<std::array<double, 9>> rec709 = std::nullopt;
 };
 
 /// Data are numbers, such as a roughness or a direction, which no file encodes for a screen. Opacity (and what else has

@@ -15,6 +15,7 @@ namespace realcam::io {
 struct FileMaterial {
     std::string name;
     std::variant<std::monostate, MtlMaterial, GltfMaterial> content;
+    bool is_white = false;  ///< of nothing: not grey, because the colours of the vertices are the surface's own
 
     /// The one that colours the surface.
     FileTexture colour_texture() const {

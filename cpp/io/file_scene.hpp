@@ -18,13 +18,16 @@ struct FileVertices {
     std::vector<Vec3d> positions;
     std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): none
     std::vector<Vec2f> uvs;      ///< empty, or one per position, as the file has them but for v, which is upwards
-    bool has_colours = false;
+    std::vector<VertexColor> colours;  ///< empty, or one per position; linear
+    std::vector<std::uint32_t> places;  ///< empty, or one per position: see Smoothing
 };
 
 struct FileMesh {
     std::string label;  ///< for messages
     std::uint32_t vertices = 0;  ///< number in FileScene::vertices
     std::vector<Triangle> triangles;  ///< indices in range; material: number in FileScene::materials
+    /// Of each triangle without normals the number of its smoothing group, 0: flat. Empty: FileScene::smooths says.
+    std::vector<std::uint32_t> smoothing;
 };
 
 constexpr std::uint32_t kNoParent = 0xffffffffu;
@@ -36,26 +39,32 @@ struct FileNode {
     std::uint32_t parent = kNoParent, end = 0;
     std::uint32_t first_mesh = 0, mesh_count = 0;  ///< in FileScene::meshes
     std::int32_t light = -1;  ///< number in FileScene::lights
+    std::int32_t camera = -1;  ///< number in FileScene::cameras
     std::int32_t motion = -1;  ///< number in FileScene::motions; below 0: it stays where it is
 };
 
 /// A picture that materials name.
 struct FilePicture {
-    std::string name;    ///< as the file spells it; of one inside the file, a label
+    std::string name;  ///< as the file spells it; of one inside the file, a label
     bool is_inside = false;
     std::string bytes;  ///< of one inside the file: encoded, as PNG or JPEG; empty where they cannot be had
 };
 
 struct FileLight {
     std::string type;  ///< of KHR_lights_punctual: point, directional, spot, or what else the file says
-    Vec3d strength;    ///< colour times intensity: cd, or lux for "directional"
+    Vec3d strength;  ///< colour times intensity: cd, or lux for "directional"
     /// Of a spot, in radians from its axis: where it begins to fade, and where it ends. 0 <= inner <= outer <= pi / 2.
     double inner_cone_angle = 0, outer_cone_angle = 0.785398163397448;
 };
 
+struct FileCamera {
+    std::string name;  ///< valid UTF-8
+    double vertical_field_rad = 0;  ///< 0: orthographic
+};
+
 struct FileScene {
     std::string path;
-    bool smooths = false;  ///< whether triangles without normals are smooth, and not flat
+    bool smooths = false;  ///< whether triangles without normals are smooth by angle, and not flat
     std::vector<FileVertices> vertices;
     std::vector<FileMesh> meshes;
     std::vector<FileNode> nodes;
@@ -63,6 +72,7 @@ struct FileScene {
     std::vector<FileMaterial> materials;
     std::vector<FilePicture> pictures;
     std::vector<FileLight> lights;
+    std::vector<FileCamera> cameras;
     std::vector<std::string> warnings;  ///< without the path
 };
 

@@ -10,6 +10,16 @@ struct FileTexture {
     std::int32_t picture = -1;  ///< number in FileScene::pictures; -1: none
     std::uint32_t uv_set = 0;   ///< of a glTF mesh
     TextureTransform transform;
+    TextureSampler sampler = {};
+
+    /// For a renderer, where the picture has this number in the scene.
+    TextureReference reference(std::int32_t texture) const {
+        TextureReference out = transform.of(texture);
+        out.sampler = sampler;
+        return out;
+    }
+    /// Whether both lie alike on a surface.
+    bool lies_as(const FileTexture& b) const { return transform == b.transform && sampler == b.sampler; }
 
     explicit operator bool() const { return picture >= 0; }
 };

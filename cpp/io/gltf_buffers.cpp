@@ -48,6 +48,15 @@ std::string_view GltfBuffers::view(const Json& reference, const std::string& whe
     const std::optional<std::size_t> number = document_.find("bufferViews", reference, where);
     if (!number) document_.fail(where + ": names no bufferView");
     const Json& view = document_.root()["bufferViews"][*number];
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+        const Json& buffers = document_.root()["buffers"];
+        const Json& buffer = buffers[view["buffer"].index(buffers.size())];
+        // Beside the compressed bytes there may be plain ones. Where there are none, the buffer is a promise.
+        const bool has_plain = !buffer["uri"].is_null() || buffer["extensions"][extension].is_null();
+        if (!view["extensions"][extension].is_null() && !has_plain)
+            document_.fail(where + ": its numbers are in the glTF extension " + extension +
+                           ", which is not read; export it without compression");
+    }
     const std::string label = where + ": bufferView " + std::to_string(*number);
     const std::optional<std::size_t> buffer_number = document_.find("buffers", view["buffer"], label);
     if (!buffer_number) document_.fail(label + ": names no buffer");

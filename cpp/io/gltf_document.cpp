@@ -12,10 +12,17 @@ namespace {
 
 constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;
 
-// A required extension that is not listed here stores geometry in a way that is not read.
 bool may_be_required(std::string_view extension) {
     return extension == "KHR_lights_punctual" || extension == "KHR_texture_transform" ||
-           extension == "KHR_mesh_quantization" || extension.starts_with("KHR_materials_");
+           extension == "KHR_mesh_quantization" || extension == "EXT_mesh_gpu_instancing" ||
+           extension.starts_with("KHR_materials_");
+}
+
+/// What helps where an extension is required that is not read.
+std::string advice(std::string_view extension) {
+    if (extension.ends_with("_compression")) return "export it without compression";
+    if (extension.find("_texture_") != std::string_view::npos) return "export its pictures as PNG or JPEG";
+    return "export it without that extension";
 }
 
 std::size_t word_at(std::string_view bytes, std::size_t at) {
@@ -73,8 +80,8 @@ GltfDocument::GltfDocument(const std::string& path, Checkpoint& checkpoint)
     const Json& required = root_["extensionsRequired"];
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (may_be_required(required[i].text())) continue;
-        fail("needs the glTF extension " + printable(required[i].text().substr(0, 60)) +
-             ", which is not read; export it without compression");
+        fail("needs the glTF extension " + printable(required[i].text().substr(0, 60)) + ", which is not read; " +
+             advice(required[i].text()));
     }
 }
 

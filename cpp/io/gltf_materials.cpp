@@ -44,6 +44,7 @@ public:
             if (count > 0) scene_.warnings.push_back(std::to_string(count) + ' ' + text);
         };
         warn(out_of_range_, "numbers of its materials are out of their range; the nearest within is taken");
+        warn(bad_samplers_, "wrap modes or filters of samplers are none; REPEAT and LINEAR are taken");
         warn(bad_transforms_, "transforms of textures are no finite numbers; they are left out");
         if (!bad_alpha_mode_.empty())
             scene_.warnings.push_back("an alphaMode is OPAQUE, MASK or BLEND, not " + bad_alpha_mode_ +
@@ -161,6 +162,7 @@ private:
         const Json &scale = moved["scale"], &offset = moved["offset"];
         const Json& set = moved["texCoord"].is_number() ? moved["texCoord"] : info["texCoord"];
         out.picture = picture_of(info["index"]);
+        out.sampler = sampler_of(info["index"]);
         out.uv_set = static_cast<std::uint32_t>(std::min<std::size_t>(set.index(0), 0xffff));
         const TextureTransform transform(scale[std::size_t{0}].number(1), scale[1].number(1),
                                          moved["rotation"].number(0), offset[std::size_t{0}].number(0),
@@ -169,6 +171,23 @@ private:
             out.transform = transform;
         else
             ++bad_transforms_;
+    }
+
+    /// How a texture is seen beyond its edges, and between the middles of its texels where these are large: its levels
+    /// for small ones are the renderer's own.
+    TextureSampler sampler_of(const Json& texture) {
+        const Json& number = root_["textures"][texture.index(root_["textures"].size())]["sampler"];
+        const Json& sampler = root_["samplers"][number.index(root_["samplers"].size())];
+        enum : std::size_t { kNearest = 9728, kLinear = 9729, kClamp = 33071, kMirror = 33648, kRepeat = 10497 };
+        const auto wrap = [&](const Json& json) {
+            const std::size_t code = json.is_null() ? std::size_t{kRepeat} : json.index(0);
+            if (code != kClamp && code != kMirror && code != kRepeat) ++bad_samplers_;
+            return code == kClamp ? TextureWrap::clamp : code == kMirror ? TextureWrap::mirror : TextureWrap::repeat;
+        };
+        const std::size_t filter = sampler["magFilter"].index(kLinear);
+        if (filter != kNearest && filter != kLinear) ++bad_samplers_;
+        return {wrap(sampler["wrapS"]), wrap(sampler["wrapT"]),
+                filter == kNearest ? TextureFilter::nearest : TextureFilter::linear};
     }
 
     /// A texture that names no picture gets one without bytes, which stands out in the picture and is warned of.
@@ -200,7 +219,7 @@ private:
     const Json& root_;
     std::int32_t missing_ = -1;
     std::map<double, std::int32_t> first_of_view_;
-    std::size_t out_of_range_ = 0, bad_transforms_ = 0;
+    std::size_t out_of_range_ = 0, bad_transforms_ = 0, bad_samplers_ = 0;
     std::string bad_alpha_mode_;  // the first, in quotes
     bool has_occlusion_ = false, has_second_set_ = false;
 };

@@ -54,7 +54,22 @@ std::uint32_t GltfMeshes::material_of(const Json& primitive, const std::string& 
     return *default_material_;
 }
 
+/// Throws where the numbers of a primitive are in a compressed form alone: beside it they need not be, and accessors
+/// without bytes are all 0.
+void GltfMeshes::check_compression(const Primitive& primitive) const {
+    constexpr const char* kDraco = "KHR_draco_mesh_compression";
+    if (primitive.json["extensions"][kDraco].is_null()) return;
+    const Json& accessors = document_.root()["accessors"];
+    for (const Json* reference : {&primitive.json["attributes"]["POSITION"], &primitive.json["indices"]}) {
+        const Json& accessor = accessors[reference->index(accessors.size())];
+        if (accessor.is_null() || !accessor["bufferView"].is_null() || !accessor["sparse"].is_null()) continue;
+        document_.fail(primitive.label + ": its triangles are in the glTF extension " + kDraco +
+                       ", which is not read; export it without compression");
+    }
+}
+
 void GltfMeshes::add_primitive(const Primitive& primitive) {
+    check_compression(primitive);
     FileMesh mesh;
     mesh.label = primitive.label;
     mesh.vertices = vertices_of(primitive);
@@ -107,7 +122,8 @@ std::uint32_t GltfMeshes::vertices_of(const Primitive& primitive) {
     const std::uint32_t set = scene_.materials[primitive.material].uv_set();
     const Json& uvs = attributes["TEXCOORD_" + std::to_string(set)];
     constexpr std::size_t none = static_cast<std::size_t>(-1);
-    const Attributes key{attributes["POSITION"].index(none), attributes["NORMAL"].index(none), uvs.index(none)};
+    const Attributes key{attributes["POSITION"].index(none), attributes["NORMAL"].index(none), uvs.index(none),
+                         attributes["COLOR_0"].index(none)};
     const bool may_share = !primitive.joints && primitive.json["targets"].is_null();
     if (const auto known = shared_vertices_.find(key); may_share && known != shared_vertices_.end())
         return known->second;
@@ -127,7 +143,6 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
     const Json& attributes = primitive.json["attributes"];
     const std::string& label = primitive.label;
     FileVertices out;
-    out.has_colours = !attributes["COLOR_0"].is_null();
     out.positions = vectors_of<double>(accessors_.numbers(attributes["POSITION"], "VEC3", label + ": POSITION"));
     const std::size_t count = out.positions.size();
     if (!attributes["NORMAL"].is_null()) {
@@ -139,6 +154,10 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
         check_count(numbers.size() / 2, count, label + ": TEXCOORD");
         for (std::size_t i = 0; i < count; ++i) out.uvs.push_back({numbers[2 * i], 1 - numbers[2 * i + 1]});
     }
+    if (!attributes["COLOR_0"].is_null()) {
+        out.colours = read_colours(attributes["COLOR_0"], label + ": COLOR_0");
+        check_count(out.colours.size(), count, label + ": COLOR_0");
+    }
     add_targets(primitive, out);
     if (primitive.joints) {
         const JointWeights weights =
@@ -149,6 +168,26 @@ FileVertices GltfMeshes::read_vertices(const Primitive& primitive, const Json& u
         if (!in_reach(out.positions[v]) && !is_finite(out.positions[v]))
             document_.fail(label + ": vertex " + std::to_string(v) + ": " + why_out_of_reach(out.positions[v]));
     }
+    return out;
+}
+
+/// Linear, with alpha or without, between 0 and 1.
+std::vector<VertexColor> GltfMeshes::read_colours(const Json& reference, const std::string& where) {
+    const Json& accessors = document_.root()["accessors"];
+    const Json& accessor = accessors[reference.index(accessors.size())];
+    const std::size_t components = accessor["type"].text() == "VEC4" ? 4 : 3, type = accessor["componentType"].index(0);
+    const std::vector<float> numbers = accessors_.numbers(reference, components == 4 ? "VEC4" : "VEC3", where);
+    // Whole numbers have to be normalised, and are meant so where a file forgets to say it.
+    const bool is_forgotten = !accessor["normalized"].is_true();
+    const float unit = !is_forgotten || (type != 5121 && type != 5123) ? 1.0f : type == 5121 ? 255.0f : 65535.0f;
+    const auto share = [&](std::size_t i) {
+        const float value = numbers[i] / unit;
+        return value > 0 ? std::min(value, 1.0f) : 0.0f;
+    };
+    std::vector<VertexColor> out;
+    out.reserve(numbers.size() / components);
+    for (std::size_t i = 0; i < numbers.size(); i += components)
+        out.push_back({{share(i), share(i + 1), share(i + 2)}, components == 4 ? share(i + 3) : 1.0f});
     return out;
 }
 

@@ -3,20 +3,24 @@
 #include <utility>
 
 #include "../error.hpp"
+#include "gltf_instancing.hpp"
 #include "gltf_transform.hpp"
 #include "printable.hpp"
+#include "regular_file.hpp"
 
 namespace realcam::io {
 namespace {
 
-constexpr std::size_t kNoNode = static_cast<std::size_t>(-1);
-
 class NodeLayout {
 public:
-    NodeLayout(FileScene& scene, const GltfDocument& document, Checkpoint& checkpoint)
-        : scene_(scene), document_(document), nodes_(document.root()["nodes"]), checkpoint_(checkpoint) {}
+    NodeLayout(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors, Checkpoint& checkpoint)
+        : scene_(scene),
+          document_(document),
+          nodes_(document.root()["nodes"]),
+          accessors_(accessors),
+          checkpoint_(checkpoint) {}
 
-    std::vector<std::size_t> lay_out() {
+    GltfNodeNumbers lay_out() {
         find_parents();
         const std::vector<std::size_t> roots = find_roots();
         for (const std::size_t root : roots) add_tree(root);
@@ -27,13 +31,13 @@ private:
     std::string label(std::size_t node) const { return gltf_label("node", node, nodes_[node]); }
 
     void find_parents() {
-        parents_.assign(nodes_.size(), kNoNode);
+        parents_.assign(nodes_.size(), kNoGltfNode);
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             const Json& children = nodes_[n]["children"];
             for (std::size_t i = 0; i < children.size(); ++i) {
                 checkpoint_.pass();
                 const std::size_t child = *document_.find("nodes", not_null(children[i], n), label(n) + ": its child");
-                if (parents_[child] != kNoNode)
+                if (parents_[child] != kNoGltfNode)
                     document_.fail(label(child) + ": is listed twice as a child; a node has at most one parent");
                 parents_[child] = n;
             }
@@ -50,7 +54,7 @@ private:
         std::vector<std::size_t> roots;
         if (root["scenes"].size() == 0) {
             for (std::size_t n = 0; n < nodes_.size(); ++n)
-                if (parents_[n] == kNoNode) roots.push_back(n);
+                if (parents_[n] == kNoGltfNode) roots.push_back(n);
             return roots;
         }
         const std::size_t number = document_.find("scenes", root["scene"], "scene").value_or(0);
@@ -60,7 +64,7 @@ private:
             const std::optional<std::size_t> node =
                 document_.find("nodes", listed[i], "scene " + std::to_string(number));
             if (!node) continue;
-            if (parents_[*node] != kNoNode || is_listed[*node])
+            if (parents_[*node] != kNoGltfNode || is_listed[*node])
                 document_.fail(label(*node) + ": a node of a scene is listed once, and has no parent");
             is_listed[*node] = true;
             roots.push_back(*node);
@@ -83,7 +87,7 @@ private:
                 open.pop_back();
                 continue;
             }
-            const std::size_t child = children[last.next_child++].index(kNoNode);
+            const std::size_t child = children[last.next_child++].index(kNoGltfNode);
             open.push_back({child, 0, add_node(child, last.index)});
         }
     }
@@ -93,29 +97,56 @@ private:
         const Json& from = nodes_[number];
         FileNode node{printable(from["name"].text()), transform_of(from), parent};
         const Json& light = from["extensions"]["KHR_lights_punctual"]["light"];
-        if (!light.is_null()) {
-            const std::size_t which = light.index(scene_.lights.size());
-            if (which >= scene_.lights.size())
-                document_.fail(label(number) + ": its light does not exist; there are " +
-                               std::to_string(scene_.lights.size()));
-            node.light = static_cast<std::int32_t>(which);
-        }
+        if (!light.is_null()) node.light = existing(light, scene_.lights.size(), number, "light");
+        if (!from["camera"].is_null()) node.camera = existing(from["camera"], scene_.cameras.size(), number, "camera");
         scene_.nodes.push_back(std::move(node));
-        numbers_.push_back(number);
-        return static_cast<std::uint32_t>(scene_.nodes.size() - 1);
+        numbers_.nodes.push_back(number);
+        numbers_.meshes.push_back(number);
+        const auto place = static_cast<std::uint32_t>(scene_.nodes.size() - 1);
+        add_instances(number, place);
+        return place;
+    }
+
+    std::int32_t existing(const Json& reference, std::size_t count, std::size_t node, const std::string& what) const {
+        const std::size_t which = reference.index(count);
+        if (which >= count)
+            document_.fail(label(node) + ": its " + what + " does not exist; there are " + std::to_string(count));
+        return static_cast<std::int32_t>(which);
+    }
+
+    void add_instances(std::size_t number, std::uint32_t node) {
+        const std::vector<Affine<double>> places = instances_of(nodes_[number], accessors_, document_, label(number));
+        if (places.empty()) return;
+        constexpr std::size_t kAlwaysThere = std::size_t{1} << 28;
+        bytes_ += places.size() * sizeof(FileNode);
+        if (const std::string why = bytes_ > kAlwaysThere ? too_much_memory(bytes_) : ""; !why.empty())
+            document_.fail("its instances need " + why);
+        numbers_.meshes[node] = kNoGltfNode;
+        for (const Affine<double>& place : places) {
+            checkpoint_.pass();
+            FileNode instance{{}, place, node};
+            instance.end = static_cast<std::uint32_t>(scene_.nodes.size() + 1);
+            scene_.nodes.push_back(std::move(instance));
+            numbers_.nodes.push_back(kNoGltfNode);
+            numbers_.meshes.push_back(number);
+        }
     }
 
     FileScene& scene_;
     const GltfDocument& document_;
     const Json& nodes_;
+    GltfAccessors& accessors_;
     Checkpoint& checkpoint_;
-    std::vector<std::size_t> parents_, numbers_;
+    std::vector<std::size_t> parents_;
+    GltfNodeNumbers numbers_;
+    std::size_t bytes_ = 0;  // of the instances' nodes
 };
 
 }  // namespace
 
-std::vector<std::size_t> lay_out_nodes(FileScene& scene, const GltfDocument& document, Checkpoint& checkpoint) {
-    return NodeLayout(scene, document, checkpoint).lay_out();
+GltfNodeNumbers lay_out_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                              Checkpoint& checkpoint) {
+    return NodeLayout(scene, document, accessors, checkpoint).lay_out();
 }
 
 std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes) {

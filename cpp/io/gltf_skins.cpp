@@ -36,7 +36,8 @@ GltfSkins::GltfSkins(const GltfDocument& document, GltfAccessors& accessors, con
       place_of_(document.root()["nodes"].size(), kNoParent) {
     if (document.root()["skins"].size() == 0) return;
     globals_ = global_transforms(scene.nodes);
-    for (std::uint32_t i = 0; i < numbers.size(); ++i) place_of_[numbers[i]] = i;
+    for (std::uint32_t i = 0; i < numbers.size(); ++i)
+        if (numbers[i] < place_of_.size()) place_of_[numbers[i]] = i;
 }
 
 std::optional<JointMaps> GltfSkins::joint_maps(std::size_t number, std::size_t node) const {

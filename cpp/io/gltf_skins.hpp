@@ -14,7 +14,8 @@ using JointMaps = std::vector<Affine<double>>;
 /// The skins of a file in the pose of its nodes.
 class GltfSkins {
 public:
-    /// `numbers`: the file's number of each of scene.nodes. All arguments have to outlive it.
+    /// `numbers`: the file's number of each of scene.nodes; what is no number of a node has none. All arguments have to
+    /// outlive it.
     GltfSkins(const GltfDocument& document, GltfAccessors& accessors, const FileScene& scene,
               const std::vector<std::size_t>& numbers, Checkpoint& checkpoint);
 

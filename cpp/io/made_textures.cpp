@@ -8,13 +8,15 @@
 namespace realcam::io {
 namespace {
 
-/// A number of a picture, 0 to 1 where it has 8 bits. Repeated beyond the edges.
+/// A number of a picture, 0 to 1 where it has 8 bits. Beyond the edges the picture comes again, or its edge goes on.
 class Values {
 public:
-    explicit Values(const DecodedImage& image) : image_(image) {}
+    explicit Values(const DecodedImage& image, bool repeats = true) : image_(image), repeats_(repeats) {}
 
     float channel(int column, int row, std::size_t c) const {
-        const auto wrapped = [](int i, int n) { return static_cast<std::size_t>((i % n + n) % n); };
+        const auto wrapped = [&](int i, int n) {
+            return static_cast<std::size_t>(repeats_ ? (i % n + n) % n : std::clamp(i, 0, n - 1));
+        };
         const std::size_t at =
             4 * (wrapped(row, image_.height) * static_cast<std::size_t>(image_.width) + wrapped(column, image_.width)) +
             c;
@@ -42,6 +44,7 @@ public:
 
 private:
     const DecodedImage& image_;
+    bool repeats_;
 };
 
 Texture empty_texture(int width, int height, std::string name) {
@@ -59,8 +62,8 @@ std::uint8_t code(float v) {
 
 }  // namespace
 
-Texture normals_of_heights(const DecodedImage& heights, float scale, std::string name) {
-    const Values values(heights);
+Texture normals_of_heights(const DecodedImage& heights, float scale, bool repeats, std::string name) {
+    const Values values(heights, repeats);
     Texture texture = empty_texture(heights.width, heights.height, std::move(name));
     // Floats: between two codes of 8 bits lies a slope of half a degree.
     texture.linear_rgba.reserve(4 * static_cast<std::size_t>(heights.width) * static_cast<std::size_t>(heights.height));

@@ -6,8 +6,8 @@
 namespace realcam::io {
 
 /// Directions in tangent space of heights, which are the means of red, green and blue times `scale`, in widths of a
-/// texel: by central differences, across the picture's edges, since it repeats.
-Texture normals_of_heights(const DecodedImage& heights, float scale, std::string name);
+/// texel: by central differences, across the picture's edges where it repeats.
+Texture normals_of_heights(const DecodedImage& heights, float scale, bool repeats, std::string name);
 
 /// Roughness in green and metallic in blue, from the means of red, green and blue of either picture; null: 1. Of two
 /// sizes the larger in each direction, with the other one interpolated.

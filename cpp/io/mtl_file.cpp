@@ -211,6 +211,9 @@ private:
         FileTexture& texture = material_->*key.member;
         texture.picture = picture_of(std::string(parsed->name));
         texture.transform = parsed->transform;
+        // The format has one copy of the picture, and leaves open what is beside it: as in other programs, its edge.
+        const TextureWrap wrap = parsed->clamps ? TextureWrap::clamp : TextureWrap::repeat;
+        texture.sampler = {wrap, wrap, TextureFilter::linear};
     }
 
     std::int32_t picture_of(const std::string& name) {
@@ -250,7 +253,7 @@ private:
     const std::string& path_;
     Checkpoint& checkpoint_;
     TextLines lines_;
-    MtlMaterial* material_ = nullptr;        // the last of scene_.materials
+    MtlMaterial* material_ = nullptr;  // the last of scene_.materials
     bool has_illum_ = false, has_d_ = false;  // whether it says so itself
     std::map<std::string, std::int32_t> pictures_;
     LineCount unread_, out_of_range_;

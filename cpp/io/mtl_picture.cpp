@@ -65,6 +65,10 @@ private:
         if (option.name == "-s") return read(words, scale_);
         if (option.name == "-o") return read(words, offset_);
         if (option.name == "-bm") return read_bm(words[0]);
+        if (option.name == "-clamp" && (words[0] == "on" || words[0] == "off")) {
+            out_.clamps = words[0] == "on";
+            return true;
+        }
         if (words[0] != option.by_default) out_.other_options.push_back(option.name);
         return true;
     }

@@ -11,6 +11,7 @@ namespace realcam::io {
 struct MtlPicture {
     std::string_view name;       ///< of the file, blanks included
     TextureTransform transform;  ///< by -s and -o: u becomes s u + o, which is how other programs read and write them
+    bool clamps = false;  ///< -clamp on
     double bm = 1;  ///< -bm
     bool has_bm = false;
     std::vector<std::string_view> other_options;  ///< those whose arguments are not the format's default

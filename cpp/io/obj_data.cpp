@@ -1,5 +1,6 @@
 #include "obj_data.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -82,6 +83,8 @@ private:
             parse_face(without_comment(rest));
         else if (keyword == "o" || keyword == "g")
             group_ = groups_.number(printable(rest));
+        else if (keyword == "s")
+            parse_smoothing(without_comment(rest));
         else if (keyword == "usemtl")
             material_ = materials_.number(rest);
         else if (keyword == "mtllib")
@@ -110,9 +113,27 @@ private:
         const std::size_t count = take_numbers(rest, n, 3);
         Vec3d p = {n[0], n[1], n[2]};
         if (count == 4 && n[3] != 0) p = (1 / n[3]) * p;  // homogeneous
-        if (count >= 6) out_.has_colours = true;
         if (!in_reach(scale_ * p)) fail(why_out_of_reach({n[0], n[1], n[2]}));
+        // Of vertices without a colour in a file that has some, white.
+        if (count >= 6 && out_.colours.empty()) out_.colours.resize(out_.positions.size());
         out_.positions.push_back(p);
+        if (count < 6 && out_.colours.empty()) return;
+        const auto f = [](double v) { return static_cast<float>(v); };
+        out_.colours.push_back(count < 6 ? VertexColor{}
+                                         : VertexColor{{f(n[3]), f(n[4]), f(n[5])}, count == 7 ? f(n[6]) : 1.0f});
+    }
+
+    /// "off" and 0 are flat, as is what stands before the first such line. ZBrush writes the keyword alone for on.
+    void parse_smoothing(std::string_view rest) {
+        out_.has_smoothing = true;
+        const std::string_view word = take_word(rest);
+        std::string_view number = word;
+        const std::optional<std::int64_t> group = take_integer(number);
+        constexpr std::int64_t kMost = 0xfffffffe;
+        if (word == "off")
+            smoothing_ = 0;
+        else
+            smoothing_ = static_cast<std::uint32_t>(group ? std::clamp<std::int64_t>(*group, 0, kMost) : 1);
     }
 
     void parse_uv(std::string_view rest) {
@@ -141,8 +162,8 @@ private:
                 if (list->size() > first) list->resize(first);
             return;
         }
-        if (out_.runs.empty() || out_.runs.back().material != material_ || out_.runs.back().group != group_)
-            out_.runs.push_back({static_cast<std::uint32_t>(out_.face_ends.size()), material_, group_});
+        const ObjData::Run run{static_cast<std::uint32_t>(out_.face_ends.size()), material_, group_, smoothing_};
+        if (out_.runs.empty() || !run.continues(out_.runs.back())) out_.runs.push_back(run);
         out_.face_ends.push_back(static_cast<std::uint32_t>(out_.corner_positions.size()));
     }
 
@@ -216,7 +237,7 @@ private:
     ObjData out_;
     Names groups_{out_.groups}, materials_{out_.materials}, libraries_{out_.libraries};
     std::array<Referred, 3> referred_{{{"vertex"}, {"texture coordinate"}, {"normal"}}};
-    std::uint32_t group_ = 0, material_ = ObjData::kNone;
+    std::uint32_t group_ = 0, material_ = ObjData::kNone, smoothing_ = 0;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "../checkpoint.hpp"
 #include "../math/vec3.hpp"
+#include "../scene/scene_view.hpp"
 
 namespace realcam::io {
 
@@ -16,7 +17,8 @@ struct ObjData {
     std::vector<Vec3d> positions;
     std::vector<Vec2f> uvs;
     std::vector<Vec3f> normals;
-    bool has_colours = false;
+    std::vector<VertexColor> colours;  ///< of the positions, as the file has them; empty: none
+    bool has_smoothing = false;        ///< whether any line says which faces are smooth
 
     // Of the corners of all faces, one after the other. Those of uvs and normals are empty where no face has any.
     std::vector<std::uint32_t> corner_positions, corner_uvs, corner_normals;
@@ -25,6 +27,11 @@ struct ObjData {
     /// Faces from `first_face` up to the next run's.
     struct Run {
         std::uint32_t first_face, material, group;
+        std::uint32_t smoothing;  ///< number of the smoothing group; 0: off, as before the first line "s"
+
+        bool continues(const Run& before) const {
+            return material == before.material && group == before.group && smoothing == before.smoothing;
+        }
     };
     std::vector<Run> runs;
     std::vector<std::string> materials;  ///< names after "usemtl"

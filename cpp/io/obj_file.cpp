@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "scene_cleanup.hpp"
 #include "text_lines.hpp"
 #include "triangulate_polygon.hpp"
+#include "vertex_colours.hpp"
 
 namespace realcam::io {
 namespace {
@@ -133,6 +135,7 @@ private:
         if (!default_material_) {
             default_material_ = static_cast<std::uint32_t>(scene_.materials.size());
             scene_.materials.emplace_back();
+            scene_.materials.back().is_white = !data_.colours.empty();
         }
         return *default_material_;
     }
@@ -155,13 +158,15 @@ private:
             const std::size_t end = r + 1 < data_.runs.size() ? data_.runs[r + 1].first_face : data_.face_ends.size();
             const std::uint32_t material =
                 run.material == ObjData::kNone ? default_material() : material_numbers_[run.material];
-            std::vector<Triangle>& triangles = scene_.meshes[run.group].triangles;
+            FileMesh& mesh = scene_.meshes[run.group];
+            std::vector<Triangle>& triangles = mesh.triangles;
             if (data_.runs.size() == 1) triangles.reserve(data_.face_ends.size());
             for (std::size_t f = run.first_face; f < end; ++f) {
                 add_face(triangles, corner, data_.face_ends[f], material, has_plain_corners);
                 corner = data_.face_ends[f];
                 checkpoint_.pass();
             }
+            if (data_.has_smoothing) mesh.smoothing.resize(triangles.size(), run.smoothing);
         }
     }
 
@@ -190,10 +195,16 @@ private:
 
     void add_vertices() {
         FileVertices& out = scene_.vertices[0];
-        out.has_colours = data_.has_colours;
+        if (const std::string warning = decode_vertex_colours(data_.colours); !warning.empty())
+            scene_.warnings.push_back(warning);
         // Where corners are plain, they are numbered as the positions are.
         if (corners_.corners().empty()) {
             out.positions = std::move(data_.positions);
+            out.colours = std::move(data_.colours);
+            if (data_.has_smoothing) {
+                out.places.resize(out.positions.size());
+                std::iota(out.places.begin(), out.places.end(), 0u);
+            }
             return;
         }
         const bool has_uvs = !data_.corner_uvs.empty(), has_normals = !data_.corner_normals.empty();
@@ -201,6 +212,8 @@ private:
         for (const CornerTable::Corner& c : corners_.corners()) {
             checkpoint_.pass();
             out.positions.push_back(data_.positions[c.position]);
+            if (!data_.colours.empty()) out.colours.push_back(data_.colours[c.position]);
+            if (data_.has_smoothing) out.places.push_back(c.position);
             if (has_uvs) out.uvs.push_back(c.uv == ObjData::kNone ? Vec2f{0, 0} : data_.uvs[c.uv]);
             if (has_normals)
                 out.normals.push_back(c.normal == ObjData::kNone ? Vec3f{0, 0, 0} : data_.normals[c.normal]);

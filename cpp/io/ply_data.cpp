@@ -74,8 +74,11 @@ PlyHeader parse_ply_header(std::string_view text, const std::string& path) {
             else if (what != "ascii")
                 fail("ascii, binary_little_endian or binary_big_endian is wanted");
         } else if (word == "comment") {
-            if (words >> what && what == "TextureFile") std::getline(words >> std::ws, header.texture);
-            while (header.texture.ends_with('\r')) header.texture.pop_back();
+            if (!(words >> what) || what != "TextureFile") continue;
+            std::string& texture = header.textures.emplace_back();
+            std::getline(words >> std::ws, texture);
+            while (texture.ends_with('\r') || texture.ends_with(' ')) texture.pop_back();
+            if (texture.empty()) header.textures.pop_back();
         } else if (word == "element") {
             PlyElement& element = header.elements.emplace_back();
             words >> element.name >> what;

@@ -30,7 +30,7 @@ struct PlyElement {
 struct PlyHeader {
     enum class Format { ascii, little_endian, big_endian } format = Format::ascii;
     std::vector<PlyElement> elements;
-    std::string texture;  // of "comment TextureFile"
+    std::vector<std::string> textures;  // of "comment TextureFile"
     std::size_t size = 0;  // in bytes; the data begin here
 };
 

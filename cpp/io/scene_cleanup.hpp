@@ -1,16 +1,15 @@
 #pragma once
 #include <string>
-#include <vector>
 
 #include "../checkpoint.hpp"
 #include "../scene/scene.hpp"
+#include "scene_normals.hpp"
 
 namespace realcam::io {
 
-/// The last step of every reader: drops triangles without area, with a warning, gives those that `is_smooth` marks (one
-/// flag for each of scene.triangles) normals, and welds equal vertices. Indices have to be in range. Throws
-/// SceneFileError, with `path`, if no triangle is left.
-void clean_geometry(Scene& scene, std::vector<bool> is_smooth, const std::string& path, Checkpoint& checkpoint);
+/// The last step of every reader: drops triangles without area, with a warning, smooths the others, and welds equal
+/// vertices. Indices have to be in range. Throws SceneFileError, with `path`, if no triangle is left.
+void clean_geometry(Scene& scene, Smoothing smoothing, const std::string& path, Checkpoint& checkpoint);
 
 /// Adds the warning "path: n what" unless n is 0.
 void warn_count(Scene& scene, const std::string& path, std::size_t n, const std::string& what);

@@ -13,6 +13,7 @@
 #include "../scene/instance_names.hpp"
 #include "../scene/scene_checks.hpp"
 #include "gltf_file.hpp"
+#include "gltf_nodes.hpp"
 #include "obj_file.hpp"
 #include "ply_file.hpp"
 #include "printable.hpp"
@@ -22,6 +23,7 @@
 #include "scene_materials.hpp"
 #include "scene_objects.hpp"
 #include "scene_textures.hpp"
+#include "vertex_colours.hpp"
 
 namespace realcam::io {
 namespace {
@@ -56,16 +58,50 @@ void limit_warnings(std::vector<std::string>& warnings, const std::string& path)
 
 Scene read_ply_scene(const std::string& path, double scale, const ImageReader& read_image, Checkpoint& checkpoint) {
     Scene scene;
-    scene.materials = {Material{}};
     FileScene file;
     file.path = path;
-    file.pictures.push_back({read_ply(scene, path, scale, checkpoint), false, {}});
-    if (!file.pictures[0].name.empty() && !scene.uvs.empty()) {
-        SceneTextures textures(scene, file, read_image, checkpoint);
-        scene.materials[0].diffuse = {1, 1, 1};
-        scene.materials[0].diffuse_texture = textures.find({0, 0, {}}, TextureUse::colour).reference;
+    for (const std::string& name : read_ply(scene, path, scale, checkpoint)) file.pictures.push_back({name, false, {}});
+    Material plain;
+    // The colours of vertices are the surface's own.
+    if (!scene.colors.empty()) plain.diffuse = {1, 1, 1};
+    plain.vertex_opacity = are_transparent(scene.colors);
+    Scene materials;
+    materials.materials.assign(file.pictures.size() + 1, plain);
+    if (!file.pictures.empty() && scene.uvs.empty())
+        scene.warnings.push_back(path + ": names a texture, and has no texture coordinates to lay it by");
+    SceneTextures textures(materials, file, read_image, checkpoint);
+    std::vector<bool> is_used(materials.materials.size(), false);
+    for (const Triangle& triangle : scene.triangles) is_used[triangle.material] = true;
+    for (std::size_t i = 0; i < file.pictures.size() && !scene.uvs.empty(); ++i) {
+        if (!is_used[i]) continue;
+        materials.materials[i].diffuse = {1, 1, 1};
+        materials.materials[i].diffuse_texture =
+            textures.find({static_cast<std::int32_t>(i), 0, {}, {}}, TextureUse::colour).reference;
     }
+    append(scene.warnings, std::move(materials.warnings));
+    keep_used_materials(scene, materials);
     return scene;
+}
+
+/// Those of the nodes, by the names of these, or their own where a node has none.
+std::vector<SceneCamera> cameras_of(const FileScene& file, SceneObjects& objects, std::vector<std::string>& warnings) {
+    std::vector<SceneCamera> cameras;
+    if (file.cameras.empty()) return cameras;
+    DistinctNames names;
+    const std::vector<Affine<double>> transforms = global_transforms(file.nodes);
+    for (std::uint32_t i = 0; i < file.nodes.size(); ++i) {
+        if (file.nodes[i].camera < 0) continue;
+        const FileCamera& from = file.cameras[static_cast<std::size_t>(file.nodes[i].camera)];
+        const Placement place = objects.placement(i, transforms[i]);
+        std::string name = !file.nodes[i].name.empty() ? file.nodes[i].name : from.name;
+        if (name.empty()) name = "camera " + std::to_string(file.nodes[i].camera);
+        if (const std::string why = transform_error(place.scene_from_object); !why.empty()) {
+            warnings.push_back(file.path + ": camera " + in_quotes(name) + " is left out: " + why);
+            continue;
+        }
+        cameras.push_back({names.take(name), place.scene_from_object, from.vertical_field_rad, place.motion});
+    }
+    return cameras;
 }
 
 Assembly assemble(const FileScene& file, const SceneFileOptions& options, const ImageReader& read_image,
@@ -89,6 +125,7 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     });
     read_geometry(static_geometry, all, leaves_out);
     read_lights(static_geometry, all, leaves_out);
+    std::vector<SceneCamera> cameras = cameras_of(file, objects, static_geometry.warnings);
     std::vector<Instance> instances = objects.finish(materials);
     if (instances.empty())
         keep_all_materials(static_geometry, std::move(materials));
@@ -97,6 +134,7 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     limit_warnings(static_geometry.warnings, file.path);
     Assembly scene(std::move(static_geometry));
     scene.instances = std::move(instances);
+    scene.cameras = std::move(cameras);
     make_names_distinct(scene);
     return scene;
 }

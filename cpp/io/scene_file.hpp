@@ -38,14 +38,16 @@ struct SceneFileOptions {
 /// triangles or more. Nodes of an OBJ are what follows a line "o" or "g". Coordinates in a mesh of a glTF are floats:
 /// put far-away objects under a translated node. Skins and morph targets have the pose and weights of the file.
 /// Polygons of an OBJ may be concave. Triangles without area are dropped. glTF meshes without normals are flat, as that
-/// format demands; OBJ and PLY say nothing, and get smooth normals where faces share vertices and meet at less than 45
-/// degrees.
+/// format demands; an OBJ that has smoothing groups is smooth within them and flat elsewhere; others and PLY say
+/// nothing, and get smooth normals where faces share positions and meet at less than 45 degrees.
 ///
 /// Materials are taken as they are: an MTL's of all its models of illumination, and glTF's metallic-roughness model
 /// with the extensions in io/gltf_material.hpp. MTL's Ke, and emissiveFactor times KHR_materials_emissive_strength, are
 /// radiance in cd/m^2. What is not modelled is named in Scene::warnings.
 ///
-/// Lights: KHR_lights_punctual, candela and lux. Cameras are ignored.
+/// Colours of vertices multiply those of materials: linear in glTF, sRGB codes in OBJ and PLY (docs/scenes.md).
+///
+/// Lights: KHR_lights_punctual, candela and lux. Cameras of a glTF are Assembly::cameras.
 ///
 /// `scale` applies to lengths alone; light keeps its units.
 Assembly read_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image);

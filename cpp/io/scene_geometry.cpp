@@ -27,6 +27,8 @@ public:
         for (const FileMesh& mesh : file_.meshes) {
             any_normals_ |= !vertices_of(mesh).normals.empty();
             any_uvs_ |= !vertices_of(mesh).uvs.empty();
+            any_colours_ |= !vertices_of(mesh).colours.empty();
+            any_places_ |= !vertices_of(mesh).places.empty();
         }
     }
 
@@ -34,11 +36,10 @@ public:
         make_room();
         for_each_mesh([&](const FileMesh& mesh, const Affine<double>& transform) { add_mesh(mesh, transform); });
         if (!left_out_ || !scene_.triangles.empty())
-            clean_geometry(scene_, std::move(smooth_), file_.path, part_.checkpoint);
+            clean_geometry(scene_, std::move(smoothing_), file_.path, part_.checkpoint);
         warn_count(scene_, file_.path, bad_normals_, "normals are no finite numbers; their faces are flat there");
         warn_count(scene_, file_.path, bad_uvs_, "texture coordinates are no finite numbers, 0 taken");
         warn_count(scene_, file_.path, uncovered_, "meshes have a texture and no coordinates for it");
-        warn_count(scene_, file_.path, coloured_, "meshes have colours at their vertices, which are not read");
     }
 
 private:
@@ -63,8 +64,9 @@ private:
             triangles += mesh.triangles.size();
             vertices += std::min(vertices_of(mesh).positions.size(), 3 * mesh.triangles.size());
         });
-        const std::size_t per_vertex = sizeof(Vec3d) + any_normals_ * sizeof(Vec3f) + any_uvs_ * sizeof(Vec2f);
-        const std::size_t bytes = vertices * per_vertex + triangles * sizeof(Triangle);
+        const std::size_t per_vertex = sizeof(Vec3d) + any_normals_ * sizeof(Vec3f) + any_uvs_ * sizeof(Vec2f) +
+                                       any_colours_ * sizeof(VertexColor);
+        const std::size_t bytes = vertices * per_vertex + triangles * (sizeof(Triangle) + sizeof(std::uint32_t));
         constexpr std::size_t kAlwaysThere = 1 << 24;
         const std::string why = bytes > kAlwaysThere ? too_much_memory(bytes) : std::string();
         if (!why.empty()) throw SceneFileError(file_.path + ": its triangles need " + why);
@@ -73,22 +75,23 @@ private:
         scene_.positions_m.reserve(vertices);
         if (any_normals_) scene_.normals.reserve(vertices);
         if (any_uvs_) scene_.uvs.reserve(vertices);
+        if (any_colours_) scene_.colors.reserve(vertices);
         scene_.triangles.reserve(triangles);
-        smooth_.reserve(triangles);
+        smoothing_.groups.reserve(triangles);
     }
 
     void add_mesh(const FileMesh& mesh, const Affine<double>& transform) {
         const FileVertices& vertices = vertices_of(mesh);
         if (new_numbers_.size() < vertices.positions.size()) new_numbers_.resize(vertices.positions.size(), kUnset);
         if (add_triangles(mesh, transform) && vertices.uvs.empty()) ++uncovered_;
-        if (vertices.has_colours && !mesh.triangles.empty()) ++coloured_;
     }
 
     /// Returns whether any of them has a texture.
     bool add_triangles(const FileMesh& mesh, const Affine<double>& transform) {
         const bool mirrored = transform.determinant() < 0;
         bool is_textured = false;
-        for (const Triangle& from : mesh.triangles) {
+        for (std::size_t number = 0; number < mesh.triangles.size(); ++number) {
+            const Triangle& from = mesh.triangles[number];
             part_.checkpoint.pass();
             Triangle t{{0, 0, 0}, from.material};
             for (int i = 0; i < 3; ++i) t.vertices[i] = vertex(mesh, from.vertices[i], transform);
@@ -97,7 +100,10 @@ private:
                                                       has_normal(scene_.normals[t.vertices[2]]));
             if (mirrored) std::swap(t.vertices[1], t.vertices[2]);
             scene_.triangles.push_back(t);
-            smooth_.push_back(file_.smooths && !has_normals);
+            const std::uint32_t group = !mesh.smoothing.empty() ? mesh.smoothing[number]
+                                        : file_.smooths         ? kSmoothByAngle
+                                                                : kFlat;
+            smoothing_.groups.push_back(has_normals ? kFlat : group);
             is_textured |= bool(file_.materials[from.material].colour_texture());
         }
         // The next use of these vertices has another transform.
@@ -120,6 +126,8 @@ private:
         if (any_normals_)
             scene_.normals.push_back(from.normals.empty() ? Vec3f{0, 0, 0} : normal(from.normals[number], transform));
         if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number]));
+        if (any_colours_) scene_.colors.push_back(from.colours.empty() ? VertexColor{} : from.colours[number]);
+        if (any_places_) smoothing_.places.push_back(from.places.empty() ? number : from.places[number]);
         return known;
     }
 
@@ -144,10 +152,10 @@ private:
     const FileScene& file_;
     const LeavesOut& leaves_out_;
     bool left_out_ = false;
-    bool any_normals_ = false, any_uvs_ = false;
-    std::vector<bool> smooth_;
+    bool any_normals_ = false, any_uvs_ = false, any_colours_ = false, any_places_ = false;
+    Smoothing smoothing_;
     std::vector<std::uint32_t> new_numbers_;  // in scene_, of the vertices of the mesh at work
-    std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0, coloured_ = 0;
+    std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0;
 };
 
 }  // namespace

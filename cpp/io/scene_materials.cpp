@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "printable.hpp"
+#include "vertex_colours.hpp"
 
 namespace realcam::io {
 namespace {
@@ -18,15 +19,24 @@ Color unit_range(Vec3f v) {
     return {std::clamp(v.x, 0.0f, 1.0f), std::clamp(v.y, 0.0f, 1.0f), std::clamp(v.z, 0.0f, 1.0f)};
 }
 
+/// Of the vertices that have a material.
+struct VertexColours {
+    bool exist = false, are_transparent = false;
+};
+
 class MaterialMaker {
 public:
     /// `scale`: metres for a unit of the file.
     MaterialMaker(Scene& scene, SceneTextures& textures, std::string label, double scale)
         : scene_(scene), textures_(textures), label_(std::move(label)), scale_(scale) {}
 
-    Material make(const FileMaterial& from) {
+    Material make(const FileMaterial& from, const VertexColours& colours) {
+        colours_ = colours;
+        if (from.is_white) material_.diffuse = {1, 1, 1};
         if (const auto* mtl = std::get_if<MtlMaterial>(&from.content)) from_mtl(*mtl);
-        if (const auto* gltf = std::get_if<GltfMaterial>(&from.content)) from_gltf(*gltf);
+        const auto* gltf = std::get_if<GltfMaterial>(&from.content);
+        if (gltf) from_gltf(*gltf);
+        if (!gltf && colours_.are_transparent) material_.vertex_opacity = 1;
         return material_;
     }
 
@@ -65,7 +75,7 @@ private:
     }
 
     void set_roughness_and_metallic(const FileTexture& roughness, const FileTexture& metallic) {
-        if (roughness && metallic && roughness.transform != metallic.transform)
+        if (roughness && metallic && !roughness.lies_as(metallic))
             warn(
                 "has maps of roughness and metallic that lie differently on the surface; both lie as that of "
                 "roughness");
@@ -147,12 +157,14 @@ private:
 
     void set_alpha(const GltfMaterial& from) {
         if (from.alpha_mode == AlphaMode::opaque) return;
+        material_.vertex_opacity = colours_.are_transparent;
         material_.opacity = from.specular_glossiness ? from.specular_glossiness->alpha : from.alpha;
         set_opacity_map(from.colour_texture(), TextureUse::colour);
         // A cutoff of 0 keeps everything.
         if (from.alpha_mode == AlphaMode::mask && !(from.alpha_cutoff > 0)) {
             material_.opacity = 1;
             material_.opacity_texture = {};
+            material_.vertex_opacity = 0;
         } else if (from.alpha_mode == AlphaMode::mask) {
             material_.opacity_cutoff = std::min(from.alpha_cutoff, 1.0f);
             if (from.alpha_cutoff > 1) material_.opacity = 0;
@@ -173,6 +185,7 @@ private:
         material_.model = MaterialModel::phong;
         material_.emission = kWhite * material_.diffuse;
         material_.emission_texture = material_.diffuse_texture;
+        material_.vertex_emission = colours_.exist;
         material_.emits_on_both_sides = 1;
         material_.diffuse = material_.specular = {0, 0, 0};
         material_.diffuse_texture = material_.specular_texture = {};
@@ -267,8 +280,24 @@ private:
     SceneTextures& textures_;
     std::string label_;
     double scale_;
+    VertexColours colours_;
     Material material_;
 };
+
+std::vector<VertexColours> vertex_colours(const FileScene& file) {
+    std::vector<VertexColours> of_vertices;
+    for (const FileVertices& v : file.vertices) of_vertices.push_back({!v.colours.empty(), are_transparent(v.colours)});
+    std::vector<VertexColours> of_materials(file.materials.size());
+    for (const FileMesh& mesh : file.meshes) {
+        if (!of_vertices[mesh.vertices].exist) continue;
+        for (const Triangle& triangle : mesh.triangles) {
+            VertexColours& all = of_materials[triangle.material];
+            all.exist = true;
+            all.are_transparent |= of_vertices[mesh.vertices].are_transparent;
+        }
+    }
+    return of_materials;
+}
 
 }  // namespace
 
@@ -276,6 +305,7 @@ void make_materials(Scene& scene, const FileScene& file, double scale, SceneText
     std::vector<bool> is_used(file.materials.size(), false);
     for (const FileMesh& mesh : file.meshes)
         for (const Triangle& triangle : mesh.triangles) is_used[triangle.material] = true;
+    const std::vector<VertexColours> colours = vertex_colours(file);
     scene.materials.assign(file.materials.size(), Material{});
     scene.material_names.assign(file.materials.size(), {});
     for (std::size_t i = 0; i < file.materials.size(); ++i) {
@@ -284,7 +314,7 @@ void make_materials(Scene& scene, const FileScene& file, double scale, SceneText
         scene.material_names[i] = printable(name);
         const std::string label =
             file.path + ": material " + std::to_string(i) + (name.empty() ? "" : ' ' + in_quotes(name));
-        scene.materials[i] = MaterialMaker(scene, textures, label, scale).make(file.materials[i]);
+        scene.materials[i] = MaterialMaker(scene, textures, label, scale).make(file.materials[i], colours[i]);
     }
 }
 

@@ -25,8 +25,8 @@ double angle_between(Vec3d a, Vec3d b) {
 /// for ten million would be the largest of all.
 class Smoother {
 public:
-    Smoother(Scene& scene, const std::vector<bool>& is_smooth, Checkpoint& checkpoint)
-        : scene_(scene), is_smooth_(is_smooth), checkpoint_(checkpoint) {}
+    Smoother(Scene& scene, const Smoothing& smoothing, Checkpoint& checkpoint)
+        : scene_(scene), smoothing_(smoothing), checkpoint_(checkpoint) {}
 
     void smooth() {
         if (scene_.normals.empty()) scene_.normals.assign(scene_.positions_m.size(), Vec3f{0, 0, 0});
@@ -45,6 +45,7 @@ private:
         std::uint32_t* vertex;
         Vec3d face_normal;
         double angle;
+        std::uint32_t group;
     };
     /// A vertex made for the place at work.
     struct Made {
@@ -56,9 +57,7 @@ private:
     /// first of those that are equal. A corner's number is 3 times its triangle's, and 0 to 2.
     void sort_corners() {
         if (scene_.triangles.size() > 0xffffffffu / 3) throw InputError("more than 1431655765 triangles");
-        const std::vector<std::uint32_t> place = first_equal(
-            scene_.positions_m.size(), [&](std::size_t i) { return hash_of(scene_.positions_m[i]); },
-            [&](std::size_t i, std::size_t j) { return scene_.positions_m[i] == scene_.positions_m[j]; }, checkpoint_);
+        const std::vector<std::uint32_t> place = first_at_place();
         begin_.assign(scene_.positions_m.size() + 1, 0);
         for_each_corner([&](std::uint32_t, std::uint32_t vertex) { ++begin_[place[vertex] + 1]; });
         std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
@@ -69,11 +68,24 @@ private:
         begin_[0] = 0;
     }
 
+    std::vector<std::uint32_t> first_at_place() {
+        const std::vector<std::uint32_t>& places = smoothing_.places;
+        if (!places.empty())
+            return first_equal(
+                places.size(), [&](std::size_t i) { return places[i] * 0x9e3779b97f4a7c15ull >> 20; },
+                [&](std::size_t i, std::size_t j) { return places[i] == places[j]; }, checkpoint_);
+        return first_equal(
+            scene_.positions_m.size(), [&](std::size_t i) { return hash_of(scene_.positions_m[i]); },
+            [&](std::size_t i, std::size_t j) { return scene_.positions_m[i] == scene_.positions_m[j]; }, checkpoint_);
+    }
+
+    bool is_smooth(std::size_t triangle) const { return smoothing_.groups[triangle] != kFlat; }
+
     template <class Use>
     void for_each_corner(Use&& use) {
         for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
             checkpoint_.pass();
-            if (!is_smooth_[t]) continue;
+            if (!is_smooth(t)) continue;
             for (std::uint32_t i = 0; i < 3; ++i) use(3 * t + i, scene_.triangles[t].vertices[i]);
         }
     }
@@ -82,7 +94,7 @@ private:
     void find_vertices_to_keep() {
         is_taken_.assign(scene_.positions_m.size(), false);
         for (std::size_t t = 0; t < scene_.triangles.size(); ++t)
-            if (!is_smooth_[t])
+            if (!is_smooth(t))
                 for (const std::uint32_t v : scene_.triangles[t].vertices) is_taken_[v] = true;
     }
 
@@ -92,7 +104,13 @@ private:
                            scene_.positions_m[t.vertices[2]]};
         const std::uint32_t i = number % 3;
         const Vec3d own = p[i], next = p[(i + 1) % 3], before = p[(i + 2) % 3];
-        return {&t.vertices[i], normalized(cross(p[1] - p[0], p[2] - p[0])), angle_between(next - own, before - own)};
+        return {&t.vertices[i], normalized(cross(p[1] - p[0], p[2] - p[0])), angle_between(next - own, before - own),
+                smoothing_.groups[number / 3]};
+    }
+
+    static bool meets_smoothly(const Corner& own, const Corner& other) {
+        if (own.group != other.group) return false;
+        return own.group != kSmoothByAngle || dot(own.face_normal, other.face_normal) >= cos_crease;
     }
 
     void smooth_place(std::uint32_t begin, std::uint32_t end) {
@@ -103,7 +121,7 @@ private:
         for (const Corner& own : corners_) {
             Vec3d sum = {0, 0, 0};
             for (const Corner& other : corners_)
-                if (dot(own.face_normal, other.face_normal) >= cos_crease) sum += other.angle * other.face_normal;
+                if (meets_smoothly(own, other)) sum += other.angle * other.face_normal;
             set_normal(*own.vertex, length(sum) > 0 ? static_cast<Vec3f>(normalized(sum)) : Vec3f{0, 0, 0});
         }
     }
@@ -128,12 +146,16 @@ private:
                 const Vec2f uv = scene_.uvs[source];
                 scene_.uvs.push_back(uv);
             }
+            if (!scene_.colors.empty()) {
+                const VertexColor color = scene_.colors[source];
+                scene_.colors.push_back(color);
+            }
         }
         made_.push_back({source, vertex, normal});
     }
 
     Scene& scene_;
-    const std::vector<bool>& is_smooth_;
+    const Smoothing& smoothing_;
     Checkpoint& checkpoint_;
     std::vector<std::uint32_t> begin_, sorted_;
     std::vector<bool> is_taken_;
@@ -143,8 +165,8 @@ private:
 
 }  // namespace
 
-void smooth_normals(Scene& scene, const std::vector<bool>& is_smooth, Checkpoint& checkpoint) {
-    Smoother(scene, is_smooth, checkpoint).smooth();
+void smooth_normals(Scene& scene, const Smoothing& smoothing, Checkpoint& checkpoint) {
+    Smoother(scene, smoothing, checkpoint).smooth();
 }
 
 }  // namespace realcam::io

@@ -25,6 +25,9 @@ public:
     /// and lights.
     void add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry);
 
+    /// Where a node is, or how it moves, in metres. `transform`: its own, in the scene.
+    Placement placement(std::uint32_t node, const Affine<double>& transform);
+
     /// With the materials and textures that they use, of those that the file has. Of several with one name, the second
     /// is "name.2" and so on.
     std::vector<Instance> finish(const Scene& materials);
@@ -41,8 +44,6 @@ private:
                                        Scene& static_geometry) const;
     /// Whether a node moves within its parent, and shows it.
     bool moves(std::uint32_t node) const { return file_.nodes[node].motion >= 0 && shows_[node]; }
-    /// In metres.
-    Placement placement(std::uint32_t node, const Affine<double>& transform);
     Affine<double> transform_at(std::uint32_t node, double time);
     std::shared_ptr<Scene> read_meshes(std::uint32_t node) const;
 

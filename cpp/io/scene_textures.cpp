@@ -57,7 +57,7 @@ std::optional<DecodedImage> SceneTextures::decode(std::int32_t number) {
 
 SceneTextures::Found SceneTextures::find(const FileTexture& texture, TextureUse use) {
     const Added added = add(texture.picture, use);
-    return {texture.transform.of(added.texture), added.is_stand_in};
+    return {texture.reference(added.texture), added.is_stand_in};
 }
 
 SceneTextures::Added SceneTextures::add(std::int32_t picture, TextureUse use) {
@@ -101,27 +101,31 @@ std::optional<std::int32_t> SceneTextures::made(const MadeKey& key, Make&& make)
 }
 
 std::optional<TextureReference> SceneTextures::find_heights(const FileTexture& texture, float scale) {
-    const auto number = made({Made::normals, texture.picture, -1, scale}, [&](const DecodedImage* heights, auto) {
-        return normals_of_heights(*heights, scale, name_of(texture.picture));
-    });
-    return number ? std::optional(texture.transform.of(*number)) : std::nullopt;
+    const TextureSampler& sampler = texture.sampler;
+    const bool repeats = sampler.u == TextureWrap::repeat && sampler.v == TextureWrap::repeat;
+    const auto number =
+        made({Made::normals, texture.picture, -1, scale, repeats}, [&](const DecodedImage* heights, auto) {
+            return normals_of_heights(*heights, scale, repeats, name_of(texture.picture));
+        });
+    return number ? std::optional(texture.reference(*number)) : std::nullopt;
 }
 
 std::optional<TextureReference> SceneTextures::find_roughness_and_metallic(const FileTexture& roughness,
                                                                            const FileTexture& metallic) {
     const FileTexture& first = roughness ? roughness : metallic;
-    const auto number = made({Made::roughness_and_metallic, roughness.picture, metallic.picture, 0},
+    const auto number = made({Made::roughness_and_metallic, roughness.picture, metallic.picture, 0, true},
                              [&](const DecodedImage* r, const DecodedImage* m) {
                                  return roughness_and_metallic(r, m, name_of(first.picture));
                              });
-    return number ? std::optional(first.transform.of(*number)) : std::nullopt;
+    return number ? std::optional(first.reference(*number)) : std::nullopt;
 }
 
 std::optional<TextureReference> SceneTextures::find_glossiness(const FileTexture& texture, float factor) {
-    const auto number = made({Made::roughness, texture.picture, -1, factor}, [&](const DecodedImage* image, auto) {
-        return roughness_of_glossiness(*image, factor, name_of(texture.picture));
-    });
-    return number ? std::optional(texture.transform.of(*number)) : std::nullopt;
+    const auto number =
+        made({Made::roughness, texture.picture, -1, factor, true}, [&](const DecodedImage* image, auto) {
+            return roughness_of_glossiness(*image, factor, name_of(texture.picture));
+        });
+    return number ? std::optional(texture.reference(*number)) : std::nullopt;
 }
 
 /// A dozen pictures of 33 kB may each be decoded to a gigabyte. A render holds them once more, in its copy of the

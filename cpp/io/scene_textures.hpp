@@ -36,9 +36,9 @@ public:
     std::optional<TextureReference> find_glossiness(const FileTexture& texture, float factor);
 
 private:
-    /// What was made of which pictures (-1: none), by which number.
+    /// What was made of which pictures (-1: none), by which number, and whether they go on beyond their edges.
     enum class Made { normals, roughness_and_metallic, roughness };
-    using MadeKey = std::tuple<Made, std::int32_t, std::int32_t, float>;
+    using MadeKey = std::tuple<Made, std::int32_t, std::int32_t, float, bool>;
     template <class Make>
     std::optional<std::int32_t> made(const MadeKey& key, Make&& make);
     std::string name_of(std::int32_t picture) const;

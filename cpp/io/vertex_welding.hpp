@@ -28,7 +28,7 @@ std::vector<std::uint32_t> first_equal(std::size_t count, Hash hash, Equal equal
 
 std::uint64_t hash_of(Vec3d position);
 
-/// Makes one vertex of those that are equal in position, normal and texture coordinate, and drops those that no
+/// Makes one vertex of those that are equal in position, normal, texture coordinate and colour, and drops those that no
 /// triangle uses. Triangles keep their order, and vertices the order of their first appearance.
 void weld_vertices(Scene& scene, Checkpoint& checkpoint);
 

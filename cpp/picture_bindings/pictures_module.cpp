@@ -47,18 +47,21 @@ py::object read_texture(const std::string& path, const py::buffer& encoded) {
             return py::array_t<Value>({image->height, image->width, 4}, rgba.data());
         },
         image->rgba);
-    return py::make_tuple(pixels, image->is_linear);
+    return py::make_tuple(pixels, image->is_linear, image->rec709);
 }
 
-py::array_t<float> read_environment(const std::string& path) {
+/// The pixels, and what the reader put up with.
+py::tuple read_environment(const std::string& path) {
     Environment environment;
+    std::vector<std::string> warnings;
     {
         const Unlocked unlocked;
-        environment = image_io::read_environment(path, no_signal);
+        environment = image_io::read_environment(
+            path, [&](const std::string& warning) { warnings.push_back(warning); }, no_signal);
     }
     py::array_t<float> pixels({environment.height, environment.width, 3});
     std::memcpy(pixels.mutable_data(), environment.pixels.data(), environment.pixels.size() * sizeof(Vec3f));
-    return pixels;
+    return py::make_tuple(pixels, warnings);
 }
 
 using FloatArray = py::array_t<float, py::array::c_style | py::array::forcecast>;

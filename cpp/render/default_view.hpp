@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "../camera/camera.hpp"
 #include "../camera/field_of_view.hpp"
@@ -16,6 +18,11 @@ struct ViewRequest {
     std::optional<Vec3d> position_m, look_at_m;
     Vec3d up = {0, 1, 0};
     std::optional<double> focus_distance_m;  ///< object plane to film; infinity allowed
+    /// Of the scene (SceneCamera), by its name. Empty: where position_m and look_at_m say nothing the first that there
+    /// is; kNoCamera: none.
+    std::string camera;
+
+    static constexpr const char* kNoCamera = "none";
 };
 
 namespace default_view_detail {
@@ -88,10 +95,67 @@ inline double free_distance(const AxisCrossings& axis, const BoundingBox& subjec
     return limit;
 }
 
+/// The camera of the scene whose view is taken; null: none. Throws InputError where there is none of that name.
+inline const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& request) {
+    const bool is_placed = request.position_m || request.look_at_m;
+    if (request.camera.empty()) {
+        for (const SceneCamera& camera : assembly.cameras)
+            if (camera.has_place() && !is_placed) return &camera;
+        return nullptr;
+    }
+    std::string names;
+    for (const SceneCamera& camera : assembly.cameras) {
+        names += (names.empty() ? "\"" : ", \"") + camera.name + '"';
+        if (camera.name != request.camera) continue;
+        if (is_placed) throw InputError("a camera of the scene and a position or look-at exclude each other");
+        if (camera.has_place()) return &camera;
+        throw InputError("the scene's camera \"" + camera.name + "\" is orthographic, which no lens is");
+    }
+    if (request.camera == ViewRequest::kNoCamera) return nullptr;
+    throw InputError("the scene has no camera \"" + request.camera + "\"; " +
+                     (names.empty() ? "it has none" : "it has " + names));
+}
+
+/// Where a camera of the scene is: the entrance pupil of the lens in its place.
+inline Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
+    const Vec3d backward = normalized(scene_from_camera.z);
+    const double pupil = first_order(lens, lens.wavelength_nm).entrance_pupil_position;
+    const double film_to_pupil_m = (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
+    const Vec3d position = scene_from_camera.origin + film_to_pupil_m * backward;
+    return {position, position - backward, normalized(scene_from_camera.y)};
+}
+
+/// Of a camera of the scene: its place, its direction and how it moves.
+inline void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from,
+                      const std::optional<double>& focus_distance_m) {
+    const LensSystem lens = camera.lens;
+    const Affine<double> place = from.transform_at(camera.shutter.opens_s);
+    if (focus_distance_m) {
+        camera.lens = focused(lens, 1000 * *focus_distance_m);
+        camera.pose = pose_of(place, camera.lens);
+        validate(camera);
+    } else {
+        const BoundingBox box = Surroundings(assembly).box();
+        // Where the film is depends on the focus, and that on where the film is.
+        for (int i = 0; i < 4; ++i) {
+            camera.pose = pose_of(place, camera.lens);
+            validate(camera);
+            const AxisCrossings axis(assembly, camera.pose.position_m, -normalized(place.z));
+            camera.lens = focused(lens, 1000 * autofocus_m(axis, 0, box, camera));
+        }
+        camera.pose = pose_of(place, camera.lens);
+    }
+    if (!from.motion) return;
+    std::vector<PoseKey> keys;
+    for (std::size_t k = 0; k < from.motion->times_s.size(); ++k)
+        keys.push_back({from.motion->times_s[k], pose_of(from.motion->transforms[k], camera.lens)});
+    set_motion(camera, std::move(keys));
+}
+
 }  // namespace default_view_detail
 
 /// Sets camera.pose, where the camera stays, and focuses camera.lens, on the scene as it stands when the shutter opens:
-/// as asked for, and otherwise so.
+/// as asked for; where the scene brings a camera along, in its place, with its direction and motion; and otherwise so.
 /// - subject: the scene without its surroundings (Surroundings): not the wide floor, the sky or what is far away.
 /// - look_at: the middle of the subject's bounding box.
 /// - position: in front of look_at along +z (along -y where up is the z axis), so far away that the subject's box fills
@@ -100,12 +164,22 @@ inline double free_distance(const AxisCrossings& axis, const BoundingBox& subjec
 /// - focus: the first surface on the camera's axis, or the depth of the subject's middle where the axis meets nothing.
 /// A
 ///   camera whose place was chosen steps back where its lens cannot focus that near.
-/// Throws InputError where the lens cannot focus as asked for, and for a scene without triangles.
-inline void set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request) {
+/// Returns the scene's camera whose view was taken; null: none. Throws InputError where the lens cannot focus as asked
+/// for, for a scene without triangles, and for a camera that the scene has not.
+inline const SceneCamera* set_view(Camera& camera, const Assembly& assembly, const ViewRequest& request) {
     using namespace default_view_detail;
     validate(assembly);
-    if (assembly.moves()) return set_view(camera, standing_at(assembly, camera.shutter.opens_s), request);
     camera.motion.clear();
+    if (const SceneCamera* from = chosen_camera(assembly, request)) {
+        try {
+            take_view(camera, standing_at(assembly, camera.shutter.opens_s), *from, request.focus_distance_m);
+        } catch (const InputError& error) {
+            throw InputError(std::string(error.what()) + " (in the place of the scene's camera \"" + from->name +
+                             "\"; camera \"none\" takes another)");
+        }
+        return from;
+    }
+    if (assembly.moves()) return set_view(camera, standing_at(assembly, camera.shutter.opens_s), request);
     const Surroundings subject(assembly);
     const BoundingBox& box = subject.box();
     const LensSystem lens = camera.lens;
@@ -119,10 +193,11 @@ inline void set_view(Camera& camera, const Assembly& assembly, const ViewRequest
         validate(camera);
         if (request.focus_distance_m) {
             camera.lens = focused(lens, 1000 * *request.focus_distance_m);
-            return;
+            return nullptr;
         }
         const Vec3d forward = normalized(camera.pose.look_at_m - camera.pose.position_m);
-        return focus(AxisCrossings(assembly, camera.pose.position_m, forward), 0);
+        focus(AxisCrossings(assembly, camera.pose.position_m, forward), 0);
+        return nullptr;
     }
     const bool z_is_up = std::fabs(request.up.z) > 0.99 * length(request.up);
     const Vec3d backward = z_is_up ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
@@ -151,6 +226,7 @@ inline void set_view(Camera& camera, const Assembly& assembly, const ViewRequest
             settled = 0;
         }
     }
+    return nullptr;
 }
 
 }  // namespace REALCAM_NAMESPACE

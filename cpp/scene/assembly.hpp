@@ -11,6 +11,7 @@
 #include "../error.hpp"
 #include "../math/motion.hpp"
 #include "scene.hpp"
+#include "scene_camera.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -50,6 +51,7 @@ struct Instance {
 struct Assembly {
     std::shared_ptr<const Scene> static_geometry;  ///< with the lights; may have no triangles where there are instances
     std::vector<Instance> instances;
+    std::vector<SceneCamera> cameras;  ///< that its file brings along
 
     Assembly() = default;
     Assembly(std::shared_ptr<const Scene> scene) : static_geometry(std::move(scene)) {}

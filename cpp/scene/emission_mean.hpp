@@ -30,8 +30,9 @@ inline Color mean_of(const TextureView& texture) {
 
 }  // namespace emission_mean_detail
 
-/// For each of a mesh's emitters, what its map makes of its luminance: 1 without a map. Samples over the triangle, and
-/// a part of the whole map's mean, so that what they miss is still a light: 0 only where the map is black.
+/// For each of a mesh's emitters, what its map and the vertices' colours make of its luminance: 1 without them. Samples
+/// over the triangle, and a part of the whole map's mean, so that what they miss is still a light: 0 only where the map
+/// is black.
 inline std::vector<float> emission_means(const MeshView& mesh, Checkpoint& checkpoint) {
     constexpr int kSteps = 6;
     constexpr float kWholeMap = 0.1f;
@@ -45,14 +46,18 @@ inline std::vector<float> emission_means(const MeshView& mesh, Checkpoint& check
         const Material& material = mesh.materials[triangle.material];
         const TextureReference& map = material.emission_texture;
         const float bare = luminance(material.emission);
-        if (map.texture < 0 || !mesh.uvs || !(bare > 0.0f)) {
+        const bool has_map = map.texture >= 0 && mesh.uvs, has_colors = material.vertex_emission && mesh.colors;
+        if ((!has_map && !has_colors) || !(bare > 0.0f)) {
             means.push_back(1.0f);
             continue;
         }
-        const auto known = whole.find(map.texture);
-        const Color all = known != whole.end()
-                              ? known->second
-                              : (whole[map.texture] = emission_mean_detail::mean_of(mesh.textures[map.texture]));
+        Color all = {1, 1, 1};
+        if (has_map) {
+            const auto known = whole.find(map.texture);
+            all = known != whole.end()
+                      ? known->second
+                      : (whole[map.texture] = emission_mean_detail::mean_of(mesh.textures[map.texture]));
+        }
         // The middles of equal triangles into which the triangle is cut.
         Color sum{0, 0, 0};
         for (int row = 0; row < kSteps; ++row)
@@ -61,8 +66,11 @@ inline std::vector<float> emission_means(const MeshView& mesh, Checkpoint& check
                 const float step = 1.0f / static_cast<float>(kSteps);
                 const Hit hit{0.0f, number, step * (static_cast<float>(column / 2) + off),
                               step * (static_cast<float>(row) + off)};
-                sum += texture_color(mesh, map, surface_uv(mesh, triangle, hit).at);
+                const Color colors = has_colors ? vertex_color(mesh, triangle, hit) : Color{1, 1, 1};
+                sum += colors * texture_color(mesh, map, surface_uv(mesh, triangle, hit).at);
             }
+        // Colours between black vertices are black, whatever the map.
+        if (has_colors) all *= vertex_color(mesh, triangle, {0.0f, number, 1.0f / 3.0f, 1.0f / 3.0f});
         const Color mean = mix((1.0f / (kSteps * kSteps)) * sum, all, kWholeMap);
         means.push_back(luminance(material.emission * mean) / bare);
     }

@@ -20,6 +20,7 @@ REALCAM_INLINE Color emitted_radiance(const SceneView& scene, const AreaLight& l
     const Hit place = {0.0f, light.triangle, along_u, along_v, light.instance};
     Color radiance = light.radiance;
     const TextureReference& map = mesh.materials[triangle.material].emission_texture;
+    if (mesh.materials[triangle.material].vertex_emission) radiance *= vertex_color(mesh, triangle, place);
     if (map.texture >= 0) radiance *= texture_color(mesh, map, surface_uv(mesh, triangle, place).at);
     if constexpr (scene_kind == SceneKind::any) radiance = opacity_at(mesh, triangle, place) * radiance;
     return radiance;

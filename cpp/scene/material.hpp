@@ -28,6 +28,9 @@ struct Material {
     float opacity_cutoff =
         0;  ///< above 0: all of the surface is there where opacity reaches this, and nothing elsewhere
     std::int32_t only_shadows = 0;  ///< not 0: invisible, but for the shadows on it (MTL's illumination model 10)
+    std::int32_t vertex_opacity = 0;  ///< not 0: the alpha of the vertices' colours multiplies opacity
+    std::int32_t vertex_emission =
+        0;  ///< not 0: the vertices' colours multiply emission, as they do the diffuse colour
     TextureReference opacity_texture;  ///< its alpha channel multiplies opacity
     TextureReference diffuse_texture, specular_texture, emission_texture;
     float ior = 1.5f;  ///< refractive index on the inside
@@ -69,7 +72,9 @@ struct Material {
                !has_holes() && emits_on_both_sides == 0;
     }
     /// Whether some rays that meet the surface go on as if it were not there.
-    constexpr bool has_holes() const { return opacity < 1 || opacity_texture.texture >= 0 || only_shadows != 0; }
+    constexpr bool has_holes() const {
+        return opacity < 1 || opacity_texture.texture >= 0 || only_shadows != 0 || vertex_opacity != 0;
+    }
 };
 
 inline constexpr std::array<TextureReference Material::*, 11> kMaterialTextures = {
@@ -82,7 +87,7 @@ inline constexpr std::array<TextureReference Material::*, 11> kMaterialTextures 
 
 /// What a scene asks of the kernels: code for more than is there would cost speed.
 enum class SceneKind : std::int32_t {
-    plain,  ///< Material::is_plain holds for all materials, and nothing moves
+    plain,  ///< Material::is_plain holds for all materials, no vertices have colours, and nothing moves
     opaque,  ///< no material has holes, and nothing moves
     any,
 };

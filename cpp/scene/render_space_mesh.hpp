@@ -43,6 +43,7 @@ public:
         const std::vector<Vec3f>& normals = turned_normals_.empty() ? split_.normals() : turned_normals_;
         view.normals = normals.empty() ? nullptr : normals.data();
         view.uvs = split_.uvs().empty() ? nullptr : split_.uvs().data();
+        view.colors = split_.colors().empty() ? nullptr : split_.colors().data();
         view.materials = scene_.materials.data();
         view.textures = textures_.data();
         view.emitters = emitters_.data();

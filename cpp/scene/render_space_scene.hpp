@@ -278,6 +278,7 @@ private:
 
     void find_kind() {
         const auto add = [&](const Scene& scene) {
+            if (!scene.colors.empty()) kind_ = std::max(kind_, SceneKind::opaque);
             for (const Material& m : scene.materials)
                 kind_ = std::max(kind_, m.has_holes()  ? SceneKind::any
                                         : m.is_plain() ? SceneKind::plain

@@ -39,6 +39,7 @@ struct Scene {
     std::vector<Vec3d> positions_m;
     std::vector<Vec3f> normals;  ///< empty, or one per position; (0, 0, 0): flat
     std::vector<Vec2f> uvs;      ///< empty, or one per position
+    std::vector<VertexColor> colors;  ///< empty (white), or one per position
     std::vector<Triangle> triangles;
     std::vector<Material> materials;
     std::vector<std::string> material_names;  ///< as in the file; empty, or one for each material (empty: none)

@@ -99,8 +99,14 @@ private:
         };
         one_each(scene_.normals.size(), "normals");
         one_each(scene_.uvs.size(), "texture coordinates");
+        one_each(scene_.colors.size(), "colours of vertices");
         for (std::size_t i = 0; i < scene_.normals.size(); ++i) {
             if (!finite(scene_.normals[i])) require(false, "normal", i, "must be finite numbers");
+        }
+        for (std::size_t i = 0; i < scene_.colors.size(); ++i) {
+            const VertexColor& c = scene_.colors[i];
+            require(is_reflectance(c.color) && c.alpha >= 0 && c.alpha <= 1, "colour of vertex", i,
+                    "must be finite and not negative, and its alpha lie between 0 and 1");
         }
         for (std::size_t i = 0; i < scene_.uvs.size(); ++i) {
             if (!std::isfinite(scene_.uvs[i].x) || !std::isfinite(scene_.uvs[i].y)) {
@@ -161,6 +167,10 @@ private:
                 "has a texture, and the vertices have no texture coordinates");
         require(finite(reference.to_u) && finite(reference.to_v), "material", material,
                 "a texture's transform must be finite numbers");
+        const TextureSampler& s = reference.sampler;
+        const auto is_wrap = [](TextureWrap w) { return w >= TextureWrap::repeat && w <= TextureWrap::mirror; };
+        require(is_wrap(s.u) && is_wrap(s.v) && s.filter >= TextureFilter::linear && s.filter <= TextureFilter::nearest,
+                "material", material, "a texture's sampler is unknown");
     }
 
     void check_textures() const {

@@ -95,6 +95,15 @@ struct alignas(16) LightNode {
     float first_share;  ///< probability of the first of the two
 };
 
+/// What the diffuse colour of a surface, and where its material says so emission and opacity, are multiplied by at a
+/// vertex; in between it is interpolated.
+struct VertexColor {
+    Color color = {1, 1, 1};  ///< linear
+    float alpha = 1;
+
+    constexpr bool operator==(const VertexColor&) const = default;
+};
+
 // Every array of the following is also named in scene_arrays.hpp.
 
 /// Triangles and what they are made of.
@@ -104,6 +113,7 @@ struct MeshView {
     const Vec3f* positions;
     const Vec3f* normals;  ///< per vertex, zero where the triangle is flat; null: all flat
     const Vec2f* uvs;  ///< per vertex; null: none
+    const VertexColor* colors;  ///< per vertex; null: white
     const Material* materials;
     const TextureView* textures;
     const std::uint32_t* emitters;  ///< the triangles that emit light, in rising order

@@ -46,6 +46,7 @@ public:
     const std::vector<Triangle>& triangles() const { return any() ? triangles_ : scene_.triangles; }
     const std::vector<Vec3f>& normals() const { return any() ? normals_ : scene_.normals; }
     const std::vector<Vec2f>& uvs() const { return any() ? uvs_ : scene_.uvs; }
+    const std::vector<VertexColor>& colors() const { return any() ? colors_ : scene_.colors; }
 
     std::size_t position_count() const { return scene_.positions_m.size() + added_.size(); }
     /// In the frame.
@@ -150,6 +151,11 @@ private:
             const Vec2f a = uvs_[v[0]], b = uvs_[v[1]], c = uvs_[v[2]];
             uvs_.push_back({w[0] * a.x + w[1] * b.x + w[2] * c.x, w[0] * a.y + w[1] * b.y + w[2] * c.y});
         }
+        if (!colors_.empty()) {
+            const VertexColor &a = colors_[v[0]], &b = colors_[v[1]], &c = colors_[v[2]];
+            colors_.push_back(
+                {w[0] * a.color + w[1] * b.color + w[2] * c.color, w[0] * a.alpha + w[1] * b.alpha + w[2] * c.alpha});
+        }
         added_.push_back(weights[0] * position(v[0]) + weights[1] * position(v[1]) + weights[2] * position(v[2]));
         return static_cast<std::uint32_t>(position_count() - 1);
     }
@@ -170,6 +176,7 @@ private:
         triangles_ = scene_.triangles;
         normals_ = scene_.normals;
         uvs_ = scene_.uvs;
+        colors_ = scene_.colors;
     }
 
     const Scene& scene_;
@@ -178,6 +185,7 @@ private:
     std::vector<Triangle> triangles_;
     std::vector<Vec3f> normals_;
     std::vector<Vec2f> uvs_;
+    std::vector<VertexColor> colors_;
     std::vector<std::uint32_t> parents_;
     std::uint32_t parent_ = 0;
     bool first_piece_ = true;

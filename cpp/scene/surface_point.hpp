@@ -142,7 +142,7 @@ REALCAM_INLINE TextureView level_for(const TextureView& texture, const TextureRe
 /// White where there is no texture.
 REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv) {
     if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
-    return sample_texture(mesh.textures[reference.texture], transformed(reference, uv));
+    return sample_texture(mesh.textures[reference.texture], transformed(reference, uv), reference.sampler);
 }
 
 /// Likewise of a part of the surface.
@@ -150,7 +150,23 @@ REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference&
                                    UvFootprint footprint) {
     if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
     const TextureView level = level_for(mesh.textures[reference.texture], reference, footprint);
-    return sample_texture(level, transformed(reference, uv));
+    return sample_texture(level, transformed(reference, uv), reference.sampler);
+}
+
+/// The colour of the vertices at a hit; white where they have none.
+REALCAM_INLINE Color vertex_color(const MeshView& mesh, const Triangle& triangle, Hit hit) {
+    if (!mesh.colors) return {1, 1, 1};
+    const VertexColor a = mesh.colors[triangle.vertices[0]], b = mesh.colors[triangle.vertices[1]],
+                      c = mesh.colors[triangle.vertices[2]];
+    return (1.0f - hit.u - hit.v) * a.color + hit.u * b.color + hit.v * c.color;
+}
+
+/// Likewise their alpha.
+REALCAM_INLINE float vertex_alpha(const MeshView& mesh, const Triangle& triangle, Hit hit) {
+    if (!mesh.colors) return 1.0f;
+    const std::uint32_t* corner = triangle.vertices;
+    return (1.0f - hit.u - hit.v) * mesh.colors[corner[0]].alpha + hit.u * mesh.colors[corner[1]].alpha +
+           hit.v * mesh.colors[corner[2]].alpha;
 }
 
 /// The shading normal that a normal map gives. `normal`: without it; `scale`: of the map's x and y.
@@ -228,8 +244,10 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
     }
     if (is_textured) point.diffuse *= texture_color(mesh, material.diffuse_texture, uv.at, seen);
     if constexpr (scene_kind != SceneKind::plain) {
+        if (mesh.colors) point.diffuse *= vertex_color(mesh, triangle, hit);
         if (material.emits_on_both_sides) point.emission = material.emission;
         point.emission *= texture_color(mesh, material.emission_texture, uv.at, seen);
+        if (material.vertex_emission) point.emission *= vertex_color(mesh, triangle, hit);
         const Color rough_metal = texture_color(mesh, material.metallic_roughness_texture, uv.at);
         point.specular = material.specular * texture_color(mesh, material.specular_texture, uv.at, seen);
         point.roughness = material.roughness * rough_metal.g;
@@ -241,7 +259,8 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
         point.specular_weight = material.specular_weight;
         const TextureReference& weights = material.specular_weight_texture;
         if (weights.texture >= 0 && mesh.uvs)
-            point.specular_weight *= sample_texture_alpha(mesh.textures[weights.texture], transformed(weights, uv.at));
+            point.specular_weight *=
+                sample_texture_alpha(mesh.textures[weights.texture], transformed(weights, uv.at), weights.sampler);
     }
     point.self_offset = plane.margin;
     return point;

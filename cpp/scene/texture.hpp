@@ -9,10 +9,15 @@ REALCAM_INLINE float srgb_to_linear(std::uint8_t code) {
     return v <= 0.04045f ? v * (1.0f / 12.92f) : std::pow((v + 0.055f) * (1.0f / 1.055f), 2.4f);
 }
 
+/// Where a row or column of texels lies in the picture: one of the picture itself, or the next to it on either side,
+/// which is the picture's other end, or where it does not repeat its own.
+REALCAM_INLINE int wrapped_texel(int texel, int count, TextureWrap wrap) {
+    const bool repeats = wrap == TextureWrap::repeat;
+    if (texel < 0) return repeats ? texel + count : 0;
+    return texel < count ? texel : repeats ? texel - count : count - 1;
+}
+
 REALCAM_INLINE std::int64_t texel_index(const TextureView& texture, int column, int row) {
-    // Repeats: the remainder of a negative number is negative in C++.
-    column = (column % texture.width + texture.width) % texture.width;
-    row = (row % texture.height + texture.height) % texture.height;
     return static_cast<std::int64_t>(row) * texture.width + column;
 }
 
@@ -73,34 +78,56 @@ REALCAM_INLINE TextureView level_of(TextureView texture, int level) {
 struct TextureSpot {
     int column, row;    ///< of the upper left one
     float right, down;  ///< 0..1
+    int next_column, next_row;
 };
 
-REALCAM_INLINE TextureSpot texture_spot(const TextureView& texture, Vec2f uv) {
+/// A coordinate from 0 to 1 that says the same.
+REALCAM_INLINE float wrapped_coordinate(float u, TextureWrap wrap) {
+    if (wrap == TextureWrap::repeat) return u - std::floor(u);
+    if (wrap == TextureWrap::clamp) return u < 0.0f ? 0.0f : u > 1.0f ? 1.0f : u;
+    const float in_pair = u - 2.0f * std::floor(0.5f * u);
+    return in_pair > 1.0f ? 2.0f - in_pair : in_pair;
+}
+
+REALCAM_INLINE TextureSpot texture_spot(const TextureView& texture, Vec2f uv, TextureSampler sampler) {
     // Transforms may take coordinates beyond what a float holds.
     if (!(std::fabs(uv.x) + std::fabs(uv.y) < 1e30f)) uv = {0, 0};
     // Far outside 0..1 the fraction is taken first, so that the integers below cannot overflow.
-    const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(texture.width) - 0.5f;
-    const float y = (1.0f - (uv.y - std::floor(uv.y))) * static_cast<float>(texture.height) - 0.5f;
+    const float x = wrapped_coordinate(uv.x, sampler.u) * static_cast<float>(texture.width) - 0.5f;
+    const float y = (1.0f - wrapped_coordinate(uv.y, sampler.v)) * static_cast<float>(texture.height) - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
-    return {static_cast<int>(left), static_cast<int>(top), x - left, y - top};
+    const int column = static_cast<int>(left), row = static_cast<int>(top);
+    TextureSpot spot = {wrapped_texel(column, texture.width, sampler.u),
+                        wrapped_texel(row, texture.height, sampler.v),
+                        x - left,
+                        y - top,
+                        wrapped_texel(column + 1, texture.width, sampler.u),
+                        wrapped_texel(row + 1, texture.height, sampler.v)};
+    if (sampler.filter == TextureFilter::nearest) {
+        spot.right = spot.right < 0.5f ? 0.0f : 1.0f;
+        spot.down = spot.down < 0.5f ? 0.0f : 1.0f;
+    }
+    return spot;
 }
 
 /// texel_at(column, row) of the four, bilinearly.
 template <class TexelAt>
 REALCAM_INLINE auto between_texels(TextureSpot s, TexelAt&& texel_at) {
-    const auto upper = (1.0f - s.right) * texel_at(s.column, s.row) + s.right * texel_at(s.column + 1, s.row);
-    const auto lower = (1.0f - s.right) * texel_at(s.column, s.row + 1) + s.right * texel_at(s.column + 1, s.row + 1);
+    const auto upper = (1.0f - s.right) * texel_at(s.column, s.row) + s.right * texel_at(s.next_column, s.row);
+    const auto lower =
+        (1.0f - s.right) * texel_at(s.column, s.next_row) + s.right * texel_at(s.next_column, s.next_row);
     return (1.0f - s.down) * upper + s.down * lower;
 }
 
 /// Bilinear lookup, linear light.
-REALCAM_INLINE Color sample_texture(const TextureView& texture, Vec2f uv) {
-    return between_texels(texture_spot(texture, uv), [&](int column, int row) { return texel(texture, column, row); });
+REALCAM_INLINE Color sample_texture(const TextureView& texture, Vec2f uv, TextureSampler sampler = {}) {
+    return between_texels(texture_spot(texture, uv, sampler),
+                          [&](int column, int row) { return texel(texture, column, row); });
 }
 
 /// Likewise of the fourth channel.
-REALCAM_INLINE float sample_texture_alpha(const TextureView& texture, Vec2f uv) {
-    return between_texels(texture_spot(texture, uv),
+REALCAM_INLINE float sample_texture_alpha(const TextureView& texture, Vec2f uv, TextureSampler sampler = {}) {
+    return between_texels(texture_spot(texture, uv, sampler),
                           [&](int column, int row) { return texel_alpha(texture, column, row); });
 }
 

@@ -1,9 +1,11 @@
 #include "shot.hpp"
 
+#include <cstdio>
 #include <numbers>
 #include <utility>
 
 #include "../camera/default_film.hpp"
+#include "../camera/picture_angle.hpp"
 #include "../error.hpp"
 #include "../io/lens_file.hpp"
 #include "../optics/lens_changes.hpp"
@@ -77,30 +79,47 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, con
     if (request.texture.empty() && !request.chooses_environment()) return scene;
     return with_static_geometry(std::move(scene), [&](Scene& changed) {
         if (!request.texture.empty()) add_texture(changed, request.texture, readers);
-        if (!request.environment_file.empty()) changed.environment = readers.environment(request.environment_file);
+        if (!request.environment_file.empty())
+            changed.environment = readers.environment(
+                request.environment_file, [&](const std::string& warning) { changed.warnings.push_back(warning); });
         if (request.environment_cd_m2) {
             changed.environment = {};
             const Vec3f rgb = *request.environment_cd_m2;
             changed.environment.constant = {rgb.x, rgb.y, rgb.z};
         }
+        if (request.chooses_environment())
+            changed.environment = realcam::changed(std::move(changed.environment), request.environment_change);
     });
 }
 
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene) {
-    Shot shot{std::move(scene), std::move(camera)};
+    Shot shot{std::move(scene), std::move(camera), std::nullopt};
     ViewRequest view = request.view;
     if (!request.motion.empty()) {
         set_motion(shot.camera, request.motion);
         const Pose pose = pose_at(shot.camera, shot.camera.shutter.opens_s);
-        view = {pose.position_m, pose.look_at_m, pose.up, request.view.focus_distance_m};
+        view = {pose.position_m, pose.look_at_m, pose.up, request.view.focus_distance_m, {}};
     }
-    set_view(shot.camera, shot.scene, view);
+    if (const SceneCamera* from = set_view(shot.camera, shot.scene, view)) shot.scene_camera = *from;
     if (!request.motion.empty()) set_motion(shot.camera, request.motion);
     shot.has_daylight = !shot.scene.has_light() && !request.chooses_environment();
     if (shot.has_daylight)
         shot.scene = with_static_geometry(std::move(shot.scene),
                                           [&](Scene& changed) { add_daylight(changed, shot.camera.pose); });
     return shot;
+}
+
+std::string view_notice(const Shot& shot) {
+    if (!shot.scene_camera) return "";
+    const auto degrees = [](double radians) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.3g", radians * 180 / std::numbers::pi);
+        return std::string(text);
+    };
+    return "the view is that of the scene's camera \"" + shot.scene_camera->name + "\", which saw " +
+           degrees(shot.scene_camera->vertical_field_rad) +
+           " degrees from its lower edge to its upper one; this lens and film see " +
+           degrees(field_of_view(shot.camera).vertical);
 }
 
 void meter(Shot& shot, const ShotRequest& request, Session& session, const Progress& progress) {

@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+#include <string>
+
 #include "../render/session.hpp"
 #include "../scene/assembly.hpp"
 #include "picture_readers.hpp"
@@ -10,6 +13,7 @@ namespace realcam::shot {
 struct Shot {
     Assembly scene;
     Camera camera;
+    std::optional<SceneCamera> scene_camera;  ///< of the scene's file, whose view was taken
     bool has_daylight = false;  ///< chosen, because the scene brings no light
     bool is_metered = false;    ///< the exposure time was chosen
 };
@@ -25,6 +29,9 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, con
 /// Places and focuses the camera as asked for, and otherwise as set_view says; brings daylight where there is no light.
 /// An environment that was asked for counts as light even where it is dark. Throws InputError.
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene);
+
+/// Whose view a shot has, and how its lens differs; empty: no camera's of the scene.
+std::string view_notice(const Shot& shot);
 
 /// Sets the exposure time, unless the request has one, from a quick picture with the settings of the request (see
 /// metered_exposure_time).

@@ -36,6 +36,8 @@ public:
                       "texture",
                       "environment",
                       "environment_cd_m2",
+                      "environment_scale",
+                      "environment_rotation_deg",
                       "lens",
                       "zoom",
                       "f_number",
@@ -45,6 +47,7 @@ public:
                       "film_mm",
                       "film_shift_mm",
                       "resolution",
+                      "camera",
                       "position_m",
                       "look_at_m",
                       "up",
@@ -89,12 +92,23 @@ private:
     void read_light(ShotRequest& shot) const {
         shot.texture = table_.path("texture");
         shot.environment_file = table_.path("environment");
+        read_environment_change(shot);
         const std::optional<Vec3d> constant = table_.number_or_three("environment_cd_m2");
         if (!constant) return;
         if (!shot.environment_file.empty())
             table_.fail("environment and environment_cd_m2 exclude each other", table_.find("environment_cd_m2"));
         shot.environment_cd_m2 = static_cast<Vec3f>(*constant);
         table_.checked("environment_cd_m2", [&] { check_environment(*shot.environment_cd_m2); });
+    }
+
+    void read_environment_change(ShotRequest& shot) const {
+        shot.environment_change = {table_.number("environment_scale").value_or(1),
+                                   table_.number("environment_rotation_deg").value_or(0)};
+        const char* key = table_.find("environment_scale") ? "environment_scale" : "environment_rotation_deg";
+        const toml::node* node = table_.find(key);
+        if (node && !table_.find("environment") && !table_.find("environment_cd_m2"))
+            table_.fail('"' + std::string(key) + "\" changes an environment, and there is none", node);
+        table_.checked(key, [&] { realcam::check_environment_change(shot.environment_change); });
     }
 
     void read_camera(ShotRequest& shot) const {
@@ -115,6 +129,14 @@ private:
             shot.resolution = {table_.whole("resolution", pixels[0]), table_.whole("resolution", pixels[1])};
         shot.view.position_m = table_.point("position_m");
         shot.view.look_at_m = table_.point("look_at_m");
+        shot.view.camera = table_.name("camera");
+        if (const toml::node* node = table_.find("camera")) {
+            if (shot.view.camera.empty())
+                table_.fail("\"camera\" is empty; the name of a camera of the scene, or \"none\", is wanted", node);
+            for (const char* other : {"position_m", "look_at_m", "pose"})
+                if (table_.find(other))
+                    table_.fail('"' + std::string(other) + "\" and \"camera\" exclude each other", node);
+        }
         shot.view.up = table_.point("up").value_or(shot.view.up);
         shot.view.focus_distance_m = table_.number_or_auto("focus_m", "a number of metres, inf or \"auto\"");
         shot.model = table_.named("model", model_named, kModelNames).value_or(shot.model);
@@ -198,6 +220,12 @@ private:
 };
 
 }  // namespace
+
+void check_environment_change(const ShotRequest& request) {
+    realcam::check_environment_change(request.environment_change);
+    if (!request.environment_change.says_nothing() && !request.chooses_environment())
+        throw InputError("environment scale and rotation change an environment, and none was asked for");
+}
 
 void check_environment(Vec3f v) {
     constexpr float kBrightest = 1e20f;  // as scene_checks.hpp has it

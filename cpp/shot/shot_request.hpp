@@ -10,6 +10,7 @@
 #include "../render/default_view.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
+#include "../scene/environment_change.hpp"
 #include "scene_request.hpp"
 
 namespace realcam::shot {
@@ -21,6 +22,7 @@ struct ShotRequest {
     std::string texture;  ///< a picture for every material; empty: the scene's own
     std::optional<Vec3f> environment_cd_m2;
     std::string environment_file;
+    EnvironmentChange environment_change;  ///< of the environment that was asked for
     SceneRequest additions;
 
     std::string lens = "double-gauss-50mm";  ///< a bundled one, or a file
@@ -52,6 +54,9 @@ void settle_noise_goal(ShotRequest& request);
 
 /// Throws InputError where the blades of a request are no diaphragm's.
 void check_blades(const ShotRequest& request);
+
+/// Throws InputError where an environment is to be changed, and none was asked for.
+void check_environment_change(const ShotRequest& request);
 
 /// Throws InputError unless it is a luminance that a scene can be lit with.
 void check_environment(Vec3f radiance_cd_m2);

@@ -858,6 +858,7 @@ class Camera(_Value):
         look_at: _Triple | None = None,
         up: _Triple = [0.0, 1.0, 0.0],
         focus_distance_m: float | None = None,
+        scene_camera: str = "",
     ) -> Camera: ...
     def metered(
         self, scene: Scene, *, device: str = "auto", max_bounces: int = 1, progress: _Progress | None = None
@@ -1087,8 +1088,15 @@ class Scene(_LargeValue):
         uvs: ArrayLike | None = None,
         triangle_materials: ArrayLike | None = None,
         materials: Sequence[Material] = [],
+        colors: ArrayLike | None = None,
     ) -> Scene: ...
-    def with_environment(self, radiance: float | _Triple | ArrayLike | str | os.PathLike[str]) -> Scene: ...
+    def with_environment(
+        self,
+        radiance: float | _Triple | ArrayLike | str | os.PathLike[str],
+        *,
+        scale: float = 1.0,
+        rotation_deg: float = 0.0,
+    ) -> Scene: ...
     def with_sun(self, direction: _Triple, illuminance: _Triple) -> Scene: ...
     def with_point_light(self, position_m: _Triple, intensity: _Triple) -> Scene: ...
     def with_spot_light(
@@ -1120,6 +1128,8 @@ class Scene(_LargeValue):
     def material_count(self) -> int: ...
     @property
     def has_light(self) -> bool: ...
+    @property
+    def cameras(self) -> tuple[tuple[str, NDArray[np.float64], float], ...]: ...
     @property
     def bounds_m(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]: ...
     @property

@@ -39,7 +39,10 @@ def write(raw: RawImage, path: str | os.PathLike[str]) -> None:
             photometric=CFA if has_filters else LINEAR_RAW,
             planarconfig=None if has_filters else "contig",
             software=f"realcam {__version__}",
-            description="\n".join(f"{name} = {value}" for name, value in raw.metadata().items()),
+            # TIFF knows ASCII alone.
+            description="\n".join(f"{name} = {value}" for name, value in raw.metadata().items())
+            .encode("ascii", "replace")
+            .decode(),
             metadata=None,
             extratags=[(code, kind, count, value, True) for code, kind, count, value in _tags(raw)],
         )
@@ -54,13 +57,16 @@ def write_array(array: np.ndarray, path: str | os.PathLike[str]) -> None:
 
 
 def _rationals(values: Any, signed: bool = False) -> tuple[int, ...]:
-    """Numerators and denominators of numbers, to a millionth, or to ten digits where they are small."""
+    """Numerators and denominators of numbers, to a millionth, or to ten digits where they are small. What 32 bits
+    cannot hold becomes the largest that they can.
+    """
     flat = []
-    for value in np.ravel(values):
+    most = 2 ** (31 if signed else 32) - 1
+    for value in np.clip(np.ravel(values).astype(np.float64), -most if signed else 0, most):
         denominator = 10**9 if abs(value) < 2 else 10**6
-        while abs(value) * denominator >= 2 ** (31 if signed else 32):
+        while denominator > 1 and abs(value) * denominator > most:
             denominator //= 10
-        flat += [round(float(value) * max(denominator, 1)), max(denominator, 1)]
+        flat += [round(float(value) * denominator), denominator]
     return tuple(flat)
 
 

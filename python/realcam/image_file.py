@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -19,11 +20,15 @@ if TYPE_CHECKING:
 def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
     """A latitude-longitude picture as (H, W, 3) float32, linear, row 0 up: what Scene.with_environment takes.
 
-    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Raises ImageFileError, also where
-    a value is none from 0 to 1e20.
+    Values of EXR and HDR are cd/m^2; 8 and 16 bits are sRGB, with white as 1 cd/m^2. Colours of other primaries, as an
+    EXR or HDR names them, become those of Rec. 709. OpenEXR's environment maps (attribute envmap) have its directions,
+    and may be cube maps. Negative values become 0, with a warning. Raises ImageFileError, also where they are more than
+    a twentieth of the light, or a value is none up to 1e20.
     """
-    pixels: np.ndarray = _pictures().read_environment(system_name(path))
-    return pixels
+    pixels, messages = _pictures().read_environment(system_name(path))
+    for message in messages:
+        warnings.warn(message, stacklevel=2)
+    return pixels  # type: ignore[no-any-return]
 
 
 def write_image(image: Image, path: str | os.PathLike[str], tone: str) -> None:

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 # in pictures 0.018 iso lux seconds, is reached at 1 / 1.404 of the 78 / iso lux seconds that saturate.
 SATURATION_OVER_WHITE = 0.018 * 78
 
+# Exposure times, s, and ISO numbers that a camera takes.
+LEAST_DIAL, MOST_DIAL = 1e-37, 1e38
+
 
 @dataclass(frozen=True, eq=False)
 class RawImage:
@@ -232,7 +235,16 @@ def exposed_film(
     stacklevel: int = 2,
 ) -> RawImage:
     """The same of an exposure, (H, W, 3) lux seconds, that came from a file. Raises InputError."""
+    if not LEAST_DIAL <= exposure_time_s <= MOST_DIAL:
+        raise InputError(f"the exposure time must be a number of seconds from 1e-37 to 1e38, not {exposure_time_s:g}")
+    if not LEAST_DIAL <= iso <= MOST_DIAL:
+        raise InputError(f"the ISO number must be positive, from 1e-37 to 1e38, not {iso:g}")
     height, width = np.shape(pixels)[:2]
+    dark = int(np.isnan(pixels).any(axis=-1).sum())
+    if dark == width * height:
+        raise InputError("the film holds no exposure: all of its pixels are NaN")
+    if dark > 0:
+        warnings.warn(f"{dark} pixels of the film are NaN: no light is taken for them", stacklevel=stacklevel)
     columns, rows = sensor.resolution or (width, height)
     if width > columns or height > rows:
         raise InputError(

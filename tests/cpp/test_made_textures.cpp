@@ -60,11 +60,11 @@ TEST_CASE("heights become normals by central differences, across the edges") {
     const double scale = 3;
     const DecodedImage along_u =
         floats(kWidth, kHeight, [](int column, int) { return 0.5 + 0.25 * std::sin(kTurn * column / kWidth); });
-    const Texture u = io::normals_of_heights(along_u, static_cast<float>(scale), "u");
+    const Texture u = io::normals_of_heights(along_u, static_cast<float>(scale), true, "u");
     // Rows run downwards, and v upwards.
     const DecodedImage along_v =
         floats(kWidth, kHeight, [](int, int row) { return 0.5 + 0.25 * std::sin(-kTurn * row / kHeight); });
-    const Texture v = io::normals_of_heights(along_v, static_cast<float>(scale), "v");
+    const Texture v = io::normals_of_heights(along_v, static_cast<float>(scale), true, "v");
     CHECK(u.encoding == TextureEncoding::linear);
     for (int i = 0; i < kHeight; ++i) {
         const auto wanted = [&](int length, double at) {
@@ -81,7 +81,7 @@ TEST_CASE("heights become normals by central differences, across the edges") {
 TEST_CASE("heights of any scale become normals that are numbers") {
     const DecodedImage steps = floats(4, 4, [](int column, int row) { return (column + row) % 2; });
     for (const float scale : {0.0f, -1e30f, 3e38f})
-        for (const float n : io::normals_of_heights(steps, scale, "").linear_rgba) CHECK((n >= 0 && n <= 1));
+        for (const float n : io::normals_of_heights(steps, scale, true, "").linear_rgba) CHECK((n >= 0 && n <= 1));
 }
 
 TEST_CASE("roughness and metallic of two sizes go into one picture") {

@@ -153,8 +153,11 @@ TEST_CASE("MTL: options of a picture have their own number of words") {
     CHECK(all.name == "my wood.png");
     CHECK(all.bm == 0.5);
     check_uv(all, 2 * 0.5 + 0.1, 4 * 0.25 + 0.2);
-    CHECK(all.other_options == std::vector<std::string_view>{"-blendu", "-blendv", "-boost", "-cc", "-clamp",
-                                                             "-imfchan", "-mm", "-t", "-texres", "-type"});
+    CHECK(all.clamps);
+    CHECK(all.other_options == std::vector<std::string_view>{"-blendu", "-blendv", "-boost", "-cc", "-imfchan", "-mm",
+                                                             "-t", "-texres", "-type"});
+    CHECK_FALSE(picture_of("-clamp off wood.png").clamps);
+    CHECK(picture_of("-clamp maybe wood.png").other_options == std::vector<std::string_view>{"-clamp"});
     // Their second and third words may be absent.
     check_uv(picture_of("-s 2 wood.png"), 1, 0.25);
     check_uv(picture_of("-o 2 wood.png"), 2.5, 0.25);
@@ -172,9 +175,10 @@ TEST_CASE("MTL: options of a picture have their own number of words") {
 TEST_CASE("MTL: what is skipped or not modelled is named once") {
     Mtl mtl;
     mtl.material(
-        "map_Kd -clamp on -s 2 2 a.png\nmap_Ks -imfchan r a.png\nmap_d -bm 2 a.png\nmap_Ke -clamp off a.png\n");
+        "map_Kd -blendu off -clamp on -s 2 2 a.png\nmap_Ks -imfchan r a.png\nmap_d -bm 2 a.png\nmap_Ke -clamp off "
+        "a.png\n");
     CHECK(mtl.scene.warnings.size() == 1);
-    CHECK(mtl.warned("a.mtl: 3 options of pictures are skipped (-bm, -clamp, -imfchan)"));
+    CHECK(mtl.warned("a.mtl: 3 options of pictures are skipped (-blendu, -bm, -imfchan)"));
     CHECK(mtl.scene.pictures.size() == 1);
 
     mtl.material("refl -type sphere sky.png\nrefl -type sphere sky.png\ndisp d.png\nPs 0.5\n");

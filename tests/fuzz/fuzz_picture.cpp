@@ -23,16 +23,28 @@ struct Kind {
     OIIO::TypeDesc::BASETYPE type;
     const char* compression;  ///< empty: the format's own
     int tile;                 ///< 0: rows
+    bool has_windows = false;  ///< of OpenEXR, another display window than that of the data, and colours in XYZ
 };
-constexpr Kind kKinds[] = {{"png", 4, OIIO::TypeDesc::UINT8, "", 0},      {"png", 1, OIIO::TypeDesc::UINT16, "", 0},
-                           {"png", 3, OIIO::TypeDesc::UINT8, "", 0},      {"jpg", 3, OIIO::TypeDesc::UINT8, "", 0},
-                           {"jpg", 1, OIIO::TypeDesc::UINT8, "", 0},      {"exr", 3, OIIO::TypeDesc::HALF, "zip", 0},
-                           {"exr", 4, OIIO::TypeDesc::FLOAT, "none", 0},  {"exr", 3, OIIO::TypeDesc::HALF, "piz", 0},
-                           {"exr", 3, OIIO::TypeDesc::HALF, "pxr24", 16}, {"exr", 3, OIIO::TypeDesc::HALF, "b44", 0},
-                           {"exr", 3, OIIO::TypeDesc::HALF, "dwaa", 0},   {"exr", 1, OIIO::TypeDesc::FLOAT, "rle", 0},
-                           {"hdr", 3, OIIO::TypeDesc::FLOAT, "", 0},      {"tif", 3, OIIO::TypeDesc::UINT8, "zip", 0},
-                           {"tif", 4, OIIO::TypeDesc::FLOAT, "lzw", 16},  {"tif", 1, OIIO::TypeDesc::UINT16, "none", 0},
-                           {"bmp", 3, OIIO::TypeDesc::UINT8, "", 0},      {"tga", 4, OIIO::TypeDesc::UINT8, "rle", 0}};
+constexpr Kind kKinds[] = {{"png", 4, OIIO::TypeDesc::UINT8, "", 0},
+                           {"png", 1, OIIO::TypeDesc::UINT16, "", 0},
+                           {"png", 3, OIIO::TypeDesc::UINT8, "", 0},
+                           {"jpg", 3, OIIO::TypeDesc::UINT8, "", 0},
+                           {"jpg", 1, OIIO::TypeDesc::UINT8, "", 0},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "zip", 0},
+                           {"exr", 4, OIIO::TypeDesc::FLOAT, "none", 0},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "piz", 0},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "pxr24", 16},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "b44", 0},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "dwaa", 0},
+                           {"exr", 1, OIIO::TypeDesc::FLOAT, "rle", 0},
+                           {"hdr", 3, OIIO::TypeDesc::FLOAT, "", 0},
+                           {"tif", 3, OIIO::TypeDesc::UINT8, "zip", 0},
+                           {"tif", 4, OIIO::TypeDesc::FLOAT, "lzw", 16},
+                           {"tif", 1, OIIO::TypeDesc::UINT16, "none", 0},
+                           {"bmp", 3, OIIO::TypeDesc::UINT8, "", 0},
+                           {"exr", 3, OIIO::TypeDesc::HALF, "zip", 0, true},
+                           {"exr", 3, OIIO::TypeDesc::FLOAT, "none", 16, true},
+                           {"tga", 4, OIIO::TypeDesc::UINT8, "rle", 0}};
 
 struct Seed {
     std::string suffix, bytes;
@@ -46,12 +58,29 @@ Seed make_seed(const Kind& kind) {
     std::vector<float> pixels;
     for (int i = 0; i < width * height * kind.channels; ++i)
         pixels.push_back(0.5f + 0.4f * std::sin(0.1f * static_cast<float>(i)));
+    if (kind.has_windows) {
+        const float xyz[8] = {1, 0, 0, 1, 0, 0, 1 / 3.f, 1 / 3.f};
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xyz);
+        spec.x = 3, spec.full_y = -5, spec.full_width = 20, spec.full_height = 30;
+    }
     const std::string path = FuzzFolder::get().path(std::string("made.") + kind.suffix);
     const auto output = OIIO::ImageOutput::create(path);
     if (!output || !output->open(path, spec) || !output->write_image(OIIO::TypeDesc::FLOAT, pixels.data())) return {};
     output->close();
     std::ifstream file(path, std::ios::binary);
     return {kind.suffix, {std::istreambuf_iterator<char>(file), {}}};
+}
+
+/// Radiance's pictures as OpenImageIO does not write them: colours in XYZ, another corner first, exposures, and the
+/// older run lengths.
+Seed radiance_seed() {
+    std::string bytes =
+        "#?RADIANCE\n# made\nFORMAT=32-bit_rle_xyze\nEXPOSURE=2\nEXPOSURE= 0.5\nCOLORCORR=1 2 1\n"
+        "PRIMARIES=.64 .33 .29 .6 .15 .06 .33 .33\n\n+X 12 -Y 8\n";
+    for (char column = 0; column < 12; ++column)
+        bytes += std::string("\x80\x40\x10\x81\x01\x01\x01\x03\x7f\x20\x01", 11) + column +
+                 std::string("\x01\x01\x01\x03", 4);
+    return {"hdr", bytes};
 }
 
 const std::vector<Seed>& seeds() {
@@ -61,6 +90,7 @@ const std::vector<Seed>& seeds() {
             made.push_back(make_seed(kind));
             if (made.back().bytes.empty()) report("a seed cannot be written", "%s", kind.suffix);
         }
+        made.push_back(radiance_seed());
         return made;
     }();
     return all;

@@ -12,7 +12,8 @@ inline std::string obj_seed() {
     return "\xef\xbb\xbf# seed\nmtllib seed.mtl\nv -1 -1 0\nv 1 -1 0 0.5 0.5 0.5\nv 1 1 0\nv -1 1 0.2\nv 0 .25 0 2\nv "
            "2 2 1e-3\n"
            "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1 0\nvn 0 0 1\nvn 0 0.6 0.8\ng a\nusemtl x\ns 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n"
-           "o b\nusemtl y\nf -4//-1 -2//-1 -1//-2\nusemtl z\nf 1 3 \\\n 4\nf 1 2 5 3 4\nf 4 3 2 1 5\ng a b\nusemtl "
+           "o b\ns off\nusemtl y\nf -4//-1 -2//-1 -1//-2\nusemtl z\ns 2\nf 1 3 \\\n 4\nf 1 2 5 3 4\nf 4 3 2 1 5\ng a "
+           "b\nusemtl "
            "none\n"
            "f 1/1 2/2 3/3\r\nl 1 2\np 1\nf 1 2\n";
 }
@@ -29,13 +30,16 @@ inline std::string mtl_seed() {
 }
 
 inline std::string ply_ascii_seed() {
-    return "ply\nformat ascii 1.0\ncomment TextureFile seed.png\nobj_info nothing\nelement vertex 4\nproperty float x\n"
-           "property double y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty "
-           "float s\n"
-           "property float t\nproperty uchar red\nelement face 2\nproperty list uchar int vertex_indices\n"
-           "property list uchar float other\nelement edge 1\nproperty int a\nend_header\n"
-           "-1 -1 0 0 0 1 0 0 255\n1 -1 0 0 0 1 1 0 255\n0 1 0.5 0 0 1 1 1 0\n0 2 1e-3 0 0 1 0.5 0 1\n"
-           "3 0 1 2 0\n4 0 1 2 3 2 0.5 0.25\n7\n";
+    return "ply\nformat ascii 1.0\ncomment TextureFile seed.png\ncomment TextureFile other.png\nobj_info nothing\n"
+           "element vertex 4\nproperty float x\nproperty double y\nproperty float z\nproperty float nx\nproperty float "
+           "ny\nproperty float nz\nproperty float s\nproperty float t\nproperty uchar red\nproperty uchar "
+           "green\nproperty uchar blue\nproperty uchar alpha\nelement face 2\nproperty list uchar int "
+           "vertex_indices\nproperty list uchar float texcoord\nproperty list uchar float other\nproperty float "
+           "red\nproperty float green\nproperty float blue\nproperty int texnumber\nelement tristrips 1\nproperty list "
+           "int int vertex_indices\nelement edge 1\nproperty int a\nend_header\n"
+           "-1 -1 0 0 0 1 0 0 255 0 0 255\n1 -1 0 0 0 1 1 0 255 9 8 7\n0 1 0.5 0 0 1 1 1 0 0 0 0\n0 2 1e-3 0 0 1 0.5 0 "
+           "1 "
+           "2 3 4\n3 0 1 2 6 0 0 1 0 1 1 0 1 0.5 0 1\n4 0 1 2 3 0 2 0.5 0.25 0 1 2 -1\n7 0 1 2 3 -1 0 1\n7\n";
 }
 
 /// Numbers as a binary file has them.
@@ -104,9 +108,10 @@ inline std::string gltf_seed(const std::string& uri) {
     return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual","KHR_materials_sheen"],"extensionsRequired":["KHR_texture_transform"],
 "scene":0,"scenes":[{"nodes":[0,4,6]}],
 "nodes":[{"name":"root","children":[1,2,3],"translation":[0,1,0],"rotation":[0,0,0.7071,0.7071],"scale":[1,2,-1]},
-{"name":"car","mesh":0},{"name":"car","mesh":1,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,2,1,1],"weights":[0.5]},
+{"name":"car","mesh":0},{"name":"car","mesh":1,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,2,1,1],"weights":[0.5],
+"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0,"SCALE":1,"ROTATION":4}}}},
 {"extensions":{"KHR_lights_punctual":{"light":0}}},{"mesh":2,"skin":0,"children":[5]},
-{"name":"bone","translation":[0,0,1],"extensions":{"KHR_lights_punctual":{"light":1}}},{"name":"sun","children":[],"camera":0}],
+{"name":"bone","translation":[0,0,1],"camera":1,"extensions":{"KHR_lights_punctual":{"light":1}}},{"name":"sun","children":[],"camera":0}],
 "meshes":[{"name":"plain","primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":5,"material":0},
 {"attributes":{"POSITION":6,"COLOR_0":3},"mode":5}]},
 {"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_1":2},"indices":5,"mode":6,"material":1,"targets":[{"POSITION":1,"NORMAL":1}]}],"weights":[0.25]},
@@ -124,9 +129,9 @@ inline std::string gltf_seed(const std::string& uri) {
 {"pbrMetallicRoughness":{"baseColorTexture":{"index":1,"texCoord":1}}},
 {"extensions":{"KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[1,1,1,1],"specularFactor":[0.1,0.2,0.3],"glossinessFactor":0.5,
 "diffuseTexture":{"index":0},"specularGlossinessTexture":{"index":1}}}}],
-"textures":[{"source":0,"sampler":0},{"source":1}],"samplers":[{}],
+"textures":[{"source":0,"sampler":0},{"source":1}],"samplers":[{"wrapS":33071,"wrapT":33648,"magFilter":9728,"minFilter":9987}],
 "images":[{"bufferView":8,"mimeType":"image/png"},{"uri":"seed.png"},{"uri":"data:image/png;base64,iVBORw0KGgo="}],
-"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],
+"cameras":[{"name":"eye","type":"perspective","perspective":{"yfov":1,"znear":0.1}},{"type":"orthographic"}],
 "animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},{"sampler":1,"target":{"node":1,"path":"rotation"}}],
 "samplers":[{"input":8,"output":0},{"input":8,"output":4,"interpolation":"STEP"}]}],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0.25],"intensity":40},{"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.5}},{"type":"directional"}]}},

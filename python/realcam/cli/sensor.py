@@ -137,7 +137,11 @@ def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
 
 
 def _number(path: Path, entries: dict[str, str], name: str) -> float:
+    text = entries.get(name, "")
     try:
-        return float(entries[name])
-    except (KeyError, ValueError):
+        number = float(text)
+    except ValueError:
         raise InputError(f"{path}: has no {name}; an .exr of `realcam render` is wanted") from None
+    if not 0 < number < math.inf:
+        raise InputError(f"{path}: {name} must be a positive number; it is {text!r:.60}")
+    return number

@@ -1,0 +1,64 @@
+#include "color_primaries.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../camera/sensor_color.hpp"
+#include "../error.hpp"
+
+namespace realcam::image_io {
+namespace {
+
+using Matrix = std::array<double, 9>;
+
+/// ITU-R BT.709, the values that OpenEXR takes where a file names none.
+constexpr Chromaticities kRec709 = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
+
+/// Files of X, Y and Z name any white, or none.
+constexpr std::array<double, 6> kXyzPrimaries = {1, 0, 0, 1, 0, 0};
+
+bool are_close(const Chromaticities& a, const Chromaticities& b) {
+    // Files give four digits.
+    constexpr double kRounding = 2e-4;
+    return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) { return std::abs(x - y) < kRounding; });
+}
+
+/// XYZ of each column's colour, white of Y = 1 being all three together.
+Matrix xyz_from(const Chromaticities& c) {
+    const auto xyz = [&](std::size_t i) {
+        return std::array<double, 3>{c[2 * i], c[2 * i + 1], 1 - c[2 * i] - c[2 * i + 1]};
+    };
+    const auto red = xyz(0), green = xyz(1), blue = xyz(2), white = xyz(3);
+    const Matrix primaries = {red[0], green[0], blue[0], red[1], green[1], blue[1], red[2], green[2], blue[2]};
+    const double area = (c[2] - c[0]) * (c[5] - c[1]) - (c[4] - c[0]) * (c[3] - c[1]);
+    if (!(std::abs(area) > 1e-4) || !(white[1] > 1e-4)) return {};
+    const auto share =
+        sensor_detail::applied(sensor_detail::inverse(primaries), {white[0] / white[1], 1, white[2] / white[1]});
+    return sensor_detail::product(primaries, sensor_detail::diagonal(share));
+}
+
+}  // namespace
+
+std::optional<Matrix> rec709_from(const Chromaticities& chromaticities) {
+    if (are_close(chromaticities, kRec709)) return std::nullopt;
+    const Matrix to = sensor_detail::inverse(xyz_from(kRec709));
+    if (std::equal(kXyzPrimaries.begin(), kXyzPrimaries.end(), chromaticities.begin())) return to;
+    const Matrix from = xyz_from(chromaticities);
+    const auto all_below = [](const auto& values, double most) {
+        return std::all_of(values.begin(), values.end(), [&](double v) { return std::abs(v) < most; });
+    };
+    if (!all_below(chromaticities, 10) || !all_below(from, 1e4) || from == Matrix{})
+        throw Error("names chromaticities of red, green, blue and white that span no colours");
+    const auto white_of = [](const Matrix& m) { return sensor_detail::applied(m, {1, 1, 1}); };
+    return sensor_detail::product(
+        to, sensor_detail::product(sensor_detail::adaptation(white_of(from), white_of(xyz_from(kRec709))), from));
+}
+
+void apply_matrix(const Matrix& matrix, float* pixels, std::size_t count, std::size_t stride) {
+    for (std::size_t i = 0; i < count; ++i, pixels += stride) {
+        const auto out = sensor_detail::applied(matrix, {pixels[0], pixels[1], pixels[2]});
+        for (std::size_t c = 0; c < 3; ++c) pixels[c] = static_cast<float>(out[c]);
+    }
+}
+
+}  // namespace realcam::image_io

@@ -1,0 +1,247 @@
+// Radiance's pictures (.hdr), read here: OpenImageIO's reader knows neither the lines EXPOSURE and COLORCORR, nor
+// pictures from another corner, nor colours in X, Y and Z, nor the older run lengths. The format is described in
+// Radiance's "File Formats" and in Ward, "Real Pixels" (Graphics Gems II, 1991).
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "../io/printable.hpp"
+#include "../io/regular_file.hpp"
+#include "../io/text_lines.hpp"
+#include "../io/text_number.hpp"
+#include "open_picture.hpp"
+
+namespace realcam::image_io {
+namespace {
+
+/// The bytes of a file, or of memory, one after the other.
+class Bytes {
+public:
+    Bytes(const std::string& path, std::span<const std::uint8_t> memory) : memory_(memory) {
+        if (!path.empty()) file_ = std::make_unique<io::RegularFile>(path);
+    }
+
+    /// -1 at the end.
+    int next() {
+        if (begin_ == end_ && !read_more()) return -1;
+        return buffer_[begin_++];
+    }
+    std::uint8_t wanted() {
+        const int byte = next();
+        if (byte < 0) throw Error(std::string(kBroken) + " (it ends early)");
+        return static_cast<std::uint8_t>(byte);
+    }
+
+private:
+    bool read_more() {
+        begin_ = 0;
+        if (file_) {
+            end_ = file_->read(reinterpret_cast<char*>(buffer_.data()), buffer_.size());
+        } else {
+            end_ = std::min(memory_.size(), buffer_.size());
+            std::copy_n(memory_.begin(), end_, buffer_.begin());
+            memory_ = memory_.subspan(end_);
+        }
+        return end_ > 0;
+    }
+
+    std::unique_ptr<io::RegularFile> file_;
+    std::span<const std::uint8_t> memory_;
+    std::array<std::uint8_t, 1 << 16> buffer_;
+    std::size_t begin_ = 0, end_ = 0;
+};
+
+/// Three mantissas and their exponent.
+using Rgbe = std::array<std::uint8_t, 4>;
+
+class RadiancePicture final : public OpenPicture {
+public:
+    RadiancePicture(const std::string& path, std::span<const std::uint8_t> bytes) : bytes_(path, bytes) {
+        channels = 3;
+        is_linear = is_wide = true;
+        read_header();
+        read_resolution();
+    }
+
+    void read(int, int, std::uint8_t*, const KeepGoing&) override { throw Error("holds no codes of 8 bits"); }
+
+    void read(int count, int stride, float* pixels, const KeepGoing& keep_going) override {
+        constexpr int kLines = 64;  // between two looks at keep_going
+        std::vector<Rgbe> line(static_cast<std::size_t>(is_by_columns_ ? height : width));
+        const int lines = is_by_columns_ ? width : height;
+        for (int i = 0; i < lines; ++i) {
+            if (i % kLines == 0) check(keep_going);
+            read_line(line);
+            for (int k = 0; k < static_cast<int>(line.size()); ++k) {
+                const int along_x = is_by_columns_ ? i : k, along_y = is_by_columns_ ? k : i;
+                const int column = is_from_right_ ? width - 1 - along_x : along_x,
+                          row = is_from_below_ ? height - 1 - along_y : along_y;
+                float* pixel = pixels + (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                                         static_cast<std::size_t>(column)) *
+                                            static_cast<std::size_t>(stride);
+                const Rgbe& rgbe = line[static_cast<std::size_t>(k)];
+                for (int c = 0; c < std::min(count, 3); ++c)
+                    pixel[c] = light_of(rgbe[static_cast<std::size_t>(c)], rgbe[3]) *
+                               static_cast<float>(factors_[static_cast<std::size_t>(c)]);
+            }
+        }
+    }
+
+private:
+    /// Without its end. Throws where it has none.
+    std::string next_line() {
+        constexpr std::size_t kLongest = 1 << 16;
+        std::string line;
+        for (int byte = bytes_.next(); byte != '\n'; byte = bytes_.next()) {
+            if (byte < 0 || line.size() == kLongest) throw Error(std::string(kBroken) + " (its header has no end)");
+            line += static_cast<char>(byte);
+        }
+        if (line.ends_with('\r')) line.pop_back();
+        return line;
+    }
+
+    /// Lines up to an empty one. What Radiance's programs copy from the pictures that they were given is indented, and
+    /// says nothing of this one.
+    void read_header() {
+        for (std::string line = next_line(); !line.empty(); line = next_line()) {
+            const std::string_view text = line;
+            const auto value = [&](std::string_view name) -> std::optional<std::string_view> {
+                return text.starts_with(name) ? std::optional(io::trimmed(text.substr(name.size()))) : std::nullopt;
+            };
+            if (const auto format = value("FORMAT=")) read_format(*format);
+            if (const auto exposure = value("EXPOSURE=")) divide_by(numbers<1>("EXPOSURE", *exposure));
+            if (const auto correction = value("COLORCORR=")) divide_by(numbers<3>("COLORCORR", *correction));
+            if (const auto primaries = value("PRIMARIES=")) primaries_ = numbers<8>("PRIMARIES", *primaries);
+        }
+        const auto chromaticities = is_xyz_ ? std::optional(kXyzChromaticities) : primaries_;
+        if (chromaticities) rec709 = rec709_from(*chromaticities);
+    }
+
+    void read_format(std::string_view format) {
+        is_xyz_ = format == "32-bit_rle_xyze";
+        if (!is_xyz_ && format != "32-bit_rle_rgbe")
+            throw Error("is a Radiance picture of the format " + io::in_quotes(format) +
+                        "; 32-bit_rle_rgbe or 32-bit_rle_xyze is wanted");
+    }
+
+    template <std::size_t N>
+    static std::array<double, N> numbers(const std::string& name, std::string_view text) {
+        std::array<double, N> out{};
+        for (double& number : out) {
+            std::string_view word = io::take_word(text);
+            const std::optional<double> value = io::take_number(word);
+            if (!value || !word.empty())
+                throw Error("has a line " + name + " without its " +
+                            (N == 1 ? "number" : std::to_string(N) + " numbers"));
+            number = *value;
+        }
+        return out;
+    }
+
+    /// What the pixels have been multiplied by. Of several such lines all have been.
+    template <std::size_t N>
+    void divide_by(const std::array<double, N>& factors) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double factor = factors[N == 1 ? 0 : c];
+            factors_[c] /= factor;
+            if (!(factor > 0) || !(factors_[c] > 1e-30 && factors_[c] < 1e30))
+                throw Error(std::string("has a line ") + (N == 1 ? "EXPOSURE" : "COLORCORR") +
+                            " whose numbers are not positive, or far from 1");
+        }
+    }
+
+    /// "-Y 8 +X 16": lines of 16 pixels from the left to the right, the topmost first. "+" of Y is upwards, and the
+    /// axis that comes first is the one along which lines follow each other.
+    void read_resolution() {
+        const std::string line = next_line();
+        std::string_view rest = line;
+        bool has_x = false, has_y = false;
+        for (const bool is_first : {true, false}) {
+            const std::string_view axis = io::take_word(rest);
+            std::string_view number = io::take_word(rest);
+            const std::optional<std::int64_t> size = io::take_integer(number);
+            const bool is_axis = axis == "-Y" || axis == "+Y" || axis == "-X" || axis == "+X";
+            if (!is_axis || !size || !number.empty() || *size < 1 || *size > kLargest)
+                throw Error(std::string(kBroken) + " (its size is no line such as \"-Y 512 +X 1024\")");
+            if (axis[1] == 'X') {
+                has_x = true;
+                width = static_cast<int>(*size);
+                is_from_right_ = axis[0] == '-';
+                is_by_columns_ = is_first;
+            } else {
+                has_y = true;
+                height = static_cast<int>(*size);
+                is_from_below_ = axis[0] == '+';
+            }
+        }
+        if (!has_x || !has_y) throw Error(std::string(kBroken) + " (its size names one axis twice)");
+    }
+
+    void read_line(std::vector<Rgbe>& line) {
+        constexpr std::size_t kShortest = 8, kLongest = 0x7fff;  // of lines with one run length for each channel
+        Rgbe first;
+        for (std::uint8_t& byte : first) byte = bytes_.wanted();
+        const bool is_by_channels =
+            line.size() >= kShortest && line.size() <= kLongest && first[0] == 2 && first[1] == 2 && first[2] < 128;
+        if (!is_by_channels) return read_older(line, first);
+        if (std::size_t{256} * first[2] + first[3] != line.size())
+            throw Error(std::string(kBroken) + " (a line has another length than the picture)");
+        for (std::size_t channel = 0; channel < 4; ++channel) read_channel(line, channel);
+    }
+
+    void read_channel(std::vector<Rgbe>& line, std::size_t channel) {
+        for (std::size_t i = 0; i < line.size();) {
+            const std::uint8_t code = bytes_.wanted();
+            const bool is_run = code > 128;
+            const std::size_t count = is_run ? code & 127u : code;
+            if (count > line.size() - i) throw Error(std::string(kBroken) + " (a run is longer than its line)");
+            const std::uint8_t repeated = is_run ? bytes_.wanted() : std::uint8_t{0};
+            for (const std::size_t end = i + count; i < end; ++i)
+                line[i][channel] = is_run ? repeated : bytes_.wanted();
+        }
+    }
+
+    /// Pixels one after the other. One of mantissas 1, 1 and 1 is none, but repeats the one before as often as its
+    /// exponent says; the next such one in a row counts 256 times as much.
+    void read_older(std::vector<Rgbe>& line, Rgbe next) {
+        std::uint64_t unit = 1;
+        for (std::size_t i = 0;;) {
+            if (next[0] == 1 && next[1] == 1 && next[2] == 1) {
+                const std::uint64_t count = unit * next[3];
+                if (i == 0 || count > line.size() - i)
+                    throw Error(std::string(kBroken) + " (a run is longer than its line)");
+                std::fill_n(line.begin() + static_cast<std::ptrdiff_t>(i), count, line[i - 1]);
+                i += count;
+                unit = std::min<std::uint64_t>(256 * unit, std::uint64_t{1} << 40);
+            } else {
+                line[i++] = next;
+                unit = 1;
+            }
+            if (i == line.size()) return;
+            for (std::uint8_t& byte : next) byte = bytes_.wanted();
+        }
+    }
+
+    static float light_of(std::uint8_t mantissa, std::uint8_t exponent) {
+        return exponent == 0 ? 0.0f : std::ldexp(static_cast<float>(mantissa), exponent - 136);
+    }
+
+    static constexpr std::int64_t kLargest = 1 << 24;
+
+    Bytes bytes_;
+    bool is_xyz_ = false, is_by_columns_ = false, is_from_right_ = false, is_from_below_ = false;
+    std::array<double, 3> factors_{1, 1, 1};
+    std::optional<Chromaticities> primaries_;
+};
+
+}  // namespace
+
+std::unique_ptr<OpenPicture> open_radiance(const std::string& path, std::span<const std::uint8_t> bytes) {
+    return std::make_unique<RadiancePicture>(path, bytes);
+}
+
+}  // namespace realcam::image_io
