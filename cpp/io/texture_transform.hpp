@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <initializer_list>
 
 #include "../math/vec3.hpp"
 #include "../scene/texture_reference.hpp"
