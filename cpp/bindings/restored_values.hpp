@@ -1,4 +1,7 @@
 #pragma once
+#include <cmath>
+#include <numbers>
+
 #include "../camera/camera.hpp"
 #include "../camera/sensor.hpp"
 #include "../optics/coating_checks.hpp"
@@ -147,16 +150,26 @@ template <>
 struct LastEnumerator<FresnelTerm> : LastIs<FresnelTerm::physical> {};
 template <>
 struct LastEnumerator<TextureEncoding> : LastIs<TextureEncoding::linear> {};
+template <>
+struct LastEnumerator<TextureWrap> : LastIs<TextureWrap::mirror> {};
+template <>
+struct LastEnumerator<TextureFilter> : LastIs<TextureFilter::nearest> {};
 
 template <>
 inline constexpr bool has_names_of_files<Scene> = true;
 template <>
 inline constexpr bool has_names_of_files<Instance> = true;
 template <>
+inline constexpr bool has_names_of_files<SceneCamera> = true;
+template <>
 inline constexpr bool has_names_of_files<PythonMaterial> = true;
 
 template <>
 struct RestoredCheck<Triangle> : AnyMembers {};
+template <>
+struct RestoredCheck<VertexColor> : AnyMembers {};
+template <>
+struct RestoredCheck<TextureSampler> : AnyMembers {};
 template <>
 struct RestoredCheck<TextureReference> : AnyMembers {};
 template <>
@@ -183,6 +196,15 @@ template <>
 struct RestoredCheck<Motion> {
     static void check(const Motion& motion) {
         if (const std::string why = motion_error(motion); !why.empty()) throw InputError(why);
+    }
+};
+template <>
+struct RestoredCheck<SceneCamera> {
+    static void check(const SceneCamera& camera) {
+        const Affine<double>& place = camera.scene_from_camera;
+        for (const Vec3d& column : {place.x, place.y, place.z, place.origin})
+            require_restored(std::isfinite(column.x) && std::isfinite(column.y) && std::isfinite(column.z));
+        require_restored(camera.vertical_field_rad >= 0 && camera.vertical_field_rad < std::numbers::pi);
     }
 };
 template <>
