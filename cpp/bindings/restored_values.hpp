@@ -93,10 +93,11 @@ struct RestoredCheck<ZoomRange> : AnyMembers {};
 template <>
 struct RestoredCheck<LensSystem> {
     static void check(const LensSystem& lens) {
-        validate(lens);
-        if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
+        // First, because indices are asked for at that wavelength, and it stands in messages as a whole number.
         if (!(lens.wavelength_nm >= 100 && lens.wavelength_nm <= 20000))
             throw LensFileError("the design wavelength must lie between 100 and 20000 nm");
+        validate(lens);
+        if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
         if (!(lens.stop_semi_diameter >= 0 && lens.stop_semi_diameter <= kLongest))
             throw LensFileError("the radius of the lens's open stop must be a length of 0 or more");
         if (std::isnan(lens.focus_distance)) throw LensFileError("the focus distance is no number");

@@ -149,6 +149,9 @@ def test_films_lenses_and_cameras_are_held_to_their_limits() -> None:
     state = arguments_of(value)[3]
     place = next(i for i, item in enumerate(state) if isinstance(item, float) and item == value.film_distance_mm)
     assert "the film must lie behind" in refused(value, with_item(state, place, float("nan")))
+    place = next(i for i, item in enumerate(state) if isinstance(item, float) and item == value.wavelength_nm)
+    for wavelength_nm in (float("nan"), float("inf"), -1.0, 1e300):
+        assert "the design wavelength must lie" in refused(value, with_item(state, place, wavelength_nm))
 
 
 def test_arrays_of_results_are_of_one_length() -> None:
