@@ -133,10 +133,10 @@ def test_a_pickle_of_another_format_is_refused() -> None:
 
 def test_what_makes_no_sense_is_not_unpickled() -> None:
     function, (kind, number, version, state) = floor_scene().__reduce__()
-    (positions, normals, uvs, triangles, *rest), instances = state
+    (positions, normals, uvs, colors, triangles, *rest), *others = state
     beyond = np.full_like(triangles, 255)
     with pytest.raises(rc.RealcamError, match="does not exist"):
-        function(kind, number, version, ((positions, normals, uvs, beyond, *rest), instances))
+        function(kind, number, version, ((positions, normals, uvs, colors, beyond, *rest), *others))
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
