@@ -205,8 +205,8 @@ private:
         double distance = 0;
         for (std::size_t i = plane; i < behind && i + 1 < kept_.size(); ++i) distance += lens.surfaces[i].thickness;
         const double focal = std::fabs(first_order(lens, lens_.wavelength_nm).effective_focal_length);
-        // In front of all rims: whatever comes at 45 degrees, or at twice the field's slope.
-        return end + std::fabs(distance) * std::clamp(2 * film / focal, 1.0, 10.0);
+        // In front of all rims: whatever comes at twice the field's slope, and at 27 degrees at least.
+        return end + std::fabs(distance) * std::clamp(2 * film / focal, 0.5, 10.0);
     }
 
     void set_film_size() {
