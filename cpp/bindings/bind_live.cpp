@@ -154,10 +154,10 @@ void bind_live(py::module_& m) {
             "camera"_a, py::kw_only(), "spp"_a = 1, "tone"_a = "film", "effects"_a = std::vector<std::string>(),
             "illuminant"_a = "", "transport"_a = "paths", "clamp_cd_m2"_a = 0.0f,
             "Starts to take spp more samples of each pixel, developed with the camera's exposure time and ISO and a\n"
-            "tone curve (see Image.developed). effects: names of rc.effects(), but not \"auto\", as planning takes longer\n"
-            "than a frame (rc.plan says what it would choose); illuminant: as text, of dispersion and diffraction;\n"
-            "transport and clamp_cd_m2: as rc.render has them. Returns a LiveFrame at once, or when the oldest of those\n"
-            "under way is there.\n"
+            "tone curve (see Image.developed). effects: names of rc.effects(), but not \"auto\", as planning takes\n"
+            "longer than a frame (rc.plan says what it would choose); illuminant: as text, of dispersion and\n"
+            "diffraction; transport and clamp_cd_m2: as rc.render has them. Returns a LiveFrame at once, or when the\n"
+            "oldest of those under way is there.\n"
             "Raises KeyboardInterrupt on Ctrl-C.")
         .def("show", &PythonLiveView::show, "scene"_a, py::call_guard<Unlocked>(),
              "Another scene for the frames to come. Made for every frame: of one that comes from the last by moved(),\n"

@@ -45,7 +45,10 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
         lambda: rc.Film(resolution=(2**40, 2)),
         f"resolution must be a whole number between {-(2**31)} and {2**31 - 1}; it is ({2**40}, 2)",
     ),
-    (lambda: rc.Film(1, 2, (3, 4), 5), "Film() takes at most three arguments without a name, and four are given"),
+    (
+        lambda: rc.Film(1, 2, (3, 4), (5, 6), 7),
+        "Film() takes at most four arguments without a name, and five are given",
+    ),
     (lambda: rc.Surface(radius_of_curvature_mm="flat", clear_semi_diameter_mm=1), "radius_of_curvature_mm must be "),
     (lambda: rc.Surface(), "Surface() needs the argument clear_semi_diameter_mm"),
     (lambda: rc.Surface(clear_semi_diameter_mm=1, aspheric_coefficients=[1]), "aspheric_coefficients must be a dict"),

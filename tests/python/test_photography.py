@@ -205,7 +205,7 @@ def test_the_commands_print_figures(tmp_path: Path) -> None:
         (["--exposure-time", "1/0"], "divides by 0"),
         (["--exposure-time", "x"], '--exposure-time: "x" is not a number'),
         (["--exposure-time", "-1"], "positive number of seconds"),
-        (["--exposure-time", "1", "--iso", "0"], "ISO must be a positive number"),
+        (["--exposure-time", "1", "--iso", "0"], "--iso: a positive number is wanted"),
         (["--circle-of-confusion", "0"], "circle of confusion must be a positive length"),
     ],
 )

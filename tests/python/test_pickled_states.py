@@ -77,11 +77,11 @@ def test_enumerators_are_those_that_exist() -> None:
 def test_enumerators_and_truth_values_within_bytes_are_looked_at() -> None:
     """The materials of a scene, and the rays of a wavefront, are pickled as their bytes."""
     floor = floor_scene()
-    (*parts, materials, names, textures, points, suns, environment, warnings), instances = arguments_of(floor)[3]
+    (*parts, materials, names, textures, points, suns, environment, warnings), *others = arguments_of(floor)[3]
     for model in (7, -1):
         damaged = materials.copy()
         damaged[0, :4] = np.array([model], np.int32).view(np.uint8)
-        state = ((*parts, damaged, names, textures, points, suns, environment, warnings), instances)
+        state = ((*parts, damaged, names, textures, points, suns, environment, warnings), *others)
         assert "it is damaged" in refused(floor, state)
 
 
@@ -112,25 +112,25 @@ def test_a_glass_is_made_as_others_are() -> None:
 def test_what_is_shared_is_of_one_type() -> None:
     """A number stands for what was written before; it must not give a motion for a mesh."""
     moving = scene().moved(scene().instances[0][0], [np.eye(4), np.eye(4)], times_s=[0, 1])
-    geometry, instances = arguments_of(moving)[3]
+    geometry, instances, *others = arguments_of(moving)[3]
     # What is shared, in its order: the static geometry, the chair, and the motion of the first of its instances.
     (chair, *_, motion), (of_second, *_, standing), _ = instances
     assert isinstance(chair, tuple) and isinstance(motion, tuple) and standing is None and of_second == 1
     for number in (2, 3, 10**6, -1):
         damaged = (instances[0], with_item(instances[1], 0, number), instances[2])
-        assert "it is damaged" in refused(moving, (geometry, damaged))
+        assert "it is damaged" in refused(moving, (geometry, damaged, *others))
     for number in (0, 1, 2**40):
         damaged = (instances[0], with_item(instances[1], 4, number), instances[2])
-        assert "cannot be read" in refused(moving, (geometry, damaged))
+        assert "cannot be read" in refused(moving, (geometry, damaged, *others))
     # A chair that is a part of itself.
-    assert "cannot be read" in refused(moving, (geometry, (with_item(instances[0], 0, 1), *instances[1:])))
+    assert "cannot be read" in refused(moving, (geometry, (with_item(instances[0], 0, 1), *instances[1:]), *others))
 
 
 def test_parts_of_instances_come_after_their_whole() -> None:
     value = scene()
-    geometry, (first, *others) = arguments_of(value)[3]
+    geometry, (first, *others), *rest = arguments_of(value)[3]
     for whole in (0, 1, -2, 2**40):
-        message = refused(value, (geometry, (with_item(first, 3, whole), *others)))
+        message = refused(value, (geometry, (with_item(first, 3, whole), *others), *rest))
         assert f"is a part of instance {whole}" in message
 
 
@@ -144,7 +144,8 @@ def test_a_material_by_itself_has_no_numbers_of_textures() -> None:
 
 def test_films_lenses_and_cameras_are_held_to_their_limits() -> None:
     film = rc.Film()
-    assert "resolution" in refused(film, (36.0, 24.0, 0, 10))
+    assert "resolution" in refused(film, (36.0, 24.0, 0, 10, (0.0, 0.0)))
+    assert "shift" in refused(film, (36.0, 24.0, 9, 6, (float("nan"), 0.0)))
     value = lens()
     state = arguments_of(value)[3]
     place = next(i for i, item in enumerate(state) if isinstance(item, float) and item == value.film_distance_mm)
