@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -16,12 +17,12 @@ namespace measure_times_detail {
 /// Long enough that a clock and a device's start do not count.
 inline constexpr double kLeast_s = 0.02;
 
-/// The same view in fewer pixels: what a sample costs depends little on their number.
-inline void make_small(Film& film) {
-    constexpr int kLongSide = 96;
-    const double scale = std::min(1.0, static_cast<double>(kLongSide) / std::max(film.width, film.height));
-    film.width = std::max(1, static_cast<int>(film.width * scale));
-    film.height = std::max(1, static_cast<int>(film.height * scale));
+/// With so many pixels along its longer side, or as many as the whole has.
+inline Film with_long_side(Film whole, int pixels) {
+    const double scale = std::min(1.0, static_cast<double>(pixels) / std::max(whole.width, whole.height));
+    whole.width = std::max(1, static_cast<int>(std::lround(whole.width * scale)));
+    whole.height = std::max(1, static_cast<int>(std::lround(whole.height * scale)));
+    return whole;
 }
 
 /// Of taking so many samples: the least of three times, because other programs can only slow one down.
@@ -44,7 +45,9 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
                           const Progress& progress) {
     using namespace measure_times_detail;
     const KeepGoing keep_going = progress ? KeepGoing([&] { return progress(0.0); }) : KeepGoing();
-    make_small(camera.film);
+    const Film whole = camera.film;
+    int long_side = 96;
+    camera.film = with_long_side(whole, long_side);
     camera.model = CameraModel::full_lens;
     settings.layers = {};
     settings.noise.reset();
@@ -58,9 +61,19 @@ inline void measure_times(Session& session, const Assembly& scene, Camera camera
         session.add(1, progress);  // whatever a device does but once
     };
     set(none);
+    // What takes longer than that in few pixels is measured in these: a sample costs nearly as much as in the whole
+    // picture. A GPU takes the whole, because there its memory counts too.
     int spp = 1;
-    while (spp < (1 << 20) && seconds_of(session, spp, progress) < kLeast_s) spp *= 2;
     double alone = seconds_of(session, spp, progress);
+    while (alone < kLeast_s && spp < (1 << 20)) {
+        if (camera.film == whole) {
+            spp *= 2;
+        } else {
+            camera.film = with_long_side(whole, long_side *= 2);
+            set(none);
+        }
+        alone = seconds_of(session, spp, progress);
+    }
     std::vector<std::optional<double>> with(plan.decisions.size());
     for (std::size_t k = 0; k < plan.decisions.size(); ++k) {
         const EffectInfo* effect = find_effect(plan.decisions[k].name);
