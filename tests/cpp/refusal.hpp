@@ -7,12 +7,12 @@
 
 namespace realcam::test {
 
-/// The message of the InputError that f throws.
-template <class F>
+/// The message of the error that f throws: an InputError, or an error of the kind that is named.
+template <class Refusal = InputError, class F>
 std::string message_of(F&& f) {
     try {
         f();
-    } catch (const InputError& error) {
+    } catch (const Refusal& error) {
         return error.what();
     }
     return "(no error)";

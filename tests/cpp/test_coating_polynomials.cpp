@@ -12,21 +12,12 @@
 #include "../../cpp/optics/named_coatings.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "three_layers.hpp"
 
 namespace {
 
 using namespace realcam;
 using namespace realcam::test;
-
-/// A quarter, a half and a quarter of a wave, as in docs/coatings.md: the usual form of a broadband coating.
-Coating three_layers() {
-    std::vector<CoatingLayer> layers;
-    for (const auto& [index, waves] : {std::pair(1.38, 0.25), {2.1, 0.5}, {1.7, 0.25}}) {
-        const CoatingMaterial film = CoatingMaterial::transparent(Glass::constant(index));
-        layers.push_back({film, thickness_of_waves(film, waves, 550)});
-    }
-    return layered_coating(std::move(layers), "three layers");
-}
 
 LensSystem coated(LensSystem lens, const Coating& coating) {
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i)

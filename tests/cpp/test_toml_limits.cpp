@@ -8,6 +8,7 @@
 #include "../../cpp/shot/shot_file.hpp"
 #include "about.hpp"
 #include "lens_reading.hpp"
+#include "refusal.hpp"
 
 namespace {
 
@@ -18,17 +19,6 @@ std::string repeated(const std::string& part, int count) {
     std::string text;
     for (int i = 0; i < count; ++i) text += part;
     return text;
-}
-
-/// The message of whatever error reading a text ends in.
-template <class Read>
-std::string complaint(Read&& reading) {
-    try {
-        reading();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "(no error)";
 }
 
 /// A zoom lens with all kinds of keys. `name` = value may be changed.
@@ -118,9 +108,9 @@ TEST_CASE("TOML that is nested without end is an error of one line, from all tha
     for (const Kind& kind : kinds) {
         CAPTURE(kind.name);
         const std::string place = ":" + std::to_string(kind.line) + ": is nested too deeply";
-        for (const std::string& message : {complaint([&] { io::parse_lens(kind.text, "a.toml"); }),
-                                           complaint([&] { io::parse_sensor(kind.text, "a.toml"); }),
-                                           complaint([&] { shot::parse_shot(kind.text, "a.toml"); })}) {
+        for (const std::string& message : {message_of<Error>([&] { io::parse_lens(kind.text, "a.toml"); }),
+                                           message_of<Error>([&] { io::parse_sensor(kind.text, "a.toml"); }),
+                                           message_of<Error>([&] { shot::parse_shot(kind.text, "a.toml"); })}) {
             CHECK(message.find("a.toml" + place) == 0);
             CHECK(message.find('\n') == std::string::npos);
         }
@@ -131,7 +121,7 @@ TEST_CASE("TOML that is nested without end is an error of one line, from all tha
           "a = \"\"\"\n" + repeated("[.\"\n", many) + "\"\"\"\n", "# " + repeated("[a.", many) + "\na = 1\n",
           "a = [" + repeated("1.5, ", many) + "]\n", "a = \"\\\"" + repeated("[", many) + "\"\n",
           "a" + repeated(".a", 50) + " = 1\n", "a = " + repeated("[", 50) + repeated("]", 50) + "\n"}) {
-        const std::string message = complaint([&] { io::parse_lens(text, "a.toml"); });
+        const std::string message = message_of<Error>([&] { io::parse_lens(text, "a.toml"); });
         CAPTURE(text.substr(0, 20));
         CHECK(message.find("unknown key \"a\"") != std::string::npos);
     }
