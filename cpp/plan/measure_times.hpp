@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "../render/seconds_since.hpp"
 #include "../render/session.hpp"
 #include "plan.hpp"
+#include "small_film.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -16,14 +16,6 @@ namespace measure_times_detail {
 
 /// Long enough that a clock and a device's start do not count.
 inline constexpr double kLeast_s = 0.02;
-
-/// With so many pixels along its longer side, or as many as the whole has.
-inline Film with_long_side(Film whole, int pixels) {
-    const double scale = std::min(1.0, static_cast<double>(pixels) / std::max(whole.width, whole.height));
-    whole.width = std::max(1, static_cast<int>(std::lround(whole.width * scale)));
-    whole.height = std::max(1, static_cast<int>(std::lround(whole.height * scale)));
-    return whole;
-}
 
 /// Of taking so many samples: the least of three times, because other programs can only slow one down.
 inline double seconds_of(Session& session, int spp, const Progress& progress) {

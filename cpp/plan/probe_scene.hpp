@@ -6,13 +6,14 @@
 #include "../render/take_picture.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"
+#include "small_film.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 namespace probe_scene_detail {
 
 /// Pixels of the longer side.
-inline constexpr double kLongSide = 48;
+inline constexpr int kLongSide = 48;
 
 /// So many of the brightest lights are looked for behind what may hide them. The others count as seen.
 inline constexpr std::size_t kLooked = 16;
@@ -116,11 +117,9 @@ inline void add_lights_of(const Scene& object, const Affine<double>& scene_from_
 inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera camera, RenderSettings settings,
                               const Progress& progress) {
     using namespace probe_scene_detail;
-    Film& film = camera.film;
-    const double scale = std::min(1.0, kLongSide / std::max(film.width, film.height));
-    const int columns = film.width;
-    film.width = std::max(1, static_cast<int>(film.width * scale));
-    film.height = std::max(1, static_cast<int>(film.height * scale));
+    const int columns = camera.film.width;
+    camera.film = with_long_side(camera.film, kLongSide);
+    const Film& film = camera.film;
     camera.model = CameraModel::pinhole;
     settings.spp = 8;
     settings.noise.reset();

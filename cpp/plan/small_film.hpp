@@ -1,0 +1,16 @@
+#pragma once
+#include <algorithm>
+
+#include "../camera/camera.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The same film with so many pixels along its longer side, or as many as it has.
+inline Film with_long_side(Film film, int pixels) {
+    const double scale = std::min(1.0, static_cast<double>(pixels) / std::max(film.width, film.height));
+    film.width = std::max(1, static_cast<int>(film.width * scale));
+    film.height = std::max(1, static_cast<int>(film.height * scale));
+    return film;
+}
+
+}  // namespace REALCAM_NAMESPACE
