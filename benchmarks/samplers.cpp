@@ -17,12 +17,13 @@
 #include <string>
 #include <vector>
 
-#include "io/bundled_lenses.hpp"
-#include "io/lens_file.hpp"
+#include "../cpp/optics/lens/paraxial.hpp"
+#include "io/lens/bundled_lenses.hpp"
+#include "io/lens/lens_file.hpp"
 #include "math/random.hpp"
-#include "optics/focus.hpp"
-#include "optics/lens_path.hpp"
-#include "optics/pupil.hpp"
+#include "optics/lens/focus.hpp"
+#include "optics/pupil/pupil.hpp"
+#include "optics/trace/lens_path.hpp"
 
 namespace {
 

@@ -1,4 +1,5 @@
-# realcam::optics, the header-only core, and the package that other projects find.
+# realcam::optics, the core, and the package that other projects find. What a device runs is in its headers alone; what
+# only the host runs is compiled once, into the library. It needs no other library.
 include(CMakePackageConfigHelpers)
 
 set(REALCAM_CORE_FOLDERS math optics camera scene render)
@@ -7,11 +8,17 @@ set(REALCAM_CORE_FOLDERS math optics camera scene render)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/cpp ${PROJECT_BINARY_DIR}/include/realcam SYMBOLIC)
 
-add_library(realcam_optics INTERFACE)
+file(GLOB core_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/*.cpp)
+foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
+  file(GLOB_RECURSE more CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cpp)
+  list(APPEND core_sources ${more})
+endforeach()
+add_library(realcam_optics STATIC ${core_sources})
 add_library(realcam::optics ALIAS realcam_optics)
 set_target_properties(realcam_optics PROPERTIES EXPORT_NAME optics)
-target_compile_features(realcam_optics INTERFACE cxx_std_20)
-target_include_directories(realcam_optics INTERFACE
+target_compile_features(realcam_optics PUBLIC cxx_std_20)
+target_link_libraries(realcam_optics PRIVATE $<BUILD_INTERFACE:realcam_settings>)
+target_include_directories(realcam_optics PUBLIC
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/cpp>
   $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
@@ -26,16 +33,11 @@ foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
 endforeach()
 
 set(realcam_package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/realcam)
-install(TARGETS realcam_optics EXPORT realcamTargets COMPONENT optics)
+install(TARGETS realcam_optics EXPORT realcamTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT optics)
 install(EXPORT realcamTargets NAMESPACE realcam:: DESTINATION ${realcam_package_folder} COMPONENT optics)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/realcamConfig.cmake.in
   ${PROJECT_BINARY_DIR}/realcamConfig.cmake INSTALL_DESTINATION ${realcam_package_folder})
-# Headers serve any processor.
-set(any_processor "")
-if(REALCAM_HEADERS_ONLY)
-  set(any_processor ARCH_INDEPENDENT)
-endif()
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/realcamConfigVersion.cmake
-  COMPATIBILITY SameMinorVersion ${any_processor})
+  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/realcamConfig.cmake ${PROJECT_BINARY_DIR}/realcamConfigVersion.cmake
   DESTINATION ${realcam_package_folder} COMPONENT optics)

@@ -1,14 +1,18 @@
-# The sources of each library: one folder, one library, but for io. CONFIGURE_DEPENDS notices a file that is added or
-# removed.
-macro(realcam_sources variable folder)
-  file(GLOB ${variable} CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cpp
-       ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cu)
+# The sources of each library, by folders. CONFIGURE_DEPENDS notices a file that is added or removed.
+macro(realcam_sources variable)
+  set(${variable} "")
+  foreach(folder IN ITEMS ${ARGN})
+    file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cpp ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.cu)
+    list(APPEND ${variable} ${files})
+  endforeach()
   list(APPEND all_sources ${variable})
 endmacro()
 
 set(all_sources "")
 
-realcam_sources(REALCAM_IO_SOURCES io)
+# Who uses lenses needs nothing that reads scenes.
+realcam_sources(REALCAM_LENS_IO_SOURCES io/text io/files io/lens io/lens/formats)
+realcam_sources(REALCAM_IO_SOURCES io io/scene io/mesh io/gltf io/sensor)
 realcam_sources(REALCAM_IMAGE_IO_SOURCES image_io)
 realcam_sources(REALCAM_EMBREE_SOURCES embree)
 realcam_sources(REALCAM_SHOT_SOURCES shot)
@@ -18,12 +22,6 @@ realcam_sources(REALCAM_PICTURE_BINDINGS_SOURCES picture_bindings)
 realcam_sources(REALCAM_BVH_SOURCES bvh)
 realcam_sources(REALCAM_CUDA_SOURCES cuda)
 realcam_sources(REALCAM_DEVICES_SOURCES devices)
-
-# The readers of lens files and glasses are a library of their own, so that who uses lenses needs nothing that reads
-# scenes.
-set(REALCAM_LENS_IO_SOURCES ${REALCAM_IO_SOURCES})
-list(FILTER REALCAM_LENS_IO_SOURCES INCLUDE REGEX "/(lens_[a-z_]+|json|glass_catalogue|nearest_names|printable|readable_file|regular_file|free_memory|toml_document)\\.cpp$")
-list(REMOVE_ITEM REALCAM_IO_SOURCES ${REALCAM_LENS_IO_SOURCES})
 
 # Built once for each instruction set, see RealcamInstructionSets.cmake.
 list(FILTER REALCAM_EMBREE_SOURCES EXCLUDE REGEX "/kernels\\.cpp$")

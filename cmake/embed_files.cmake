@@ -37,7 +37,7 @@ file(WRITE ${OUTPUT} "// Generated from the files in ${LIST}.
 #include <cstddef>
 #include <vector>
 
-#include \"io/${HEADER}\"
+#include \"${HEADER}\"
 
 namespace realcam::io {
 namespace {

@@ -15,23 +15,14 @@ public:
     explicit Checkpoint(KeepGoing keep_going = {}) : keep_going_(std::move(keep_going)) {}
 
     /// Reports work done; a unit is some nanoseconds to a microsecond. Throws Cancelled where the caller wants to stop.
-    void pass(std::size_t work = 1) {
-        work_ += work;
-        if (work_ >= kWorkBetweenClocks) look_at_clock();
-    }
+    void pass(std::size_t work = 1);
 
 private:
     using Clock = std::chrono::steady_clock;
     static constexpr std::size_t kWorkBetweenClocks = 1 << 14;
     static constexpr std::chrono::milliseconds kBetweenQuestions{20};
 
-    void look_at_clock() {
-        work_ = 0;
-        const Clock::time_point now = Clock::now();
-        if (!keep_going_ || now - last_ < kBetweenQuestions) return;
-        last_ = now;
-        if (!keep_going_()) throw Cancelled();
-    }
+    void look_at_clock();
 
     KeepGoing keep_going_;
     std::size_t work_ = 0;

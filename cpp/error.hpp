@@ -1,7 +1,6 @@
 #pragma once
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 namespace realcam {
 
@@ -19,12 +18,7 @@ class InputError : public Error {
 class LensFileError : public Error {
 public:
     /// line and surface are 1-based; 0 where they do not apply.
-    LensFileError(const std::string& message, std::string file = {}, int line = 0, int surface = 0)
-        : Error(place(file, line, surface) + message),
-          detail(message),
-          file(std::move(file)),
-          line(line),
-          surface(surface) {}
+    LensFileError(const std::string& message, std::string file = {}, int line = 0, int surface = 0);
 
     std::string detail;  ///< the message without its place
     std::string file;
@@ -32,12 +26,7 @@ public:
     int surface;
 
 private:
-    static std::string place(const std::string& file, int line, int surface) {
-        std::string where = file;
-        if (line > 0) where += (where.empty() ? "line " : ":") + std::to_string(line);
-        if (surface > 0) where += (where.empty() ? "surface " : ": surface ") + std::to_string(surface);
-        return where.empty() ? where : where + ": ";
-    }
+    static std::string place(const std::string& file, int line, int surface);
 };
 
 /// A scene that cannot be read, or that holds no geometry.

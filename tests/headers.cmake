@@ -1,10 +1,10 @@
 # Every header of the core compiles alone as C++, and as CUDA where nvcc is on the machine. The checks are targets
 # outside of `all`, which ctest builds; ninja then runs them in parallel and repeats only what a change concerns.
-set(patterns ${PROJECT_SOURCE_DIR}/cpp/*.hpp)
+file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/*.hpp)
 foreach(folder IN LISTS REALCAM_CORE_FOLDERS)
-  list(APPEND patterns ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.hpp)
+  file(GLOB_RECURSE more CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.hpp)
+  list(APPEND headers ${more})
 endforeach()
-file(GLOB headers CONFIGURE_DEPENDS ${patterns})
 
 function(write_includes source headers)
   list(TRANSFORM headers REPLACE "(.+)" "#include \"\\1\"\n")
@@ -26,7 +26,7 @@ endforeach()
 # would disturb each other there.
 set(all_headers ${headers})
 foreach(folder IN ITEMS bvh devices io plan shot)
-  file(GLOB more CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.hpp)
+  file(GLOB_RECURSE more CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cpp/${folder}/*.hpp)
   list(APPEND all_headers ${more})
 endforeach()
 set(source ${CMAKE_CURRENT_BINARY_DIR}/headers/all_headers.cpp)

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "../devices/devices.hpp"
-#include "../io/json_writer.hpp"
+#include "../io/text/json_writer.hpp"
 
 namespace realcam::app {
 

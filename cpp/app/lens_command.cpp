@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "../io/json_writer.hpp"
-#include "../io/lens_file.hpp"
-#include "../optics/zoom.hpp"
+#include "../io/lens/lens_file.hpp"
+#include "../io/text/json_writer.hpp"
+#include "../optics/lens/zoom.hpp"
 #include "lens_report.hpp"
 #include "lens_words.hpp"
 #include "values.hpp"

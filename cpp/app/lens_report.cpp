@@ -8,10 +8,11 @@
 #include <optional>
 
 #include "../camera/field_of_view.hpp"
-#include "../io/json_writer.hpp"
-#include "../optics/focus.hpp"
-#include "../optics/paraxial.hpp"
-#include "../optics/transmission.hpp"
+#include "../io/text/json_writer.hpp"
+#include "../optics/analysis/transmission.hpp"
+#include "../optics/coating/coated_faces.hpp"
+#include "../optics/lens/focus.hpp"
+#include "../optics/lens/paraxial.hpp"
 #include "values.hpp"
 
 namespace realcam::app {

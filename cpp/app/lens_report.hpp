@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "../optics/lens_system.hpp"
+#include "../optics/prescription/lens_system.hpp"
 
 namespace realcam::app {
 

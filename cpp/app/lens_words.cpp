@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "../io/lens_format.hpp"
-#include "../io/one_line.hpp"
+#include "../io/lens/lens_format.hpp"
+#include "../io/text/one_line.hpp"
 
 namespace realcam::app {
 

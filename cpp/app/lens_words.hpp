@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "../io/lens_error.hpp"
-#include "../io/lens_file.hpp"
+#include "../io/lens/lens_error.hpp"
+#include "../io/lens/lens_file.hpp"
 
 namespace realcam::app {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <new>
 
-#include "../io/one_line.hpp"
+#include "../io/text/one_line.hpp"
 #include "devices.hpp"
 #include "lens_command.hpp"
 #include "lens_words.hpp"

@@ -1,7 +1,7 @@
 #include "render_json.hpp"
 
-#include "../io/image_metadata.hpp"
-#include "../io/json_writer.hpp"
+#include "../io/files/image_metadata.hpp"
+#include "../io/text/json_writer.hpp"
 #include "../render/effect_names.hpp"
 #include "exposure_notice.hpp"
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "../io/image_metadata.hpp"
+#include "../io/files/image_metadata.hpp"
+#include "../optics/coating/coated_faces.hpp"
 #include "../render/effect_names.hpp"
 #include "values.hpp"
 

@@ -1,6 +1,6 @@
 #include "usage_error.hpp"
 
-#include "../io/nearest_names.hpp"
+#include "../io/text/nearest_names.hpp"
 
 namespace realcam::app {
 namespace {

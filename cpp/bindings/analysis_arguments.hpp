@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../optics/pupil_pattern.hpp"
+#include "../optics/pupil/pupil_pattern.hpp"
 #include "arrays.hpp"
 
 namespace realcam::bindings {

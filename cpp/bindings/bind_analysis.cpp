@@ -1,8 +1,10 @@
-#include "../optics/wavefront.hpp"
+#include "../optics/analysis/aim_all.hpp"
+#include "../optics/analysis/wavefront.hpp"
 
 #include <pybind11/stl.h>
 
 #include "../embree/lens_rays.hpp"
+#include "../optics/analysis/spot.hpp"
 #include "analysis_arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"

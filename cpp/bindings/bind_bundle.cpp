@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "../embree/lens_rays.hpp"
-#include "../optics/traced_bundle.hpp"
+#include "../optics/analysis/traced_bundle.hpp"
 #include "analysis_arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -9,7 +9,7 @@
 #include "../camera/default_film.hpp"
 #include "../camera/picture_angle.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
-#include "../io/image_metadata.hpp"
+#include "../io/files/image_metadata.hpp"
 #include "../shot/names.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"

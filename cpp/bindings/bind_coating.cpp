@@ -3,9 +3,9 @@
 
 #include <map>
 
-#include "../optics/coated_surface.hpp"
-#include "../optics/coating_checks.hpp"
-#include "../optics/named_coatings.hpp"
+#include "../optics/coating/coated_surface.hpp"
+#include "../optics/prescription/coating_checks.hpp"
+#include "../optics/prescription/named_coatings.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "coating_from.hpp"

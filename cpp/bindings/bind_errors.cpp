@@ -1,6 +1,6 @@
 #include "../error.hpp"
-#include "../io/lens_error.hpp"
-#include "../io/one_line.hpp"
+#include "../io/lens/lens_error.hpp"
+#include "../io/text/one_line.hpp"
 #include "../plan/plan.hpp"
 
 #include <new>

@@ -5,7 +5,7 @@
 
 #include "../camera/ghost_tables.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
-#include "../optics/ghost.hpp"
+#include "../optics/ghost/ghost.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"

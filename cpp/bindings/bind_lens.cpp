@@ -4,11 +4,11 @@
 #include <tuple>
 #include <variant>
 
-#include "../io/lens_format.hpp"
-#include "../io/lens_glass.hpp"
-#include "../optics/focus.hpp"
-#include "../optics/lens_changes.hpp"
-#include "../optics/zoom.hpp"
+#include "../io/lens/lens_format.hpp"
+#include "../io/lens/lens_glass.hpp"
+#include "../optics/lens/focus.hpp"
+#include "../optics/lens/lens_changes.hpp"
+#include "../optics/lens/zoom.hpp"
 #include "bindings.hpp"
 #include "coating_from.hpp"
 #include "short_text.hpp"

@@ -1,6 +1,6 @@
 #include <pybind11/stl.h>
 
-#include "../optics/lens_edits.hpp"
+#include "../optics/lens/lens_edits.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {

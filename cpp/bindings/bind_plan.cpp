@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../embree/fast_pupil_tracer.hpp"
-#include "../io/image_metadata.hpp"
+#include "../io/files/image_metadata.hpp"
 #include "../plan/make_plan.hpp"
 #include "../plan/plan_text.hpp"
 #include "../plan/quality.hpp"

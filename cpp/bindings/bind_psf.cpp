@@ -5,8 +5,8 @@
 #include <variant>
 
 #include "../embree/lens_rays.hpp"
-#include "../optics/psf_measures.hpp"
-#include "../optics/psf_pupil.hpp"
+#include "../optics/analysis/psf_measures.hpp"
+#include "../optics/analysis/psf_pupil.hpp"
 #include "analysis_arguments.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"

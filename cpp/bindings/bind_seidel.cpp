@@ -1,4 +1,4 @@
-#include "../optics/seidel.hpp"
+#include "../optics/analysis/seidel.hpp"
 
 #include <pybind11/stl.h>
 

@@ -5,7 +5,7 @@
 #include "../camera/sensor_color.hpp"
 #include "../camera/sensor_response.hpp"
 #include "../embree/sensor_exposure.hpp"
-#include "../io/sensor_file.hpp"
+#include "../io/sensor/sensor_file.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"

@@ -1,6 +1,6 @@
 #include <pybind11/stl.h>
 
-#include "../io/image_metadata.hpp"
+#include "../io/files/image_metadata.hpp"
 #include "../render/effect_names.hpp"
 #include "../shot/shot_file.hpp"
 #include "bindings.hpp"

@@ -7,7 +7,7 @@
 #include "../cuda/cuda_rays.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/lens_rays.hpp"
-#include "../optics/polarised_ray.hpp"
+#include "../optics/coating/polarised_ray.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "device_array.hpp"

@@ -1,7 +1,8 @@
 #include <pybind11/stl.h>
 
 #include "../embree/lens_rays.hpp"
-#include "../optics/transmission.hpp"
+#include "../optics/analysis/transmission.hpp"
+#include "../optics/coating/coated_faces.hpp"
 #include "analysis_arguments.hpp"
 #include "bindings.hpp"
 

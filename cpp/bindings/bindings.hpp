@@ -7,9 +7,9 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
-#include "../io/lens_file.hpp"
-#include "../optics/lens_system.hpp"
-#include "../optics/object_point.hpp"
+#include "../io/lens/lens_file.hpp"
+#include "../optics/analysis/object_point.hpp"
+#include "../optics/prescription/lens_system.hpp"
 #include "../render/progress.hpp"
 #include "../render/render_settings.hpp"
 #include "../scene/assembly.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <pybind11/pybind11.h>
 
-#include "../optics/coating.hpp"
+#include "../optics/prescription/coating.hpp"
 
 namespace realcam::bindings {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "../io/decoded_image.hpp"
+#include "../io/scene/decoded_image.hpp"
 #include "../scene/material_names.hpp"
 #include "../scene/scene.hpp"
 #include "bindings.hpp"

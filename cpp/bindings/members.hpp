@@ -3,7 +3,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "../optics/glass.hpp"
+#include "../optics/prescription/glass.hpp"
 #include "../scene/assembly.hpp"
 
 namespace realcam::bindings {

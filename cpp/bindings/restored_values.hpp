@@ -4,9 +4,9 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/sensor.hpp"
-#include "../optics/coating_checks.hpp"
-#include "../optics/lens_checks.hpp"
-#include "../optics/paraxial.hpp"
+#include "../optics/lens/paraxial.hpp"
+#include "../optics/prescription/coating_checks.hpp"
+#include "../optics/prescription/lens_checks.hpp"
 #include "../render/image.hpp"
 #include "../scene/scene_checks.hpp"
 #include "material.hpp"

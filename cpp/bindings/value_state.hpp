@@ -4,7 +4,7 @@
 #include <map>
 #include <typeindex>
 
-#include "../io/printable.hpp"
+#include "../io/text/printable.hpp"
 #include "arrays.hpp"
 #include "restored_values.hpp"
 

@@ -2,9 +2,9 @@
 #include <cstddef>
 
 #include "../math/key_interval.hpp"
-#include "../optics/lens_polynomial_view.hpp"
-#include "../optics/lens_view.hpp"
-#include "../optics/pupil_view.hpp"
+#include "../optics/pupil/pupil_view.hpp"
+#include "../optics/trace/lens_polynomial_view.hpp"
+#include "../optics/trace/lens_view.hpp"
 #include "circle_of_confusion.hpp"
 #include "coating_view.hpp"
 #include "diffraction_view.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-#include "../optics/coating_polynomials.hpp"
+#include "../optics/coating/coating_polynomials.hpp"
 
 namespace REALCAM_NAMESPACE {
 

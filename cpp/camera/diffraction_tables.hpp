@@ -1,15 +1,9 @@
 #pragma once
-#include <cmath>
-#include <numbers>
-#include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "../error.hpp"
-#include "../math/append_alias_table.hpp"
-#include "../optics/aperture_diffraction.hpp"
-#include "../optics/pupil_search.hpp"
+#include "../optics/analysis/aperture_diffraction.hpp"
+#include "../optics/pupil/pupil_search.hpp"
 #include "diffraction_view.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -18,39 +12,10 @@ namespace REALCAM_NAMESPACE {
 class DiffractionTables {
 public:
     /// `film_radius`: of a circle that holds the film, mm. Throws InputError where no light passes the lens.
-    DiffractionTables(const LensSystem& lens, double film_radius, const PupilTracer& tracer)
-        : film_radius_(film_radius),
-          radii_(has_blades(lens) ? kRadiiWithBlades : kRadii),
-          azimuths_(has_blades(lens) ? kAzimuths : 1) {
-        const PupilEdgeSearch edges(lens, tracer);
-        const std::vector<PupilBox> boxes = boxes_of(lens, tracer);
-        std::vector<std::optional<ApertureDiffraction>> found(static_cast<std::size_t>(radii_ * azimuths_));
-        tracer.for_each(radii_ * azimuths_, [&](int node) {
-            const int row = node / azimuths_;
-            if (const auto seen =
-                    edges.at(radius_of(row), azimuth_of(node % azimuths_), boxes[static_cast<std::size_t>(row)]))
-                found[static_cast<std::size_t>(node)] = diffraction_of(*seen);
-        });
-        for (int node = 0; node < radii_ * azimuths_; ++node) {
-            auto& here = found[static_cast<std::size_t>(node)];
-            // At the edge of the image, where the light is a crescent, the aperture is taken as it is further in.
-            if (!here && node >= azimuths_) here = found[static_cast<std::size_t>(node - azimuths_)];
-            if (!here) throw no_light(lens);
-            add(*here);
-        }
-    }
+    DiffractionTables(const LensSystem& lens, double film_radius, const PupilTracer& tracer);
 
     /// `film_steradians`: solid angle that the film sees.
-    DiffractionView view(double film_steradians) const {
-        return {nodes_.data(),
-                entries_.data(),
-                edges_.data(),
-                radii_,
-                azimuths_,
-                static_cast<float>((radii_ - 1) / film_radius_),
-                static_cast<float>(film_radius_),
-                kSamplesPerSplat * nodes_.front().edge_share / static_cast<float>(film_steradians)};
-    }
+    DiffractionView view(double film_steradians) const;
 
 private:
     static constexpr int kRadii = 12, kRadiiWithBlades = 5, kAzimuths = 8;
@@ -62,35 +27,11 @@ private:
 
     double radius_of(int row) const { return film_radius_ * row / (radii_ - 1); }
     /// At even steps of the view's angle, which runs from 0 to 4 along a square.
-    double azimuth_of(int sector) const {
-        const double angle = 4.0 * sector / azimuths_;
-        return std::atan2(1 - std::fabs(std::remainder(angle - 1, 4)), 1 - std::fabs(std::remainder(angle, 4)));
-    }
+    double azimuth_of(int sector) const;
 
-    std::vector<PupilBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const {
-        const PupilSearch search(lens, tracer);
-        PupilTrack track;
-        std::vector<PupilBox> boxes;
-        for (int row = 0; row < radii_; ++row) {
-            const std::optional<PupilBox> box = search.look(radius_of(row), track);
-            if (!box && boxes.empty()) throw no_light(lens);
-            boxes.push_back(box ? *box : boxes.back());
-        }
-        return boxes;
-    }
+    std::vector<PupilBox> boxes_of(const LensSystem& lens, const PupilTracer& tracer) const;
 
-    void add(const ApertureDiffraction& diffraction) {
-        nodes_.push_back({static_cast<float>(1e-6 / diffraction.width), static_cast<float>(diffraction.edge_share)});
-        std::vector<double> lengths(kDiffractionEdges, 0.0);
-        const std::size_t first = edges_.size();
-        edges_.resize(first + kDiffractionEdges);
-        for (std::size_t k = 0; k < diffraction.edges.size(); ++k) {
-            lengths[k] = diffraction.edges[k].length;
-            edges_[first + k] = diffraction.edges[k].edge;
-        }
-        append_alias_table(lengths, entries_);
-        append_alias_table(diffraction.cells, entries_);
-    }
+    void add(const ApertureDiffraction& diffraction);
 
     double film_radius_;
     int radii_, azimuths_;

@@ -3,7 +3,7 @@
 
 #include "../math/alias_table.hpp"
 #include "../math/sincos.hpp"
-#include "../optics/diffraction_cells.hpp"
+#include "../optics/pupil/diffraction_cells.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -3,8 +3,8 @@
 
 #include "../math/color.hpp"
 #include "../math/lanes.hpp"
-#include "../optics/index_cubic.hpp"
-#include "../optics/lens_view.hpp"
+#include "../optics/trace/index_cubic.hpp"
+#include "../optics/trace/lens_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,10 +1,8 @@
 #pragma once
 #include <array>
-#include <cmath>
-#include <string>
 #include <vector>
 
-#include "../optics/lens_dispersion.hpp"
+#include "../optics/prescription/known_wavelengths.hpp"
 #include "dispersion_view.hpp"
 #include "illuminant.hpp"
 
@@ -23,164 +21,15 @@ using Matrix = std::array<double, 9>;  ///< row by row
 inline constexpr Matrix kSrgbFromXyz = {3.2404542, -1.5371385, -0.4985314, -0.9692660, 1.8760108,
                                         0.0415560, 0.0556434,  -0.2040259, 1.0572252};
 
-inline Matrix product(const Matrix& a, const Matrix& b) {
-    Matrix c{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j)
-            for (std::size_t k = 0; k < 3; ++k) c[3 * i + j] += a[3 * i + k] * b[3 * k + j];
-    return c;
-}
+Matrix product(const Matrix& a, const Matrix& b);
 
-inline Matrix inverse(const Matrix& m) {
-    const auto minor = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
-        return m[a] * m[d] - m[b] * m[c];
-    };
-    const Matrix cofactors = {minor(4, 5, 7, 8),  -minor(1, 2, 7, 8), minor(1, 2, 4, 5),
-                              -minor(3, 5, 6, 8), minor(0, 2, 6, 8),  -minor(0, 2, 3, 5),
-                              minor(3, 4, 6, 7),  -minor(0, 1, 6, 7), minor(0, 1, 3, 4)};
-    const double determinant = m[0] * cofactors[0] + m[1] * cofactors[3] + m[2] * cofactors[6];
-    Matrix result{};
-    for (std::size_t i = 0; i < 9; ++i) result[i] = cofactors[i] / determinant;
-    return result;
-}
+Matrix inverse(const Matrix& m);
 
-inline std::array<double, 3> basis_at(double wavelength_nm) {
-    const double r = Illuminant::at(kBasisRed, wavelength_nm), g = Illuminant::at(kBasisGreen, wavelength_nm),
-                 b = Illuminant::at(kBasisBlue, wavelength_nm), sum = r + g + b;  // 1, but for its last digits
-    return {r / sum, g / sum, b / sum};
-}
-
-/// The film's matrix per nm under a spectrum, not yet balanced.
-inline Matrix matrix_at(double wavelength_nm, double power) {
-    const double x = Illuminant::at(kObserverX, wavelength_nm), y = Illuminant::at(kObserverY, wavelength_nm),
-                 z = Illuminant::at(kObserverZ, wavelength_nm);
-    const std::array<double, 3> basis = basis_at(wavelength_nm);
-    Matrix m{};
-    for (std::size_t row = 0; row < 3; ++row) {
-        const double film =
-            power * (kSrgbFromXyz[3 * row] * x + kSrgbFromXyz[3 * row + 1] * y + kSrgbFromXyz[3 * row + 2] * z);
-        for (std::size_t column = 0; column < 3; ++column) m[3 * row + column] = film * basis[column];
-    }
-    return m;
-}
-
-/// A piece of the spectrum, in which all tables are linear.
-struct Piece {
-    double first, last;  ///< nm
-    Matrix film;         ///< integral over it
-    double density = 0;  ///< integral, not normalised
-};
-
-/// Pieces of half a nm, and shorter ones at the points of a table. Simpson's rule is exact in each but for the
-/// quotient by the basis's sum: the product of three linear functions is a cubic.
-inline std::vector<Piece> pieces_of(const Illuminant& illuminant) {
-    std::vector<double> knots;
-    for (double nm = kFirstWavelength_nm; nm <= kLastWavelength_nm; nm += 0.5) knots.push_back(nm);
-    for (const SpectrumPoint& point : illuminant.points())
-        if (point.wavelength_nm > kFirstWavelength_nm && point.wavelength_nm < kLastWavelength_nm)
-            knots.push_back(point.wavelength_nm);
-    std::sort(knots.begin(), knots.end());
-    std::vector<Piece> pieces;
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        const double a = knots[i], b = knots[i + 1];
-        if (!(b > a)) continue;
-        Piece piece{a, b, {}};
-        // The ends a hair inside: where a table begins or ends, its power jumps.
-        const double inside = 1e-9 * (b - a);
-        const auto add = [&](double nm, double weight) {
-            const Matrix m = matrix_at(nm, illuminant.power(nm));
-            for (std::size_t k = 0; k < 9; ++k) piece.film[k] += weight * (b - a) / 6 * m[k];
-        };
-        add(a + inside, 1);
-        add(0.5 * (a + b), 4);
-        add(b - inside, 1);
-        pieces.push_back(piece);
-    }
-    return pieces;
-}
-
-inline Matrix sum_of(const std::vector<Piece>& pieces) {
-    Matrix sum{};
-    for (const Piece& piece : pieces)
-        for (std::size_t k = 0; k < 9; ++k) sum[k] += piece.film[k];
-    return sum;
-}
+std::array<double, 3> basis_at(double wavelength_nm);
 
 /// What a channel of the film has of white.
 inline double row_sum(const Matrix& m, std::size_t row) {
     return m[3 * row] + m[3 * row + 1] + m[3 * row + 2];
-}
-
-/// Makes the tables' sum under D65 the identity, which they miss by a thousandth, and balances the film.
-inline void balance(std::vector<Piece>& pieces, const std::string& name) {
-    const Matrix to_identity = inverse(sum_of(pieces_of(Illuminant::named("D65"))));
-    for (Piece& piece : pieces) piece.film = product(to_identity, piece.film);
-    const Matrix sum = sum_of(pieces);
-    for (std::size_t row = 0; row < 3; ++row) {
-        double most = 0;
-        for (const Piece& piece : pieces) most += std::fabs(row_sum(piece.film, row));
-        const double white = row_sum(sum, row);
-        if (!(white > 0.02 * most))
-            throw InputError("illuminant: " + name.substr(0, 60) + " has too little " +
-                             std::array{"red", "green", "blue"}[row] + " for a film that is to show white as white");
-        for (Piece& piece : pieces)
-            for (std::size_t column = 0; column < 3; ++column) piece.film[3 * row + column] /= white;
-    }
-}
-
-/// A sample that counts for one wavelength shows white in channel c as k_c / p, and one that counts for three as their
-/// mean. The density is the one of the form p = sqrt(sum of a_c k_c^2) for which the latter differs least from 1 under
-/// D65, by 0.28, 0.14 and 0.28; under A and FL2, by half and by 0.4 at most. Alone, 1.8 to 2.2 are left.
-inline void set_density(std::vector<Piece>& pieces) {
-    constexpr std::array<double, 3> kWeights = {0.7, 1, 0.7};
-    double sum = 0;
-    for (Piece& piece : pieces) {
-        double squares = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double k = row_sum(piece.film, c);
-            squares += kWeights[c] * k * k;
-        }
-        piece.density = std::sqrt(squares);
-        sum += piece.density;
-    }
-    for (Piece& piece : pieces) piece.density /= sum;
-}
-
-/// Cells of equal probability. One that spans a gap between two lines smears its own share over it, one of kCells.
-inline std::vector<WavelengthCell> cells_of(const std::vector<Piece>& pieces, int count) {
-    struct Edge {
-        double wavelength;
-        Matrix film;  ///< sum over all shorter wavelengths
-    };
-    Matrix film{};
-    double passed = 0;
-    std::size_t at = 0;
-    const auto edge_at = [&](double share) -> Edge {
-        // Past pieces without light, too, in which no wavelength is to be drawn.
-        while (at + 1 < pieces.size() && (passed + pieces[at].density < share || !(pieces[at].density > 0))) {
-            for (std::size_t k = 0; k < 9; ++k) film[k] += pieces[at].film[k];
-            passed += pieces[at].density;
-            ++at;
-        }
-        const Piece& piece = pieces[at];
-        const double inside = std::clamp((share - passed) / piece.density, 0.0, 1.0);
-        Edge edge{piece.first + inside * (piece.last - piece.first), film};
-        for (std::size_t k = 0; k < 9; ++k) edge.film[k] += inside * piece.film[k];
-        return edge;
-    };
-    std::size_t last = pieces.size() - 1;
-    while (last > 0 && !(pieces[last].density > 0)) --last;
-    const Edge end = {pieces[last].last, sum_of(pieces)};  // whatever roundings leave
-    std::vector<WavelengthCell> cells;
-    Edge low = edge_at(0);
-    for (int i = 1; i <= count; ++i) {
-        const Edge high = i == count ? end : edge_at(static_cast<double>(i) / count);
-        WavelengthCell cell{static_cast<float>(low.wavelength), static_cast<float>(high.wavelength), {}};
-        for (std::size_t k = 0; k < 9; ++k) cell.film[k] = static_cast<float>(count * (high.film[k] - low.film[k]));
-        cells.push_back(cell);
-        low = high;
-    }
-    return cells;
 }
 
 }  // namespace film_spectrum_detail
@@ -191,35 +40,14 @@ public:
     static constexpr int kCells = 64 * kSharedWavelengths;
 
     /// Throws InputError for an illuminant under which white cannot be shown as white.
-    explicit FilmSpectrum(const Illuminant& illuminant) {
-        using namespace film_spectrum_detail;
-        if (illuminant.is_line()) {
-            // Balanced, all channels show the same: what the scene's colours have of this wavelength.
-            const double nm = illuminant.points()[0].wavelength_nm;
-            const std::array<double, 3> basis = basis_at(nm);
-            WavelengthCell cell{static_cast<float>(nm), static_cast<float>(nm), {}};
-            for (std::size_t k = 0; k < 9; ++k) cell.film[k] = static_cast<float>(basis[k % 3]);
-            cells_ = {cell};
-            return;
-        }
-        std::vector<Piece> pieces = pieces_of(illuminant);
-        balance(pieces, illuminant.text());
-        set_density(pieces);
-        cells_ = cells_of(pieces, kCells);
-    }
+    explicit FilmSpectrum(const Illuminant& illuminant);
 
     const std::vector<WavelengthCell>& cells() const { return cells_; }
     WavelengthRange range() const {
         return {static_cast<double>(cells_.front().first_nm), static_cast<double>(cells_.back().last_nm)};
     }
     /// About thirty, spread as the wavelengths of samples are.
-    std::vector<double> even_wavelengths() const {
-        constexpr std::size_t kStep = 6;
-        std::vector<double> wavelengths;
-        for (std::size_t i = std::min(kStep / 2, cells_.size() - 1); i < cells_.size(); i += kStep)
-            wavelengths.push_back(static_cast<double>(0.5f * (cells_[i].first_nm + cells_[i].last_nm)));
-        return wavelengths;
-    }
+    std::vector<double> even_wavelengths() const;
 
 private:
     std::vector<WavelengthCell> cells_;

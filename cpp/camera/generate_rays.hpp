@@ -3,7 +3,7 @@
 
 #include "../math/random.hpp"
 #include "../math/sampling.hpp"
-#include "../optics/lens_trace.hpp"
+#include "../optics/trace/lens_trace.hpp"
 #include "camera_view.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "../optics/ghost_media.hpp"
-#include "../optics/lens_view.hpp"
+#include "../optics/ghost/ghost_media.hpp"
+#include "../optics/trace/lens_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <cmath>
 #include <optional>
 
 #include "camera.hpp"
@@ -9,20 +8,7 @@ namespace REALCAM_NAMESPACE {
 
 /// Angle to the axis, in front of the lens, of what the camera's model shows that far from the middle of the picture,
 /// radians. Where the film is larger than the image of a full lens: that of the image's edge.
-inline double picture_angle(const Camera& camera, double image_height_mm) {
-    const LensSystem& lens = camera.lens;
-    if (has_real_pupil(camera.model) || camera.model == CameraModel::mapped_lens)
-        return widest_field_angle(lens, image_height_mm);
-    camera_detail::validate_ideal(lens, camera.model);
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    if (camera.model != CameraModel::thick_lens)
-        return std::atan(image_height_mm / static_cast<double>(camera_detail::thin_lens_of(lens, data).image_distance));
-    // The ray through the middle of the exit pupil, from the last vertex to the front one.
-    const ThickLens thick = camera_detail::thick_lens_of(lens, data);
-    const double slope = image_height_mm / static_cast<double>(thick.exit_pupil_distance);
-    const double height = image_height_mm - lens.film_distance * slope;
-    return std::fabs(std::atan(static_cast<double>(thick.A) * slope - static_cast<double>(thick.C) * height));
-}
+double picture_angle(const Camera& camera, double image_height_mm);
 
 /// From edge to edge of the picture, and from corner to corner, radians. Of a film that is shifted: in the planes of
 /// the axis, and the two corners farthest from each other on both sides of it.
@@ -31,28 +17,10 @@ struct FieldOfView {
 };
 
 /// Throws InputError where the camera's model has no place for its lens.
-inline FieldOfView field_of_view(const Camera& camera) {
-    const double x = 0.5 * camera.film.width_mm, y = 0.5 * camera.film.height_mm;
-    const double right = std::fabs(camera.film.shift_mm.x), up = std::fabs(camera.film.shift_mm.y);
-    // From the place farthest from the axis to the one opposite, which may lie on the same side.
-    const auto between = [&](double far, double opposite) {
-        const double angle = picture_angle(camera, far);
-        return opposite == far ? 2 * angle
-                               : angle + std::copysign(picture_angle(camera, std::fabs(opposite)), opposite);
-    };
-    const double beyond = (x + right) * (x - right) + (y + up) * (y - up);
-    return {between(x + right, x - right), between(y + up, y - up),
-            between(std::hypot(x + right, y + up), std::copysign(std::hypot(x - right, y - up), beyond))};
-}
+FieldOfView field_of_view(const Camera& camera);
 
 /// The middle of the paraxial entrance pupil in the scene, metres: where lines from the scene to the camera meet. None
 /// where it lies at infinity.
-inline std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera) {
-    const LensSystem& lens = camera.lens;
-    const double pupil_mm = first_order(lens, lens.wavelength_nm).entrance_pupil_position;
-    if (!std::isfinite(pupil_mm)) return std::nullopt;
-    const Vec3d backward = camera_detail::axes_of(camera.pose).backward;
-    return camera.pose.position_m - (0.001 * (lens.film_position() - pupil_mm)) * backward;
-}
+std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera);
 
 }  // namespace REALCAM_NAMESPACE

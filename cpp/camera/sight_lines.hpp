@@ -1,15 +1,11 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "../math/odd_curve.hpp"
-#include "../optics/film_chief_ray.hpp"
+#include "../optics/analysis/film_chief_ray.hpp"
 #include "camera.hpp"
-#include "generate_rays.hpp"
 #include "mean_ray.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -38,38 +34,7 @@ public:
     };
 
     /// `setup`: of the camera. The lines go out to the corners of its film. Throws InputError.
-    SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop = {}) : lines_(kSteps + 1) {
-        const Camera& camera = setup.camera();
-        const LensSystem& lens = camera.lens;
-        const FirstOrder data = first_order(lens, lens.wavelength_nm);
-        const double pupil = data.entrance_pupil_position;
-        constexpr double kFar = 1e6;
-        vertex_ = std::fabs(pupil) < kFar ? pupil : 0;
-        reference_ = lens.film_position() - vertex_;
-        focus_ = lens.focus_distance - reference_;
-        const CameraView view = setup.view(camera.pose.position_m);
-        // So much more that rounding leaves no corner without a line.
-        reach_ = camera.film.radius_mm() * (1 + 1e-7);
-        if (has_real_pupil(camera.model)) {
-            const auto lit = static_cast<double>(view.pupil.image_radius);
-            ends_in_film_ = lit < reach_;
-            if (ends_in_film_) reach_ = (1 - 1e-4) * lit;  // at its very edge the bundle has no width
-            follow_light(with_round_stop(lens), view.pupil, loop);
-            if (ray == SightRay::chief) follow_chief_rays(with_round_stop(lens), view.pupil);
-        } else {
-            const double image_distance = camera_detail::ideal_lens_of(lens, data).image_distance;
-            for (int k = 0; k <= kSteps; ++k) set_ideal(k, view, {pupil, image_distance});
-        }
-        end_where_lines_turn_back();
-        const double middle = lines_[0].light > 0 ? lines_[0].light : lines_[1].light;
-        for (SightLine& line : lines_) line.light /= middle;
-        angle_ = curve_of(&SightLine::angle, true);
-        offset_ = curve_of(&SightLine::offset);
-        for (const SightLine& line : lines_) {
-            cosines_.push_back(std::cos(line.angle));
-            sines_.push_back(std::sin(line.angle));
-        }
-    }
+    SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop = {});
 
     /// The reference point, the middle of the paraxial entrance pupil, or the front vertex where that is far away: mm
     /// from the film towards the scene.
@@ -82,30 +47,11 @@ public:
     int sign() const { return sign_; }
 
     /// `film_radius` from 0 to reach(). Nothing where no light arrives.
-    std::optional<SightLine> at(double film_radius) const {
-        const double place = film_radius / reach_ * kSteps;
-        const auto k = static_cast<std::size_t>(std::min(static_cast<int>(place), kSteps - 1));
-        const double share = place - static_cast<double>(k), angle = angle_.at(place).value;
-        if (!std::isfinite(angle)) return std::nullopt;
-        const SightLine &a = lines_[k], &b = lines_[k + 1];
-        return SightLine{angle, offset_.at(place).value, a.start + share * (b.start - a.start),
-                         a.light + share * (b.light - a.light)};
-    }
+    std::optional<SightLine> at(double film_radius) const;
 
     /// The film radius whose line goes through a place in front of the lens; the one nearest to the axis, if there are
     /// several. Nothing where no line does.
-    std::optional<double> radius_towards(Place place) const {
-        if (place.away == 0 && place.ahead > lines_[0].start) return 0.0;
-        double before = place.away;
-        for (int k = 1; k <= kSteps; ++k) {
-            const auto i = static_cast<std::size_t>(k);
-            const double here = place.away * cosines_[i] - place.ahead * sines_[i] - offset_[k];
-            if (before > 0 && here <= 0 && place.away * sines_[i] + place.ahead * cosines_[i] > lines_[i].start)
-                return reach_ / kSteps * (k - 1 + root(k - 1, place));
-            before = here;
-        }
-        return std::nullopt;
-    }
+    std::optional<double> radius_towards(Place place) const;
 
 private:
     static constexpr int kSteps = 256;
@@ -118,143 +64,28 @@ private:
 
     double radius_of(double place) const { return reach_ * place / kSteps; }
 
-    OddCurve curve_of(double SightLine::* value, bool rises = false) const {
-        std::vector<double> values;
-        for (const SightLine& line : lines_) values.push_back(line.*value);
-        return OddCurve(std::move(values), rises);
-    }
+    OddCurve curve_of(double SightLine::* value, bool rises = false) const;
 
     /// What a film point at +x sees lies at -x.
-    void set(int k, const std::optional<SceneRay>& ray, double light) {
-        SightLine& line = lines_[static_cast<std::size_t>(k)];
-        line = {kNone, kNone, kNone, light};
-        if (!ray) return;
-        const double away = -ray->origin.x, ahead = vertex_ - ray->origin.z;
-        line.angle = k == 0 ? 0 : std::atan2(-ray->direction.x, -ray->direction.z);
-        const double cosine = std::cos(line.angle), sine = std::sin(line.angle);
-        line.offset = k == 0 ? 0 : away * cosine - ahead * sine;
-        line.start = away * sine + ahead * cosine;
-        if (k == 1) sign_ = line.angle < 0 || (line.angle == 0 && line.offset < 0) ? -1 : 1;
-    }
+    void set(int k, const std::optional<SceneRay>& ray, double light);
 
-    void follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop) {
-        const MeanRays mean(lens, pupil, focus_);
-        std::vector<std::optional<MeanRay>> rays(lines_.size());
-        loop.for_all(rays.size(), [&](std::size_t first, std::size_t last) {
-            for (std::size_t k = first; k < last; ++k) rays[k] = mean.at(radius_of(static_cast<double>(k)));
-        });
-        std::vector<double> shown;
-        for (int k = 0; k <= kSteps; ++k) {
-            const std::optional<MeanRay>& ray = rays[static_cast<std::size_t>(k)];
-            set(k, ray ? std::optional(ray->ray) : std::nullopt, ray ? ray->light : 0);
-            shown.push_back(k == 0 ? 0 : ray ? ray->shows_at : kNone);
-        }
-        show_where_light_lands(shown);
-    }
+    void follow_light(const LensSystem& lens, const PupilView& pupil, const RayLoop& loop);
 
     /// Gives each film radius the line whose point in focus has the middle of its light there. `shown`: where that of
     /// each line lies. By cubics through the four nearest of them, which need not lie at even radii.
-    void show_where_light_lands(const std::vector<double>& shown) {
-        std::vector<double> radii;
-        std::vector<SightLine> seen;
-        for (std::size_t k = 0; k < shown.size(); ++k) {
-            if (!std::isfinite(shown[k]) || (!radii.empty() && !(shown[k] > radii.back()))) continue;
-            radii.push_back(shown[k]);
-            seen.push_back(lines_[k]);
-        }
-        const auto count = static_cast<std::ptrdiff_t>(radii.size());
-        for (int k = 1; k <= kSteps; ++k) {
-            const double radius = radius_of(k);
-            SightLine& line = lines_[static_cast<std::size_t>(k)];
-            line.angle = line.offset = line.start = kNone;
-            const std::ptrdiff_t above = std::upper_bound(radii.begin(), radii.end(), radius) - radii.begin();
-            if (above < 1 || above >= count) continue;
-            const std::ptrdiff_t first = std::min(above - 2, count - 4);
-            double angle = 0, offset = 0;
-            // All of it is odd in the film's radius.
-            const auto at = [&](std::ptrdiff_t i) { return static_cast<std::size_t>(std::abs(i)); };
-            const auto signed_radius = [&](std::ptrdiff_t i) { return i < 0 ? -radii[at(i)] : radii[at(i)]; };
-            for (std::ptrdiff_t i = first; i < first + 4; ++i) {
-                double share = i < 0 ? -1 : 1;
-                for (std::ptrdiff_t j = first; j < first + 4; ++j)
-                    if (j != i) share *= (radius - signed_radius(j)) / (signed_radius(i) - signed_radius(j));
-                angle += share * seen[at(i)].angle;
-                offset += share * seen[at(i)].offset;
-            }
-            line = {angle, offset, seen[at(above - 1)].start, line.light};
-        }
-    }
+    void show_where_light_lands(const std::vector<double>& shown);
 
-    void follow_chief_rays(const LensSystem& lens, const PupilView& pupil) {
-        const FilmChiefRay chief(lens);
-        double cosine = 0, change = 0;
-        for (int k = 0; k <= kSteps; ++k) {
-            // From where the last two point to; on the axis and after a gap from the middle of the light.
-            const PupilRowPosition row = pupil_row_position(pupil, static_cast<float>(radius_of(k)), 0);
-            const double guesses[2] = {cosine + change, static_cast<double>(row.centre)};
-            const double light = lines_[static_cast<std::size_t>(k)].light;
-            set(k, std::nullopt, light);
-            for (double guess : guesses) {
-                const std::optional<SceneRay> ray = chief(radius_of(k), guess);
-                if (!ray) continue;
-                set(k, ray, light);
-                change = guess - cosine;
-                cosine = guess;
-                break;
-            }
-        }
-    }
+    void follow_chief_rays(const LensSystem& lens, const PupilView& pupil);
 
     /// Of the camera's models that have no surfaces: through the middle of the pupil.
-    void set_ideal(int k, const CameraView& view, ThinLensPlace thin) {
-        const Vec2f film = {static_cast<float>(radius_of(k)), 0}, middle = {0, 0};
-        if (view.model == CameraModel::thick_lens) {
-            const LensFrameRay ray = thick_lens_ray(view, film, middle);
-            set(k, SceneRay{static_cast<Vec3d>(ray.origin_mm), normalized(static_cast<Vec3d>(ray.direction))},
-                static_cast<double>(ray.weight));
-            return;
-        }
-        double radius = radius_of(k), light = std::pow(1 + std::pow(radius / thin.image_distance, 2), -2);
-        if (view.model == CameraModel::mapped_lens) {
-            const LensMapNode map = lens_map_at(view.map, film);
-            radius *= static_cast<double>(map.scale);
-            light = static_cast<double>(map.light);
-        }
-        const SceneRay ray = {{0, 0, thin.position}, normalized(Vec3d{-radius / thin.image_distance, 0, -1})};
-        set(k, light > 0 ? std::optional(ray) : std::nullopt, light);
-    }
+    void set_ideal(int k, const CameraView& view, ThinLensPlace thin);
 
     /// At the edge of the image, where rims leave little of the light, its mean may come from farther inwards again:
     /// what lies there has a place already. Turns all lines to the side on which they lead away from the axis.
-    void end_where_lines_turn_back() {
-        for (SightLine& line : lines_) line = {sign_ * line.angle, sign_ * line.offset, line.start, line.light};
-        const double distance = std::min(focus_, 1e9);
-        for (std::size_t k = 1; k < lines_.size(); ++k) {
-            const SightLine& line = lines_[k - 1];
-            const double cosine = std::cos(line.angle), sine = std::sin(line.angle);
-            const Place place = {line.offset * cosine + distance * sine, distance * cosine - line.offset * sine};
-            const double beside = place.away * std::cos(lines_[k].angle) - place.ahead * std::sin(lines_[k].angle);
-            if (!(beside >= lines_[k].offset)) continue;
-            for (; k < lines_.size(); ++k) lines_[k].angle = lines_[k].offset = lines_[k].start = kNone;
-            ends_in_film_ = true;
-        }
-    }
+    void end_where_lines_turn_back();
 
     /// Share of the step at which its line meets the place: Newton's method, kept between the sides of the root.
-    double root(int k, Place place) const {
-        double low = 0, high = 1, share = 0.5;
-        for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
-            const OddCurve::Point angle = angle_.between(k, share), offset = offset_.between(k, share);
-            const double cosine = std::cos(angle.value), sine = std::sin(angle.value);
-            const double beside = place.away * cosine - place.ahead * sine - offset.value;
-            (beside > 0 ? low : high) = share;
-            const double slope = -(place.away * sine + place.ahead * cosine) * angle.slope - offset.slope;
-            const double next = share - beside / slope;
-            if (std::fabs(next - share) < 1e-14) return next;
-            share = next > low && next < high ? next : 0.5 * (low + high);
-        }
-        return share;
-    }
+    double root(int k, Place place) const;
 
     double reference_, vertex_, focus_;  ///< vertex_: of the reference point; focus_: from it to the plane in focus
     double reach_ = 0;

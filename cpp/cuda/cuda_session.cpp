@@ -10,6 +10,7 @@
 #include "../camera/last_setup.hpp"
 #include "../render/film_sums.hpp"
 #include "../render/learning_passes.hpp"
+#include "../render/run_with_progress.hpp"
 #include "../render/seconds_since.hpp"
 #include "cuda_devices.hpp"
 #include "device_frame.hpp"

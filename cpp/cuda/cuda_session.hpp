@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include "../optics/pupil_tracer.hpp"
+#include "../optics/pupil/pupil_tracer.hpp"
 #include "../render/session.hpp"
 #include "shared_device_array.hpp"
 

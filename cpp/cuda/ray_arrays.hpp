@@ -1,7 +1,7 @@
 #pragma once
 #include "../camera/camera.hpp"
 #include "../camera/ray_request.hpp"
-#include "../optics/trace_path.hpp"
+#include "../optics/analysis/trace_path.hpp"
 #include "shared_device_array.hpp"
 
 namespace realcam {

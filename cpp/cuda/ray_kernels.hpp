@@ -2,7 +2,7 @@
 #include <cuda_runtime.h>
 
 #include "../camera/ray_request.hpp"
-#include "../optics/trace_request.hpp"
+#include "../optics/trace/trace_request.hpp"
 
 namespace realcam {
 

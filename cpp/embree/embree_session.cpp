@@ -14,6 +14,7 @@
 #include "../camera/last_setup.hpp"
 #include "../render/film_sums.hpp"
 #include "../render/learning_passes.hpp"
+#include "../render/run_with_progress.hpp"
 #include "../render/scene_change.hpp"
 #include "embree_scene.hpp"
 #include "fast_pupil_tracer.hpp"

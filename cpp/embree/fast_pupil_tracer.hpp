@@ -1,5 +1,5 @@
 #pragma once
-#include "../optics/pupil_tracer.hpp"
+#include "../optics/pupil/pupil_tracer.hpp"
 
 namespace realcam {
 

@@ -7,9 +7,9 @@
 
 #include "../camera/ray_request.hpp"
 #include "../camera/sensor_request.hpp"
-#include "../optics/aim_request.hpp"
-#include "../optics/film_points_request.hpp"
-#include "../optics/trace_request.hpp"
+#include "../optics/analysis/aim_request.hpp"
+#include "../optics/analysis/film_points_request.hpp"
+#include "../optics/trace/trace_request.hpp"
 #include "../render/gather_ghosts.hpp"
 #include "../render/ghost_film.hpp"
 #include "../render/kind_of.hpp"

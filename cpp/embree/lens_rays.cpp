@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../camera/ray_request.hpp"
-#include "../optics/aim_request.hpp"
-#include "../optics/bundle_quadrature.hpp"
+#include "../optics/analysis/aim_request.hpp"
+#include "../optics/analysis/bundle_quadrature.hpp"
 
 namespace realcam {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/ray_request.hpp"
-#include "../optics/film_points_request.hpp"
-#include "../optics/point_bundle.hpp"
-#include "../optics/ray_loop.hpp"
-#include "../optics/trace_path.hpp"
+#include "../optics/analysis/film_points_request.hpp"
+#include "../optics/analysis/point_bundle.hpp"
+#include "../optics/analysis/trace_path.hpp"
+#include "../optics/trace/ray_loop.hpp"
 #include "kernels.hpp"
 
 namespace realcam {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../camera/develop.hpp"
-#include "../io/image_metadata.hpp"
+#include "../io/files/image_metadata.hpp"
 #include "../io/scene_file.hpp"
 #include "../keep_going.hpp"
 #include "../render/image.hpp"

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <vector>
 
-#include "../io/readable_file.hpp"
+#include "../io/files/readable_file.hpp"
 #include "image_format.hpp"
 
 namespace realcam::image_io {

@@ -9,10 +9,10 @@
 #include <string>
 #include <string_view>
 
-#include "../io/printable.hpp"
-#include "../io/regular_file.hpp"
-#include "../io/text_lines.hpp"
-#include "../io/text_number.hpp"
+#include "../io/files/regular_file.hpp"
+#include "../io/text/printable.hpp"
+#include "../io/text/text_lines.hpp"
+#include "../io/text/text_number.hpp"
 #include "open_picture.hpp"
 
 namespace realcam::image_io {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "../error.hpp"
-#include "../io/decoded_image.hpp"
-#include "../io/free_memory.hpp"
-#include "../io/printable.hpp"
+#include "../io/files/free_memory.hpp"
+#include "../io/scene/decoded_image.hpp"
+#include "../io/text/printable.hpp"
 #include "environment_map.hpp"
 #include "image_file.hpp"
 #include "open_picture.hpp"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "../error.hpp"
-#include "../io/json_writer.hpp"
-#include "../io/printable.hpp"
+#include "../io/text/json_writer.hpp"
+#include "../io/text/printable.hpp"
 #include "image_file.hpp"
 #include "unfinished_file.hpp"
 

@@ -1,23 +1,14 @@
 #pragma once
 // Scenes from files: OBJ with MTL, glTF 2.0 (.gltf, .glb) and PLY.
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "../keep_going.hpp"
 #include "../scene/assembly.hpp"
-#include "decoded_image.hpp"
+#include "scene/decoded_image.hpp"
 
 namespace realcam::io {
-
-/// Decodes one picture: from the file `path`, or, where `path` is empty, from the bytes of a PNG or JPEG that the
-/// scene file carries inside. Returns nothing if it cannot; the scene then gets a stand-in and a warning.
-using ImageReader =
-    std::function<std::optional<DecodedImage>(const std::string& path, std::span<const std::uint8_t> encoded_bytes)>;
 
 struct SceneFileOptions {
     double scale = 1.0;  ///< metres per unit of the file
@@ -42,8 +33,8 @@ struct SceneFileOptions {
 /// nothing, and get smooth normals where faces share positions and meet at less than 45 degrees.
 ///
 /// Materials are taken as they are: an MTL's of all its models of illumination, and glTF's metallic-roughness model
-/// with the extensions in io/gltf_material.hpp. MTL's Ke, and emissiveFactor times KHR_materials_emissive_strength, are
-/// radiance in cd/m^2. What is not modelled is named in Scene::warnings.
+/// with the extensions in io/scene/gltf_material.hpp. MTL's Ke, and emissiveFactor times
+/// KHR_materials_emissive_strength, are radiance in cd/m^2. What is not modelled is named in Scene::warnings.
 ///
 /// Colours of vertices multiply those of materials: linear in glTF, sRGB codes in OBJ and PLY (docs/scenes.md).
 ///

@@ -1,9 +1,5 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
-#include <utility>
 #include <vector>
 
 #include "../platform.hpp"
@@ -22,52 +18,22 @@ public:
     OddCurve() = default;
     /// At least three values. `rises_where_values_do`: limits the slopes so that cubics between values that rise never
     /// fall, also where the function bends (F. Fritsch and R. Carlson, SIAM J. Numer. Anal. 17 (1980) 238).
-    explicit OddCurve(std::vector<double> values, bool rises_where_values_do = false) : values_(std::move(values)) {
-        for (int k = 0; k < count(); ++k) {
-            const double slope = slope_at(k);
-            slopes_.push_back(rises_where_values_do ? limited(k, slope) : slope);
-        }
-    }
+    explicit OddCurve(std::vector<double> values, bool rises_where_values_do = false);
 
     int count() const { return static_cast<int>(values_.size()); }
     double operator[](int k) const { return values_[static_cast<std::size_t>(k)]; }
 
     /// In the step that begins at k; `share` from 0 to 1.
-    Point between(int k, double share) const {
-        const auto i = static_cast<std::size_t>(k);
-        const double from = slopes_[i], to = slopes_[i + 1], rise = values_[i + 1] - values_[i];
-        const double c = 3 * rise - 2 * from - to, d = from + to - 2 * rise;
-        return {values_[i] + share * (from + share * (c + share * d)), from + share * (2 * c + 3 * share * d)};
-    }
-    Point at(double place) const {
-        const int k = std::clamp(static_cast<int>(place), 0, count() - 2);
-        return between(k, place - k);
-    }
+    Point between(int k, double share) const;
+    Point at(double place) const;
 
 private:
-    double value_at(int k) const {
-        if (k >= count()) return std::numeric_limits<double>::quiet_NaN();
-        return k < 0 ? -(*this)[-k] : (*this)[k];
-    }
+    double value_at(int k) const;
 
     /// By differences of the fourth order; by lower ones at the end and beside gaps.
-    double slope_at(int k) const {
-        const auto f = [this](int i) { return value_at(i); };
-        const double estimates[] = {(8 * (f(k + 1) - f(k - 1)) - (f(k + 2) - f(k - 2))) / 12,
-                                    0.5 * (f(k + 1) - f(k - 1)), 0.5 * (3 * f(k) - 4 * f(k - 1) + f(k - 2)),
-                                    f(k) - f(k - 1), f(k + 1) - f(k)};
-        for (const double estimate : estimates)
-            if (std::isfinite(estimate)) return estimate;
-        return std::numeric_limits<double>::quiet_NaN();
-    }
+    double slope_at(int k) const;
 
-    double limited(int k, double slope) const {
-        for (const double rise : {value_at(k + 1) - value_at(k), value_at(k) - value_at(k - 1)}) {
-            if (!std::isfinite(rise)) continue;
-            slope = rise * slope > 0 ? std::copysign(std::min(std::fabs(slope), 3 * std::fabs(rise)), rise) : 0;
-        }
-        return slope;
-    }
+    double limited(int k, double slope) const;
 
     std::vector<double> values_, slopes_;
 };

@@ -1,6 +1,4 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,52 +11,12 @@ namespace REALCAM_NAMESPACE {
 
 inline constexpr int kMostKeySteps = 128;  ///< Embree takes 129 keys
 
-inline std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterval& interval, int steps) {
-    std::vector<Affine<double>> keys;
-    for (int k = 0; k <= steps; ++k) keys.push_back(motion.at(interval.at(static_cast<double>(k) / steps)));
-    return keys;
-}
+std::vector<Affine<double>> uniform_keys(const Motion& motion, const TimeInterval& interval, int steps);
 
 /// The number of steps from key to key after which each of some points is always where the motion has it, to within
 /// 1/1000 of the longest way that one of them goes, or 1e-5 of the distance between them. 0: nothing moves. Where
 /// kMostKeySteps are too few for that, so many; and nothing where it would be off by a tenth of the way then, because
 /// it turns more often than some twenty times.
-inline std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval, std::span<const Vec3d> points) {
-    constexpr double kOfWay = 1e-3, kOfSize = 1e-5, kTooFar = 0.1;
-    // Where the path is looked at: at the motion's own keys, and at sevenths between them, which lie at sevenths of
-    // every power of two of steps, too, and so near the middles of some.
-    std::vector<double> times = {interval.begin_s};
-    const auto look_until = [&](double end) {
-        const double begin = times.back();
-        for (int k = 1; k <= 7; ++k) times.push_back(begin + (end - begin) * k / 7);
-    };
-    for (const double key : motion.times_within(interval)) look_until(key);
-    if (interval.end_s > interval.begin_s) look_until(interval.end_s);
-    std::vector<Affine<double>> path;
-    for (const double time : times) path.push_back(motion.at(time));
-    const auto farthest = [&](const Affine<double>& a, const Affine<double>& b) {
-        double most = 0;
-        for (const Vec3d p : points) most = std::max(most, length(a.point(p) - b.point(p)));
-        return most;
-    };
-    double way = 0, size = 0;
-    for (const auto& map : path) way = std::max(way, farthest(map, path[0]));
-    if (way == 0) return 0;
-    for (const Vec3d p : points) size = std::max(size, length(path[0].direction(p - points[0])));
-    const double close = std::max(kOfWay * way, kOfSize * size);
-    for (int steps = 1;; steps *= 2) {
-        const std::vector<Affine<double>> keys = uniform_keys(motion, interval, steps);
-        const double wanted = steps < kMostKeySteps ? close : std::max(kTooFar * way, close);
-        double most = 0;
-        for (std::size_t i = 0; i < times.size() && most <= wanted; ++i) {
-            const double place = (times[i] - interval.begin_s) / (interval.end_s - interval.begin_s) * steps;
-            const auto k = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, steps - 1.0));
-            const double share = place - static_cast<double>(k);
-            most = std::max(most, farthest(path[i], mix(keys[k], keys[k + 1], share)));
-        }
-        if (most <= wanted) return steps;
-        if (steps == kMostKeySteps) return std::nullopt;
-    }
-}
+std::optional<int> key_steps(const Motion& motion, const TimeInterval& interval, std::span<const Vec3d> points);
 
 }  // namespace REALCAM_NAMESPACE

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../camera/picture_codes.hpp"
-#include "../optics/lens_path.hpp"
+#include "../optics/trace/lens_path.hpp"
 #include "plan.hpp"
 #include "sampled_bundles.hpp"
 #include "scene_facts.hpp"

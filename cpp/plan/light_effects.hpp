@@ -9,9 +9,9 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/picture_codes.hpp"
-#include "../optics/axial_share.hpp"
-#include "../optics/ghost.hpp"
-#include "../optics/transmission.hpp"
+#include "../optics/analysis/transmission.hpp"
+#include "../optics/ghost/ghost.hpp"
+#include "../optics/lens/axial_share.hpp"
 #include "scene_facts.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "../optics/coating/coated_faces.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "lens_errors.hpp"

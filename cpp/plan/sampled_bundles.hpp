@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../camera/generate_rays.hpp"
-#include "../optics/pupil_tracer.hpp"
+#include "../optics/pupil/pupil_tracer.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,13 +1,9 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <numbers>
 #include <vector>
 
-#include "../camera/picture_codes.hpp"
 #include "noise_goal.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -30,86 +26,18 @@ public:
 
     /// `exposure`: of the picture so far, 3 per pixel, lux seconds; `samples`: of each pixel.
     AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso, const std::vector<float>& exposure,
-                     const std::vector<std::int64_t>& samples)
-        : width_(width),
-          height_(height),
-          goal_(goal),
-          iso_(iso),
-          across_(tiles_of(width)),
-          down_(tiles_of(height)),
-          halves_(2 * static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)) {
-        values_.reserve(exposure.size());
-        for (const float e : exposure) values_.push_back(value_of(e));
-        for_pixels([&](std::size_t pixel, std::size_t half) {
-            ++halves_[half].pixels;
-            halves_[half].samples += static_cast<double>(samples[pixel]);
-        });
-        for (Half& half : halves_) half.samples = std::max(1.0, half.samples / std::max(half.pixels, 1.0));
-    }
+                     const std::vector<std::int64_t>& samples);
 
     /// Samples that each pixel is to get more; all 0: it is finished. `most`: of all pixels together, about.
-    std::vector<std::uint32_t> next(double most) {
-        std::vector<double> wanted(halves_.size());
-        double sum = 0;
-        for (std::size_t h = 0; h < halves_.size(); ++h) {
-            const double end = end_of(other(h));
-            halves_[h].is_finished |= end <= halves_[h].samples;
-            wanted[h] = next_of(halves_[h], end);
-            sum += wanted[h] * halves_[h].pixels;
-        }
-        const double scale = std::clamp(most / std::max(sum, 1.0), 0.0, 1.0);
-        std::vector<std::uint32_t> counts(values_.size() / 3);
-        for_pixels([&](std::size_t pixel, std::size_t half) {
-            counts[pixel] = static_cast<std::uint32_t>(scale * wanted[half]);
-        });
-        return counts;
-    }
+    std::vector<std::uint32_t> next(double most);
 
     /// Takes in the picture with these samples.
-    void add(const std::vector<float>& exposure, const std::vector<std::uint32_t>& counts) {
-        std::vector<double> difference(halves_.size()), mean(halves_.size()), taken(halves_.size());
-        for_pixels([&](std::size_t pixel, std::size_t half) {
-            for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) {
-                if (counts[pixel] > 0) {
-                    const float value = value_of(exposure[c]);
-                    const double step = static_cast<double>(value) - static_cast<double>(values_[c]);
-                    difference[half] += step * step;
-                    values_[c] = value;
-                }
-                mean[half] += static_cast<double>(values_[c]);
-            }
-            taken[half] = counts[pixel];
-        });
-        for (std::size_t h = 0; h < halves_.size(); ++h) {
-            const double numbers = 3 * std::max(halves_[h].pixels, 1.0);
-            halves_[h].mean = mean[h] / numbers;
-            if (taken[h] > 0) halves_[h].add(difference[h] / numbers, taken[h]);
-        }
-    }
+    void add(const std::vector<float>& exposure, const std::vector<std::uint32_t>& counts);
 
-    ReachedNoise reached() const {
-        ReachedNoise worst{0, true, 0};
-        for (std::size_t h = 0; h < halves_.size(); ++h) {
-            if (halves_[h].pixels == 0) continue;
-            if (halves_[h].doublings == 0) return {};
-            const double noise = goal_.noise * std::sqrt(excess_of(h));
-            if (noise > worst.noise) worst = {noise, true, end_of(h)};
-        }
-        for (std::size_t h = 0; h < halves_.size(); ++h)
-            worst.is_reached &= halves_[h].pixels == 0 || halves_[h].is_finished;
-        return worst;
-    }
+    ReachedNoise reached() const;
 
     /// Samples of all pixels that the goal takes from here, about.
-    double left() const {
-        double sum = 0;
-        for (std::size_t h = 0; h < halves_.size(); ++h) {
-            if (halves_[h].is_finished) continue;
-            const double end = std::min(end_of(other(h)), static_cast<double>(goal_.most_samples));
-            sum += halves_[h].pixels * std::max(0.0, end - halves_[h].samples);
-        }
-        return sum;
-    }
+    double left() const;
 
 private:
     /// More is too good to be believed of few doublings.
@@ -124,16 +52,7 @@ private:
         double square = 0, square_before = 0;  ///< mean squares of what the last doubling changed, and the one before
         double doubled_to = 0;  ///< samples after the last doubling
 
-        void add(double change, double taken) {
-            // Of fewer samples than there are the difference says little.
-            const bool is_doubling = taken >= samples;
-            samples += taken;
-            if (!is_doubling) return;
-            square_before = square;
-            square = change;
-            doubled_to = samples;
-            ++doublings;
-        }
+        void add(double change, double taken);
     };
 
     static int tiles_of(int pixels) { return std::max(1, (pixels + kTileSide / 2) / kTileSide); }
@@ -149,65 +68,26 @@ private:
         }
     }
 
-    std::size_t half_at(int row, int column, std::size_t half) const {
-        return 2 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(across_) +
-                    static_cast<std::size_t>(column)) +
-               half;
-    }
+    std::size_t half_at(int row, int column, std::size_t half) const;
 
-    std::size_t other(std::size_t half) const {
-        // Of a picture of one pixel, say, there is no other half.
-        return halves_[half ^ 1].pixels > 0 ? half ^ 1 : half;
-    }
+    std::size_t other(std::size_t half) const;
 
-    float value_of(float exposure) const {
-        const auto developed = static_cast<float>(sensor_value(static_cast<double>(exposure), iso_));
-        return goal_.unit == NoiseUnit::codes ? code_of(developed) : developed;
-    }
+    float value_of(float exposure) const;
 
     /// p of a half: by the halves of the same colour of its tile and those about it.
-    double decay_of(std::size_t half) const {
-        const int tile = static_cast<int>(half / 2), row = tile / across_, column = tile % across_;
-        double last = 0, before = 0, numbers = 0;
-        for (int y = std::max(0, row - 1); y <= std::min(down_ - 1, row + 1); ++y)
-            for (int x = std::max(0, column - 1); x <= std::min(across_ - 1, column + 1); ++x) {
-                const Half& near = halves_[half_at(y, x, half % 2)];
-                if (near.doublings < 2) continue;
-                last += near.square * near.pixels;
-                before += near.square_before * near.pixels;
-                numbers += 3 * near.pixels;
-            }
-        if (!(last > 0) || !(before > 0)) return 1;
-        // Two deviations of the logarithm of a quotient of mean squares over so many numbers.
-        return std::clamp(std::log2(before / last) - 2 * std::numbers::log2e * 2 / std::sqrt(numbers), 1.0, kMostDecay);
-    }
+    double decay_of(std::size_t half) const;
 
     /// Variance of a pixel's mean over that of the goal.
-    double excess_of(std::size_t half) const {
-        constexpr double kDarkest = 0.01;  // of white
-        const Half& h = halves_[half];
-        const double goal = goal_.unit == NoiseUnit::codes ? goal_.noise : goal_.noise * std::max(h.mean, kDarkest);
-        const double decay = decay_of(half);
-        return h.square / (std::exp2(decay) - 1) * std::pow(h.doubled_to / h.samples, decay) / (goal * goal);
-    }
+    double excess_of(std::size_t half) const;
 
     /// What is measured is uncertain, and who stops where it is small stops too early.
     static constexpr double kMargin = 0.8;
 
     /// Samples of a pixel with which the goal is reached, by what these have shown.
-    double end_of(std::size_t half) const {
-        const Half& h = halves_[half];
-        return h.doublings == 0 ? std::numeric_limits<double>::infinity()
-                                : h.samples * std::pow(excess_of(half) / kMargin, 1 / decay_of(half));
-    }
+    double end_of(std::size_t half) const;
 
     /// As many as there are, or fewer where that is expected to be enough.
-    double next_of(const Half& half, double end) const {
-        const double most = std::min(half.samples, static_cast<double>(goal_.most_samples) - half.samples);
-        if (half.is_finished || half.pixels == 0 || most < 1) return 0;
-        const double step = std::max(1.0, half.samples / 4);
-        return std::clamp(std::ceil((end - half.samples) / step) * step, 0.0, most);
-    }
+    double next_of(const Half& half, double end) const;
 
     int width_, height_;
     NoiseGoal goal_;

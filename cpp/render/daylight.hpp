@@ -7,12 +7,6 @@ namespace REALCAM_NAMESPACE {
 /// Daylight for a scene that brings no light: a slightly warm sun of 80 klux from the upper left behind the camera,
 /// 46 degrees above its horizon, and a slightly blue sky of 5000 cd/m^2 all around. Together about 95 klux, for which
 /// the sunny-16 rule holds.
-inline void add_daylight(Scene& scene, const Pose& pose) {
-    const auto axes = camera_detail::axes_of(pose);
-    const Vec3d to_sun = normalized(-0.5 * axes.right + 0.8 * axes.up + 0.6 * axes.backward);
-    scene.suns.push_back({static_cast<Vec3f>(-to_sun), {84e3f, 80e3f, 68e3f}});
-    scene.environment = {};
-    scene.environment.constant = {4450, 5040, 6250};
-}
+void add_daylight(Scene& scene, const Pose& pose);
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,49 +12,17 @@ namespace REALCAM_NAMESPACE {
 using FilmSums = std::vector<PixelSum>;
 
 /// Exposure and depth of a film, without what the picture cost.
-inline Image developed(const FilmSums& film, int width, int height, double exposure_time_s,
-                       const SplattedLight& splatted = {}) {
-    Image image;
-    image.width = width;
-    image.height = height;
-    image.exposure.reserve(3 * film.size());
-    image.depth.reserve(film.size());
-    for (std::size_t i = 0; i < film.size(); ++i) {
-        for (int channel = 0; channel < 3; ++channel)
-            image.exposure.push_back(
-                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel)));
-        image.depth.push_back(film[i].mean_depth());
-    }
-    return image;
-}
+Image developed(const FilmSums& film, int width, int height, double exposure_time_s,
+                const SplattedLight& splatted = {});
 
 /// A film as 8-bit sRGB, 3 per pixel.
-inline std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso,
-                                                 ToneCurve curve, const SplattedLight& splatted = {}) {
-    std::vector<std::uint8_t> codes;
-    codes.reserve(3 * film.size());
-    for (std::size_t i = 0; i < film.size(); ++i)
-        for (int channel = 0; channel < 3; ++channel)
-            codes.push_back(film[i].code(channel, exposure_time_s, iso, curve,
-                                         splatted.irradiance(static_cast<std::int64_t>(i), channel)));
-    return codes;
-}
+std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
+                                          const SplattedLight& splatted = {});
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
-inline LayerImage developed_variance(const FilmSums& film, double exposure_time_s) {
-    LayerImage image{Layer::variance, {}, {}};
-    image.values.reserve(3 * film.size());
-    for (const PixelSum& sum : film)
-        for (int channel = 0; channel < 3; ++channel) image.values.push_back(sum.variance(channel, exposure_time_s));
-    return image;
-}
+LayerImage developed_variance(const FilmSums& film, double exposure_time_s);
 
 /// How many samples each pixel has.
-inline std::vector<std::int64_t> samples_of(const FilmSums& film) {
-    std::vector<std::int64_t> counts;
-    counts.reserve(film.size());
-    for (const PixelSum& sum : film) counts.push_back(static_cast<std::int64_t>(sum.samples));
-    return counts;
-}
+std::vector<std::int64_t> samples_of(const FilmSums& film);
 
 }  // namespace REALCAM_NAMESPACE

@@ -2,7 +2,7 @@
 #include "../camera/ghost_view.hpp"
 #include "../math/cdf.hpp"
 #include "../math/random.hpp"
-#include "../optics/lens_trace.hpp"
+#include "../optics/trace/lens_trace.hpp"
 
 namespace REALCAM_NAMESPACE {
 

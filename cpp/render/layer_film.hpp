@@ -1,6 +1,5 @@
 #pragma once
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "layer_sum.hpp"
@@ -34,52 +33,9 @@ LayerImage numbered(Layer layer, const std::vector<MiddleSurface>& film, F&& f) 
     return image;
 }
 
-/// A mean; 0 of nothing.
-inline float mean(double sum, double weight) {
-    return weight > 0 ? static_cast<float>(sum / weight) : 0.0f;
-}
-
 }  // namespace layer_film_detail
 
 /// Of kSampledLayers and kMiddleLayers, those that are wanted.
-inline std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids) {
-    using namespace layer_film_detail;
-    std::vector<LayerImage> images;
-    const auto add = [&](Layer layer, auto&& make) {
-        if (wanted.has(layer)) images.push_back(make(layer));
-    };
-    add(Layer::normal, [&](Layer layer) {
-        return made(layer, film.sums, [](const LayerSum& sum, float* out) {
-            for (int c = 0; c < 3; ++c) out[c] = mean(sum.normal[c], sum.met);
-        });
-    });
-    add(Layer::albedo, [&](Layer layer) {
-        return made(layer, film.sums, [](const LayerSum& sum, float* out) {
-            for (int c = 0; c < 3; ++c) out[c] = mean(sum.albedo[c], sum.met);
-        });
-    });
-    add(Layer::circle_of_confusion_mm, [&](Layer layer) {
-        return made(layer, film.sums, [](const LayerSum& sum, float* out) {
-            *out = sum.weight > 0 ? mean(sum.circle_mm, sum.weight) : std::numeric_limits<float>::quiet_NaN();
-        });
-    });
-    add(Layer::depth_middle, [&](Layer layer) {
-        return made(layer, film.middle, [](const MiddleSurface& surface, float* out) { *out = surface.depth; });
-    });
-    add(Layer::normal_middle, [&](Layer layer) {
-        return made(layer, film.middle, [](const MiddleSurface& surface, float* out) {
-            out[0] = surface.normal.x;
-            out[1] = surface.normal.y;
-            out[2] = surface.normal.z;
-        });
-    });
-    add(Layer::object_id, [&](Layer layer) {
-        return numbered(layer, film.middle, [&](const MiddleSurface& surface) { return ids.object(surface); });
-    });
-    add(Layer::material_id, [&](Layer layer) {
-        return numbered(layer, film.middle, [&](const MiddleSurface& surface) { return ids.material(surface); });
-    });
-    return images;
-}
+std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids);
 
 }  // namespace REALCAM_NAMESPACE

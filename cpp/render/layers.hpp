@@ -79,36 +79,12 @@ inline constexpr LayerSet kMiddleLayers = {Layer::depth_middle, Layer::normal_mi
                                            Layer::material_id, Layer::motion};
 
 /// The names of all layers, for messages.
-inline std::string layer_names() {
-    std::string names;
-    for (const LayerInfo& layer : kLayers) names += std::string(names.empty() ? "" : ", ") + layer.name;
-    return names;
-}
+std::string layer_names();
 
-inline std::vector<std::string> names_of(LayerSet set) {
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < kLayers.size(); ++i)
-        if (set.has(static_cast<Layer>(i))) names.emplace_back(kLayers[i].name);
-    return names;
-}
+std::vector<std::string> names_of(LayerSet set);
 
 /// The layers of these names; "all" means each. Throws InputError for another name.
-inline LayerSet layers_named(const std::vector<std::string>& names) {
-    LayerSet set;
-    for (const std::string& name : names) {
-        if (name == "all") {
-            set = LayerSet::all();
-            continue;
-        }
-        std::size_t i = 0;
-        while (i < kLayers.size() && name != kLayers[i].name) ++i;
-        if (i == kLayers.size())
-            throw InputError("unknown layer \"" + name.substr(0, 60) + "\"; all, or some of " + layer_names() +
-                             " are wanted");
-        set.add(static_cast<Layer>(i));
-    }
-    return set;
-}
+LayerSet layers_named(const std::vector<std::string>& names);
 
 /// The names of objects or materials by their ids. 0, which has no name, is nothing.
 using IdNames = std::vector<std::string>;

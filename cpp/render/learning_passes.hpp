@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <vector>
 
 #include "../camera/pixel_pupil.hpp"
@@ -12,19 +11,6 @@ namespace REALCAM_NAMESPACE {
 /// spread over threads, and hangs together with its number alone. Each pass has random numbers of its own: samples of
 /// one sequence keep away from each other, and what was learnt from the first of them would tell where the later ones
 /// are not.
-inline std::vector<SampleRange> learning_passes(const SampleRange& range) {
-    std::vector<SampleRange> passes;
-    const std::uint64_t last = std::uint64_t{range.first} + range.count;
-    std::uint64_t first = range.first, end = pixel_pupil::kFirstPass;
-    std::uint32_t number = 0;
-    while (first < last) {
-        for (; end <= first; end *= 2) ++number;
-        const std::uint64_t count = std::min(end, last) - first;
-        passes.push_back(
-            {hash32(range.seed, number), static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)});
-        first += count;
-    }
-    return passes;
-}
+std::vector<SampleRange> learning_passes(const SampleRange& range);
 
 }  // namespace REALCAM_NAMESPACE

@@ -23,9 +23,6 @@ public:
 };
 
 /// Until it is there. Throws Cancelled where the caller does not want to wait any longer, and DeviceError.
-inline void wait(const LiveFrame& frame, const KeepGoing& keep_going) {
-    while (!frame.wait_for(std::chrono::milliseconds(50)))
-        if (keep_going && !keep_going()) throw Cancelled();
-}
+void wait(const LiveFrame& frame, const KeepGoing& keep_going);
 
 }  // namespace REALCAM_NAMESPACE

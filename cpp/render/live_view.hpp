@@ -16,24 +16,13 @@ public:
 
     /// Starts to take settings.spp samples more of each pixel (see Session::shoot).
     std::shared_ptr<const LiveFrame> shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve,
-                                           const KeepGoing& keep_going = {}, std::shared_ptr<void> under_way = {}) {
-        auto frame = session_->shoot(scene_, camera, settings, curve, keep_going, std::move(under_way));
-        has_frame_ = true;
-        return frame;
-    }
+                                           const KeepGoing& keep_going = {}, std::shared_ptr<void> under_way = {});
 
     /// The scene of the frames to come. Of one in which only transforms differ, only these are prepared.
-    void show(Assembly scene) {
-        session_->check(scene);
-        scene_ = std::move(scene);
-        has_frame_ = false;
-    }
+    void show(Assembly scene);
 
     /// What holds all that the frames up to the last have collected. Throws InputError before the first of a scene.
-    Session& collected() const {
-        if (!has_frame_) throw InputError("there is no picture yet; shoot() takes one");
-        return *session_;
-    }
+    Session& collected() const;
 
     /// Gives up all frames under way, from any thread. The next frame begins a new picture.
     void cancel() { session_->cancel(Collected::drop); }

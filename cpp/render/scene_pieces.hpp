@@ -19,16 +19,9 @@ using ChosenPieces = std::vector<bool>;
 /// What a scene consists of, for questions about its whole.
 class ScenePieces {
 public:
-    explicit ScenePieces(const Assembly& assembly) : assembly_(assembly), every_(asks_every_triangle(assembly)) {
-        ObjectBoxes objects;
-        for (const Instance& instance : assembly.instances)
-            if (!every_) boxes_.push_back(objects.of(instance));
-    }
+    explicit ScenePieces(const Assembly& assembly);
 
-    std::size_t count() const {
-        return every_ ? assembly_.triangle_count()
-                      : assembly_.static_geometry->triangles.size() + assembly_.instances.size();
-    }
+    std::size_t count() const;
 
     /// f(number, piece) for those whose number is wanted(number), always in the same order.
     template <class Wanted, class F>

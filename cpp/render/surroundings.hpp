@@ -1,7 +1,5 @@
 #pragma once
-#include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "gap_finder.hpp"
 #include "vast_sheets.hpp"
@@ -17,11 +15,7 @@ namespace REALCAM_NAMESPACE {
 /// more than three times as long as what is left; and what lies beyond a wide gap (GapFinder).
 class Surroundings {
 public:
-    explicit Surroundings(const Assembly& assembly) : pieces_(assembly), kept_(pieces_.count(), true) {
-        box_ = box_of(kept_);
-        while (take_away()) {
-        }
-    }
+    explicit Surroundings(const Assembly& assembly);
 
     /// Of what is left.
     const BoundingBox& box() const { return box_; }
@@ -34,27 +28,12 @@ public:
 private:
     static constexpr double kMuchSmaller = 1.0 / 3;
 
-    BoundingBox box_of(const ChosenPieces& chosen) const {
-        BoundingBox box;
-        pieces_.for_chosen(chosen, [&](std::size_t, const Piece& piece) { box.add(piece.box); });
-        return box;
-    }
+    BoundingBox box_of(const ChosenPieces& chosen) const;
 
     /// Keeps the chosen pieces alone, if they are there and so much smaller than all, and than this length, m.
-    bool keep(ChosenPieces chosen, double length_m = std::numeric_limits<double>::infinity()) {
-        const BoundingBox box = box_of(chosen);
-        if (box.empty() || !(box.diagonal() <= kMuchSmaller * std::min(box_.diagonal(), length_m))) return false;
-        kept_ = std::move(chosen);
-        box_ = box;
-        return true;
-    }
+    bool keep(ChosenPieces chosen, double length_m = std::numeric_limits<double>::infinity());
 
-    bool take_away() {
-        const WithoutSheets rest = SheetFinder(pieces_, kept_, box_).rest();
-        if (rest.any_left_out && keep(rest.chosen, rest.shortest_left_out)) return true;
-        const GapFinder gap(pieces_, box_);
-        return keep(gap.within(kept_)) || (rest.any_left_out && keep(gap.within(rest.chosen), rest.shortest_left_out));
-    }
+    bool take_away();
 
     ScenePieces pieces_;
     ChosenPieces kept_;

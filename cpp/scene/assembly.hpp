@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
@@ -39,10 +38,7 @@ struct Instance {
     std::shared_ptr<const Motion> motion = nullptr;
 
     Affine<double> transform_at(double time_s) const { return motion ? motion->at(time_s) : scene_from_object; }
-    void put(const Placement& placement) {
-        scene_from_object = placement.scene_from_object;
-        motion = placement.motion;
-    }
+    void put(const Placement& placement);
 };
 
 /// A scene as static geometry and instances of objects. A value: copies share what is
@@ -57,99 +53,35 @@ struct Assembly {
     Assembly(std::shared_ptr<const Scene> scene) : static_geometry(std::move(scene)) {}
     Assembly(Scene scene) : static_geometry(std::make_shared<const Scene>(std::move(scene))) {}
 
-    bool has_light() const {
-        if (static_geometry->has_light()) return true;
-        for (const Instance& instance : instances)
-            if (instance.object->has_local_light()) return true;
-        return false;
-    }
+    bool has_light() const;
     bool moves() const {
         return std::any_of(instances.begin(), instances.end(), [](const Instance& i) { return i.motion != nullptr; });
     }
-    std::size_t triangle_count() const {
-        std::size_t count = static_geometry->triangles.size();
-        for (const Instance& instance : instances) count += instance.object->triangles.size();
-        return count;
-    }
+    std::size_t triangle_count() const;
 };
 
 /// Whether two assemblies are made of the same parts, of which some may have other transforms.
-inline bool same_parts(const Assembly& a, const Assembly& b) {
-    if (a.static_geometry != b.static_geometry || a.instances.size() != b.instances.size()) return false;
-    for (std::size_t i = 0; i < a.instances.size(); ++i)
-        if (a.instances[i].object != b.instances[i].object) return false;
-    return true;
-}
+bool same_parts(const Assembly& a, const Assembly& b);
 
-inline bool same_placement(const Instance& a, const Instance& b) {
-    const bool same_motion = a.motion == b.motion || (a.motion && b.motion && *a.motion == *b.motion);
-    return a.scene_from_object == b.scene_from_object && same_motion;
-}
+bool same_placement(const Instance& a, const Instance& b);
 
-inline bool same_transforms(const Assembly& a, const Assembly& b) {
-    for (std::size_t i = 0; i < a.instances.size(); ++i)
-        if (!same_placement(a.instances[i], b.instances[i])) return false;
-    return true;
-}
+bool same_transforms(const Assembly& a, const Assembly& b);
 
 /// A name for messages.
-inline std::string label(const Assembly& assembly, std::size_t instance) {
-    const std::string& name = assembly.instances[instance].name;
-    return "instance " + std::to_string(instance) + (name.empty() ? "" : " (\"" + name + "\")");
-}
+std::string label(const Assembly& assembly, std::size_t instance);
 
 /// Why a map is no transform for an instance; empty where it is one.
-inline std::string transform_error(const Affine<double>& map) {
-    // Far inside of what float can do, and beyond what anybody has seen.
-    constexpr double kFarthest_m = 1e12, kMost = 1e6, kLeast = 1e-6;
-    constexpr double kLeastVolume =
-        1e-4;  // of what the three would span at right angles: its inverse has digits to lose
-    const auto within = [](double v) { return v >= kLeast && v <= kMost; };
-    const double x = length(map.x), y = length(map.y), z = length(map.z);
-    if (x == 0 || y == 0 || z == 0) return "a transform must keep three directions; this one makes the object flat";
-    if (!within(x) || !within(y) || !within(z) || !(length(map.origin) <= kFarthest_m))
-        return "a transform must be finite and scale each axis by 1e-6 to 1e6, to within 1e12 m";
-    if (!(std::fabs(map.determinant()) > kLeastVolume * x * y * z))
-        return "a transform must keep three directions; this one makes the object flat";
-    return "";
-}
+std::string transform_error(const Affine<double>& map);
 
 /// Why keys are no motion for an instance; empty where they are one.
-inline std::string motion_error(const Motion& motion) {
-    const std::size_t keys = motion.times_s.size();
-    if (keys == 0 || keys != motion.transforms.size())
-        return "a motion wants as many transforms as times, one at least";
-    for (std::size_t k = 0; k < keys; ++k) {
-        const std::string key = "key " + std::to_string(k) + " of its motion: ";
-        const std::string time = key_time_error(motion.times_s[k], k > 0 ? &motion.times_s[k - 1] : nullptr);
-        if (!time.empty()) return key + time;
-        if (const std::string why = transform_error(motion.transforms[k]); !why.empty()) return key + why;
-        if ((motion.transforms[0].determinant() < 0) != (motion.transforms[k].determinant() < 0))
-            return key + "all keys must mirror the object, or none; between them it would be flat";
-    }
-    return "";
-}
+std::string motion_error(const Motion& motion);
 
 /// Throws InputError where a transform is none.
-inline void validate_transforms(const Assembly& assembly) {
-    for (std::size_t i = 0; i < assembly.instances.size(); ++i) {
-        const Instance& instance = assembly.instances[i];
-        const std::string why =
-            instance.motion ? motion_error(*instance.motion) : transform_error(instance.scene_from_object);
-        if (!why.empty()) throw InputError(label(assembly, i) + ": " + why);
-    }
-}
+void validate_transforms(const Assembly& assembly);
 
 /// Throws InputError where there is nothing to be seen, or where a transform is none. What the parts hold is for
 /// SceneChecks.
-inline void validate(const Assembly& assembly) {
-    if (!assembly.static_geometry || assembly.triangle_count() == 0)
-        throw InputError("the scene is empty; at least one triangle is wanted");
-    constexpr std::size_t kMostInstances = std::size_t{1} << 28;
-    if (assembly.instances.size() > kMostInstances)
-        throw InputError("a scene holds at most " + std::to_string(kMostInstances) + " instances");
-    validate_transforms(assembly);
-}
+void validate(const Assembly& assembly);
 
 /// With a copy of static geometry that `change` has changed.
 template <class Change>
@@ -161,36 +93,13 @@ Assembly with_static_geometry(Assembly assembly, Change&& change) {
 }
 
 /// The scene as it stands at a time.
-inline Assembly standing_at(Assembly assembly, double time_s) {
-    for (Instance& instance : assembly.instances) {
-        instance.scene_from_object = instance.transform_at(time_s);
-        instance.motion = nullptr;
-    }
-    return assembly;
-}
-
-/// Of a part in the frame of its whole.
-inline Affine<double> whole_from_part(const Affine<double>& scene_from_whole, const Affine<double>& scene_from_part) {
-    const InverseAffine<double> back = scene_from_whole.inverse();
-    return {back.direction(scene_from_part.x), back.direction(scene_from_part.y), back.direction(scene_from_part.z),
-            back.point(scene_from_part.origin)};
-}
+Assembly standing_at(Assembly assembly, double time_s);
 
 /// But for roundings.
-inline bool are_close(const Affine<double>& a, const Affine<double>& b) {
-    constexpr double kRoundings = 1e-9;
-    const double size = length(a.x) + length(a.y) + length(a.z);
-    return length(a.x - b.x) + length(a.y - b.y) + length(a.z - b.z) <= kRoundings * size &&
-           length(a.origin - b.origin) <= kRoundings * (size + length(a.origin));
-}
+bool are_close(const Affine<double>& a, const Affine<double>& b);
 
 /// The times of the keys of several motions; null: none.
-inline std::vector<double> all_times(std::initializer_list<const Motion*> motions) {
-    std::vector<double> times;
-    for (const Motion* motion : motions)
-        if (motion) times.insert(times.end(), motion->times_s.begin(), motion->times_s.end());
-    return sorted_once(std::move(times));
-}
+std::vector<double> all_times(std::initializer_list<const Motion*> motions);
 
 /// What moves as `at`, a function of the time, says. `times`: of the keys that this wants; none: it stays where it is.
 template <class At>
@@ -199,29 +108,6 @@ Placement placement_by(const std::vector<double>& times, At&& at) {
 }
 
 /// Puts an instance elsewhere, or lets it move, and with it its parts, and theirs.
-inline void move(Assembly& assembly, std::size_t instance, const Placement& placement) {
-    const Instance whole = assembly.instances[instance];
-    std::vector<bool> moves(assembly.instances.size(), false);
-    moves[instance] = true;
-    for (std::size_t i = instance + 1; i < assembly.instances.size(); ++i) {
-        Instance& part = assembly.instances[i];
-        if (part.part_of == Instance::kNoWhole || !moves[static_cast<std::size_t>(part.part_of)]) continue;
-        moves[i] = true;
-        const auto within = [&](double time) {
-            return whole_from_part(whole.transform_at(time), part.transform_at(time));
-        };
-        // A part that moves with its whole alone has no keys of its own to be kept.
-        const std::vector<double> own = all_times({whole.motion.get(), part.motion.get()});
-        const Affine<double> first = within(own.empty() ? 0.0 : own.front());
-        const bool is_fixed =
-            std::all_of(own.begin(), own.end(), [&](double time) { return are_close(within(time), first); });
-        const std::vector<double> times =
-            is_fixed ? all_times({placement.motion.get()})
-                     : all_times({placement.motion.get(), whole.motion.get(), part.motion.get()});
-        part.put(
-            placement_by(times, [&](double time) { return placement.at(time) * (is_fixed ? first : within(time)); }));
-    }
-    assembly.instances[instance].put(placement);
-}
+void move(Assembly& assembly, std::size_t instance, const Placement& placement);
 
 }  // namespace REALCAM_NAMESPACE

@@ -20,42 +20,22 @@ struct BoundingBox {
         return {bits & 1 ? high.x : low.x, bits & 2 ? high.y : low.y, bits & 4 ? high.z : low.z};
     }
 
-    void add(Vec3d p) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    void add(const BoundingBox& other) {
-        if (other.empty()) return;
-        add(other.low);
-        add(other.high);
-    }
+    void add(Vec3d p);
+    void add(const BoundingBox& other);
     Vec3d nearest(Vec3d p) const {
         return {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y), std::clamp(p.z, low.z, high.z)};
     }
 };
 
 /// Of the triangles of a scene, metres, as a map takes them.
-inline void add_triangles(BoundingBox& box, const Scene& scene, const Affine<double>& map) {
-    for (const Triangle& t : scene.triangles)
-        for (const std::uint32_t vertex : t.vertices) box.add(map.point(scene.positions_m[vertex]));
-}
+void add_triangles(BoundingBox& box, const Scene& scene, const Affine<double>& map);
 
 /// Boxes of objects in their own coordinates, each made once, however many instances an object has.
 class ObjectBoxes {
 public:
-    const BoundingBox& of(const Scene& object) {
-        const auto [place, is_new] = boxes_.try_emplace(&object);
-        if (is_new) add_triangles(place->second, object, {});
-        return place->second;
-    }
+    const BoundingBox& of(const Scene& object);
     /// In the scene's coordinates: of the eight corners of the object's box, which may reach past its triangles.
-    BoundingBox of(const Instance& instance) {
-        BoundingBox box;
-        const BoundingBox& own = of(*instance.object);
-        for (int corner = 0; corner < 8 && !own.empty(); ++corner)
-            box.add(instance.scene_from_object.point(own.corner(corner)));
-        return box;
-    }
+    BoundingBox of(const Instance& instance);
 
 private:
     std::unordered_map<const Scene*, BoundingBox> boxes_;
@@ -70,18 +50,6 @@ inline bool asks_every_triangle(const Assembly& assembly) {
 
 /// Of a scene, metres. Of instances with many triangles in all (kMostTrianglesAsked), a box that holds those of their
 /// objects, which is larger where they are turned.
-inline BoundingBox bounding_box(const Assembly& assembly) {
-    BoundingBox box;
-    add_triangles(box, *assembly.static_geometry, {});
-    ObjectBoxes objects;
-    const bool every = asks_every_triangle(assembly);
-    for (const Instance& instance : assembly.instances) {
-        if (every)
-            add_triangles(box, *instance.object, instance.scene_from_object);
-        else
-            box.add(objects.of(instance));
-    }
-    return box;
-}
+BoundingBox bounding_box(const Assembly& assembly);
 
 }  // namespace REALCAM_NAMESPACE

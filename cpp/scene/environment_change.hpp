@@ -1,9 +1,4 @@
 #pragma once
-#include <cmath>
-#include <cstddef>
-#include <utility>
-
-#include "../error.hpp"
 #include "scene.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -18,32 +13,9 @@ struct EnvironmentChange {
 };
 
 /// Throws InputError where it is none.
-inline void check_environment_change(const EnvironmentChange& change) {
-    if (!(change.scale > 0) || !std::isfinite(change.scale))
-        throw InputError("the environment's scale must be a positive number");
-    if (!std::isfinite(change.rotation_deg)) throw InputError("the environment's rotation must be a number of degrees");
-}
+void check_environment_change(const EnvironmentChange& change);
 
 /// By a part of a column, each column takes its share of two, so that the light in all of them is the same as before.
-inline Environment changed(Environment environment, const EnvironmentChange& change) {
-    check_environment_change(change);
-    const auto scale = static_cast<float>(change.scale);
-    environment.constant = scale * environment.constant;
-    for (Color& pixel : environment.pixels) pixel = scale * pixel;
-    if (environment.pixels.empty() || change.rotation_deg == 0) return environment;
-    const auto width = static_cast<std::size_t>(environment.width);
-    const double turns = change.rotation_deg / 360;
-    const double columns = (turns - std::floor(turns)) * static_cast<double>(width);
-    const auto whole = static_cast<std::size_t>(columns);
-    const auto part = static_cast<float>(columns - static_cast<double>(whole));
-    std::vector<Color> row(width);
-    for (std::size_t begin = 0; begin < environment.pixels.size(); begin += width) {
-        Color* const pixels = environment.pixels.data() + begin;
-        for (std::size_t c = 0; c < width; ++c)
-            row[c] = mix(pixels[(c + whole) % width], pixels[(c + whole + 1) % width], part);
-        for (std::size_t c = 0; c < width; ++c) pixels[c] = row[c];
-    }
-    return environment;
-}
+Environment changed(Environment environment, const EnvironmentChange& change);
 
 }  // namespace REALCAM_NAMESPACE

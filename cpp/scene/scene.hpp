@@ -52,12 +52,7 @@ struct Scene {
     bool has_light() const { return has_local_light() || !suns.empty() || environment.emits(); }
 
     /// A light that is somewhere: a point light or an emissive triangle.
-    bool has_local_light() const {
-        if (!points.empty()) return true;
-        for (const Triangle& t : triangles)
-            if (materials[t.material].emits()) return true;
-        return false;
-    }
+    bool has_local_light() const;
 };
 
 }  // namespace REALCAM_NAMESPACE

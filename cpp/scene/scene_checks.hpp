@@ -1,14 +1,9 @@
 #pragma once
 // Whether a scene makes sense, whoever built it.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <memory>
-#include <set>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include "../checkpoint.hpp"
 #include "../error.hpp"
@@ -16,278 +11,37 @@
 
 namespace REALCAM_NAMESPACE {
 
-namespace scene_checks_detail {
-
-// Cubes of it, which traversal and planes need, are still far from the largest float.
-inline constexpr double farthest_m = 1e12;
-// Beyond all that emits light, the sun as a point light included; what a distance or a lobe makes of it is still a
-// float.
-inline constexpr float brightest = 1e20f, most_intense = 1e30f;
-
-inline bool finite(Vec3f v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-inline bool is_reflectance(Color c) {
-    return finite({c.r, c.g, c.b}) && c.r >= 0 && c.g >= 0 && c.b >= 0;
-}
-inline bool is_light(Color c, float most) {
-    return is_reflectance(c) && largest(c) <= most;
-}
-inline bool is_share(Color c) {
-    return is_light(c, 1.0f);
-}
-
-}  // namespace scene_checks_detail
-
 /// Whether coordinates in metres are finite, and near enough to be rendered.
 inline bool is_finite(Vec3d p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
-inline bool in_reach(Vec3d p_m) {
-    constexpr double farthest_m = scene_checks_detail::farthest_m;
-    return std::abs(p_m.x) <= farthest_m && std::abs(p_m.y) <= farthest_m && std::abs(p_m.z) <= farthest_m;
-}
+bool in_reach(Vec3d p_m);
 
 /// What messages say of coordinates, as the file gives them, that are not in reach.
-inline std::string why_out_of_reach(Vec3d p) {
-    std::ostringstream text;
-    text << "coordinates must be finite numbers" << (is_finite(p) ? " of at most 1e12 m" : "") << ", not (" << p.x
-         << ", " << p.y << ", " << p.z << ')';
-    return text.str();
-}
-
-namespace scene_checks_detail {
-
-class Checker {
-public:
-    Checker(const Scene& scene, const std::string& file, Checkpoint& checkpoint)
-        : scene_(scene), file_(file), checkpoint_(checkpoint) {}
-
-    void check(bool may_be_empty) const {
-        if (scene_.triangles.empty() && !may_be_empty)
-            throw SceneFileError((file_.empty() ? "the scene" : file_ + ":") + std::string(" holds no triangles"));
-        check_vertices();
-        check_triangles();
-        check_materials();
-        check_textures();
-        check_lights();
-        check_environment();
-    }
-
-private:
-    void require(bool good, const std::string& what, std::size_t index, const std::string& wanted) const {
-        if (!good) fail(what + " " + std::to_string(index) + ": " + wanted);
-    }
-    [[noreturn]] void fail(const std::string& message) const {
-        if (file_.empty()) throw InputError("scene: " + message);
-        throw SceneFileError(file_ + ": " + message);
-    }
-
-    void check_vertices() const {
-        const std::size_t count = scene_.positions_m.size();
-        for (std::size_t i = 0; i < count; ++i) {
-            checkpoint_.pass();
-            if (!in_reach(scene_.positions_m[i])) {
-                require(false, "vertex", i, "coordinates must be finite numbers of at most 1e12 m");
-            }
-        }
-        const auto one_each = [&](std::size_t size, const char* what) {
-            if (size != 0 && size != count) {
-                fail(std::to_string(size) + " " + what + " for " + std::to_string(count) +
-                     " vertices; none or one for each is wanted");
-            }
-        };
-        one_each(scene_.normals.size(), "normals");
-        one_each(scene_.uvs.size(), "texture coordinates");
-        one_each(scene_.colors.size(), "colours of vertices");
-        for (std::size_t i = 0; i < scene_.normals.size(); ++i) {
-            if (!finite(scene_.normals[i])) require(false, "normal", i, "must be finite numbers");
-        }
-        for (std::size_t i = 0; i < scene_.colors.size(); ++i) {
-            const VertexColor& c = scene_.colors[i];
-            require(is_reflectance(c.color) && c.alpha >= 0 && c.alpha <= 1, "colour of vertex", i,
-                    "must be finite and not negative, and its alpha lie between 0 and 1");
-        }
-        for (std::size_t i = 0; i < scene_.uvs.size(); ++i) {
-            if (!std::isfinite(scene_.uvs[i].x) || !std::isfinite(scene_.uvs[i].y)) {
-                require(false, "texture coordinate", i, "must be finite numbers");
-            }
-        }
-    }
-
-    void check_triangles() const {
-        const auto out_of = [&](std::size_t t, std::uint32_t index, const char* what, std::size_t count) {
-            fail("triangle " + std::to_string(t) + ": " + what + " " + std::to_string(index) +
-                 " does not exist; there are " + std::to_string(count));
-        };
-        for (std::size_t t = 0; t < scene_.triangles.size(); ++t) {
-            checkpoint_.pass();
-            const Triangle& triangle = scene_.triangles[t];
-            for (const std::uint32_t v : triangle.vertices) {
-                if (v >= scene_.positions_m.size()) out_of(t, v, "vertex", scene_.positions_m.size());
-            }
-            if (triangle.material >= scene_.materials.size()) {
-                out_of(t, triangle.material, "material", scene_.materials.size());
-            }
-        }
-    }
-
-    void check_materials() const {
-        const auto textures = static_cast<std::int64_t>(scene_.textures.size());
-        if (!scene_.material_names.empty() && scene_.material_names.size() != scene_.materials.size())
-            fail(std::to_string(scene_.material_names.size()) + " names for " +
-                 std::to_string(scene_.materials.size()) + " materials; none or one for each is wanted");
-        for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
-            const Material& m = scene_.materials[i];
-            require(is_reflectance(m.diffuse), "material", i, "diffuse reflectance must be finite and not negative");
-            require(is_reflectance(m.specular), "material", i, "specular reflectance must be finite and not negative");
-            require(m.shininess >= 0 && m.shininess <= 1e9f, "material", i,
-                    "the Phong exponent must lie between 0 and 1e9");
-            require(is_light(m.emission, brightest), "material", i, "emission must lie between 0 and 1e20 cd/m^2");
-            require(is_share(m.filter), "material", i, "what passes through it must lie between 0 and 1");
-            require(is_reflectance(m.mirror), "material", i, "mirror reflectance must be finite and not negative");
-            require(is_reflectance(m.absorption), "material", i, "absorption must be finite and not negative");
-            require(m.ior >= 0 && m.ior <= 1000, "material", i, "the refractive index must lie between 0 and 1000");
-            for (const float share : {m.transmission, m.metallic, m.roughness, m.specular_weight, m.clearcoat,
-                                      m.clearcoat_roughness, m.opacity, m.opacity_cutoff})
-                require(share >= 0 && share <= 1, "material", i,
-                        "transmission, metallic, roughness, specular weight, clearcoat and its roughness, opacity and "
-                        "its cutoff must lie between 0 and 1");
-            require(std::isfinite(m.normal_scale) && std::isfinite(m.clearcoat_normal_scale), "material", i,
-                    "the normal map's scale must be finite");
-            for (const auto member : kMaterialTextures) check_reference(m.*member, i, textures);
-        }
-    }
-
-    void check_reference(const TextureReference& reference, std::size_t material, std::int64_t textures) const {
-        require(
-            reference.texture >= -1 && reference.texture < textures, "material", material,
-            "texture " + std::to_string(reference.texture) + " does not exist; there are " + std::to_string(textures));
-        require(reference.texture < 0 || !scene_.uvs.empty(), "material", material,
-                "has a texture, and the vertices have no texture coordinates");
-        require(finite(reference.to_u) && finite(reference.to_v), "material", material,
-                "a texture's transform must be finite numbers");
-        const TextureSampler& s = reference.sampler;
-        const auto is_wrap = [](TextureWrap w) { return w >= TextureWrap::repeat && w <= TextureWrap::mirror; };
-        require(is_wrap(s.u) && is_wrap(s.v) && s.filter >= TextureFilter::linear && s.filter <= TextureFilter::nearest,
-                "material", material, "a texture's sampler is unknown");
-    }
-
-    void check_textures() const {
-        for (std::size_t i = 0; i < scene_.textures.size(); ++i) {
-            const Texture& t = scene_.textures[i];
-            const std::size_t texels =
-                static_cast<std::size_t>(std::max(t.width, 0)) * static_cast<std::size_t>(std::max(t.height, 0));
-            require(texels > 0 && (t.rgba.empty() ? t.linear_rgba.size() : t.rgba.size()) == 4 * texels, "texture", i,
-                    "width x height x 4 numbers are wanted");
-            checkpoint_.pass(t.linear_rgba.size());
-            for (const float v : t.linear_rgba)
-                require(v >= 0 && std::isfinite(v), "texture", i, "must hold finite numbers, none below 0");
-        }
-    }
-
-    void check_lights() const {
-        for (std::size_t i = 0; i < scene_.points.size(); ++i) {
-            require(in_reach(scene_.points[i].position_m), "point light", i, "its position must be finite");
-            require(is_light(scene_.points[i].intensity, most_intense), "point light", i,
-                    "its intensity must lie between 0 and 1e30 cd");
-            const ScenePointLight& p = scene_.points[i];
-            const double size = length(p.axis);
-            require(size == 0 || std::abs(size - 1) < 1e-3, "point light", i, "a spot's axis must have length 1");
-            require(p.inner_cone_rad >= 0 && p.inner_cone_rad <= p.outer_cone_rad && p.outer_cone_rad <= 1.5707964,
-                    "point light", i, "a spot's cones must lie between 0 and pi / 2, the inner one in the outer one");
-        }
-        for (std::size_t i = 0; i < scene_.suns.size(); ++i) {
-            const Vec3f d = scene_.suns[i].direction;
-            require(finite(d) && std::abs(length(d) - 1.0f) < 1e-3f, "sun", i, "its direction must have length 1");
-            require(is_light(scene_.suns[i].illuminance, brightest), "sun", i,
-                    "its illuminance must lie between 0 and 1e20 lux");
-        }
-    }
-
-    void check_environment() const {
-        const Environment& e = scene_.environment;
-        if (!is_light(e.constant, brightest)) fail("environment: radiance must lie between 0 and 1e20 cd/m^2");
-        if (e.pixels.empty()) return;
-        if (e.width <= 0 || e.height <= 0 ||
-            e.pixels.size() != static_cast<std::size_t>(e.width) * static_cast<std::size_t>(e.height)) {
-            fail("environment: width x height pixels are wanted");
-        }
-        if (!std::all_of(e.pixels.begin(), e.pixels.end(), [](Color c) { return is_light(c, brightest); })) {
-            fail("environment: radiance must lie between 0 and 1e20 cd/m^2 in every pixel");
-        }
-    }
-
-    const Scene& scene_;
-    const std::string& file_;
-    Checkpoint& checkpoint_;
-};
-
-}  // namespace scene_checks_detail
+std::string why_out_of_reach(Vec3d p);
 
 /// Checks everything that a renderer relies on: sizes of lists, indices, finite numbers, no negative light or
 /// reflectance. Throws SceneFileError if there is no triangle or if `file`, for the message, is given, and InputError
 /// otherwise; the message names the element, counted from 0. `may_be_empty`: of what has no triangle but emitters, or
 /// of a scene that consists of instances. Throws Cancelled where `checkpoint` does.
-inline void validate(const Scene& scene, const std::string& file, bool may_be_empty, Checkpoint& checkpoint) {
-    scene_checks_detail::Checker(scene, file, checkpoint).check(may_be_empty);
-}
-inline void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false) {
-    Checkpoint unasked;
-    validate(scene, file, may_be_empty, unasked);
-}
+void validate(const Scene& scene, const std::string& file, bool may_be_empty, Checkpoint& checkpoint);
+void validate(const Scene& scene, const std::string& file = {}, bool may_be_empty = false);
 
 /// Checks scenes that come one after the other: static geometry, objects and transforms, and of each scene only what
 /// was no part of the last one. Keeps the last one in memory.
 class SceneChecks {
 public:
     /// Throws as validate(Scene), and InputError for what is wrong with an instance, and Cancelled.
-    void check(const Assembly& scene, const std::string& file = {}, const KeepGoing& keep_going = {}) {
-        Checkpoint checkpoint(keep_going);
-        try {
-            if (!scene.static_geometry) throw InputError("the scene is empty; at least one triangle is wanted");
-            if (!same_parts(last_, scene)) {
-                check_parts(scene, file, checkpoint);
-                validate(scene);
-            } else if (!same_transforms(last_, scene)) {
-                validate_transforms(scene);
-            } else {
-                return;
-            }
-        } catch (const InputError& error) {
-            if (file.empty()) throw;
-            throw SceneFileError(file + ": " + error.what());
-        }
-        last_ = scene;
-    }
+    void check(const Assembly& scene, const std::string& file = {}, const KeepGoing& keep_going = {});
 
 private:
-    void check_parts(const Assembly& scene, const std::string& file, Checkpoint& checkpoint) const {
-        std::set<const Scene*> good{last_.static_geometry.get()};
-        for (const Instance& instance : last_.instances) good.insert(instance.object.get());
-        // What served as an object may be too little for a whole scene: no triangle.
-        if (good.insert(scene.static_geometry.get()).second || scene.instances.empty())
-            validate(*scene.static_geometry, file, !scene.instances.empty(), checkpoint);
-        for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-            checkpoint.pass();
-            const Scene* const object = scene.instances[i].object.get();
-            if (!object) throw InputError(label(scene, i) + " has no object");
-            if (good.insert(object).second) validate(*object, file, true, checkpoint);
-        }
-    }
+    void check_parts(const Assembly& scene, const std::string& file, Checkpoint& checkpoint) const;
 
     Assembly last_;
 };
 
 /// No area to speak of: less than (1 nm)^2, or thinner than 1e-12 of its length. Its indices have to be in range.
-inline bool is_degenerate(const Scene& scene, const Triangle& triangle) {
-    const Vec3d a = scene.positions_m[triangle.vertices[0]], b = scene.positions_m[triangle.vertices[1]],
-                c = scene.positions_m[triangle.vertices[2]];
-    const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
-    const double twice_area = length(cross(b - a, c - a));
-    // Renderers normalise the cross product in float, whose square must not underflow.
-    return !(twice_area > 2e-18) || !(twice_area > 1e-12 * longest);
-}
+bool is_degenerate(const Scene& scene, const Triangle& triangle);
 
 /// Returns how many triangles it dropped.
 inline std::size_t drop_degenerate_triangles(Scene& scene) {

@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "../error.hpp"
-#include "../io/lens_file.hpp"
-#include "../io/printable.hpp"
-#include "../io/readable_file.hpp"
-#include "../io/toml_document.hpp"
+#include "../io/files/readable_file.hpp"
+#include "../io/lens/lens_file.hpp"
+#include "../io/text/printable.hpp"
+#include "../io/text/toml_document.hpp"
 #include "../render/effect_names.hpp"
 #include "names.hpp"
 #include "read_scene_request.hpp"

@@ -6,7 +6,7 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
-#include "../io/lens_file.hpp"
+#include "../io/lens/lens_file.hpp"
 #include "../render/default_view.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"

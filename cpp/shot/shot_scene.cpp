@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "../error.hpp"
-#include "../io/nearest_names.hpp"
-#include "../io/printable.hpp"
+#include "../io/text/nearest_names.hpp"
+#include "../io/text/printable.hpp"
 #include "../scene/instance_names.hpp"
 
 namespace realcam::shot {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../error.hpp"
-#include "../io/toml_table.hpp"
+#include "../io/text/toml_table.hpp"
 
 namespace realcam::shot {
 

@@ -11,7 +11,7 @@ foreach(library IN ITEMS assimp embree TBB CLI11 OpenImageIO CUDAToolkit Python 
   list(APPEND alone -DCMAKE_DISABLE_FIND_PACKAGE_${library}=ON)
 endforeach()
 
-execute_process(COMMAND ${CMAKE_COMMAND} ${compiler} ${alone} -S ${REALCAM} -B ${WORK}/realcam -D${OPTION}=ON
+execute_process(COMMAND ${CMAKE_COMMAND} ${compiler} ${alone} -S ${REALCAM} -B ${WORK}/realcam -D${OPTION}=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_UNITY_BUILD=ON
                 OUTPUT_QUIET ${run})
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/realcam OUTPUT_QUIET ${run})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${WORK}/realcam --prefix ${WORK}/prefix OUTPUT_QUIET ${run})

@@ -1,8 +1,10 @@
 // Uses realcam's lens files: a bundled lens by its name, one real ray through it, a glass, and an error.
 #include <cmath>
 #include <cstdio>
-#include <realcam/io/lens_file.hpp>
-#include <realcam/optics/focus.hpp>
+#include <realcam/io/lens/lens_file.hpp>
+#include <realcam/optics/lens/focus.hpp>
+#include <realcam/optics/lens/paraxial.hpp>
+#include <realcam/optics/trace/lens_path.hpp>
 
 int main() {
     using namespace realcam;

@@ -1,7 +1,9 @@
 // Uses realcam's optics alone: a singlet, its focal length, and one real ray through it.
 #include <cmath>
 #include <cstdio>
-#include <realcam/optics/focus.hpp>
+#include <realcam/optics/lens/focus.hpp>
+#include <realcam/optics/lens/paraxial.hpp>
+#include <realcam/optics/trace/lens_path.hpp>
 
 int main() {
     using namespace realcam;

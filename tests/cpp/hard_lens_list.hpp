@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hard_lenses.hpp"
+#include "optics/lens/paraxial.hpp"
 
 namespace realcam::test {
 

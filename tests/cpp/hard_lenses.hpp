@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "optics/lens/paraxial.hpp"
 #include "traced_ray.hpp"
 
 namespace realcam::test {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../../cpp/embree/fast_pupil_tracer.hpp"
-#include "../../cpp/optics/pupil.hpp"
+#include "../../cpp/optics/pupil/pupil.hpp"
 #include "hard_lenses.hpp"
 #include "oracle.hpp"
 #include "pupil_region.hpp"

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens_error.hpp"
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/lens_checks.hpp"
-#include "../../cpp/optics/paraxial.hpp"
+#include "../../cpp/io/lens/lens_error.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/prescription/lens_checks.hpp"
+#include "../../cpp/optics/lens/paraxial.hpp"
 #include "doctest/doctest.h"
 
 namespace realcam::test {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "../../cpp/optics/lens_path.hpp"
-#include "../../cpp/optics/lens_system.hpp"
+#include "../../cpp/optics/trace/lens_path.hpp"
+#include "../../cpp/optics/prescription/lens_system.hpp"
 
 namespace realcam::test {
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/optics/pupil.hpp"
+#include "../../cpp/optics/pupil/pupil.hpp"
+#include "optics/lens/paraxial.hpp"
 #include "traced_ray.hpp"
 
 namespace realcam::test {

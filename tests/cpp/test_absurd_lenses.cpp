@@ -7,8 +7,10 @@
 
 #include "../../cpp/camera/field_of_view.hpp"
 #include "../../cpp/embree/fast_pupil_tracer.hpp"
-#include "../../cpp/optics/field_rays.hpp"
+#include "../../cpp/optics/analysis/field_rays.hpp"
 #include "measurement.hpp"
+#include "optics/analysis/ray_aiming.hpp"
+#include "optics/lens/exposure.hpp"
 #include "pixel_rays.hpp"
 #include "traced_ray.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../../cpp/embree/kernels.hpp"
-#include "../../cpp/optics/trace_request.hpp"
+#include "../../cpp/optics/trace/trace_request.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "trace_backends.hpp"

@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/focus.hpp"
-#include "../../cpp/optics/lens_changes.hpp"
-#include "../../cpp/optics/named_coatings.hpp"
-#include "../../cpp/optics/transmission.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/analysis/transmission.hpp"
+#include "../../cpp/optics/lens/focus.hpp"
+#include "../../cpp/optics/lens/lens_changes.hpp"
+#include "../../cpp/optics/prescription/named_coatings.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/analysis/ray_aiming.hpp"
+#include "optics/coating/coated_faces.hpp"
+#include "optics/coating/coated_surface.hpp"
+#include "optics/coating/thin_film.hpp"
+#include "optics/trace/lens_path.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -5,13 +5,15 @@
 #include <string>
 
 #include "../../cpp/camera/film_spectrum.hpp"
-#include "../../cpp/io/bundled_lenses.hpp"
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/fit_coatings.hpp"
-#include "../../cpp/optics/lens_changes.hpp"
-#include "../../cpp/optics/named_coatings.hpp"
+#include "../../cpp/io/lens/bundled_lenses.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/coating/fit_coatings.hpp"
+#include "../../cpp/optics/lens/lens_changes.hpp"
+#include "../../cpp/optics/prescription/named_coatings.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/coating/coated_faces.hpp"
+#include "optics/trace/lens_dispersion.hpp"
 #include "three_layers.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "../../cpp/io/decoded_image.hpp"
+#include "../../cpp/io/scene/decoded_image.hpp"
 #include "doctest/doctest.h"
 
 using namespace realcam;

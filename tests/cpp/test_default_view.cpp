@@ -1,7 +1,7 @@
 #include <numbers>
 
 #include "../../cpp/camera/default_film.hpp"
-#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
 #include "../../cpp/render/daylight.hpp"
 #include "../../cpp/render/default_view.hpp"
 #include "../../cpp/render/metering.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../../cpp/camera/diffraction_tables.hpp"
-#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
 #include "../../cpp/math/random.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"

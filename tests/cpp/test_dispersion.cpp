@@ -5,11 +5,12 @@
 
 #include "../../cpp/camera/dispersed_rays.hpp"
 #include "../../cpp/camera/film_spectrum.hpp"
-#include "../../cpp/io/bundled_lenses.hpp"
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/pupil.hpp"
+#include "../../cpp/io/lens/bundled_lenses.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/pupil/pupil.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/trace/lens_dispersion.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/optics/paraxial.hpp"
+#include "../../cpp/optics/lens/paraxial.hpp"
 #include "about.hpp"
 #include "code_v_aberrations.hpp"
 #include "doctest/doctest.h"

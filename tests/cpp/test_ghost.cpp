@@ -1,6 +1,6 @@
 // Ghosts: against published figures and closed forms.
 
-#include "../../cpp/optics/ghost.hpp"
+#include "../../cpp/optics/ghost/ghost.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/ghost/film_mirror.hpp"
 #include "traced_ray.hpp"
 
 using namespace realcam;

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "../../cpp/camera/ghost_tables.hpp"
-#include "../../cpp/io/bundled_lenses.hpp"
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/coated_faces.hpp"
-#include "../../cpp/optics/named_coatings.hpp"
+#include "../../cpp/io/lens/bundled_lenses.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/coating/coated_faces.hpp"
+#include "../../cpp/optics/prescription/named_coatings.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/ghost/ghost_coatings.hpp"
 #include "three_layers.hpp"
 
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/bundled_lenses.hpp"
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/io/lens_glass.hpp"
+#include "../../cpp/io/lens/bundled_lenses.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/io/lens/lens_glass.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "refusal.hpp"

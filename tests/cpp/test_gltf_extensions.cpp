@@ -6,7 +6,7 @@
 
 #include "../../cpp/camera/default_film.hpp"
 #include "../../cpp/camera/picture_angle.hpp"
-#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
 #include "../../cpp/render/default_view.hpp"
 #include "gltf_files.hpp"
 

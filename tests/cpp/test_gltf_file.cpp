@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/scene_materials.hpp"
+#include "../../cpp/io/scene/scene_materials.hpp"
 #include "gltf_files.hpp"
 
 using namespace scene_files;

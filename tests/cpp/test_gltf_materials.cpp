@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "../../cpp/io/gltf_file.hpp"
+#include "../../cpp/io/gltf/gltf_file.hpp"
 #include "gltf_files.hpp"
 
 using namespace scene_files;

@@ -9,6 +9,7 @@
 #include "field_picture.hpp"
 #include "hard_lens_list.hpp"
 #include "measurement.hpp"
+#include "optics/lens/exposure.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "../../cpp/math/root.hpp"
-#include "../../cpp/optics/best_focus.hpp"
-#include "../../cpp/optics/pupil.hpp"
+#include "../../cpp/optics/lens/best_focus.hpp"
+#include "../../cpp/optics/pupil/pupil.hpp"
 #include "measurement.hpp"
 #include "pupil_region.hpp"
 #include "traced_ray.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/bundled_lenses.hpp"
+#include "../../cpp/io/lens/bundled_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "refusal.hpp"

@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/lens_changes.hpp"
-#include "../../cpp/optics/named_coatings.hpp"
-#include "../../cpp/optics/spot.hpp"
-#include "../../cpp/optics/zoom.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/analysis/spot.hpp"
+#include "../../cpp/optics/lens/lens_changes.hpp"
+#include "../../cpp/optics/lens/zoom.hpp"
+#include "../../cpp/optics/prescription/named_coatings.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "lens_reading.hpp"
+#include "optics/trace/lens_path.hpp"
 
 namespace {
 

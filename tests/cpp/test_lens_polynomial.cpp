@@ -1,10 +1,10 @@
 // Polynomials in place of a lens.
 
-#include "../../cpp/optics/lens_polynomial.hpp"
+#include "../../cpp/optics/lens/lens_polynomial.hpp"
 
 #include <cmath>
 
-#include "../../cpp/optics/pupil.hpp"
+#include "../../cpp/optics/pupil/pupil.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"

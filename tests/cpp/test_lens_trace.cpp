@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/optics/lens_trace.hpp"
+#include "../../cpp/optics/trace/lens_trace.hpp"
 #include "code_v_rays.hpp"
 #include "doctest/doctest.h"
 #include "traced_ray.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/made_textures.hpp"
+#include "../../cpp/io/scene/made_textures.hpp"
 #include "gltf_files.hpp"
 
 using namespace scene_files;

@@ -5,10 +5,11 @@
 #include <cmath>
 
 #include "../../cpp/camera/camera.hpp"
-#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
 #include "both_traversals.hpp"
 #include "bvh_rays.hpp"
 #include "doctest/doctest.h"
+#include "math/uniform_keys.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

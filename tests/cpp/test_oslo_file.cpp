@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/optics/focus.hpp"
+#include "../../cpp/optics/lens/focus.hpp"
 #include "about.hpp"
 #include "lens_reading.hpp"
 

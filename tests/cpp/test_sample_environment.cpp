@@ -10,6 +10,7 @@
 #include "../../cpp/scene/render_space_scene.hpp"
 #include "bare_scene.hpp"
 #include "chi_square.hpp"
+#include "math/append_cdf.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../../cpp/camera/field_of_view.hpp"
-#include "../../cpp/optics/exposure.hpp"
+#include "../../cpp/optics/lens/exposure.hpp"
 #include "hard_lens_list.hpp"
 #include "hard_rays.hpp"
 #include "measurement.hpp"

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
 #include "../../cpp/render/film_sums.hpp"
 #include "../../cpp/render/live_view.hpp"
 #include "../../cpp/render/take_picture.hpp"

@@ -7,6 +7,7 @@
 #include "about.hpp"
 #include "field_picture.hpp"
 #include "measurement.hpp"
+#include "optics/lens/exposure.hpp"
 #include "trace_backends.hpp"
 #include "traced_ray.hpp"
 

@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "../../cpp/camera/default_film.hpp"
-#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
 #include "../../cpp/render/default_view.hpp"
 #include "doctest/doctest.h"
+#include "render/axis_crossings.hpp"
+#include "render/surroundings.hpp"
 #include "set_pieces.hpp"
 
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "../../cpp/io/gltf_file.hpp"
-#include "../../cpp/io/texture_transform.hpp"
+#include "../../cpp/io/gltf/gltf_file.hpp"
+#include "../../cpp/io/scene/texture_transform.hpp"
 #include "gltf_files.hpp"
 
 using namespace scene_files;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/sensor_file.hpp"
+#include "../../cpp/io/sensor/sensor_file.hpp"
 #include "../../cpp/shot/shot_file.hpp"
 #include "about.hpp"
 #include "lens_reading.hpp"

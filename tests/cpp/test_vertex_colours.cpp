@@ -6,6 +6,8 @@
 
 #include "../../cpp/scene/render_space_scene.hpp"
 #include "gltf_files.hpp"
+#include "scene/opacity.hpp"
+#include "scene/surface_point.hpp"
 
 namespace {
 

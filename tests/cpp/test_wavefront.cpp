@@ -1,7 +1,7 @@
 // Optical path differences: against another program's listing, against perfect surfaces and closed forms, and against
 // the same rays in fifty digits.
 
-#include "../../cpp/optics/wavefront.hpp"
+#include "../../cpp/optics/analysis/wavefront.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include "code_v_aberrations.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/analysis/spot.hpp"
 #include "oracle.hpp"
 #include "traced_ray.hpp"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/io/lens_glass.hpp"
-#include "../../cpp/optics/transmission.hpp"
+#include "../../cpp/io/lens/lens_glass.hpp"
+#include "../../cpp/optics/analysis/transmission.hpp"
 #include "about.hpp"
 #include "lens_reading.hpp"
 

@@ -2,8 +2,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../cpp/optics/coating.hpp"
-#include "../../cpp/optics/named_coatings.hpp"
+#include "../../cpp/optics/prescription/coating.hpp"
+#include "../../cpp/optics/prescription/named_coatings.hpp"
 
 namespace realcam::test {
 

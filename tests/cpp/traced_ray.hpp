@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/focus.hpp"
-#include "../../cpp/optics/lens_path.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/lens/focus.hpp"
+#include "../../cpp/optics/trace/lens_path.hpp"
+#include "optics/lens/paraxial.hpp"
 
 namespace realcam::test {
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 
-#include "../../cpp/optics/lens_checks.hpp"
+#include "../../cpp/optics/prescription/lens_checks.hpp"
 #include "bytes.hpp"
+#include "optics/prescription/lens_limits.hpp"
 
 namespace realcam::fuzz {
 

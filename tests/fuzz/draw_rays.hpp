@@ -2,7 +2,7 @@
 // Rays for a lens from fuzz bytes: the ordinary ones, and those that a formula for intersections or refraction has to
 // fear at the first surface that the light meets.
 
-#include "../../cpp/optics/lens_path.hpp"
+#include "../../cpp/optics/trace/lens_path.hpp"
 #include "bytes.hpp"
 
 namespace realcam::fuzz {

@@ -7,7 +7,7 @@
 #include "../../cpp/camera/camera.hpp"
 #include "../../cpp/camera/ray_request.hpp"
 #include "../../cpp/embree/kernels.hpp"
-#include "../../cpp/io/lens_file.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
 #include "draw_lens.hpp"
 #include "target.hpp"
 

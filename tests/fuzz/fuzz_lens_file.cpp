@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/bundled_lenses.hpp"
-#include "../../cpp/io/lens_file.hpp"
-#include "../../cpp/optics/lens_checks.hpp"
+#include "../../cpp/io/lens/bundled_lenses.hpp"
+#include "../../cpp/io/lens/lens_file.hpp"
+#include "../../cpp/optics/prescription/lens_checks.hpp"
 #include "bytes.hpp"
 #include "mutate_text.hpp"
 #include "target.hpp"

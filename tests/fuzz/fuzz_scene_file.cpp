@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../../cpp/error.hpp"
-#include "../../cpp/io/printable.hpp"
+#include "../../cpp/io/text/printable.hpp"
 #include "../../cpp/io/scene_file.hpp"
 #include "fuzz_folder.hpp"
 #include "mutate_bytes.hpp"

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "../../cpp/optics/lens_trace.hpp"
+#include "../../cpp/optics/trace/lens_trace.hpp"
 #include "findings.hpp"
 
 namespace realcam::fuzz {

@@ -1,0 +1,463 @@
+#include "camera.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "../math/uniform_keys.hpp"
+#include "../optics/lens/exposure.hpp"
+#include "../optics/trace/lens_dispersion.hpp"
+#include "exposed_rays.hpp"
+
+namespace realcam {
+
+TimeInterval Camera::exposure() const {
+    const double begin = shutter.opens_s + 0.5 * (exposure_time_s - seen_time());
+    return {begin, begin + shutter.readout_time_s + seen_time()};
+}
+
+namespace camera_detail {
+
+namespace {
+
+constexpr double kFarthestPosition = 1e12;  ///< each coordinate, m, as a scene's corners
+
+constexpr double kNearestLook = 1e-9;  ///< look_at from position, m
+
+bool lies_between(double least, double value, double most) {
+    return value >= least && value <= most;
+}
+
+bool is_place(Vec3d v) {
+    const auto in_reach = [](double x) { return std::fabs(x) <= kFarthestPosition; };
+    return in_reach(v.x) && in_reach(v.y) && in_reach(v.z);
+}
+
+}  // namespace
+
+}  // namespace camera_detail
+
+void validate(const Film& film) {
+    using namespace camera_detail;
+    if (film.width < 1 || film.height < 1 || film.width > kMaxResolution || film.height > kMaxResolution)
+        throw InputError("the resolution is " + std::to_string(film.width) + " x " + std::to_string(film.height) +
+                         " pixels; 1 to " + std::to_string(kMaxResolution) + " each way are wanted");
+    if (!lies_between(kSmallestFilm, film.width_mm, kLargestFilm) ||
+        !lies_between(kSmallestFilm, film.height_mm, kLargestFilm))
+        throw InputError("the film's width and height must be positive lengths, from 1e-6 to 1e9 mm");
+    if (!lies_between(-kLargestFilm, film.shift_mm.x, kLargestFilm) ||
+        !lies_between(-kLargestFilm, film.shift_mm.y, kLargestFilm))
+        throw InputError("the film's shift must be two finite lengths of at most 1e9 mm");
+}
+
+void validate(const Pose& pose) {
+    using namespace camera_detail;
+    if (!is_place(pose.position_m) || !is_place(pose.look_at_m))
+        throw InputError("the camera's position and look_at must be finite numbers of at most 1e12 m");
+    if (!lies_between(kShortestUp, length(pose.up), kLongestUp))
+        throw InputError("the camera's up direction must have a finite length, from 1e-100 to 1e100");
+    const Vec3d forward = pose.look_at_m - pose.position_m;
+    const double distance = length(forward);
+    if (!(distance > kNearestLook) || !(length(cross(forward, pose.up)) > 1e-9 * distance * length(pose.up)))
+        throw InputError("the camera must look at a point other than its position, and not along its up direction");
+}
+
+void validate(const std::vector<PoseKey>& motion) {
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+        const std::string key = "key " + std::to_string(k) + " of the camera's motion: ";
+        const std::string time = key_time_error(motion[k].time_s, k > 0 ? &motion[k - 1].time_s : nullptr);
+        if (!time.empty()) throw InputError(key + time);
+        try {
+            validate(motion[k].pose);
+        } catch (const InputError& error) {
+            throw InputError(key + error.what());
+        }
+    }
+}
+
+void validate(const Camera& camera) {
+    using namespace camera_detail;
+    validate(camera.film);
+    if (!lies_between(kLeastDial, camera.exposure_time_s, kMostDial))
+        throw InputError("the exposure time must be a positive number of seconds, from 1e-37 to 1e38");
+    if (!lies_between(kLeastDial, camera.iso, kMostDial))
+        throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
+    if (camera.lens.stop_index() < 0) throw InputError("the camera has no lens; one with a stop is wanted");
+    if (const std::string why = film_distance_error(camera.lens); !why.empty()) throw InputError(why);
+    if (!(camera.lens.stop_semi_diameter >= 0))
+        throw InputError("the radius of the lens's open stop must be a length of 0 or more");
+    if (!(std::fabs(camera.shutter.opens_s) <= kMostSeconds))
+        throw InputError("the time at which the shutter opens must lie within 1e9 s");
+    if (!lies_between(0, camera.shutter.readout_time_s, kMostSeconds))
+        throw InputError("the readout time must be a number of seconds from 0 to 1e9");
+    validate(camera.pose);
+    validate(camera.motion);
+}
+
+namespace camera_detail {
+
+Axes axes_of(const Pose& pose) {
+    const Vec3d backward = normalized(pose.position_m - pose.look_at_m);
+    const Vec3d right = normalized(cross(pose.up, backward));
+    return {right, cross(backward, right), backward};
+}
+
+Affine<double> scene_from_camera(const Pose& pose) {
+    const Axes axes = axes_of(pose);
+    return {axes.right, axes.up, axes.backward, pose.position_m};
+}
+
+}  // namespace camera_detail
+
+namespace camera_detail {
+
+namespace {
+
+Motion motion_of(const std::vector<PoseKey>& keys) {
+    Motion motion;
+    for (const PoseKey& key : keys) {
+        motion.times_s.push_back(key.time_s);
+        motion.transforms.push_back(scene_from_camera(key.pose));
+    }
+    return motion;
+}
+
+/// At even times of the exposure; empty where it does not move meanwhile. Throws InputError where it turns too fast.
+std::vector<Affine<double>> exposure_keys(const Camera& camera) {
+    if (!camera.moves()) return {};
+    const Motion motion = motion_of(camera.motion);
+    const TimeInterval exposure = camera.exposure();
+    // What is near shows where the camera is, and what is far how it is turned.
+    Motion turns = motion, ways = motion;
+    for (Affine<double>& turn : turns.transforms) turn.origin = {0, 0, 0};
+    for (Affine<double>& way : ways.transforms) way = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, way.origin};
+    const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, middle[] = {{0, 0, 0}};
+    const std::optional<int> turning = key_steps(turns, exposure, axes), going = key_steps(ways, exposure, middle);
+    if (!turning || !going)
+        throw InputError("the camera turns too fast; in one exposure about 20 turns can be followed");
+    const int steps = std::max(*turning, *going);
+    return steps == 0 ? std::vector<Affine<double>>() : uniform_keys(motion, exposure, steps);
+}
+
+}  // namespace
+
+}  // namespace camera_detail
+
+namespace camera_detail {
+
+IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data) {
+    IdealLens ideal{std::fabs(data.effective_focal_length), 0, 0.5 * data.entrance_pupil_diameter};
+    if (data.is_afocal()) {
+        // The film is where it is; the ray through the middle of the pupil says how large the picture is there.
+        const ParaxialRay chief = trace_paraxial(lens, lens.wavelength_nm, {-data.entrance_pupil_position, 1}, 0,
+                                                 static_cast<int>(lens.surfaces.size()));
+        ideal.image_distance = std::fabs(chief.height + lens.film_distance * chief.slope);
+    } else if (std::isfinite(lens.focus_distance)) {
+        const double object = lens.focus_distance - lens.film_position();  // in front of the first vertex
+        const double to_pupil = object + data.entrance_pupil_position;
+        const ParaxialRay end =
+            trace_paraxial(lens, lens.wavelength_nm, {object, 1}, 0, static_cast<int>(lens.surfaces.size()));
+        ideal.image_distance = std::fabs(to_pupil / end.slope);
+        ideal.inverse_object_distance = 1 / to_pupil;
+    }
+    return ideal;
+}
+
+ThinLens thin_lens_of(const LensSystem& lens, const FirstOrder& data) {
+    const IdealLens ideal = ideal_lens_of(lens, data);
+    return {static_cast<float>(ideal.image_distance), static_cast<float>(ideal.inverse_object_distance),
+            static_cast<float>(ideal.pupil_radius)};
+}
+
+ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
+    const int count = static_cast<int>(lens.surfaces.size());
+    const ParaxialRay height = trace_paraxial(lens, lens.wavelength_nm, {1, 0}, 0, count);
+    const ParaxialRay slope = trace_paraxial(lens, lens.wavelength_nm, {0, 1}, 0, count);
+    ThickLens thick{};
+    thick.A = static_cast<float>(height.height);
+    thick.B = static_cast<float>(slope.height);
+    thick.C = static_cast<float>(height.slope);
+    thick.D = static_cast<float>(slope.slope);
+    // A pupil at infinity is replaced by one 1 km away under the same angle.
+    constexpr double kFar = 1e6;
+    const double distance = lens.film_position() - data.exit_pupil_position;
+    const bool far = !(std::fabs(distance) < kFar);
+    const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
+    // Of a pupil at infinity, where the quotient has no value: the slope of light from the stop's rim.
+    const double rim = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const double marginal =
+        std::fabs(trace_paraxial(lens, lens.wavelength_nm, {rim, 0}, lens.stop_index(), count).slope);
+    thick.exit_pupil_distance = static_cast<float>(far ? kFar : distance);
+    thick.exit_pupil_radius =
+        static_cast<float>(far ? kFar * (std::isfinite(tangent) ? tangent : marginal) : 0.5 * data.exit_pupil_diameter);
+    return thick;
+}
+
+}  // namespace camera_detail
+
+namespace camera_detail {
+
+namespace {
+
+/// Of the ideal lens in the entrance pupil, for which what is in focus is sharp: with R its pupil's radius, b and s_f
+/// the distances from it to the film and to the plane in focus, a point at s has rays all over the pupil, which meet
+/// the plane in focus over 2 R |s_f - s| / s, and the film over b / s_f times that. Where the entrance pupil is at
+/// infinity, of the matrix of the real lens.
+CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens thin, ThickLens thick,
+                                      double film_distance) {
+    const double radius = static_cast<double>(thin.pupil_radius), image = static_cast<double>(thin.image_distance),
+                 inverse = static_cast<double>(thin.inverse_object_distance);
+    CircleOfConfusion circle{};
+    if (std::isfinite(entrance_pupil_position) && std::isfinite(radius * image * inverse)) {
+        // s = t + entrance_pupil_position, and the ray through the pupil's middle rises by s / b.
+        circle.rim = static_cast<float>(radius * (1 - inverse * entrance_pupil_position));
+        circle.rim_slope = static_cast<float>(-radius * inverse);
+        circle.middle = static_cast<float>(entrance_pupil_position / image);
+        circle.middle_slope = static_cast<float>(1 / image);
+        circle.least_middle = static_cast<float>(radius / image);
+        return circle;
+    }
+    const double A = static_cast<double>(thick.A), B = static_cast<double>(thick.B), C = static_cast<double>(thick.C),
+                 D = static_cast<double>(thick.D), pupil = static_cast<double>(thick.exit_pupil_distance);
+    const auto front = [&](double film, double slope) {
+        const double last = film - film_distance * slope;
+        return std::pair(static_cast<float>(D * last - B * slope), static_cast<float>(C * last - A * slope));
+    };
+    std::tie(circle.rim, circle.rim_slope) = front(0, static_cast<double>(thick.exit_pupil_radius) / pupil);
+    std::tie(circle.middle, circle.middle_slope) = front(1, 1 / pupil);
+    circle.least_middle = std::numeric_limits<float>::min();
+    return circle;
+}
+
+}  // namespace
+
+}  // namespace camera_detail
+
+namespace camera_detail {
+
+void validate_ideal(const LensSystem& lens, CameraModel model) {
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const std::string which = "the ideal camera models have no place for lens \"" + lens.name + "\": its ";
+    if (model == CameraModel::thick_lens) {
+        const ThickLens thick = thick_lens_of(lens, data);
+        if (!(std::fabs(thick.exit_pupil_distance) > 0)) throw InputError(which + "exit pupil lies in the film");
+        return;
+    }
+    const ThinLens thin = thin_lens_of(lens, data);
+    if (!std::isfinite(data.entrance_pupil_position))
+        throw InputError(which + "entrance pupil lies at infinity; use the thick lens");
+    if (!std::isfinite(thin.inverse_object_distance) || !(thin.image_distance > 0) ||
+        !std::isfinite(thin.image_distance))
+        throw InputError(which + "entrance pupil lies in the plane in focus, or its image in the film");
+}
+
+}  // namespace camera_detail
+
+Pose pose_at(const Camera& camera, double time_s) {
+    if (!camera.moves()) return camera.pose;
+    if (time_s <= camera.motion.front().time_s) return camera.motion.front().pose;
+    for (const PoseKey& key : camera.motion)
+        if (time_s == key.time_s) return key.pose;
+    if (time_s > camera.motion.back().time_s) return camera.motion.back().pose;
+    const Affine<double> map = camera_detail::motion_of(camera.motion).at(time_s);
+    return {map.origin, map.origin - map.z, map.y};
+}
+
+void set_motion(Camera& camera, std::vector<PoseKey> keys) {
+    camera.motion = std::move(keys);
+    validate(camera);
+    camera.pose = pose_at(camera, 0);
+}
+
+bool lies_near(const Camera& camera, Vec3d origin_m) {
+    const double focus_m = std::isfinite(camera.lens.focus_distance) ? camera.lens.focus_distance / 1000 : 1.0;
+    return length(position_when_open(camera) - origin_m) <= 10 * focus_m;
+}
+
+void validate_on_gpu(const Camera& camera) {
+    if (camera.model == CameraModel::full_lens_double)
+        throw InputError("the camera model full_double is for the CPU; device cpu is wanted");
+}
+
+CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraSetup* last, const LensEffects& effects)
+    : camera_(validated(camera)),
+      effects_(effects),
+      path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
+    if (effects.illuminant) set_wavelengths(*effects.illuminant);
+    if (effects.coatings) set_coatings(last);
+    const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
+    for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
+    if (last && last->has_pupil_of(camera, pupil_wavelengths_, effects.pupil_sampling))
+        pupil_ = last->pupil_;
+    else if (has_real_pupil(camera.model))
+        pupil_ = std::make_shared<const Pupil>(sampled_lens(camera.lens, effects.pupil_sampling), film_radius(), tracer,
+                                               pupil_wavelengths_);
+    if (effects.ghosts) {
+        if (last && last->ghosts_ && last->effects_ == effects && last->has_lens_and_film_of(camera))
+            ghosts_ = last->ghosts_;
+        else
+            ghosts_ = std::make_shared<const GhostTables>(camera.lens, film_radius(), *effects.ghosts, tracer,
+                                                          effects.dispersion ? &*spectrum_ : nullptr);
+    }
+    if (effects.diffraction) set_diffraction(tracer, last);
+    if (!pupil_) {
+        camera_detail::validate_ideal(camera.lens, camera.model);
+        axis_irradiance_ = last && !last->pupil_ && last->camera_.lens == camera.lens
+                               ? last->axis_irradiance_
+                               : static_cast<float>(axis_irradiance(camera.lens));
+        if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
+        return;
+    }
+    const std::string lens = "lens \"" + camera.lens.name + "\"";
+    if (!(camera.lens.stop_semi_diameter > 0)) throw InputError("no light passes " + lens + ": its stop is closed");
+    if (!(pupil_->image_radius() > 0))
+        throw InputError("no light passes " + lens +
+                         " in this state: what it blocks in the middle is larger than what its stop leaves open, or "
+                         "a surface is out of reach");
+    if (!pupil_->follows())
+        throw InputError("the stop of " + lens + ", a hole of radius " +
+                         std::to_string(1000 * camera.lens.stop_semi_diameter) +
+                         " um, is too small for pictures through every surface; open it, or use another camera model");
+    if (camera.model == CameraModel::polynomial_lens)
+        polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
+    if (camera.model == CameraModel::full_lens_double) {
+        path_in_double_.emplace(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm);
+        view_in_double_ = path_in_double_->view();
+    }
+}
+
+CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
+    using namespace camera_detail;
+    const LensSystem& lens = camera_.lens;
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    CameraView view{};
+    static_cast<CameraPlacement&>(view) =
+        placement(scene_from_camera(pose_at(camera_, camera_.exposure().begin_s)), origin_m);
+    view.model = camera_.model;
+    view.width = camera_.film.width;
+    view.height = camera_.film.height;
+    view.film_half_width = static_cast<float>(0.5 * camera_.film.width_mm);
+    view.film_half_height = static_cast<float>(0.5 * camera_.film.height_mm);
+    view.film_middle = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
+    view.film_distance = static_cast<float>(lens.film_distance);
+    view.front_vertex_m = static_cast<float>(0.001 * lens.film_position());
+    view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
+    view.thin = thin_lens_of(lens, data);
+    view.thick = thick_lens_of(lens, data);
+    if (map_) view.map = map_->view();
+    view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
+    view.axis_irradiance = axis_irradiance_;
+    if (pupil_) view.pupil = pupil_->view();
+    view.lens = path_.view();
+    if (path_in_double_) view.lens_in_double = &view_in_double_;
+    if (polynomial_) view.polynomial = polynomial_->view();
+    const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+    if (spectrum_) {
+        view.dispersion = {spectrum_->cells().data(),
+                           static_cast<int>(spectrum_->cells().size()),
+                           variable_over(spectrum_->range()),
+                           data_of(to_scene_),
+                           data_of(to_film_),
+                           film_path_ ? film_path_->view().surfaces : nullptr};
+    }
+    if (diffraction_) {
+        const double across = std::fabs(static_cast<double>(view.thin.image_distance));
+        view.diffraction = diffraction_->view(camera_.film.width_mm * camera_.film.height_mm / (across * across));
+    }
+    view.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
+    set_times(view, scene_moves);
+    return view;
+}
+
+const Camera& CameraSetup::validated(const Camera& camera) {
+    validate(camera);
+    return camera;
+}
+
+void CameraSetup::set_wavelengths(const Illuminant& illuminant) {
+    spectrum_.emplace(illuminant);
+    if (!effects_.dispersion && !effects_.coatings) return;
+    // The code for diffraction and coatings together takes the indices of a spectrum: here, of one wavelength.
+    const double design = camera_.lens.wavelength_nm;
+    const WavelengthRange range = effects_.dispersion ? spectrum_->range() : WavelengthRange{design, design};
+    check_dispersion(camera_.lens, range);
+    to_scene_ = index_cubics(camera_.lens, LightDirection::to_scene, range);
+    to_film_ = index_cubics(camera_.lens, LightDirection::to_film, range);
+    film_path_.emplace(camera_.lens, LightDirection::to_film, camera_.lens.wavelength_nm);
+    pupil_wavelengths_ = {std::clamp(design, range.first, range.last)};
+    for (const double end : {range.first, range.last})
+        if (end != pupil_wavelengths_.front()) pupil_wavelengths_.push_back(end);
+}
+
+void CameraSetup::set_coatings(const CameraSetup* last) {
+    const LensSystem& lens = camera_.lens;
+    if (last && last->effects_ == effects_ && last->camera_.lens == lens) {
+        coatings_ = last->coatings_;
+        coatings_to_scene_ = last->coatings_to_scene_;
+        coatings_to_film_ = last->coatings_to_film_;
+        return;
+    }
+    if (!spectrum_) {
+        check_wavelength_in_glasses(lens, lens.wavelength_nm, "coatings");
+        coatings_ = fit_coatings<kOneWavelengthTerms>(lens, LightDirection::to_scene, {lens.wavelength_nm});
+        return;
+    }
+    const std::vector<double> wavelengths = spectrum_->even_wavelengths();
+    for (const double end : {wavelengths.front(), wavelengths.back()})
+        check_wavelength_in_glasses(lens, end, "coatings");
+    const WavelengthVariable variable = variable_over(spectrum_->range());
+    coatings_to_scene_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_scene, wavelengths, variable);
+    coatings_to_film_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_film, wavelengths, variable);
+}
+
+void CameraSetup::set_diffraction(const PupilTracer& tracer, const CameraSetup* last) {
+    const LensSystem& lens = camera_.lens;
+    if (last && last->diffraction_ && last->effects_ == effects_ && last->has_lens_and_film_of(camera_)) {
+        diffraction_ = last->diffraction_;
+        starbursts_ = last->starbursts_;
+        return;
+    }
+    diffraction_ = std::make_shared<const DiffractionTables>(lens, film_radius(), tracer);
+    starbursts_ = std::make_shared<const StarburstTables>(
+        lens, film_radius(), StarburstTables::Light{*spectrum_, effects_.dispersion, effects_.coatings}, tracer);
+}
+
+void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
+    const LensSystem& lens = camera_.lens;
+    if (last && last->map_ && last->has_lens_and_film_of(camera_)) {
+        map_ = last->map_;
+        return;
+    }
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const double image = static_cast<double>(camera_detail::thin_lens_of(lens, data).image_distance);
+    map_ = std::make_shared<const LensMap>(lens, film_radius(), image, data.entrance_pupil_position, tracer);
+}
+
+CameraPlacement CameraSetup::placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
+    return {static_cast<Vec3f>(scene_from_camera.origin - origin_m), static_cast<Vec3f>(scene_from_camera.x),
+            static_cast<Vec3f>(scene_from_camera.y), static_cast<Vec3f>(scene_from_camera.z)};
+}
+
+void CameraSetup::set_times(CameraView& view, bool scene_moves) const {
+    view.keys = keys_.data();
+    view.key_count = static_cast<int>(keys_.size());
+    if (keys_.empty() && !scene_moves) return;
+    const double all = camera_.shutter.readout_time_s + camera_.seen_time();
+    view.row_time = static_cast<float>(camera_.shutter.readout_time_s / all / camera_.film.height);
+    view.exposed_time = static_cast<float>(camera_.seen_time() / all);
+}
+
+bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
+    return camera_.lens == camera.lens && camera_.film.width_mm == camera.film.width_mm &&
+           camera_.film.height_mm == camera.film.height_mm && camera_.film.shift_mm == camera.film.shift_mm;
+}
+
+bool CameraSetup::has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths,
+                               PupilSampling sampling) const {
+    return pupil_ && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&
+           pupil_wavelengths_ == wavelengths && effects_.pupil_sampling == sampling;
+}
+
+}  // namespace realcam

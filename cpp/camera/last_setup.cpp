@@ -1,0 +1,21 @@
+#include "last_setup.hpp"
+
+#include <utility>
+
+namespace realcam {
+
+std::shared_ptr<const CameraSetup> LastSetup::make(const Camera& camera, const PupilTracer& tracer,
+                                                   const LensEffects& effects) {
+    // Not locked while the pupil is found: another thread's camera may be ready at once.
+    const std::shared_ptr<const CameraSetup> last = get();
+    auto setup = std::make_shared<const CameraSetup>(camera, tracer, last.get(), effects);
+    const std::lock_guard lock(mutex_);
+    return setup_ = std::move(setup);
+}
+
+std::shared_ptr<const CameraSetup> LastSetup::get() const {
+    const std::lock_guard lock(mutex_);
+    return setup_;
+}
+
+}  // namespace realcam

@@ -1,0 +1,163 @@
+#include "gltf_animations.hpp"
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "../../math/motion.hpp"
+#include "../text/printable.hpp"
+#include "gltf_transform.hpp"
+
+namespace realcam::io {
+namespace {
+
+class AnimationReader {
+public:
+    AnimationReader(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                    const std::vector<std::size_t>& numbers, Checkpoint& checkpoint)
+        : scene_(scene),
+          document_(document),
+          accessors_(accessors),
+          animation_(document.root()["animations"][std::size_t{0}]),
+          label_(gltf_label("animation", 0, animation_)),
+          checkpoint_(checkpoint) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) places_[numbers[i]] = i;
+    }
+
+    void read() {
+        const Json& channels = animation_["channels"];
+        std::size_t others = 0, weights = 0, fixed = 0;
+        for (std::size_t c = 0; c < channels.size(); ++c) {
+            checkpoint_.pass();
+            const Json& target = channels[c]["target"];
+            const std::string& path = target["path"].text();
+            const std::string where = label_ + ": channel " + std::to_string(c);
+            const std::optional<std::size_t> node = document_.find("nodes", target["node"], where + ": its node");
+            if (!node || !places_.contains(*node)) continue;
+            if (path == "weights") {
+                ++weights;
+            } else if (path != "translation" && path != "rotation" && path != "scale") {
+                ++others;
+            } else if (!document_.root()["nodes"][*node]["matrix"].is_null()) {
+                ++fixed;
+            } else {
+                move(*node, path, keys_of(channels[c]["sampler"], path == "rotation" ? 4 : 3, where));
+            }
+        }
+        let_stand();
+        warn(weights, "channels change the weights of morph targets, which stand as they are");
+        warn(others, "channels animate something else than translation, rotation and scale");
+        warn(fixed, "channels animate nodes that have a matrix, which stand as they are");
+    }
+
+private:
+    void warn(std::size_t count, const std::string& what) {
+        if (count > 0) scene_.warnings.push_back(label_ + ": " + std::to_string(count) + ' ' + what);
+    }
+
+    void move(std::size_t number, const std::string& path, std::shared_ptr<const FileKeys> keys) {
+        FileNode& node = scene_.nodes[places_[number]];
+        if (node.motion < 0) {
+            node.motion = static_cast<std::int32_t>(scene_.motions.size());
+            scene_.motions.push_back(standing(document_.root()["nodes"][number]));
+        }
+        FileMotion& motion = scene_.motions[static_cast<std::size_t>(node.motion)];
+        (path == "translation" ? motion.translation_keys
+         : path == "rotation"  ? motion.rotation_keys
+                               : motion.scale_keys) = std::move(keys);
+    }
+
+    /// Many programs write keys for every node, also for those that never move.
+    void let_stand() {
+        for (FileNode& node : scene_.nodes) {
+            if (node.motion < 0) continue;
+            checkpoint_.pass();
+            const FileMotion& motion = scene_.motions[static_cast<std::size_t>(node.motion)];
+            if (changes(motion.translation_keys) || changes(motion.rotation_keys) || changes(motion.scale_keys))
+                continue;
+            node.parent_from_node = motion.parent_from_node(0);
+            node.motion = -1;
+        }
+    }
+
+    bool changes(const std::shared_ptr<const FileKeys>& keys) {
+        if (!keys) return false;
+        const auto [known, is_new] = changes_.try_emplace(keys.get());
+        if (!is_new) return known->second;
+        const bool is_spline = keys->interpolation == KeyInterpolation::cubic_spline;
+        const std::size_t columns = keys->components, rows = keys->values.size() / columns;
+        for (std::size_t row = 0; row < rows; ++row)
+            for (std::size_t c = 0; c < columns; ++c) {
+                const bool is_tangent = is_spline && row % 3 != 1;
+                const float stays = is_tangent ? 0 : keys->values[(is_spline ? 1 : 0) * columns + c];
+                if (keys->values[row * columns + c] != stays) known->second = true;
+            }
+        return known->second;
+    }
+
+    std::shared_ptr<const FileKeys> keys_of(const Json& reference, std::size_t components, const std::string& where) {
+        const Json& samplers = animation_["samplers"];
+        const std::size_t number = reference.index(samplers.size());
+        if (number >= samplers.size()) document_.fail(where + ": its sampler does not exist");
+        const auto [known, is_new] = read_.try_emplace({number, components});
+        if (is_new) known->second = read_sampler(samplers[number], components, where);
+        return known->second;
+    }
+
+    std::shared_ptr<const FileKeys> read_sampler(const Json& sampler, std::size_t components,
+                                                 const std::string& where) {
+        auto keys = std::make_shared<FileKeys>();
+        keys->components = components;
+        const std::string& interpolation = sampler["interpolation"].text();
+        if (interpolation == "STEP") {
+            keys->interpolation = KeyInterpolation::step;
+        } else if (interpolation == "CUBICSPLINE") {
+            keys->interpolation = KeyInterpolation::cubic_spline;
+        } else if (!interpolation.empty() && interpolation != "LINEAR") {
+            document_.fail(where + ": its interpolation is " + in_quotes(interpolation.substr(0, 60)) +
+                           "; LINEAR, STEP or CUBICSPLINE is wanted");
+        }
+        for (const float time : accessors_.numbers(sampler["input"], "SCALAR", where + ": its input")) {
+            const auto seconds = static_cast<double>(time);
+            if (!(std::fabs(seconds) <= kMostSeconds)) document_.fail(where + ": a time must lie within 1e9 s");
+            if (!keys->times.empty() && !(keys->times.back() < seconds))
+                document_.fail(where + ": its times must rise");
+            keys->times.push_back(seconds);
+        }
+        keys->values = accessors_.numbers(sampler["output"], components == 4 ? "VEC4" : "VEC3", where + ": its output");
+        for (const float value : keys->values)
+            if (!std::isfinite(value)) document_.fail(where + ": its output holds a number that is not finite");
+        const std::size_t each = keys->interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
+        if (keys->times.empty() || keys->values.size() != keys->times.size() * each * components)
+            document_.fail(where + ": has " + std::to_string(keys->times.size()) + " times and " +
+                           std::to_string(keys->values.size() / components) + " values; " + std::to_string(each) +
+                           " for each time are wanted");
+        return keys;
+    }
+
+    FileScene& scene_;
+    const GltfDocument& document_;
+    GltfAccessors& accessors_;
+    const Json& animation_;
+    std::string label_;
+    Checkpoint& checkpoint_;
+    std::map<std::size_t, std::size_t> places_;  ///< of the file's nodes in the scene
+    std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<const FileKeys>> read_;  ///< by sampler, components
+    std::map<const FileKeys*, bool> changes_;
+};
+
+}  // namespace
+
+void read_gltf_animations(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                          const std::vector<std::size_t>& numbers, Checkpoint& checkpoint) {
+    const std::size_t count = document.root()["animations"].size();
+    if (count == 0) return;
+    AnimationReader(scene, document, accessors, numbers, checkpoint).read();
+    if (count > 1) scene.warnings.push_back("of " + std::to_string(count) + " animations only the first is played");
+    if (document.root()["skins"].size() > 0 && !scene.motions.empty())
+        scene.warnings.push_back("skins do not follow the animation; they stand as their joints do without it");
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,70 @@
+#include "gltf_buffers.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "../files/file_beside.hpp"
+#include "../files/regular_file.hpp"
+#include "../files/uri.hpp"
+#include "../text/printable.hpp"
+
+namespace realcam::io {
+
+std::string GltfBuffers::read_buffer(std::size_t number, std::size_t size) {
+    const std::string& uri = document_.root()["buffers"][number]["uri"].text();
+    const std::string label = "buffer " + std::to_string(number);
+    if (is_data_uri(uri)) {
+        std::optional<std::string> data = data_of_uri(uri);
+        if (!data) document_.fail(label + ": its data: address is no base64");
+        return std::move(*data);
+    }
+    const std::optional<std::string> file = find_beside(document_.path(), uri);
+    if (!file)
+        document_.fail(label + " cannot be read: " + (uri.empty() ? "it has no bytes" : in_quotes(uri)) +
+                       (uri.empty() ? "" : ": no such file beside the scene"));
+    try {
+        return read_whole_file(*file, checkpoint_, size);
+    } catch (const FileError& error) {
+        document_.fail(label + " cannot be read: " + in_quotes(uri) + ": " + error.reason);
+    }
+}
+
+std::string_view GltfBuffers::buffer(std::size_t number) {
+    const Json& buffer = document_.root()["buffers"][number];
+    const std::size_t size = buffer["byteLength"].index(0);
+    std::string_view bytes = document_.binary_chunk();
+    if (!buffer["uri"].is_null() || number != 0 || bytes.empty()) {
+        auto found = read_.find(number);
+        if (found == read_.end()) found = read_.emplace(number, read_buffer(number, size)).first;
+        bytes = found->second;
+    }
+    if (bytes.size() < size)
+        document_.fail("buffer " + std::to_string(number) + ": is cut short: " + std::to_string(bytes.size()) + " of " +
+                       std::to_string(size) + " bytes");
+    return bytes.substr(0, size);
+}
+
+std::string_view GltfBuffers::view(const Json& reference, const std::string& where) {
+    const std::optional<std::size_t> number = document_.find("bufferViews", reference, where);
+    if (!number) document_.fail(where + ": names no bufferView");
+    const Json& view = document_.root()["bufferViews"][*number];
+    for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+        const Json& buffers = document_.root()["buffers"];
+        const Json& buffer = buffers[view["buffer"].index(buffers.size())];
+        // Beside the compressed bytes there may be plain ones. Where there are none, the buffer is a promise.
+        const bool has_plain = !buffer["uri"].is_null() || buffer["extensions"][extension].is_null();
+        if (!view["extensions"][extension].is_null() && !has_plain)
+            document_.fail(where + ": its numbers are in the glTF extension " + extension +
+                           ", which is not read; export it without compression");
+    }
+    const std::string label = where + ": bufferView " + std::to_string(*number);
+    const std::optional<std::size_t> buffer_number = document_.find("buffers", view["buffer"], label);
+    if (!buffer_number) document_.fail(label + ": names no buffer");
+    const std::string_view bytes = buffer(*buffer_number);
+    const std::size_t offset = view["byteOffset"].index(0), size = view["byteLength"].index(0);
+    if (offset > bytes.size() || size > bytes.size() - offset)
+        document_.fail(label + ": reaches beyond the " + std::to_string(bytes.size()) + " bytes of its buffer");
+    return bytes.substr(offset, size);
+}
+
+}  // namespace realcam::io

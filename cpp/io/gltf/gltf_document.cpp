@@ -1,0 +1,95 @@
+#include "gltf_document.hpp"
+
+#include <cstdint>
+#include <stdexcept>
+
+#include "../../error.hpp"
+#include "../files/regular_file.hpp"
+#include "../text/printable.hpp"
+
+namespace realcam::io {
+namespace {
+
+constexpr std::size_t kGlbHeader = 12, kChunkHeader = 8;
+
+bool may_be_required(std::string_view extension) {
+    return extension == "KHR_lights_punctual" || extension == "KHR_texture_transform" ||
+           extension == "KHR_mesh_quantization" || extension == "EXT_mesh_gpu_instancing" ||
+           extension.starts_with("KHR_materials_");
+}
+
+/// What helps where an extension is required that is not read.
+std::string advice(std::string_view extension) {
+    if (extension.ends_with("_compression")) return "export it without compression";
+    if (extension.find("_texture_") != std::string_view::npos) return "export its pictures as PNG or JPEG";
+    return "export it without that extension";
+}
+
+std::size_t word_at(std::string_view bytes, std::size_t at) {
+    std::uint32_t value = 0;  // little-endian
+    for (std::size_t i = 4; i-- > 0;) value = 256 * value + static_cast<unsigned char>(bytes[at + i]);
+    return value;
+}
+
+}  // namespace
+
+std::string gltf_label(const std::string& kind, std::size_t number, const Json& element) {
+    const std::string& name = element["name"].text();
+    return kind + ' ' + std::to_string(number) + (name.empty() ? "" : ' ' + in_quotes(name));
+}
+
+void GltfDocument::fail(const std::string& message) const {
+    throw SceneFileError(path_ + ": " + message);
+}
+
+// A GLB is a header of 12 bytes, then chunks of a length, a kind and their bytes; JSON is the first.
+std::string_view GltfDocument::json_text() {
+    const std::string_view file = file_;
+    if (!file.starts_with("glTF")) return file.substr(file.starts_with("\xef\xbb\xbf") ? 3 : 0);
+    const auto room = [&](std::size_t size) {
+        if (size > file.size())
+            fail("is cut short: " + std::to_string(file.size()) + " of " + std::to_string(size) + " bytes");
+    };
+    if (file.size() < kGlbHeader + kChunkHeader) fail("ends inside the header of a GLB");
+    if (word_at(file, 4) != 2) fail("is glTF " + std::to_string(word_at(file, 4)) + "; glTF 2.0 is wanted");
+    room(word_at(file, 8));
+    if (file.substr(kGlbHeader + 4, 4) != "JSON") fail("a JSON chunk is wanted first");
+    const std::size_t begin = kGlbHeader + kChunkHeader, size = word_at(file, kGlbHeader), end = begin + size;
+    room(end);
+    if (file.size() >= end + kChunkHeader && file.substr(end + 4, 4) == std::string_view("BIN\0", 4)) {
+        binary_begin_ = end + kChunkHeader;
+        binary_size_ = word_at(file, end);
+        room(binary_begin_ + binary_size_);
+    }
+    return file.substr(begin, size);
+}
+
+GltfDocument::GltfDocument(const std::string& path, Checkpoint& checkpoint)
+    : path_(path), file_(read_whole_file(path, checkpoint)) {
+    try {
+        root_ = Json::parse(json_text(), checkpoint);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::runtime_error& error) {
+        fail(std::string("is no valid glTF: ") + error.what());
+    }
+    if (binary_size_ == 0) file_ = {};
+    const std::string& version = root_["asset"]["version"].text();
+    if (!version.starts_with('2'))
+        fail("is glTF " + (version.empty() ? "of no version" : in_quotes(version)) + "; glTF 2.0 is wanted");
+    const Json& required = root_["extensionsRequired"];
+    for (std::size_t i = 0; i < required.size(); ++i) {
+        if (may_be_required(required[i].text())) continue;
+        fail("needs the glTF extension " + printable(required[i].text().substr(0, 60)) + ", which is not read; " +
+             advice(required[i].text()));
+    }
+}
+
+std::optional<std::size_t> GltfDocument::find(const char* list, const Json& reference, const std::string& where) const {
+    if (reference.is_null()) return std::nullopt;
+    const std::size_t count = root_[list].size(), number = reference.index(count);
+    if (number < count) return number;
+    fail(where + ": a number of \"" + list + "\" is wanted there, of which there are " + std::to_string(count));
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,80 @@
+#include "gltf_file.hpp"
+
+#include <optional>
+
+#include "../../error.hpp"
+#include "gltf_animations.hpp"
+#include "gltf_cameras.hpp"
+#include "gltf_extensions.hpp"
+#include "gltf_lights.hpp"
+#include "gltf_materials.hpp"
+#include "gltf_meshes.hpp"
+#include "gltf_nodes.hpp"
+#include "gltf_pictures.hpp"
+
+namespace realcam::io {
+namespace {
+
+/// A file of a megabyte may let twenty thousand nodes move a mesh each in its own way.
+void check_own_meshes(const FileScene& scene, const GltfDocument& document, GltfMeshes& meshes,
+                      const GltfNodeNumbers& numbers) {
+    double bytes = 0;
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        const Json& node = document.root()["nodes"][numbers.meshes[i]];
+        const std::size_t count = document.root()["meshes"].size(), mesh = node["mesh"].index(count);
+        const bool is_skinned = !node["skin"].is_null();
+        if (mesh < count && (is_skinned || !node["weights"].is_null())) bytes += meshes.bytes_of_own(mesh, is_skinned);
+    }
+    meshes.check_promise(bytes);
+}
+
+/// A skin of a node whose transform has no inverse is left out, and counted.
+void add_meshes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                const GltfNodeNumbers& numbers, Checkpoint& checkpoint) {
+    const GltfSkins skins(document, accessors, scene, numbers.nodes, checkpoint);
+    GltfMeshes meshes(document, accessors, scene, checkpoint);
+    check_own_meshes(scene, document, meshes, numbers);
+    std::size_t left_out = 0;
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        if (numbers.meshes[i] == kNoGltfNode) continue;
+        const Json& node = document.root()["nodes"][numbers.meshes[i]];
+        const std::string label = gltf_label("node", numbers.meshes[i], node);
+        const std::optional<std::size_t> mesh = document.find("meshes", node["mesh"], label + ": its mesh");
+        if (!mesh) continue;
+        std::optional<JointMaps> joints;
+        // An instance has no skin: the extension says nothing of how it would move.
+        const bool is_instance = numbers.nodes[i] == kNoGltfNode;
+        const auto skin = is_instance ? std::nullopt : document.find("skins", node["skin"], label + ": its skin");
+        if (skin) {
+            joints = skins.joint_maps(*skin, i);
+            if (!joints) ++left_out;
+        }
+        const GltfMeshes::Range range = meshes.add(*mesh, node["weights"], joints);
+        scene.nodes[i].first_mesh = range.first;
+        scene.nodes[i].mesh_count = range.count;
+    }
+    if (left_out > 0)
+        scene.warnings.push_back(std::to_string(left_out) + " skins are left out: their nodes are scaled to nothing");
+}
+
+}  // namespace
+
+FileScene read_gltf(const std::string& path, Checkpoint& checkpoint) {
+    const GltfDocument document(path, checkpoint);
+    GltfBuffers buffers(document, checkpoint);
+    GltfAccessors accessors(document, buffers, checkpoint);
+    FileScene scene;
+    scene.path = path;
+    read_gltf_lights(scene, document);
+    read_gltf_cameras(scene, document);
+    list_pictures(scene, document);
+    read_gltf_materials(scene, document);
+    warn_of_extensions(scene, document);
+    const GltfNodeNumbers numbers = lay_out_nodes(scene, document, accessors, checkpoint);
+    add_meshes(scene, document, accessors, numbers, checkpoint);
+    read_gltf_animations(scene, document, accessors, numbers.nodes, checkpoint);
+    fetch_pictures(scene, document, buffers);
+    return scene;
+}
+
+}  // namespace realcam::io

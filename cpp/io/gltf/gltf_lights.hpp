@@ -1,0 +1,10 @@
+#pragma once
+#include "../scene/file_scene.hpp"
+#include "gltf_document.hpp"
+
+namespace realcam::io {
+
+/// scene.lights become those of KHR_lights_punctual.
+void read_gltf_lights(FileScene& scene, const GltfDocument& document);
+
+}  // namespace realcam::io

@@ -1,0 +1,237 @@
+#include "gltf_materials.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "../text/printable.hpp"
+
+namespace realcam::io {
+namespace {
+
+struct Range {
+    double least, most;
+};
+constexpr double kLargest = std::numeric_limits<float>::max();
+constexpr Range kUnit{0, 1}, kNotNegative{0, kLargest}, kAny{-kLargest, kLargest};
+
+class MaterialParser {
+public:
+    MaterialParser(FileScene& scene, const Json& root) : scene_(scene), root_(root) {}
+
+    GltfMaterial parse(const Json& json) {
+        GltfMaterial out;
+        read_metallic_roughness(out, json["pbrMetallicRoughness"]);
+        read_common(out, json);
+        const Json& extensions = json["extensions"];
+        read_specular_glossiness(out, extensions["KHR_materials_pbrSpecularGlossiness"]);
+        read_transmission(out.transmission, extensions["KHR_materials_transmission"]);
+        read_volume(out.volume, extensions["KHR_materials_volume"]);
+        read_clearcoat(out.clearcoat, extensions["KHR_materials_clearcoat"]);
+        read_specular(out.specular, extensions["KHR_materials_specular"]);
+        read_ior(out.ior, extensions["KHR_materials_ior"]["ior"]);
+        read_free(out.emissive_strength, extensions["KHR_materials_emissive_strength"]["emissiveStrength"]);
+        out.unlit = !extensions["KHR_materials_unlit"].is_null();
+        note_unmodelled(out);
+        return out;
+    }
+
+    /// What is wrong, or not modelled, in any of the materials.
+    void tell() const {
+        const auto warn = [&](std::size_t count, const std::string& text) {
+            if (count > 0) scene_.warnings.push_back(std::to_string(count) + ' ' + text);
+        };
+        warn(out_of_range_, "numbers of its materials are out of their range; the nearest within is taken");
+        warn(bad_samplers_, "wrap modes or filters of samplers are none; REPEAT and LINEAR are taken");
+        warn(bad_transforms_, "transforms of textures are no finite numbers; they are left out");
+        if (!bad_alpha_mode_.empty())
+            scene_.warnings.push_back("an alphaMode is OPAQUE, MASK or BLEND, not " + bad_alpha_mode_ +
+                                      "; OPAQUE is taken");
+        if (has_occlusion_)
+            scene_.warnings.push_back("occlusionTexture is not modelled: the paths of light find what is hidden");
+        if (has_second_set_)
+            scene_.warnings.push_back("a second set of texture coordinates in one material is not modelled");
+    }
+
+private:
+    void read_metallic_roughness(GltfMaterial& out, const Json& json) {
+        read(out.base_color_factor, json["baseColorFactor"], kUnit);
+        read(out.alpha, json["baseColorFactor"][3], kUnit);
+        read(out.metallic_factor, json["metallicFactor"], kUnit);
+        read(out.roughness_factor, json["roughnessFactor"], kUnit);
+        read(out.base_color_texture, json["baseColorTexture"]);
+        read(out.metallic_roughness_texture, json["metallicRoughnessTexture"]);
+    }
+
+    void read_common(GltfMaterial& out, const Json& json) {
+        read(out.normal_texture, json["normalTexture"]);
+        read(out.normal_scale, json["normalTexture"]["scale"], kAny);
+        read(out.occlusion_texture, json["occlusionTexture"]);
+        read(out.occlusion_strength, json["occlusionTexture"]["strength"], kUnit);
+        read_free(out.emissive_factor.x, json["emissiveFactor"][std::size_t{0}]);
+        read_free(out.emissive_factor.y, json["emissiveFactor"][1]);
+        read_free(out.emissive_factor.z, json["emissiveFactor"][2]);
+        read(out.emissive_texture, json["emissiveTexture"]);
+        read(out.alpha_mode, json["alphaMode"]);
+        read(out.alpha_cutoff, json["alphaCutoff"], kNotNegative);
+        out.double_sided = json["doubleSided"].is_true();
+    }
+
+    void read_specular_glossiness(GltfMaterial& material, const Json& json) {
+        if (json.is_null()) return;
+        GltfSpecularGlossiness& out = material.specular_glossiness.emplace();
+        read(out.diffuse_factor, json["diffuseFactor"], kUnit);
+        read(out.alpha, json["diffuseFactor"][3], kUnit);
+        read(out.specular_factor, json["specularFactor"], kUnit);
+        read(out.glossiness_factor, json["glossinessFactor"], kUnit);
+        read(out.diffuse_texture, json["diffuseTexture"]);
+        read(out.specular_glossiness_texture, json["specularGlossinessTexture"]);
+    }
+
+    void read_transmission(GltfTransmission& out, const Json& json) {
+        read(out.factor, json["transmissionFactor"], kUnit);
+        read(out.texture, json["transmissionTexture"]);
+    }
+
+    void read_volume(GltfVolume& out, const Json& json) {
+        read(out.thickness_factor, json["thicknessFactor"], kNotNegative);
+        read(out.thickness_texture, json["thicknessTexture"]);
+        read(out.attenuation_color, json["attenuationColor"], kUnit);
+        const Json& distance = json["attenuationDistance"];
+        // 0 is written by programs that mean no attenuation; taken as it is, nothing would pass.
+        const bool is_positive = distance.number(1) > 0;
+        if (!is_positive) ++out_of_range_;
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        if (is_positive) read(out.attenuation_distance, distance, {std::numeric_limits<float>::min(), infinite});
+    }
+
+    void read_clearcoat(GltfClearcoat& out, const Json& json) {
+        read(out.factor, json["clearcoatFactor"], kUnit);
+        read(out.texture, json["clearcoatTexture"]);
+        read(out.roughness_factor, json["clearcoatRoughnessFactor"], kUnit);
+        read(out.roughness_texture, json["clearcoatRoughnessTexture"]);
+        read(out.normal_texture, json["clearcoatNormalTexture"]);
+        read(out.normal_scale, json["clearcoatNormalTexture"]["scale"], kAny);
+    }
+
+    void read_specular(GltfSpecular& out, const Json& json) {
+        read(out.factor, json["specularFactor"], kUnit);
+        read(out.texture, json["specularTexture"]);
+        read(out.color_factor, json["specularColorFactor"], kNotNegative);
+        read(out.color_texture, json["specularColorTexture"]);
+    }
+
+    void read_ior(float& out, const Json& json) {
+        if (json.number(1) == 0)
+            out = 0;
+        else
+            read(out, json, {1, kLargest});
+    }
+
+    void read(float& out, const Json& json, Range range) {
+        const double value = json.number(static_cast<double>(out));
+        const double within = std::clamp(value, range.least, range.most);
+        if (within != value) ++out_of_range_;
+        out = static_cast<float>(within);
+    }
+
+    void read(Vec3f& out, const Json& json, Range range) {
+        read(out.x, json[std::size_t{0}], range);
+        read(out.y, json[1], range);
+        read(out.z, json[2], range);
+    }
+
+    static void read_free(float& out, const Json& json) {
+        out = static_cast<float>(json.number(static_cast<double>(out)));
+    }
+
+    void read(AlphaMode& out, const Json& json) {
+        const std::string& name = json.text();
+        if (name == "MASK") out = AlphaMode::mask;
+        if (name == "BLEND") out = AlphaMode::blend;
+        if (json.is_null() || name == "OPAQUE" || name == "MASK" || name == "BLEND") return;
+        if (bad_alpha_mode_.empty()) bad_alpha_mode_ = in_quotes(name);
+    }
+
+    /// `info`: the place in a material that names a texture; null where it has none.
+    void read(FileTexture& out, const Json& info) {
+        if (info.is_null()) return;
+        const Json& moved = info["extensions"]["KHR_texture_transform"];
+        const Json &scale = moved["scale"], &offset = moved["offset"];
+        const Json& set = moved["texCoord"].is_number() ? moved["texCoord"] : info["texCoord"];
+        out.picture = picture_of(info["index"]);
+        out.sampler = sampler_of(info["index"]);
+        out.uv_set = static_cast<std::uint32_t>(std::min<std::size_t>(set.index(0), 0xffff));
+        const TextureTransform transform(scale[std::size_t{0}].number(1), scale[1].number(1),
+                                         moved["rotation"].number(0), offset[std::size_t{0}].number(0),
+                                         offset[1].number(0));
+        if (transform.is_finite())
+            out.transform = transform;
+        else
+            ++bad_transforms_;
+    }
+
+    /// How a texture is seen beyond its edges, and between the middles of its texels where these are large: its levels
+    /// for small ones are the renderer's own.
+    TextureSampler sampler_of(const Json& texture) {
+        const Json& number = root_["textures"][texture.index(root_["textures"].size())]["sampler"];
+        const Json& sampler = root_["samplers"][number.index(root_["samplers"].size())];
+        enum : std::size_t { kNearest = 9728, kLinear = 9729, kClamp = 33071, kMirror = 33648, kRepeat = 10497 };
+        const auto wrap = [&](const Json& json) {
+            const std::size_t code = json.is_null() ? std::size_t{kRepeat} : json.index(0);
+            if (code != kClamp && code != kMirror && code != kRepeat) ++bad_samplers_;
+            return code == kClamp ? TextureWrap::clamp : code == kMirror ? TextureWrap::mirror : TextureWrap::repeat;
+        };
+        const std::size_t filter = sampler["magFilter"].index(kLinear);
+        if (filter != kNearest && filter != kLinear) ++bad_samplers_;
+        return {wrap(sampler["wrapS"]), wrap(sampler["wrapT"]),
+                filter == kNearest ? TextureFilter::nearest : TextureFilter::linear};
+    }
+
+    /// A texture that names no picture gets one without bytes, which stands out in the picture and is warned of.
+    std::int32_t picture_of(const Json& texture) {
+        const Json& source = root_["textures"][texture.index(root_["textures"].size())]["source"];
+        const std::size_t images = root_["images"].size(), number = source.index(images);
+        if (number < images) return first_alike(number);
+        if (missing_ < 0) {
+            missing_ = static_cast<std::int32_t>(scene_.pictures.size());
+            scene_.pictures.push_back({"without a picture", true, {}});
+        }
+        return missing_;
+    }
+
+    /// Images inside the file that share their bytes are one, which is decoded once.
+    std::int32_t first_alike(std::size_t image) {
+        const auto number = static_cast<std::int32_t>(image);
+        const Json& view = root_["images"][image]["bufferView"];
+        return view.is_number() ? first_of_view_.emplace(view.number(0), number).first->second : number;
+    }
+
+    void note_unmodelled(const GltfMaterial& material) {
+        has_occlusion_ |= bool(material.occlusion_texture);
+        const std::vector<FileTexture> textures = material.textures();
+        for (const FileTexture& texture : textures) has_second_set_ |= texture.uv_set != textures.front().uv_set;
+    }
+
+    FileScene& scene_;
+    const Json& root_;
+    std::int32_t missing_ = -1;
+    std::map<double, std::int32_t> first_of_view_;
+    std::size_t out_of_range_ = 0, bad_transforms_ = 0, bad_samplers_ = 0;
+    std::string bad_alpha_mode_;  // the first, in quotes
+    bool has_occlusion_ = false, has_second_set_ = false;
+};
+
+}  // namespace
+
+void read_gltf_materials(FileScene& scene, const GltfDocument& document) {
+    MaterialParser parser(scene, document.root());
+    const Json& materials = document.root()["materials"];
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        scene.materials.push_back({materials[i]["name"].text(), parser.parse(materials[i])});
+    parser.tell();
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,161 @@
+#include "gltf_nodes.hpp"
+
+#include <utility>
+
+#include "../../error.hpp"
+#include "../files/regular_file.hpp"
+#include "../text/printable.hpp"
+#include "gltf_instancing.hpp"
+#include "gltf_transform.hpp"
+
+namespace realcam::io {
+namespace {
+
+class NodeLayout {
+public:
+    NodeLayout(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors, Checkpoint& checkpoint)
+        : scene_(scene),
+          document_(document),
+          nodes_(document.root()["nodes"]),
+          accessors_(accessors),
+          checkpoint_(checkpoint) {}
+
+    GltfNodeNumbers lay_out() {
+        find_parents();
+        const std::vector<std::size_t> roots = find_roots();
+        for (const std::size_t root : roots) add_tree(root);
+        return std::move(numbers_);
+    }
+
+private:
+    std::string label(std::size_t node) const { return gltf_label("node", node, nodes_[node]); }
+
+    void find_parents() {
+        parents_.assign(nodes_.size(), kNoGltfNode);
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            const Json& children = nodes_[n]["children"];
+            for (std::size_t i = 0; i < children.size(); ++i) {
+                checkpoint_.pass();
+                const std::size_t child = *document_.find("nodes", not_null(children[i], n), label(n) + ": its child");
+                if (parents_[child] != kNoGltfNode)
+                    document_.fail(label(child) + ": is listed twice as a child; a node has at most one parent");
+                parents_[child] = n;
+            }
+        }
+    }
+
+    const Json& not_null(const Json& reference, std::size_t parent) const {
+        if (reference.is_null()) document_.fail(label(parent) + ": its child is no number");
+        return reference;
+    }
+
+    std::vector<std::size_t> find_roots() const {
+        const Json& root = document_.root();
+        std::vector<std::size_t> roots;
+        if (root["scenes"].size() == 0) {
+            for (std::size_t n = 0; n < nodes_.size(); ++n)
+                if (parents_[n] == kNoGltfNode) roots.push_back(n);
+            return roots;
+        }
+        const std::size_t number = document_.find("scenes", root["scene"], "scene").value_or(0);
+        const Json& listed = root["scenes"][number]["nodes"];
+        std::vector<bool> is_listed(nodes_.size(), false);
+        for (std::size_t i = 0; i < listed.size(); ++i) {
+            const std::optional<std::size_t> node =
+                document_.find("nodes", listed[i], "scene " + std::to_string(number));
+            if (!node) continue;
+            if (parents_[*node] != kNoGltfNode || is_listed[*node])
+                document_.fail(label(*node) + ": a node of a scene is listed once, and has no parent");
+            is_listed[*node] = true;
+            roots.push_back(*node);
+        }
+        return roots;
+    }
+
+    /// Without recursion: a chain may be as long as the file. As every node has one parent, none comes twice.
+    void add_tree(std::size_t root) {
+        struct Open {
+            std::size_t node, next_child;
+            std::uint32_t index;
+        };
+        std::vector<Open> open = {{root, 0, add_node(root, kNoParent)}};
+        while (!open.empty()) {
+            Open& last = open.back();
+            const Json& children = nodes_[last.node]["children"];
+            if (last.next_child == children.size()) {
+                scene_.nodes[last.index].end = static_cast<std::uint32_t>(scene_.nodes.size());
+                open.pop_back();
+                continue;
+            }
+            const std::size_t child = children[last.next_child++].index(kNoGltfNode);
+            open.push_back({child, 0, add_node(child, last.index)});
+        }
+    }
+
+    std::uint32_t add_node(std::size_t number, std::uint32_t parent) {
+        checkpoint_.pass();
+        const Json& from = nodes_[number];
+        FileNode node{printable(from["name"].text()), transform_of(from), parent};
+        const Json& light = from["extensions"]["KHR_lights_punctual"]["light"];
+        if (!light.is_null()) node.light = existing(light, scene_.lights.size(), number, "light");
+        if (!from["camera"].is_null()) node.camera = existing(from["camera"], scene_.cameras.size(), number, "camera");
+        scene_.nodes.push_back(std::move(node));
+        numbers_.nodes.push_back(number);
+        numbers_.meshes.push_back(number);
+        const auto place = static_cast<std::uint32_t>(scene_.nodes.size() - 1);
+        add_instances(number, place);
+        return place;
+    }
+
+    std::int32_t existing(const Json& reference, std::size_t count, std::size_t node, const std::string& what) const {
+        const std::size_t which = reference.index(count);
+        if (which >= count)
+            document_.fail(label(node) + ": its " + what + " does not exist; there are " + std::to_string(count));
+        return static_cast<std::int32_t>(which);
+    }
+
+    void add_instances(std::size_t number, std::uint32_t node) {
+        const std::vector<Affine<double>> places = instances_of(nodes_[number], accessors_, document_, label(number));
+        if (places.empty()) return;
+        constexpr std::size_t kAlwaysThere = std::size_t{1} << 28;
+        bytes_ += places.size() * sizeof(FileNode);
+        if (const std::string why = bytes_ > kAlwaysThere ? too_much_memory(bytes_) : ""; !why.empty())
+            document_.fail("its instances need " + why);
+        numbers_.meshes[node] = kNoGltfNode;
+        for (const Affine<double>& place : places) {
+            checkpoint_.pass();
+            FileNode instance{{}, place, node};
+            instance.end = static_cast<std::uint32_t>(scene_.nodes.size() + 1);
+            scene_.nodes.push_back(std::move(instance));
+            numbers_.nodes.push_back(kNoGltfNode);
+            numbers_.meshes.push_back(number);
+        }
+    }
+
+    FileScene& scene_;
+    const GltfDocument& document_;
+    const Json& nodes_;
+    GltfAccessors& accessors_;
+    Checkpoint& checkpoint_;
+    std::vector<std::size_t> parents_;
+    GltfNodeNumbers numbers_;
+    std::size_t bytes_ = 0;  // of the instances' nodes
+};
+
+}  // namespace
+
+GltfNodeNumbers lay_out_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
+                              Checkpoint& checkpoint) {
+    return NodeLayout(scene, document, accessors, checkpoint).lay_out();
+}
+
+std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes) {
+    std::vector<Affine<double>> transforms;
+    transforms.reserve(nodes.size());
+    for (const FileNode& node : nodes)
+        transforms.push_back(node.parent == kNoParent ? node.parent_from_node
+                                                      : transforms[node.parent] * node.parent_from_node);
+    return transforms;
+}
+
+}  // namespace realcam::io

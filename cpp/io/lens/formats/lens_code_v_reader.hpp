@@ -1,0 +1,87 @@
+#pragma once
+#include <set>
+
+#include "../lens_glass.hpp"
+#include "../lens_prescription.hpp"
+#include "../lens_text.hpp"
+
+namespace realcam::io {
+
+/// Reads a .seq file command by command.
+class CodeVReader {
+public:
+    CodeVReader(std::string_view text, const std::string& file, LensGlasses& glasses);
+    Prescription read();
+
+private:
+    using Words = std::vector<LensWord>;
+
+    [[noreturn]] void fail_file(const std::string& message) const;
+    double number(const Words& words, std::size_t i, const std::string& what) const;
+    /// The same, or infinity.
+    double number_or_infinity(const Words& words, std::size_t i, const std::string& what) const;
+    std::vector<double> numbers(const Words& words, std::size_t from, const std::string& what) const;
+    /// Notes what there is no model of, at this line and surface.
+    void foreign(const std::string& what);
+    /// Something to tell once.
+    void remark(const std::string& what);
+    /// Whether the command is one that makes another lens of this one, which is noted.
+    bool changes_lens(const std::string& command, const Words& words);
+    /// Whether the first value of a command names surfaces: S3, S2..5, SA.
+    static bool names_surfaces(const Words& words);
+
+    void read_line(std::string_view line);
+    void read_command(Words words);
+
+    void add_surface(const std::string& command, const Words& words);
+    void change_surface(const std::string& command, const Words& words);
+    void select(int surface);
+    /// Radius or curvature, thickness, glass.
+    void read_row(const Words& words);
+    /// From the value behind the command.
+    void set_curvature(PrescriptionSurface& row, const Words& words, bool is_radius) const;
+    /// The surface that a qualifier names, S3, SS (stop) or SI; takes it from the words. Others: the current one.
+    PrescriptionSurface& row_of(Words& words);
+    /// False where the command is none of a surface.
+    bool read_surface_command(const std::string& word, Words words);
+    void read_circle(Words& words);
+
+    /// Glasses of the file's own: PWL and the wavelengths, then a name and an index for each, or a name, a formula and
+    /// its coefficients. What is wrong with one is told where a surface has it: makers' files carry some that none has.
+    void read_private(const Words& words);
+    Glass private_glass(const Words& words) const;
+    void set_glass(PrescriptionSurface& row, std::string_view text);
+
+    /// False where the command says nothing about all of the lens.
+    bool read_specification(const std::string& word, const Words& words);
+    void read_zoom(const Words& words);
+    std::vector<double> zoom_values(const Words& words, std::size_t from, const std::string& what) const;
+
+    void finish();
+    void finish_fields();
+    void finish_wavelength();
+    void finish_zoom();
+
+    LensLines lines_;
+    LensGlasses& glasses_;
+    Prescription p_;
+    std::vector<PrescriptionSurface> rows_;  ///< object and image too
+    std::size_t current_ = 0;
+    bool has_image_ = false, in_private_ = false;
+    std::optional<bool> radius_mode_;
+    double unit_ = 1;
+    std::vector<double> wavelengths_, private_nm_, x_, y_;
+    int reference_ = 0, positions_ = 0;
+    std::map<std::string, std::vector<double>> vignetting_;
+    std::map<int, std::vector<double>> zoom_;
+    std::map<int, int> zoom_lines_;
+    std::vector<double> zoom_aperture_;
+    std::set<std::string> private_names_, zoom_left_out_, unknown_, remarks_;
+    std::map<std::string, LensFileError> broken_private_;
+    std::set<std::pair<std::string, int>> shaped_, foreign_;
+};
+
+/// Whether a word is digits alone.
+bool is_digits(std::string_view word);
+
+}  // namespace realcam::io

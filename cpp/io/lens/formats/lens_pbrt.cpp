@@ -1,0 +1,79 @@
+// pbrt's lens tables, .dat: a row is radius, thickness, index behind the surface, clear diameter; from the scene to the
+// film, in mm. A radius of 0 is the aperture stop, an index of 0 air.
+//
+// There are two conventions of the thickness. In pbrt it is the distance to the next surface, in other programs that
+// read such tables it is the distance from the one before. The first row tells them apart: nothing lies in front of it,
+// so that its thickness is 0 in the second convention, and in the first it is not, as an element has a thickness.
+
+#include <cmath>
+
+#include "../../text/printable.hpp"
+#include "../lens_format.hpp"
+#include "../lens_material.hpp"
+#include "../lens_readers.hpp"
+#include "../lens_text.hpp"
+
+namespace realcam::io {
+
+PbrtThickness pbrt_thickness_named(const std::string& name) {
+    if (name == "after") return PbrtThickness::after;
+    if (name == "before") return PbrtThickness::before;
+    throw InputError("the thickness in a pbrt lens table stands \"after\" or \"before\" its surface; it is " +
+                     in_quotes(name));
+}
+
+Prescription read_pbrt(std::string_view text, const std::string& file, const LensReadOptions& options) {
+    const PbrtThickness thickness = options.pbrt_thickness;
+    LensLines lines(text, file, options.keep_going);
+    Prescription p;
+    p.file = file;
+    p.format = "pbrt";
+    p.has_film_distance = false;  // pbrt focuses the lens itself
+    std::string_view line;
+    while (lines.next(line)) {
+        const std::size_t remark = line.find('#');
+        if (remark != line.npos && p.title.empty()) p.title = without_blanks(line.substr(remark + 1));
+        const std::vector<LensWord> words = lines.words(line.substr(0, remark));
+        if (words.empty()) continue;
+        if (p.surfaces.size() >= kMostFileSurfaces)
+            lines.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
+        const int number = static_cast<int>(p.surfaces.size()) + 1;
+        lines.set_surface(number);
+        if (words.size() != 4)
+            lines.fail("has " + std::to_string(words.size()) +
+                       " columns; radius, thickness, index and diameter are wanted");
+        const auto value = [&](std::size_t i, const char* what) { return lines.number_of(words[i].text, what); };
+        const bool is_plane = is_infinity(words[0].text);
+        PrescriptionSurface row;
+        row.line = lines.number();
+        row.number = number;
+        const double radius = is_plane ? kInfinity : value(0, "the radius"), index = value(2, "the index");
+        row.is_stop = radius == 0;
+        row.curvature = row.is_stop ? 0 : 1 / radius;
+        row.thickness = value(1, "the thickness");
+        if (index != 0 && !(index >= 1 && index < 10)) lines.fail("the index must be 0 (air), or lie between 1 and 10");
+        if (index > 1 && !row.is_stop) {
+            row.material = Glass::constant(index);
+            row.material.label = number_label(index);
+        }
+        row.clear_semi_diameter = 0.5 * value(3, "the diameter");
+        if (!(row.clear_semi_diameter > 0)) lines.fail("the diameter must be positive");
+        p.surfaces.push_back(std::move(row));
+    }
+    if (p.surfaces.empty()) throw LensFileError("has no rows; radius, thickness, index and diameter are wanted", file);
+    const bool before = thickness == PbrtThickness::before ||
+                        (thickness == PbrtThickness::by_first_row && p.surfaces.front().thickness == 0);
+    if (before) {
+        for (std::size_t i = 0; i + 1 < p.surfaces.size(); ++i) p.surfaces[i].thickness = p.surfaces[i + 1].thickness;
+    }
+    p.surfaces.back().thickness = 0;
+    // The stop is a plane in the medium that is there.
+    for (std::size_t i = 1; i < p.surfaces.size(); ++i)
+        if (p.surfaces[i].is_stop) p.surfaces[i].material = p.surfaces[i - 1].material;
+    p.remarks.push_back(
+        std::string("thicknesses are taken for those ") + (before ? "in front of" : "behind") + " their surfaces" +
+        (thickness == PbrtThickness::by_first_row ? std::string(", as the first is ") + (before ? "0" : "not 0") : ""));
+    return p;
+}
+
+}  // namespace realcam::io

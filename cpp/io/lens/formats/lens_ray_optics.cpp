@@ -1,0 +1,244 @@
+// ray-optics' .roa, JSON: optical_model.seq_model holds interfaces and the gaps behind them, profile_dict the shapes,
+// optical_spec aperture, fields and wavelengths. Each object is {"__instance_type__": [module, class], "attributes"}.
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../text/printable.hpp"
+#include "../lens_readers.hpp"
+#include "../lens_text.hpp"
+#include "lens_json.hpp"
+
+namespace realcam::io {
+namespace {
+
+const Json& attributes(const Json& object) {
+    return object["attributes"];
+}
+const std::string& module_of(const Json& object) {
+    return object["__instance_type__"][std::size_t{0}].text();
+}
+const std::string& class_of(const Json& object) {
+    return object["__instance_type__"][std::size_t{1}].text();
+}
+
+class Reader {
+public:
+    Reader(std::string_view text, const std::string& file, LensGlasses& glasses)
+        : json_(text, file, glasses.options().keep_going), glasses_(glasses) {
+        p_.file = file;
+        p_.format = "ray-optics";
+    }
+
+    Prescription read() {
+        const Json& model = attributes(json_.root()["optical_model"]);
+        const Json& sequence = attributes(model["seq_model"]);
+        const Json &interfaces = sequence["ifcs"], &gaps = sequence["gaps"];
+        if (interfaces.size() < 3 || gaps.size() + 1 < interfaces.size())
+            json_.fail(
+                "is no lens of ray-optics: optical_model.seq_model with an object, a lens and an image is wanted");
+        if (interfaces.size() > kMostFileSurfaces)
+            json_.fail("the file has more than " + std::to_string(kMostFileSurfaces) + " surfaces");
+        const Json& system = attributes(model["system_spec"]);
+        p_.title = system["title"].text();
+        set_unit(system);
+        profiles_ = &model["profile_dict"];
+        const Json& stop = sequence["stop_surface"];
+        const std::size_t stop_index = stop.index(0);
+        const Json& gap = attributes(gaps[std::size_t{0}])["thi"];
+        const bool is_infinite = gap.is_number() && std::isinf(gap.number(0));
+        const double object = is_infinite ? kInfinity : json_.number(gap, "the distance of the object");
+        p_.object_distance = unit_ * object >= kLongest ? kInfinity : unit_ * object;
+        for (std::size_t i = 1; i + 1 < interfaces.size(); ++i)
+            read_surface(interfaces[i], gaps[i], i, i == stop_index);
+        json_.set_surface(surface_ = static_cast<int>(interfaces.size()) - 1);
+        PrescriptionSurface image;
+        read_profile(interfaces[interfaces.size() - 1], image);
+        if (image.curvature != 0) foreign("a curved image surface");
+        json_.set_surface(surface_ = 0);
+        read_specification(attributes(model["optical_spec"]));
+        return std::move(p_);
+    }
+
+private:
+    void foreign(const std::string& what) { p_.foreign.push_back({what, 0, surface_}); }
+
+    void set_unit(const Json& system) {
+        std::string unit = system["_dimensions"].text();
+        if (unit.empty()) unit = system["dimensions"].text();
+        unit = upper_case(unit);
+        if (unit.empty() || unit == "MM")
+            unit_ = 1;
+        else if (unit == "CM")
+            unit_ = 10;
+        else if (unit == "M" || unit == "METERS")
+            unit_ = 1000;
+        else if (unit == "INCHES" || unit == "IN")
+            unit_ = 25.4;
+        else
+            json_.fail("the unit is " + in_quotes(unit) + "; mm, cm, meters or inches is wanted");
+    }
+
+    void read_surface(const Json& interface, const Json& gap, std::size_t number, bool is_stop) {
+        surface_ = static_cast<int>(number);
+        json_.set_surface(surface_);
+        const Json& a = attributes(interface);
+        PrescriptionSurface row;
+        row.number = surface_;
+        row.is_stop = is_stop;
+        if (class_of(interface) != "Surface")
+            foreign("a surface of the class " + printable(class_of(interface)).substr(0, 40));
+        if (!a["phase_element"].is_null()) foreign("a diffractive surface");
+        if (!a["decenter"].is_null()) foreign("a tilt or decentre");
+        row.is_mirror = a["interact_mode"].text() == "reflect";
+        row.thickness = unit_ * json_.number(attributes(gap)["thi"], "the thickness");
+        read_profile(interface, row);
+        if (!row.is_mirror) row.material = material_of(attributes(gap)["medium"]);
+        read_rims(a, row);
+        p_.surfaces.push_back(std::move(row));
+    }
+
+    void read_profile(const Json& interface, PrescriptionSurface& row) {
+        const Json& a = attributes(interface);
+        const Json& profile = a["profile"].is_null() ? (*profiles_)[a["profile_id"].text()] : a["profile"];
+        const std::string type = class_of(profile);
+        const Json& shape = attributes(profile);
+        row.curvature = json_.number_or(shape["cv"], "the curvature", 0) / unit_;
+        row.conic =
+            !shape["ec"].is_null() ? json_.number(shape["ec"], "ec") - 1 : json_.number_or(shape["cc"], "cc", 0);
+        if (profile.is_null() || type == "Spherical" || type == "Conic") return;
+        const bool even = type == "EvenPolynomial";
+        if (!even && type != "RadialPolynomial") return foreign("a surface of type " + printable(type).substr(0, 40));
+        const Json& list = shape["coefs"]["__ndarray__"].is_null() ? shape["coefs"] : shape["coefs"]["__ndarray__"];
+        for (std::size_t i = 0; i < list.size() && i < 100; ++i) {
+            const double value = json_.number(list[i], "an aspheric coefficient");
+            const int power = (even ? 2 : 1) * (static_cast<int>(i) + 1);
+            if (value != 0) row.aspheric[power] = value * std::pow(unit_, 1 - power);
+        }
+    }
+
+    Glass material_of(const Json& medium) {
+        const std::string type = class_of(medium), module = module_of(medium);
+        const Json& a = attributes(medium);
+        try {
+            if (type == "Air") return Glass::air();
+            if (type == "ConstantIndex" || type == "Medium") return glass_of_pair(json_.number(a["n"], "the index"), 0);
+            if (type == "ModelGlass") return glass_of_pair(json_.number(a["n"], "n"), json_.number(a["v"], "v"));
+            if (type == "InterpolatedMedium" || type == "InterpolatedGlass") return table_of(a);
+            if (module.starts_with("opticalglass.") && !a["gname"].text().empty())
+                return glasses_.find(a["gname"].text(), {module.substr(module.find('.') + 1)});
+            if (type == "Glass" && !a["label"].text().empty()) return glasses_.find(a["label"].text(), {});
+        } catch (const InputError& error) {
+            json_.fail(error);
+        }
+        json_.fail("its medium is of the class " + in_quotes(type) + ", which is not known");
+    }
+
+    Glass table_of(const Json& a) const {
+        const Json& wavelengths = a["wvls"]["__ndarray__"].is_null() ? a["wvls"] : a["wvls"]["__ndarray__"];
+        const Json& indices = a["rndx"]["__ndarray__"].is_null() ? a["rndx"] : a["rndx"]["__ndarray__"];
+        if (wavelengths.size() == 0 || wavelengths.size() != indices.size() || indices.size() > 10000)
+            json_.fail("the table of its medium needs as many indices as wavelengths");
+        std::vector<Glass::TablePoint> points;
+        for (std::size_t i = 0; i < indices.size(); ++i)
+            points.push_back({json_.number(wavelengths[i], "a wavelength"), json_.number(indices[i], "an index")});
+        Glass glass = Glass::table(std::move(points));
+        glass.label = printable(a["label"].text());
+        return glass;
+    }
+
+    /// Without apertures of its own a surface has the one that was last computed.
+    void read_rims(const Json& a, PrescriptionSurface& row) {
+        const Json& list = a["clear_apertures"];
+        for (std::size_t i = 0; i < list.size() && i < 100; ++i) {
+            const Json& shape = attributes(list[i]);
+            const auto value = [&](const char* key) { return json_.number_or(shape[key], key, 0); };
+            if (class_of(list[i]) != "Circular")
+                foreign("an aperture that is no circle (" + printable(class_of(list[i])).substr(0, 40) + ")");
+            else if (value("x_offset") != 0 || value("y_offset") != 0)
+                foreign("a decentred aperture");
+            else if (shape["is_obscuration"].is_true())
+                row.inner_semi_diameter = unit_ * value("radius");
+            else
+                row.clear_semi_diameter = unit_ * value("radius");
+            row.blocks = true;
+        }
+        row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
+        if (row.clear_semi_diameter == 0)
+            row.clear_semi_diameter = unit_ * json_.number_or(a["max_aperture"], "max_aperture", 0);
+    }
+
+    void read_specification(const Json& spec) {
+        const Json& region = attributes(spec["spectral_region"]);
+        const Json& wavelengths = region["wavelengths"]["__ndarray__"].is_null() ? region["wavelengths"]
+                                                                                 : region["wavelengths"]["__ndarray__"];
+        const std::size_t reference = region["reference_wvl"].index(0);
+        if (reference >= wavelengths.size()) json_.fail("the reference wavelength is none of the list");
+        p_.wavelength_nm = json_.number(wavelengths[reference], "the wavelength");
+        p_.defocus = unit_ * json_.number_or(attributes(spec["defocus"])["focus_shift"], "the focus shift", 0);
+        read_aperture(attributes(spec["pupil"]));
+        read_fields(attributes(spec["field_of_view"]));
+    }
+
+    /// ["aperture", "object", "epd"], or without the first word.
+    static std::pair<std::string, std::string> key_of(const Json& a) {
+        const Json& key = a["_key"].is_null() ? a["key"] : a["_key"];
+        const std::size_t first = key.size() == 3 ? 1 : 0;
+        return {key[first].text(), key[first + 1].text()};
+    }
+
+    void read_aperture(const Json& a) {
+        const auto [side, kind] = key_of(a);
+        p_.aperture = json_.number(a["value"], "the value of the aperture");
+        const bool object = side == "object";
+        if (kind == "epd" || kind == "pupil") {
+            if (!object) json_.fail("the aperture is given as an exit pupil, which is not supported");
+            p_.aperture_kind = ApertureKind::entrance_pupil_diameter;
+            p_.aperture *= unit_;
+        } else if (kind == "f/#" && !object) {
+            p_.aperture_kind = ApertureKind::working_f_number;
+        } else if (kind == "NA") {
+            p_.aperture_kind = object ? ApertureKind::object_aperture : ApertureKind::image_aperture;
+        } else {
+            json_.fail("the aperture is given by " + in_quotes(side + " " + kind) + ", which is not known");
+        }
+        if (!(p_.aperture > 0)) json_.fail("the aperture must be positive");
+    }
+
+    void read_fields(const Json& a) {
+        const auto [side, kind] = key_of(a);
+        const bool angle = kind == "angle" && side == "object";
+        if (!angle && kind.find("height") == kind.npos) {
+            p_.remarks.push_back("its fields are of a kind that is not known");
+            return;
+        }
+        p_.field_kind = angle              ? FieldKind::angle_deg
+                        : side == "object" ? FieldKind::object_height
+                                           : FieldKind::image_height;
+        const double scale = (angle ? 1 : unit_) *
+                             (a["is_relative"].is_true() ? json_.number(a["value"], "the value of the fields") : 1);
+        const Json& list = a["fields"];
+        for (std::size_t i = 0; i < list.size() && i < 1000; ++i) {
+            const Json& field = attributes(list[i]);
+            const auto value = [&](const char* key) { return json_.number_or(field[key], "a field", 0); };
+            const auto cut = [&](const char* key) { return std::clamp(value(key), 0.0, 0.999); };
+            p_.fields.push_back(
+                {scale * value("x"), scale * value("y"), cut("vux"), cut("vlx"), cut("vuy"), cut("vly")});
+        }
+    }
+
+    LensJson json_;
+    LensGlasses& glasses_;
+    Prescription p_;
+    const Json* profiles_ = nullptr;
+    double unit_ = 1;
+    int surface_ = 0;
+};
+
+}  // namespace
+
+Prescription read_ray_optics(std::string_view text, const std::string& file, LensGlasses& glasses) {
+    return Reader(text, file, glasses).read();
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,265 @@
+// Zemax OpticStudio: from what a .zmx file says to a prescription. Surface 0 is the object, the last one the image.
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../text/printable.hpp"
+#include "../lens_readers.hpp"
+#include "../lens_text.hpp"
+#include "lens_zemax_file.hpp"
+
+namespace realcam::io {
+namespace {
+
+class Converter {
+public:
+    Converter(ZemaxFile file, LensGlasses& glasses)
+        : file_(std::move(file)), p_(std::move(file_.prescription)), glasses_(glasses) {}
+
+    Prescription prescription() {
+        check_image();
+        glasses_are_stated_ = find_out_whether_glasses_are_stated();
+        for (std::size_t i = 0; i < file_.surfaces.size(); ++i) convert(file_.surfaces[i], i);
+        set_object();
+        set_fields();
+        set_wavelength();
+        set_zoom();
+        if (!file_.unknown.empty())
+            p_.remarks.push_back("lines of keywords that are not known were left out: " + short_list(file_.unknown));
+        return std::move(p_);
+    }
+
+private:
+    /// The image is the last surface. One that has a glass or a thickness is the last of a file that ends too early.
+    void check_image() const {
+        const ZemaxSurface& image = file_.surfaces.back();
+        if (!image.has_thickness || image.row.thickness != 0 || !image.glass.empty())
+            throw LensFileError("the file ends with a surface that is no image: it " +
+                                    std::string(!image.glass.empty()  ? "has a glass"
+                                                : image.has_thickness ? "has a thickness"
+                                                                      : "has no thickness (DISZ)"),
+                                p_.file, image.row.line, image.row.number);
+    }
+
+    void convert(ZemaxSurface& s, std::size_t i) {
+        const bool is_object = i == 0, is_image = i + 1 == file_.surfaces.size();
+        const auto fail = [&](const std::string& message, int line = 0) {
+            throw LensFileError(message, p_.file, line > 0 ? line : s.row.line, s.row.number);
+        };
+        const auto add_foreign = [&](const std::string& what) {
+            p_.foreign.push_back({what, s.row.line, s.row.number});
+        };
+        if (!s.has_thickness) fail("the surface has no thickness (DISZ)");
+        if (s.at_infinity && !is_object) fail("the thickness is infinite; only the object may be as far away");
+        if (is_image) {
+            if (s.row.curvature != 0) add_foreign("a curved image surface");
+            if (s.row.is_stop) fail("the image is the aperture stop");
+            if (s.type == "COORDBRK") fail("the image is a coordinate break");
+            p_.image_semi_diameter = s.diameter;
+            return;
+        }
+        if (is_object) return;
+        if (s.row.clear_semi_diameter == 0) s.row.clear_semi_diameter = s.diameter;
+        convert_shape(s, add_foreign);
+        convert_glass(s, fail, add_foreign);
+        glass_behind_.push_back(&s);
+        p_.surfaces.push_back(s.row);
+    }
+
+    template <class Foreign>
+    void convert_shape(ZemaxSurface& s, const Foreign& add_foreign) {
+        const auto any_parameter = [&](int first, int last) {
+            return std::any_of(s.parameters.begin(), s.parameters.end(),
+                               [&](const auto& p) { return p.first >= first && p.first <= last && p.second != 0; });
+        };
+        const auto term = [&](int power, double value) {
+            if (value != 0) s.row.aspheric[power] = value * std::pow(file_.unit, 1 - power);
+        };
+        if (s.type == "STANDARD") {
+            // Its parameters mean nothing.
+        } else if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
+            const int step = s.type == "EVENASPH" ? 2 : 1;
+            for (const auto& [number, value] : s.parameters)
+                if (number > 0) term(step * number, value);
+        } else if (s.type == "XASPHERE") {
+            const auto extra = [&](int number) {
+                const auto found = s.extra.find(number);
+                return found == s.extra.end() ? 0.0 : found->second;
+            };
+            const double radius = extra(2) > 0 ? extra(2) : 1;
+            for (const auto& [number, value] : s.extra)
+                if (number >= 3 && number < 3 + static_cast<int>(std::min(extra(1), 300.0)))
+                    term(2 * (number - 2), value / std::pow(radius, 2 * (number - 2)));
+        } else if (s.type == "COORDBRK") {
+            if (any_parameter(1, 5)) add_foreign("a tilt or decentre (coordinate break)");
+            s.row.curvature = 0;
+            s.glass.clear();
+        } else {
+            add_foreign("a surface of type " + printable(s.type).substr(0, 40));
+        }
+    }
+
+    template <class Fail, class Foreign>
+    void convert_glass(ZemaxSurface& s, const Fail& fail, const Foreign& add_foreign) {
+        if (s.glass_kind == 2 && !s.glass.empty() && pick_up_glass(s, fail)) return;
+        s.row.is_mirror = upper_case(s.glass) == "MIRROR";
+        if (s.row.is_mirror) return;
+        if (s.glass.empty()) {
+            // A coordinate break is no surface: the medium goes on behind it.
+            if (s.type == "COORDBRK") s.row.material = medium_;
+            medium_ = s.row.material;
+            return;
+        }
+        try {
+            if (s.glass_kind == 1) {
+                s.row.material = glass_of_pair(s.n_d, s.v_d);
+                if (s.partial != 0)
+                    p_.remarks.push_back("the partial dispersion of the model glass of surface " +
+                                         std::to_string(s.row.number) + " is left out");
+            } else {
+                if (s.glass_kind == 4) add_foreign("a glass with an offset");
+                s.row.material = named_glass(s);
+            }
+        } catch (const InputError& error) {
+            throw LensReadError(error, p_.file, s.glass_line, s.row.number);
+        }
+        medium_ = s.row.material;
+    }
+
+    /// A solve of the glass: that of a surface in front. False where the name of the glass has to tell.
+    template <class Fail>
+    bool pick_up_glass(ZemaxSurface& s, const Fail& fail) {
+        const int from = s.pickup;
+        const bool is_named = s.glass != "___BLANK";
+        const bool is_in_front = from > 0 && from <= static_cast<int>(glass_behind_.size());
+        const ZemaxSurface* source = is_in_front ? glass_behind_[static_cast<std::size_t>(from) - 1] : nullptr;
+        if (!source || source->glass.empty()) {
+            if (is_named) return false;
+            fail("picks up the glass of surface " + std::to_string(from) +
+                     (source ? ", which has none" : "; a surface of the lens in front of this one is wanted"),
+                 s.glass_line);
+        }
+        s.row.is_mirror = source->row.is_mirror;
+        s.row.material = source->row.material;
+        if (!s.row.is_mirror) medium_ = s.row.material;
+        return true;
+    }
+
+    Glass named_glass(const ZemaxSurface& s) {
+        try {
+            return glasses_.find(s.glass, file_.catalogues, s.hint);
+        } catch (const UnknownGlass& error) {
+            if (!glasses_are_stated_ || !states_a_glass(s) || !error.candidate.empty()) throw;
+            Glass stated = glass_of_pair(s.n_d, s.v_d);
+            if (told_.insert(s.glass).second)
+                p_.remarks.push_back("the glass " + in_quotes(s.glass) +
+                                     " is in no catalogue that the file lists: " + s.hint + " are taken from its line");
+            return stated;
+        }
+    }
+
+    /// The n_d and V_d in the line of a glass of a catalogue may be left of an earlier one. Where the file states those
+    /// of a glass that is known, they tell whether it states the others truly.
+    bool find_out_whether_glasses_are_stated() const {
+        for (const ZemaxSurface& s : file_.surfaces) {
+            if (s.glass.empty() || s.glass_kind != 0 || upper_case(s.glass) == "MIRROR") continue;
+            const std::optional<Glass> known = glasses_.in_catalogue(s.glass, file_.catalogues);
+            if (!known) continue;
+            const AbbePair pair = abbe_pair(*known);
+            // Makers' melts and editions differ by less.
+            if (std::fabs(pair.n_d - s.n_d) > 2e-3 || std::fabs(pair.v_d - s.v_d) > 1) return false;
+        }
+        return true;
+    }
+
+    void set_object() {
+        const ZemaxSurface& object = file_.surfaces.front();
+        p_.object_distance = object.at_infinity || object.row.thickness >= kLongest ? kInfinity : object.row.thickness;
+        if (object.row.curvature != 0 && !object.at_infinity)
+            p_.foreign.push_back({"a curved object", object.row.line, 0});
+        if (!object.glass.empty()) p_.foreign.push_back({"an object inside a glass", object.glass_line, 0});
+        if (object.row.is_stop) throw LensFileError("the object is the aperture stop", p_.file, object.row.line, 0);
+        if (!file_.coatings.empty()) p_.remarks.push_back("coatings are left out: " + short_list(file_.coatings));
+    }
+
+    void set_fields() {
+        const std::size_t given = std::max(file_.x.size(), file_.y.size());
+        const std::size_t count = file_.field_count > 0 ? std::min(file_.field_count, given) : given;
+        const auto at = [](const std::vector<double>& list, std::size_t i) { return i < list.size() ? list[i] : 0.0; };
+        p_.field_kind = file_.field_type == 0   ? FieldKind::angle_deg
+                        : file_.field_type == 1 ? FieldKind::object_height
+                                                : FieldKind::image_height;
+        if (file_.field_type > 3) p_.remarks.push_back("its fields are of a kind that is not known");
+        const double scale = file_.field_type == 0 ? 1 : file_.unit;
+        for (std::size_t i = 0; i < count && file_.field_type <= 3; ++i) {
+            // The pupil's edge moves to decentre + (1 - compression).
+            const double shift = at(file_.decentre_y, i), narrow = at(file_.compress_y, i);
+            p_.fields.push_back({scale * at(file_.x, i), scale * at(file_.y, i), 0, 0,
+                                 std::clamp(narrow - shift, 0.0, 0.999), std::clamp(narrow + shift, 0.0, 0.999)});
+        }
+    }
+
+    void set_wavelength() {
+        if (file_.wavelengths.empty()) {
+            p_.remarks.push_back("it states no wavelength: that of the d line is taken");
+            return;
+        }
+        const auto found = file_.wavelengths.find(file_.primary);
+        if (found == file_.wavelengths.end())
+            throw LensFileError("the primary wavelength (PWAV) is number " + std::to_string(file_.primary) +
+                                    ", which the file does not have",
+                                p_.file);
+        p_.wavelength_nm = 1000 * found->second;
+    }
+
+    void set_zoom() {
+        if (file_.zoom.empty() && file_.zoom_apertures.empty()) return;
+        const auto count = static_cast<std::size_t>(file_.positions);
+        const auto filled = [&](std::vector<double> values, double otherwise) {
+            values.resize(count, std::nan(""));
+            for (double& value : values)
+                if (std::isnan(value)) value = otherwise;
+            return values;
+        };
+        for (std::size_t i = 0; i < count; ++i) p_.zoom_names.push_back(std::to_string(i + 1));
+        p_.zoom_current = std::min(file_.current, file_.positions) - 1;
+        const int last = static_cast<int>(p_.surfaces.size());
+        for (const auto& [surface, values] : file_.zoom) {
+            if (surface > last)
+                throw LensFileError("a configuration changes the thickness of surface " + std::to_string(surface) +
+                                        ", which the lens does not have",
+                                    p_.file);
+            std::vector<double> list = values;
+            for (double& value : list) value = file_.unit * value >= kLongest ? kInfinity : file_.unit * value;
+            const double otherwise =
+                surface == 0 ? p_.object_distance : p_.surfaces[static_cast<std::size_t>(surface) - 1].thickness;
+            p_.zoom_thicknesses[surface - 1] = filled(list, otherwise);
+            for (const double value : p_.zoom_thicknesses[surface - 1])
+                if (surface > 0 && !std::isfinite(value))
+                    throw LensFileError(
+                        "a configuration makes the thickness of surface " + std::to_string(surface) + " infinite",
+                        p_.file);
+        }
+        if (!file_.zoom_apertures.empty()) {
+            const bool is_length = p_.aperture_kind == ApertureKind::entrance_pupil_diameter;
+            for (double& value : file_.zoom_apertures) value *= is_length ? file_.unit : 1;
+            p_.zoom_apertures = filled(file_.zoom_apertures, p_.aperture);
+        }
+    }
+
+    ZemaxFile file_;
+    Prescription p_;
+    LensGlasses& glasses_;
+    Glass medium_ = Glass::air();  ///< behind the surfaces so far
+    std::vector<const ZemaxSurface*> glass_behind_;  ///< of the surfaces so far
+    bool glasses_are_stated_ = true;
+    std::set<std::string> told_;
+};
+
+}  // namespace
+
+Prescription read_zemax(std::string_view text, const std::string& file, LensGlasses& glasses) {
+    return Converter(zemax_file_of(text, file, glasses.options()), glasses).prescription();
+}
+
+}  // namespace realcam::io

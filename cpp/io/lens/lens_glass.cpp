@@ -1,0 +1,198 @@
+#include "lens_glass.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../text/nearest_names.hpp"
+#include "../text/printable.hpp"
+#include "../text/text_number.hpp"
+#include "lens_material.hpp"
+#include "lens_text.hpp"
+
+namespace realcam::io {
+namespace {
+
+/// The catalogue that a file means: "SCHOTT", "SUMITA_AUG2011", "NIKON-HIKARI", "MISC"; empty for one that is not
+/// known.
+std::string maker_of(const std::string& catalogue) {
+    const std::string word = upper_case(catalogue);
+    for (const char* maker : {"schott", "ohara", "hoya", "cdgm", "hikari", "sumita"})
+        if (word.find(upper_case(maker)) != std::string::npos) return maker;
+    if (word == "NIKON") return "hikari";
+    // Other programs' catalogues of what no glass maker lists.
+    for (const char* mixed : {"MISC", "SPECIAL", "INFRARED", "PLASTIC", "PLASTICS", "ZEON", "ZEONEX", "POLYMER"})
+        if (word == mixed) return "misc";
+    return {};
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + in_quotes(name);
+    return text;
+}
+
+/// Whether two glasses bend light alike, to the digits of the makers' tables.
+bool same_indices(const Glass& a, const Glass& b) {
+    for (double nm = 400; nm <= 700; nm += 25)
+        if (std::fabs(a.index(nm) - b.index(nm)) > 1e-6) return false;
+    return true;
+}
+
+Glass catalogued(const CatalogueName& found) {
+    const bool is_unique = catalogue_names_like(found.name).size() == 1;
+    return catalogue_glass(is_unique ? found.name : found.full());
+}
+
+/// Of the catalogues that a file lists.
+std::vector<CatalogueName> allowed(const std::vector<CatalogueName>& all, const std::vector<std::string>& catalogues) {
+    if (catalogues.empty()) return all;
+    std::vector<CatalogueName> found;
+    for (const CatalogueName& one : all)
+        if (std::any_of(catalogues.begin(), catalogues.end(), [&](const auto& c) { return maker_of(c) == one.maker; }))
+            found.push_back(one);
+    return found;
+}
+
+bool all_alike(const std::vector<CatalogueName>& found, const Glass& first) {
+    return std::all_of(found.begin(), found.end(),
+                       [&](const CatalogueName& one) { return same_indices(first, catalogue_glass(one.full())); });
+}
+
+}  // namespace
+
+bool LensGlasses::is_given(const std::string& name) const {
+    return std::any_of(options_.glasses.begin(), options_.glasses.end(),
+                       [&](const auto& entry) { return bare_glass_name(entry.first) == bare_glass_name(name); });
+}
+
+std::optional<Glass> LensGlasses::in_catalogue(const std::string& name,
+                                               const std::vector<std::string>& catalogues) const {
+    if (is_given(name) || own_.contains(name)) return {};
+    const std::vector<CatalogueName> found = allowed(catalogue_names_like(name), catalogues);
+    if (found.empty()) return {};
+    Glass first = catalogued(found.front());
+    if (!all_alike(found, first)) return {};
+    return first;
+}
+
+Glass LensGlasses::find(const std::string& name, const std::vector<std::string>& catalogues, const std::string& hint) {
+    asked_.insert(name);
+    for (const auto& [given, glass] : options_.glasses)
+        if (bare_glass_name(given) == bare_glass_name(name)) {
+            used_.insert(given);
+            Glass found = glass;
+            if (found.label.empty()) found.label = name;
+            return found;
+        }
+    if (const auto own = own_.find(name); own != own_.end()) return own->second;
+    const std::string quoted = in_quotes(name);
+    if (bare_glass_name(name).empty()) throw InputError("a glass has no name");
+    const std::vector<CatalogueName> all = catalogue_names_like(name), found = allowed(all, catalogues);
+    if (all.empty())
+        if (const std::optional<AbbePair> number = glass_of_number(name))
+            return glass_of_pair(number->n_d, number->v_d);
+    const auto names_of = [](const std::vector<CatalogueName>& list) {
+        std::vector<std::string> names;
+        for (const CatalogueName& one : list) names.push_back(one.full());
+        return names;
+    };
+    if (!found.empty()) {
+        Glass first = catalogued(found.front());
+        if (all_alike(found, first)) return first;
+        throw UnknownGlass("the glass name " + quoted + " stands for several glasses: " + listed(names_of(found)) +
+                               "; one of them is wanted",
+                           name, found.front().full());
+    }
+    std::string message = "unknown glass " + quoted;
+    if (!catalogues.empty()) message += " of the catalogue" + std::string(catalogues.size() > 1 ? "s " : " ");
+    if (!catalogues.empty()) message += listed(catalogues);
+    if (!all.empty())
+        message += ", which other catalogues have: " + listed(names_of(all));
+    else
+        message += did_you_mean(name, catalogue_plain_names());
+    throw UnknownGlass(message + (hint.empty() ? "" : "; the file says of it " + hint) + "; its n_d and V_d are wanted",
+                       name);
+}
+
+void LensGlasses::check_all_used() const {
+    for (const auto& [given, glass] : options_.glasses)
+        if (!used_.contains(given))
+            throw InputError("the lens file has no glass " + in_quotes(given) + "; " +
+                             (asked_.empty() ? "it names none" : "it names " + listed({asked_.begin(), asked_.end()})));
+}
+
+std::optional<CatalogueName> catalogue_name_of(const Glass& glass) {
+    try {
+        if (!(catalogue_glass(glass.label) == glass)) return std::nullopt;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+    const std::size_t colon = glass.label.find(':');
+    for (const CatalogueName& one :
+         catalogue_names_like(glass.label.substr(colon == std::string::npos ? 0 : colon + 1)))
+        if (colon == std::string::npos || one.full() == glass.label) return one;
+    return std::nullopt;
+}
+
+AbbePair abbe_pair(const Glass& glass) {
+    const double n_d = glass.index(kLineD_nm), spread = glass.index(kLineF_nm) - glass.index(kLineC_nm);
+    return {n_d, glass.has_one_index() || spread == 0 ? 0.0 : (n_d - 1) / spread};
+}
+
+std::optional<AbbePair> glass_of_number(std::string_view name) {
+    if (name.size() != 6 || name.find_first_not_of("0123456789") != name.npos) return {};
+    const auto digits = [&](std::size_t from) {
+        return static_cast<double>(std::stoi(std::string(name.substr(from, 3))));
+    };
+    return AbbePair{1 + digits(0) / 1000, digits(3) / 10};
+}
+
+Glass glass_of_formula(const std::function<double(double)>& index, std::string label) {
+    std::vector<Glass::TablePoint> points;
+    bool has_visible = false;
+    for (double nm = 300; nm <= 15000; nm += nm < 2500 ? 10 : 50) {
+        const double n = index(nm / 1000);
+        const bool is_index = n >= 1 && n < 10;  // not of NaN
+        // A run of wavelengths that has the visible in it; beyond a gap the formula means nothing.
+        if (!is_index && has_visible) break;
+        if (!is_index) points.clear();
+        if (is_index) points.push_back({nm, n});
+        has_visible = has_visible || (is_index && nm >= 580);
+    }
+    if (!has_visible || points.front().wavelength_nm > 580)
+        throw InputError("the formula of the glass " + in_quotes(label) + " gives no index from 1 to 10 at 580 nm");
+    Glass glass = Glass::table(std::move(points));
+    glass.label = std::move(label);
+    return glass;
+}
+
+Glass glass_of_pair(double n_d, double v_d) {
+    if (!(n_d >= 1) || !(n_d < 10)) throw InputError("the index n_d must lie between 1 and 10");
+    if (!(v_d >= 0)) throw InputError("the Abbe number V_d must be positive, or 0 for a glass without dispersion");
+    Glass glass = v_d == 0 ? Glass::constant(n_d) : Glass::from_abbe_number(n_d, v_d);
+    glass.label = v_d == 0 ? number_label(n_d) : number_label(n_d) + " / " + number_label(v_d);
+    return n_d == 1 && v_d == 0 ? Glass::air() : glass;
+}
+
+std::pair<std::string, Glass> named_glass(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    if (equals == text.npos || name.empty())
+        throw InputError(in_quotes(text) + ": NAME=n_d,V_d or NAME=MAKER:GLASS is wanted");
+    std::string_view rest = std::string_view(text).substr(equals + 1);
+    const std::optional<double> n_d = take_number(rest);
+    if (!n_d) return {name, catalogue_glass(std::string(rest))};
+    double v_d = 0;
+    if (rest.starts_with(',')) {
+        rest.remove_prefix(1);
+        const std::optional<double> value = take_number(rest);
+        if (!value || !(*value > 0)) rest = "?";
+        v_d = value.value_or(0);
+    }
+    if (!rest.empty() || !std::isfinite(*n_d) || !std::isfinite(v_d))
+        throw InputError(in_quotes(text) +
+                         ": NAME=n_d,V_d is wanted, as in CAF2=1.4338,95.1, or NAME=n where it has no dispersion");
+    return {name, glass_of_pair(*n_d, v_d)};
+}
+
+}  // namespace realcam::io

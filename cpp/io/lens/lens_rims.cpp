@@ -1,0 +1,129 @@
+#include "lens_rims.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "../../optics/analysis/field_rays.hpp"
+#include "../../optics/analysis/ray_aiming.hpp"
+#include "../../optics/analysis/trace_path.hpp"
+#include "../../optics/lens/paraxial.hpp"
+
+namespace realcam::io {
+namespace {
+
+/// So that the ray at the edge is not blocked by what is rounded.
+constexpr double kMargin = 1 + 1e-9;
+
+double size_of(const PrescriptionField& field) {
+    return std::hypot(field.x, field.y);
+}
+
+/// The angle at which the chief ray of a field comes, by first-order optics.
+double angle_of(const LensSystem& lens, double object_distance, FieldKind kind, double size) {
+    if (kind == FieldKind::angle_deg) return size * std::numbers::pi / 180;
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const double to_pupil = object_distance + data.entrance_pupil_position;
+    if (kind == FieldKind::object_height) return std::atan(size / to_pupil);
+    if (std::isinf(object_distance)) return std::atan(size / std::fabs(data.effective_focal_length));
+    // The magnification of the object plane: slope of the marginal ray in front of the lens over that behind it.
+    const ParaxialRay end =
+        trace_paraxial(lens, lens.wavelength_nm, {object_distance, 1}, 0, static_cast<int>(lens.surfaces.size()));
+    return std::atan(std::fabs(size * end.slope / to_pupil));
+}
+
+/// With rims that stop no ray which the surfaces allow: an asphere is searched for its rays within its rim.
+LensSystem with_wide_rims(LensSystem lens, double largest_angle) {
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    const int count = static_cast<int>(lens.surfaces.size());
+    const double pupil = 0.5 * data.entrance_pupil_diameter;
+    const double slope = std::tan(std::min(std::fabs(largest_angle), 1.2));
+    for (int i = 0; i < count; ++i) {
+        Surface& s = lens.surfaces[static_cast<std::size_t>(i)];
+        if (s.type == SurfaceType::stop) continue;
+        const double marginal = trace_paraxial(lens, lens.wavelength_nm, {pupil, 0}, 0, i + 1).height;
+        const double chief =
+            trace_paraxial(lens, lens.wavelength_nm, {-slope * data.entrance_pupil_position, slope}, 0, i + 1).height;
+        double rim = 2 * (std::fabs(marginal) + std::fabs(chief)) + 1e-3 * pupil;
+        if (!std::isfinite(rim) || !s.is_asphere()) rim = std::max(rim, 1e3 * (pupil + lens.last_vertex()));
+        if (!std::isfinite(rim)) rim = 1e6;
+        const double bent = (1 + s.conic) * s.curvature * s.curvature;
+        if (bent > 0) rim = std::min(rim, (1 - 1e-9) / std::sqrt(bent));
+        s.clear_semi_diameter = std::max(rim, kShortestRadius);
+        s.inner_semi_diameter = 0;
+    }
+    return lens;
+}
+
+}  // namespace
+
+RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
+                     const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint) {
+    const std::size_t count = lens.surfaces.size();
+    RayRims result{std::vector<double>(count, 0.0)};
+    std::vector<PrescriptionField> all{{}};
+    all.insert(all.end(), fields.begin(), fields.end());
+    double largest = 0;
+    for (const PrescriptionField& field : all)
+        largest = std::max(largest, angle_of(lens, object_distance, kind, size_of(field)));
+    const LensSystem open = with_wide_rims(lens, largest);
+    std::vector<TracePath<double>> paths;
+    for (std::size_t i = 0; i < count; ++i)
+        paths.emplace_back(open, LightDirection::to_film, lens.wavelength_nm, static_cast<int>(i) + 1);
+    for (const PrescriptionField& field : all) {
+        const double angle = angle_of(lens, object_distance, kind, size_of(field));
+        // The field's own direction is that of y here.
+        const bool along_x = std::fabs(field.x) > std::fabs(field.y);
+        const double across = along_x ? field.upper_y : field.upper_x;
+        const double up = along_x ? field.upper_x : field.upper_y, down = along_x ? field.lower_x : field.lower_y;
+        const double r = lens.stop_semi_diameter;
+        const std::array<Vec2<double>, 5> places{
+            {{0, 0}, {r * (1 - across), 0}, {0, r * (1 - up)}, {0, -r * (1 - down)}, {-r * (1 - across), 0}}};
+        try {
+            const RayAimer aim(open, lens.wavelength_nm, {angle, object_distance});
+            for (const Vec2<double> place : places) {
+                checkpoint.pass(1000 * count);
+                const AimedRay ray = aim(place);
+                if (ray.status != RayStatus::ok) {
+                    result.all_rays_pass = false;
+                    continue;
+                }
+                const Vec3d from = aim.object.at(ray.entry), to = aim.object.direction(ray.entry);
+                const double origin[3] = {from.x, from.y, from.z}, direction[3] = {to.x, to.y, to.z};
+                for (std::size_t i = 0; i < count; ++i) {
+                    double at[3], out[3], length;
+                    int status, surface;
+                    trace_rays_of<1>(paths[i].request(1, origin, direction, {at, out, &length, &status, &surface}), 0);
+                    if (status != 0) break;
+                    result.semi_diameters[i] = std::max(result.semi_diameters[i], kMargin * std::hypot(at[0], at[1]));
+                }
+            }
+        } catch (const InputError&) {  // no chief ray
+            result.all_rays_pass = false;
+        }
+    }
+    return result;
+}
+
+double largest_image_height(const LensSystem& lens, double object_distance, FieldKind kind,
+                            const std::vector<PrescriptionField>& fields) {
+    double largest = 0;
+    for (const PrescriptionField& field : fields) largest = std::max(largest, size_of(field));
+    if (largest == 0 || kind == FieldKind::image_height) return largest;
+    const double angle = angle_of(lens, object_distance, kind, largest);
+    try {
+        const LensSystem open = with_wide_rims(lens, angle);
+        const AimedRay chief = RayAimer(open, lens.wavelength_nm, {angle, object_distance}).chief_ray();
+        if (chief.status == RayStatus::ok) {
+            const double height = std::fabs(crossing(chief, lens.film_distance).y);
+            if (std::isfinite(height)) return height;
+        }
+    } catch (const InputError&) {
+        // Told by first-order optics then.
+    }
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    return std::fabs(data.effective_focal_length * std::tan(std::min(angle, 1.2)));
+}
+
+}  // namespace realcam::io

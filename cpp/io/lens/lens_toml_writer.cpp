@@ -1,0 +1,290 @@
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "../../optics/prescription/lens_checks.hpp"
+#include "../../optics/prescription/named_coatings.hpp"
+#include "../text/printable.hpp"
+#include "../text/text_number.hpp"
+#include "lens_format.hpp"
+#include "lens_glass.hpp"
+#include "lens_material.hpp"
+#include "lens_text.hpp"
+#include "lens_writers.hpp"
+
+namespace realcam::io {
+namespace {
+
+/// In TOML a whole number without a point is an integer, of 64 bits.
+std::string toml_number(double value) {
+    const std::string text = exact_number(value);
+    return text.find_first_of(".e") == text.npos ? text + ".0" : text;
+}
+
+/// What `back` makes exactly this value of; nothing where rounding leaves none.
+template <class Back>
+std::optional<double> before_rounding(double near, double value, const Back& back) {
+    for (const double candidate : {near, std::nextafter(near, kInfinity), std::nextafter(near, -kInfinity)})
+        if (std::isfinite(candidate) && back(candidate) == value) return candidate;
+    return std::nullopt;
+}
+
+class Writer {
+public:
+    explicit Writer(const LensSystem& lens) : lens_(lens) {}
+
+    std::string write() {
+        for (const Surface& surface : lens_.surfaces) write_surface(surface);
+        write_iris();
+        write_focusing();
+        write_zoom();
+        std::string head = "format = 1\n" + key("name", text(lens_.name));
+        if (!lens_.title.empty()) head += key("title", text(lens_.title));
+        if (!lens_.source.empty()) head += key("source", text(lens_.source));
+        head += number("wavelength_nm", lens_.wavelength_nm);
+        head += key("film_mm", '[' + toml_number(lens_.film_width) + ", " + toml_number(lens_.film_height) + ']');
+        head += number("film_distance_mm", lens_.film_distance);
+        if (lens_.allow_crossing) head += key("allow_crossing", "true");
+        head += write_rings();
+        return head + glasses_ + coatings_ + body_;
+    }
+
+private:
+    static std::string key(const std::string& name, const std::string& value) { return name + " = " + value + '\n'; }
+    static std::string number(const std::string& name, double value) { return key(name, toml_number(value)); }
+
+    static std::string text(const std::string& value) {
+        if (!is_utf8(value) || printable(value) != value)
+            throw InputError("the text " + in_quotes(value) +
+                             " cannot stand in a lens file: it holds control characters, or is no UTF-8");
+        std::string quoted = "\"";
+        for (const char c : value) {
+            if (c == '"' || c == '\\') quoted += '\\';
+            quoted += c;
+        }
+        return quoted + '"';
+    }
+
+    std::string write_rings() const {
+        std::string rings;
+        double rest = kInfinity;
+        if (!lens_.zoom.positions.empty()) {
+            const ZoomPosition& current = lens_.zoom.positions[static_cast<std::size_t>(lens_.zoom.current)];
+            rings += key("zoom_position", text(current.name));
+            rest = current.focus_distance;
+        }
+        if (lens_.focus_distance != rest)
+            rings +=
+                key("focus_distance_mm", std::isinf(lens_.focus_distance) ? "inf" : toml_number(lens_.focus_distance));
+        if (lens_.stop_semi_diameter != lens_.stop().clear_semi_diameter)
+            rings += number("stop_semi_diameter_mm", lens_.stop_semi_diameter);
+        return rings;
+    }
+
+    void write_surface(const Surface& s) {
+        body_ += "\n[[surface]]   # " + std::to_string(++count_) + '\n';
+        static const char* kTypes[] = {"refracting", "mirror", "stop", "aperture"};
+        if (s.type != SurfaceType::refracting)
+            body_ += key("type", std::string("\"") + kTypes[static_cast<int>(s.type)] + '"');
+        if (s.bends_light() && s.curvature != 0) {
+            const auto radius = before_rounding(1 / s.curvature, s.curvature, [](double r) { return 1 / r; });
+            body_ += radius ? number("radius_of_curvature_mm", *radius) : number("curvature_per_mm", s.curvature);
+        }
+        if (count_ < lens_.surfaces.size()) body_ += number("thickness_mm", s.thickness);
+        if (s.type == SurfaceType::refracting && !(s.material == Glass::air()))
+            body_ += key("material", material(s.material));
+        body_ += number("clear_semi_diameter_mm", s.clear_semi_diameter);
+        if (s.inner_semi_diameter != 0) body_ += number("inner_semi_diameter_mm", s.inner_semi_diameter);
+        if (!s.bends_light()) return;
+        if (s.conic != 0) body_ += number("conic", s.conic);
+        if (!s.aspheric.empty()) {
+            std::string list;
+            for (std::size_t i = 0; i < s.aspheric.size(); ++i)
+                list += (i == 0 ? "" : ", ") + std::to_string(2 * i + 4) + " = " + toml_number(s.aspheric[i]);
+            body_ += key("aspheric_coefficients", "{ " + list + " }");
+        }
+        if (!(s.coating == Coating())) body_ += key("coating", coating(s.coating));
+    }
+
+    /// As short as the reader makes the very same glass of it; else a table of its own.
+    std::string material(const Glass& glass) {
+        if (glass.has_one_index()) {
+            const double index = glass.index(kLineD_nm);
+            Glass plain = Glass::constant(index);
+            plain.label = number_label(index);
+            if (index >= 1 && plain == glass) return toml_number(index);
+        }
+        std::string_view rest = glass.label;
+        const auto n_d = take_number(rest);
+        if (n_d && rest.starts_with(" / ")) {
+            rest.remove_prefix(3);
+            const auto v_d = take_number(rest);
+            if (v_d && *n_d >= 1 && *v_d > 0 && std::isfinite(*n_d) && std::isfinite(*v_d)) {
+                Glass pair = Glass::from_abbe_number(*n_d, *v_d);
+                pair.label = number_label(*n_d) + " / " + number_label(*v_d);
+                if (pair == glass) return '[' + toml_number(*n_d) + ", " + toml_number(*v_d) + ']';
+            }
+        }
+        for (std::size_t i = 0; i < own_glasses_.size(); ++i)
+            if (own_glasses_[i].second == glass) return text(own_glasses_[i].first);
+        if (is_catalogued(glass)) return text(glass.label);
+        return text(add_glass(glass));
+    }
+
+    /// A glass of the file's own goes before the catalogue's, so that its name must not be used for both.
+    bool is_catalogued(const Glass& glass) {
+        if (names_.contains(glass.label) || !catalogue_name_of(glass)) return false;
+        catalogued_.insert(glass.label);
+        return true;
+    }
+
+    std::string unused(const std::string& wanted, const std::string& otherwise) {
+        std::string name = wanted.empty() || named_coating(wanted) ? otherwise : wanted;
+        for (int i = 2; names_.contains(name) || catalogued_.contains(name); ++i)
+            name = (wanted.empty() ? otherwise : wanted) + " (" + std::to_string(i) + ')';
+        names_.insert(name);
+        return name;
+    }
+
+    std::string add_glass(const Glass& glass) {
+        const std::string name = unused(glass.label, "glass");
+        const Glass::Parts parts = glass.parts();
+        const auto listed = [](const std::vector<double>& values, std::size_t first, std::size_t step) {
+            std::string list;
+            for (std::size_t i = first; i < values.size(); i += step)
+                list += (list.empty() ? "" : ", ") + toml_number(values[i]);
+            return '[' + list + ']';
+        };
+        glasses_ += "\n[glass." + text(name) + "]\n";
+        if (name != glass.label) glasses_ += key("label", text(glass.label));
+        if (parts.formula == Glass::Formula::sellmeier) {
+            glasses_ += key("sellmeier", "{ B = " + listed(parts.coefficients, 0, 2) +
+                                             ", C = " + listed(parts.coefficients, 1, 2) + " }");
+        } else if (parts.formula == Glass::Formula::cauchy) {
+            glasses_ += key("cauchy", listed(parts.coefficients, 0, 1));
+        } else {
+            std::string rows;
+            for (const Glass::TablePoint& point : parts.points)
+                rows += (rows.empty() ? "[" : ", [") + toml_number(point.wavelength_nm) + ", " +
+                        toml_number(point.index) + ']';
+            glasses_ += key("table", '[' + rows + ']');
+        }
+        own_glasses_.emplace_back(name, glass);
+        return name;
+    }
+
+    static std::string points(const CoatingMaterial& material) {
+        std::string rows;
+        for (const CoatingMaterial::Point& p : material.points)
+            rows += (rows.empty() ? "[" : ", [") + toml_number(p.wavelength_nm) + ", " + toml_number(p.n) + ", " +
+                    toml_number(p.k) + ']';
+        return '[' + rows + ']';
+    }
+
+    std::string coating(const Coating& coating) {
+        if (const auto known = named_coating(coating.name); known && *known == coating) return text(coating.name);
+        for (const auto& [name, own] : own_coatings_)
+            if (own == coating) return text(name);
+        const std::string name = unused(coating.name, "coating");
+        std::string table = "\n[coating." + text(name) + "]\n";
+        if (name != coating.name) table += key("label", text(coating.name));
+        if (coating.kind == CoatingKind::reflectance) table += number("reflectance", coating.reflectance);
+        if (coating.kind == CoatingKind::metal) {
+            const auto known = named_metal(coating.metal.label);
+            if (known && *known == coating.metal) {
+                table += key("metal", text(coating.metal.label));
+            } else {
+                table += key("metal", points(coating.metal)) + key("metal_label", text(coating.metal.label));
+            }
+        }
+        std::string layers;
+        for (const CoatingLayer& layer : coating.layers) {
+            layers += "    { ";
+            const CoatingMaterial& m = layer.material;
+            const auto metal = named_metal(m.label);
+            if (metal && *metal == m)
+                layers += "material = " + text(m.label);
+            else
+                layers += (m.points.empty() ? "material = " + material(m.glass) : "complex_index = " + points(m)) +
+                          ", label = " + text(m.label);
+            layers += ", thickness_nm = " + toml_number(layer.thickness_nm) + " },\n";
+        }
+        if (!layers.empty() || coating.kind == CoatingKind::bare || coating.kind == CoatingKind::layers)
+            table += "layers = [\n" + layers + "]\n";
+        coatings_ += table;
+        own_coatings_.emplace_back(name, coating);
+        return text(name);
+    }
+
+    void write_iris() {
+        const IrisShape& iris = lens_.iris;
+        if (iris == IrisShape()) return;
+        body_ += "\n[iris]\n" + key("blades", std::to_string(iris.blades)) + number("rounding", iris.rounding);
+        const auto degrees = before_rounding(iris.rotation_rad * 180 / std::numbers::pi, iris.rotation_rad,
+                                             [](double d) { return d * std::numbers::pi / 180; });
+        body_ += degrees ? number("rotation_deg", *degrees) : number("rotation_rad", iris.rotation_rad);
+    }
+
+    void write_focusing() {
+        const FocusingRule& rule = lens_.focusing;
+        if (rule == FocusingRule()) return;
+        body_ += "\n[focus]\n";
+        if (rule.nearest_mm > 0) {
+            const auto metres =
+                before_rounding(rule.nearest_mm / 1000, rule.nearest_mm, [](double m) { return 1000 * m; });
+            body_ += metres ? number("nearest_m", *metres) : number("nearest_mm", rule.nearest_mm);
+        }
+        if (rule.moves_group())
+            body_ += key("group",
+                         '[' + std::to_string(rule.group_first + 1) + ", " + std::to_string(rule.group_last + 1) + ']');
+    }
+
+    void write_zoom() {
+        for (const ZoomPosition& position : lens_.zoom.positions) {
+            body_ += "\n[[zoom]]\n" + key("name", text(position.name));
+            std::string list;
+            for (std::size_t i = 0; i < lens_.zoom.surfaces.size(); ++i)
+                list += (i == 0 ? "" : ", ") + std::to_string(lens_.zoom.surfaces[i] + 1) + " = " +
+                        toml_number(position.thicknesses[i]);
+            if (!list.empty()) body_ += key("thickness_mm", "{ " + list + " }");
+            body_ += number("film_distance_mm", position.film_distance);
+            if (std::isfinite(position.focus_distance)) body_ += number("focus_distance_mm", position.focus_distance);
+            if (position.stop_semi_diameter > 0) body_ += number("stop_semi_diameter_mm", position.stop_semi_diameter);
+        }
+    }
+
+    const LensSystem& lens_;
+    std::string glasses_, coatings_, body_;
+    std::size_t count_ = 0;
+    std::set<std::string> names_, catalogued_;
+    std::vector<std::pair<std::string, Glass>> own_glasses_;
+    std::vector<std::pair<std::string, Coating>> own_coatings_;
+};
+
+}  // namespace
+
+std::string exact_number(double value) {
+    char text[40];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    return {text, end};
+}
+
+std::string lens_as_toml(const LensSystem& lens) {
+    return Writer(lens).write();
+}
+
+LensText lens_text_for(const LensSystem& lens, const std::string& path) {
+    validate(lens);
+    switch (lens_format_of(path)) {
+        case LensFormat::zemax: return lens_as_zemax(lens);
+        case LensFormat::code_v: return lens_as_code_v(lens);
+        case LensFormat::toml:
+            // Without the suffix nobody could read it again by its name.
+            if (upper_case(path).ends_with(".TOML")) return {lens_as_toml(lens), {}};
+            [[fallthrough]];
+        default: throw InputError(path + ": the suffix .toml, .zmx or .seq is wanted");
+    }
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,270 @@
+#include "mtl_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "../../error.hpp"
+#include "../scene/mtl_picture.hpp"
+#include "../text/printable.hpp"
+#include "../text/text_lines.hpp"
+#include "../text/text_number.hpp"
+
+namespace realcam::io {
+namespace {
+
+constexpr double kLargestFloat = std::numeric_limits<float>::max();
+
+struct ColourKey {
+    std::string_view name;
+    Vec3f MtlMaterial::* member;
+};
+constexpr ColourKey kColours[] = {{"Ka", &MtlMaterial::Ka},
+                                  {"Kd", &MtlMaterial::Kd},
+                                  {"Ks", &MtlMaterial::Ks},
+                                  {"Ke", &MtlMaterial::Ke},
+                                  {"Tf", &MtlMaterial::Tf}};
+
+struct Range {
+    double least, most;
+};
+constexpr Range kUnit{0, 1};
+
+struct NumberKey {
+    std::string_view name;
+    std::variant<float MtlMaterial::*, std::optional<float> MtlMaterial::*> member;
+    Range range;
+};
+constexpr NumberKey kNumbers[] = {{"Ns", &MtlMaterial::Ns, {0, kLargestFloat}},
+                                  {"Ni", &MtlMaterial::Ni, {0.001, 10}},
+                                  {"Pr", &MtlMaterial::Pr, kUnit},
+                                  {"Pm", &MtlMaterial::Pm, kUnit},
+                                  {"Pc", &MtlMaterial::Pc, kUnit},
+                                  {"Pcr", &MtlMaterial::Pcr, kUnit}};
+
+struct PictureKey {
+    std::string_view name;
+    FileTexture MtlMaterial::* member;
+};
+constexpr PictureKey kPictures[] = {
+    {"map_Kd", &MtlMaterial::map_Kd},       {"map_Ks", &MtlMaterial::map_Ks}, {"map_Ke", &MtlMaterial::map_Ke},
+    {"map_emissive", &MtlMaterial::map_Ke}, {"map_d", &MtlMaterial::map_d},   {"map_Ns", &MtlMaterial::map_Ns},
+    {"map_Pr", &MtlMaterial::map_Pr},       {"map_Pm", &MtlMaterial::map_Pm}, {"bump", &MtlMaterial::bump},
+    {"map_bump", &MtlMaterial::bump},       {"map_Bump", &MtlMaterial::bump}, {"norm", &MtlMaterial::norm}};
+
+/// What changes how a surface looks, and is not read. Where a number follows that is 0, it says nothing.
+struct OtherKey {
+    std::string_view name;
+};
+constexpr OtherKey kNotModelled[] = {{"refl"}, {"map_refl"}, {"disp"},  {"map_disp"},  {"map_Disp"},   {"decal"},
+                                     {"Ps"},   {"map_Ps"},   {"aniso"}, {"map_aniso"}, {"map_anisor"}, {"map_Tr"}};
+
+template <class Keys>
+auto find_key(const Keys& keys, std::string_view name) -> decltype(&keys[0]) {
+    for (const auto& key : keys)
+        if (key.name == name) return &key;
+    return nullptr;
+}
+
+/// A number that is all of a word; the word is taken.
+std::optional<double> take_whole_number(std::string_view& rest) {
+    std::string_view word = take_word(rest);
+    const std::optional<double> value = take_number(word);
+    return word.empty() ? value : std::nullopt;
+}
+
+/// Lines of which a warning tells the first and the number.
+struct LineCount {
+    std::size_t count = 0, first = 0;
+
+    void add(std::size_t line) {
+        if (count++ == 0) first = line;
+    }
+    /// " nor 3 others" or the like.
+    std::string others(const std::string& conjunction) const {
+        return count > 1 ? ", " + conjunction + ' ' + std::to_string(count - 1) + " others" : "";
+    }
+};
+
+std::string joined(const std::set<std::string_view>& names) {
+    std::string out;
+    for (const std::string_view name : names) out += (out.empty() ? "" : ", ") + std::string(name);
+    return out;
+}
+
+class MtlReader {
+public:
+    MtlReader(FileScene& scene, const std::string& path, Checkpoint& checkpoint)
+        : scene_(scene), path_(path), checkpoint_(checkpoint), lines_(path, checkpoint) {}
+
+    void read() {
+        std::string_view line;
+        while (lines_.next(line)) {
+            checkpoint_.pass();
+            line = trimmed(line);
+            if (!line.empty() && line[0] != '#') read_statement(line);
+        }
+        tell();
+    }
+
+private:
+    void tell() {
+        const auto warn = [&](const std::string& text) { scene_.warnings.push_back(printable(path_) + ": " + text); };
+        const auto line = [](const LineCount& lines) { return "line " + std::to_string(lines.first); };
+        if (unread_.count > 0) warn(line(unread_) + " cannot be read" + unread_.others("nor") + "; they are left out");
+        if (out_of_range_.count > 0)
+            warn(line(out_of_range_) + " has a number out of its range" + out_of_range_.others("as have") +
+                 "; the nearest within is taken");
+        if (homeless_ > 0)
+            warn(std::to_string(homeless_) + " lines stand before the first \"newmtl\"; they are left out");
+        if (!not_modelled_.empty())
+            warn(joined(not_modelled_) + (not_modelled_.size() > 1 ? " are" : " is") + " not modelled");
+        if (skipped_options_ > 0)
+            warn(std::to_string(skipped_options_) + " options of pictures are skipped (" + joined(option_names_) + ")");
+    }
+
+    /// What else an MTL may say is left out.
+    void read_statement(std::string_view rest) {
+        const std::string_view keyword = take_word(rest);
+        if (keyword == "newmtl") return begin_material(rest);
+        const ColourKey* colour = find_key(kColours, keyword);
+        const NumberKey* number = find_key(kNumbers, keyword);
+        const PictureKey* picture = find_key(kPictures, keyword);
+        const OtherKey* other = find_key(kNotModelled, keyword);
+        const bool is_dissolve = keyword == "d" || keyword == "Tr", is_illum = keyword == "illum";
+        if (!colour && !number && !picture && !other && !is_dissolve && !is_illum) return;
+        if (!material_) {
+            ++homeless_;
+            return;
+        }
+        if (colour) read_colour(*colour, rest);
+        if (number) read_number(*number, rest);
+        if (picture) read_picture(*picture, rest);
+        if (other && take_whole_number(rest) != 0) not_modelled_.insert(other->name);
+        if (is_dissolve) read_dissolve(keyword, rest);
+        if (is_illum) read_illum(rest);
+    }
+
+    void begin_material(std::string_view name) {
+        scene_.materials.push_back({std::string(name), MtlMaterial{}});
+        material_ = &std::get<MtlMaterial>(scene_.materials.back().content);
+        has_illum_ = has_d_ = false;
+    }
+
+    /// Red, green and blue, or one number for all of them.
+    void read_colour(const ColourKey& key, std::string_view rest) {
+        std::array<double, 3> values{};
+        std::size_t count = 0;
+        for (; count < 3 && !rest.empty(); ++count) {
+            const std::optional<double> value = take_whole_number(rest);
+            if (!value) break;
+            values[count] = checked(*value, key.name);
+        }
+        if (count == 1 && rest.empty()) values[1] = values[2] = values[0], count = 3;
+        if (count < 3) return unread_.add(lines_.number());
+        material_->*key.member = {static_cast<float>(values[0]), static_cast<float>(values[1]),
+                                  static_cast<float>(values[2])};
+        if (key.member == &MtlMaterial::Ks && !has_illum_) material_->illum = 2;
+    }
+
+    void read_number(const NumberKey& key, std::string_view rest) {
+        const std::optional<float> value = number_of(key.name, rest, key.range);
+        if (value) std::visit([&](auto member) { material_->*member = *value; }, key.member);
+    }
+
+    /// Programs do not agree on Tr: with a `d` it may be anything, and alone it is what the format's name says.
+    void read_dissolve(std::string_view keyword, std::string_view rest) {
+        if (rest.starts_with("-halo")) {
+            take_word(rest);
+            not_modelled_.insert("d -halo");
+        }
+        const std::optional<float> value = number_of(keyword, rest, kUnit);
+        if (!value) return;
+        if (keyword == "d")
+            material_->d = *value;
+        else if (!has_d_)
+            material_->d = 1 - *value;
+        has_d_ |= keyword == "d";
+    }
+
+    void read_illum(std::string_view rest) {
+        const std::optional<double> value = take_whole_number(rest);
+        if (!value || !(*value >= 0 && *value <= 10) || *value != std::floor(*value))
+            return unread_.add(lines_.number());
+        material_->illum = static_cast<int>(*value);
+        has_illum_ = true;
+    }
+
+    void read_picture(const PictureKey& key, std::string_view rest) {
+        const std::optional<MtlPicture> parsed = parse_mtl_picture(rest);
+        if (!parsed) return unread_.add(lines_.number());
+        const bool is_bump = key.member == &MtlMaterial::bump;
+        if (!parsed->transform.is_finite() || !(std::abs(parsed->bm) <= kLargestFloat))
+            fail(std::string(key.name) + ": the numbers of -s, -o and -bm must be finite");
+        if (is_bump) material_->bm = static_cast<float>(parsed->bm);
+        for (const std::string_view option : parsed->other_options) skip_option(option);
+        if (parsed->has_bm && !is_bump) skip_option("-bm");
+        FileTexture& texture = material_->*key.member;
+        texture.picture = picture_of(std::string(parsed->name));
+        texture.transform = parsed->transform;
+        // The format has one copy of the picture, and leaves open what is beside it: as in other programs, its edge.
+        const TextureWrap wrap = parsed->clamps ? TextureWrap::clamp : TextureWrap::repeat;
+        texture.sampler = {wrap, wrap, TextureFilter::linear};
+    }
+
+    std::int32_t picture_of(const std::string& name) {
+        const auto [picture, is_new] = pictures_.emplace(name, static_cast<std::int32_t>(scene_.pictures.size()));
+        if (is_new) scene_.pictures.push_back({name, false, {}});
+        return picture->second;
+    }
+
+    void skip_option(std::string_view name) {
+        ++skipped_options_;
+        option_names_.insert(name);
+    }
+
+    /// Nothing, and the line is counted, where no number follows.
+    std::optional<float> number_of(std::string_view keyword, std::string_view rest, Range range) {
+        const std::optional<double> value = take_whole_number(rest);
+        if (!value) {
+            unread_.add(lines_.number());
+            return std::nullopt;
+        }
+        const double within = std::clamp(checked(*value, keyword), range.least, range.most);
+        if (within != *value) out_of_range_.add(lines_.number());
+        return static_cast<float>(within);
+    }
+
+    double checked(double value, std::string_view keyword) const {
+        // How bright a light may be is checked with those of all formats.
+        if (value >= 0 && value <= kLargestFloat) return value;
+        fail(std::string(keyword) + " must be finite and not negative");
+    }
+
+    [[noreturn]] void fail(const std::string& message) const {
+        throw SceneFileError(path_ + ": line " + std::to_string(lines_.number()) + ": " + message);
+    }
+
+    FileScene& scene_;
+    const std::string& path_;
+    Checkpoint& checkpoint_;
+    TextLines lines_;
+    MtlMaterial* material_ = nullptr;  // the last of scene_.materials
+    bool has_illum_ = false, has_d_ = false;  // whether it says so itself
+    std::map<std::string, std::int32_t> pictures_;
+    LineCount unread_, out_of_range_;
+    std::size_t homeless_ = 0, skipped_options_ = 0;
+    std::set<std::string_view> not_modelled_, option_names_;  // of the tables, which outlive it
+};
+
+}  // namespace
+
+void read_mtl(FileScene& scene, const std::string& path, Checkpoint& checkpoint) {
+    MtlReader(scene, path, checkpoint).read();
+}
+
+}  // namespace realcam::io

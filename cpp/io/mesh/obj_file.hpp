@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+
+#include "../../checkpoint.hpp"
+#include "../scene/file_scene.hpp"
+
+namespace realcam::io {
+
+/// Reads an OBJ, and the MTL files that it names. Each name after "o" or "g" is a node, with the faces that follow it;
+/// polygons are cut into triangles. `scale`: metres per unit, for the limit on coordinates. Throws FileError, and
+/// SceneFileError with the line.
+FileScene read_obj(const std::string& path, double scale, Checkpoint& checkpoint);
+
+}  // namespace realcam::io

@@ -1,0 +1,92 @@
+#pragma once
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "../../math/vec3.hpp"
+#include "file_texture.hpp"
+
+namespace realcam::io {
+
+// Members have the names of glTF 2.0 and its extensions, and the values that these name for what a file does not say:
+// with those, an extension changes nothing. Numbers lie in the ranges of the format. A texture multiplies the factor of
+// its name; where the comment names a channel it holds numbers, and otherwise colours, or directions if it is a normal
+// map.
+
+/// KHR_materials_pbrSpecularGlossiness.
+struct GltfSpecularGlossiness {
+    Vec3f diffuse_factor = {1, 1, 1}, specular_factor = {1, 1, 1};
+    float glossiness_factor = 1, alpha = 1;
+    FileTexture diffuse_texture;  ///< alpha is coverage
+    FileTexture specular_glossiness_texture;  ///< alpha is glossiness
+};
+
+/// KHR_materials_transmission.
+struct GltfTransmission {
+    float factor = 0;
+    FileTexture texture;  ///< red
+};
+
+/// KHR_materials_volume. Lengths are in units of the file.
+struct GltfVolume {
+    float thickness_factor = 0;  ///< in the mesh's coordinates; 0: the surface is a thin wall, with nothing inside
+    FileTexture thickness_texture;  ///< green
+    float attenuation_distance = std::numeric_limits<float>::infinity();  ///< in the scene's coordinates, above 0
+    Vec3f attenuation_color = {1, 1, 1};  ///< what white light has become after that distance
+};
+
+/// KHR_materials_clearcoat.
+struct GltfClearcoat {
+    float factor = 0, roughness_factor = 0;
+    FileTexture texture;  ///< red
+    FileTexture roughness_texture;  ///< green
+    FileTexture normal_texture;
+    float normal_scale = 1;
+};
+
+/// KHR_materials_specular.
+struct GltfSpecular {
+    float factor = 1;
+    Vec3f color_factor = {1, 1, 1};  ///< may be above 1
+    FileTexture texture;  ///< alpha
+    FileTexture color_texture;
+};
+
+enum class AlphaMode { opaque, mask, blend };
+
+struct GltfMaterial {
+    Vec3f base_color_factor = {1, 1, 1};
+    float alpha = 1;  ///< fourth number of baseColorFactor
+    float metallic_factor = 1, roughness_factor = 1;
+    FileTexture base_color_texture;  ///< alpha is coverage
+    FileTexture metallic_roughness_texture;  ///< roughness in green, metallic in blue
+
+    FileTexture normal_texture;
+    float normal_scale = 1;
+    FileTexture occlusion_texture;  ///< red; a path tracer computes itself what it says
+    float occlusion_strength = 1;
+    Vec3f emissive_factor = {0, 0, 0};  ///< any number: emission is checked with the lights of all formats
+    FileTexture emissive_texture;
+    float emissive_strength = 1;  ///< KHR_materials_emissive_strength; any number
+
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5f;  ///< of AlphaMode::mask
+    bool double_sided = false;
+
+    float ior = 1.5f;  ///< KHR_materials_ior: at least 1, or 0 for a surface that reflects all light as specular says
+    bool unlit = false;  ///< KHR_materials_unlit
+    GltfTransmission transmission;
+    GltfVolume volume;
+    GltfClearcoat clearcoat;
+    GltfSpecular specular;
+    std::optional<GltfSpecularGlossiness> specular_glossiness;  ///< in place of base colour, metallic and roughness
+
+    FileTexture colour_texture() const {
+        return specular_glossiness ? specular_glossiness->diffuse_texture : base_color_texture;
+    }
+    /// Those that there are and that count, the colour's first: no occlusion, and of two models that which replaces the
+    /// other.
+    std::vector<FileTexture> textures() const;
+};
+
+}  // namespace realcam::io

@@ -1,0 +1,167 @@
+#include "scene_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "../../error.hpp"
+#include "../../scene/scene_checks.hpp"
+#include "../files/regular_file.hpp"
+#include "scene_cleanup.hpp"
+
+namespace realcam::io {
+namespace {
+
+constexpr std::uint32_t kUnset = 0xffffffffu;
+
+bool has_normal(Vec3f n) {
+    return n.x != 0 || n.y != 0 || n.z != 0;
+}
+
+class Flattener {
+public:
+    Flattener(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out)
+        : scene_(scene), part_(part), file_(part.file), leaves_out_(leaves_out) {
+        for (const FileMesh& mesh : file_.meshes) {
+            any_normals_ |= !vertices_of(mesh).normals.empty();
+            any_uvs_ |= !vertices_of(mesh).uvs.empty();
+            any_colours_ |= !vertices_of(mesh).colours.empty();
+            any_places_ |= !vertices_of(mesh).places.empty();
+        }
+    }
+
+    void flatten() {
+        make_room();
+        for_each_mesh([&](const FileMesh& mesh, const Affine<double>& transform) { add_mesh(mesh, transform); });
+        if (!left_out_ || !scene_.triangles.empty())
+            clean_geometry(scene_, std::move(smoothing_), file_.path, part_.checkpoint);
+        warn_count(scene_, file_.path, bad_normals_, "normals are no finite numbers; their faces are flat there");
+        warn_count(scene_, file_.path, bad_uvs_, "texture coordinates are no finite numbers, 0 taken");
+        warn_count(scene_, file_.path, uncovered_, "meshes have a texture and no coordinates for it");
+    }
+
+private:
+    const FileVertices& vertices_of(const FileMesh& mesh) const { return file_.vertices[mesh.vertices]; }
+
+    template <class Use>
+    void for_each_mesh(Use&& use) {
+        visit_nodes(part_, [&](std::uint32_t number, const Affine<double>& transform) {
+            const LeftOut left_out = leaves_out_(number, transform);
+            left_out_ |= left_out != LeftOut::nothing;
+            const FileNode& node = file_.nodes[number];
+            for (std::uint32_t i = 0; left_out == LeftOut::nothing && i < node.mesh_count; ++i)
+                use(file_.meshes[node.first_mesh + i], transform);
+            return left_out != LeftOut::all;
+        });
+    }
+
+    /// All at once: growing step by step would take twice the memory. Throws where there is too little.
+    void make_room() {
+        std::size_t vertices = 0, triangles = 0;
+        for_each_mesh([&](const FileMesh& mesh, const Affine<double>&) {
+            triangles += mesh.triangles.size();
+            vertices += std::min(vertices_of(mesh).positions.size(), 3 * mesh.triangles.size());
+        });
+        const std::size_t per_vertex = sizeof(Vec3d) + any_normals_ * sizeof(Vec3f) + any_uvs_ * sizeof(Vec2f) +
+                                       any_colours_ * sizeof(VertexColor);
+        const std::size_t bytes = vertices * per_vertex + triangles * (sizeof(Triangle) + sizeof(std::uint32_t));
+        constexpr std::size_t kAlwaysThere = 1 << 24;
+        const std::string why = bytes > kAlwaysThere ? too_much_memory(bytes) : std::string();
+        if (!why.empty()) throw SceneFileError(file_.path + ": its triangles need " + why);
+        if (std::max(vertices, triangles) >= kUnset)
+            throw SceneFileError(file_.path + ": more than 4294967294 vertices or triangles");
+        scene_.positions_m.reserve(vertices);
+        if (any_normals_) scene_.normals.reserve(vertices);
+        if (any_uvs_) scene_.uvs.reserve(vertices);
+        if (any_colours_) scene_.colors.reserve(vertices);
+        scene_.triangles.reserve(triangles);
+        smoothing_.groups.reserve(triangles);
+    }
+
+    void add_mesh(const FileMesh& mesh, const Affine<double>& transform) {
+        const FileVertices& vertices = vertices_of(mesh);
+        if (new_numbers_.size() < vertices.positions.size()) new_numbers_.resize(vertices.positions.size(), kUnset);
+        if (add_triangles(mesh, transform) && vertices.uvs.empty()) ++uncovered_;
+    }
+
+    /// Returns whether any of them has a texture.
+    bool add_triangles(const FileMesh& mesh, const Affine<double>& transform) {
+        const bool mirrored = transform.determinant() < 0;
+        bool is_textured = false;
+        for (std::size_t number = 0; number < mesh.triangles.size(); ++number) {
+            const Triangle& from = mesh.triangles[number];
+            part_.checkpoint.pass();
+            Triangle t{{0, 0, 0}, from.material};
+            for (int i = 0; i < 3; ++i) t.vertices[i] = vertex(mesh, from.vertices[i], transform);
+            const bool has_normals = any_normals_ && (has_normal(scene_.normals[t.vertices[0]]) ||
+                                                      has_normal(scene_.normals[t.vertices[1]]) ||
+                                                      has_normal(scene_.normals[t.vertices[2]]));
+            if (mirrored) std::swap(t.vertices[1], t.vertices[2]);
+            scene_.triangles.push_back(t);
+            const std::uint32_t group = !mesh.smoothing.empty() ? mesh.smoothing[number]
+                                        : file_.smooths         ? kSmoothByAngle
+                                                                : kFlat;
+            smoothing_.groups.push_back(has_normals ? kFlat : group);
+            is_textured |= bool(file_.materials[from.material].colour_texture());
+        }
+        // The next use of these vertices has another transform.
+        for (const Triangle& t : mesh.triangles)
+            for (const std::uint32_t v : t.vertices) new_numbers_[v] = kUnset;
+        return is_textured;
+    }
+
+    /// Number in scene_ of a vertex of the mesh at work, which is added when it is first used.
+    std::uint32_t vertex(const FileMesh& mesh, std::uint32_t number, const Affine<double>& transform) {
+        std::uint32_t& known = new_numbers_[number];
+        if (known != kUnset) return known;
+        const FileVertices& from = vertices_of(mesh);
+        const Vec3d p = part_.scale * transform.point(from.positions[number]);
+        if (!in_reach(p))
+            throw SceneFileError(file_.path + ": " + mesh.label + ": vertex " + std::to_string(number) + ": " +
+                                 why_out_of_reach(p));
+        known = static_cast<std::uint32_t>(scene_.positions_m.size());
+        scene_.positions_m.push_back(p);
+        if (any_normals_)
+            scene_.normals.push_back(from.normals.empty() ? Vec3f{0, 0, 0} : normal(from.normals[number], transform));
+        if (any_uvs_) scene_.uvs.push_back(from.uvs.empty() ? Vec2f{0, 0} : uv(from.uvs[number]));
+        if (any_colours_) scene_.colors.push_back(from.colours.empty() ? VertexColor{} : from.colours[number]);
+        if (any_places_) smoothing_.places.push_back(from.places.empty() ? number : from.places[number]);
+        return known;
+    }
+
+    Vec3f normal(Vec3f given, const Affine<double>& transform) {
+        if (!std::isfinite(given.x + given.y + given.z)) {
+            ++bad_normals_;
+            return {0, 0, 0};
+        }
+        const Vec3d n = transform.normal(static_cast<Vec3d>(given));
+        const double size = length(n);
+        return size > 0 && std::isfinite(size) ? static_cast<Vec3f>((1 / size) * n) : Vec3f{0, 0, 0};
+    }
+
+    Vec2f uv(Vec2f given) {
+        if (std::isfinite(given.x) && std::isfinite(given.y)) return given;
+        ++bad_uvs_;
+        return {0, 0};
+    }
+
+    Scene& scene_;
+    const ScenePart& part_;
+    const FileScene& file_;
+    const LeavesOut& leaves_out_;
+    bool left_out_ = false;
+    bool any_normals_ = false, any_uvs_ = false, any_colours_ = false, any_places_ = false;
+    Smoothing smoothing_;
+    std::vector<std::uint32_t> new_numbers_;  // in scene_, of the vertices of the mesh at work
+    std::size_t bad_normals_ = 0, bad_uvs_ = 0, uncovered_ = 0;
+};
+
+}  // namespace
+
+void read_geometry(Scene& scene, const ScenePart& part, const LeavesOut& leaves_out) {
+    Flattener(scene, part, leaves_out).flatten();
+}
+
+}  // namespace realcam::io

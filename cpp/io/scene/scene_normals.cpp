@@ -1,0 +1,172 @@
+#include "scene_normals.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+
+#include "../../error.hpp"
+#include "vertex_welding.hpp"
+
+namespace realcam::io {
+namespace {
+
+constexpr double cos_crease = 0.70710678118654752;
+
+// The work grows with the square of the faces at one vertex. The hub of so wide a fan is flat enough, and has no
+// normal.
+constexpr std::size_t most_faces = 512;
+
+double angle_between(Vec3d a, Vec3d b) {
+    return std::atan2(length(cross(a, b)), dot(a, b));
+}
+
+/// Works position after position: what it knows of faces is what meets in one place, not a list of all of them, which
+/// for ten million would be the largest of all.
+class Smoother {
+public:
+    Smoother(Scene& scene, const Smoothing& smoothing, Checkpoint& checkpoint)
+        : scene_(scene), smoothing_(smoothing), checkpoint_(checkpoint) {}
+
+    void smooth() {
+        if (scene_.normals.empty()) scene_.normals.assign(scene_.positions_m.size(), Vec3f{0, 0, 0});
+        sort_corners();
+        find_vertices_to_keep();
+        for (std::size_t place = 0; place + 1 < begin_.size(); ++place) {
+            const std::size_t count = begin_[place + 1] - begin_[place];
+            checkpoint_.pass(1 + 8 * count);
+            if (count > 0 && count <= most_faces) smooth_place(begin_[place], begin_[place + 1]);
+        }
+    }
+
+private:
+    /// A corner of a triangle at the place at work.
+    struct Corner {
+        std::uint32_t* vertex;
+        Vec3d face_normal;
+        double angle;
+        std::uint32_t group;
+    };
+    /// A vertex made for the place at work.
+    struct Made {
+        std::uint32_t source, vertex;
+        Vec3f normal;
+    };
+
+    /// Corners by their position: begin_[p] .. begin_[p + 1] of sorted_ are those at the position of vertex p, the
+    /// first of those that are equal. A corner's number is 3 times its triangle's, and 0 to 2.
+    void sort_corners() {
+        if (scene_.triangles.size() > 0xffffffffu / 3) throw InputError("more than 1431655765 triangles");
+        const std::vector<std::uint32_t> place = first_at_place();
+        begin_.assign(scene_.positions_m.size() + 1, 0);
+        for_each_corner([&](std::uint32_t, std::uint32_t vertex) { ++begin_[place[vertex] + 1]; });
+        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+        sorted_.resize(begin_.back());
+        // Filling moves each beginning to its end, which is the next one's beginning.
+        for_each_corner([&](std::uint32_t corner, std::uint32_t vertex) { sorted_[begin_[place[vertex]]++] = corner; });
+        for (std::size_t p = begin_.size() - 1; p > 0; --p) begin_[p] = begin_[p - 1];
+        begin_[0] = 0;
+    }
+
+    std::vector<std::uint32_t> first_at_place() {
+        const std::vector<std::uint32_t>& places = smoothing_.places;
+        if (!places.empty())
+            return first_equal(
+                places.size(), [&](std::size_t i) { return places[i] * 0x9e3779b97f4a7c15ull >> 20; },
+                [&](std::size_t i, std::size_t j) { return places[i] == places[j]; }, checkpoint_);
+        return first_equal(
+            scene_.positions_m.size(), [&](std::size_t i) { return hash_of(scene_.positions_m[i]); },
+            [&](std::size_t i, std::size_t j) { return scene_.positions_m[i] == scene_.positions_m[j]; }, checkpoint_);
+    }
+
+    bool is_smooth(std::size_t triangle) const { return smoothing_.groups[triangle] != kFlat; }
+
+    template <class Use>
+    void for_each_corner(Use&& use) {
+        for (std::uint32_t t = 0; t < scene_.triangles.size(); ++t) {
+            checkpoint_.pass();
+            if (!is_smooth(t)) continue;
+            for (std::uint32_t i = 0; i < 3; ++i) use(3 * t + i, scene_.triangles[t].vertices[i]);
+        }
+    }
+
+    /// The first normal of a vertex may become its own, unless a triangle that is not smooth has it too.
+    void find_vertices_to_keep() {
+        is_taken_.assign(scene_.positions_m.size(), false);
+        for (std::size_t t = 0; t < scene_.triangles.size(); ++t)
+            if (!is_smooth(t))
+                for (const std::uint32_t v : scene_.triangles[t].vertices) is_taken_[v] = true;
+    }
+
+    Corner corner(std::uint32_t number) {
+        Triangle& t = scene_.triangles[number / 3];
+        const Vec3d p[] = {scene_.positions_m[t.vertices[0]], scene_.positions_m[t.vertices[1]],
+                           scene_.positions_m[t.vertices[2]]};
+        const std::uint32_t i = number % 3;
+        const Vec3d own = p[i], next = p[(i + 1) % 3], before = p[(i + 2) % 3];
+        return {&t.vertices[i], normalized(cross(p[1] - p[0], p[2] - p[0])), angle_between(next - own, before - own),
+                smoothing_.groups[number / 3]};
+    }
+
+    static bool meets_smoothly(const Corner& own, const Corner& other) {
+        if (own.group != other.group) return false;
+        return own.group != kSmoothByAngle || dot(own.face_normal, other.face_normal) >= cos_crease;
+    }
+
+    void smooth_place(std::uint32_t begin, std::uint32_t end) {
+        corners_.clear();
+        made_.clear();
+        for (std::uint32_t k = begin; k < end; ++k) corners_.push_back(corner(sorted_[k]));
+        checkpoint_.pass(corners_.size() * corners_.size() / 8);
+        for (const Corner& own : corners_) {
+            Vec3d sum = {0, 0, 0};
+            for (const Corner& other : corners_)
+                if (meets_smoothly(own, other)) sum += other.angle * other.face_normal;
+            set_normal(*own.vertex, length(sum) > 0 ? static_cast<Vec3f>(normalized(sum)) : Vec3f{0, 0, 0});
+        }
+    }
+
+    /// Replaces a corner's vertex by one that has this normal.
+    void set_normal(std::uint32_t& vertex, Vec3f normal) {
+        for (const Made& made : made_) {
+            if (made.source != vertex || made.normal != normal) continue;
+            vertex = made.vertex;
+            return;
+        }
+        const std::uint32_t source = vertex;
+        if (!is_taken_[source]) {
+            is_taken_[source] = true;
+            scene_.normals[source] = normal;
+        } else {
+            vertex = static_cast<std::uint32_t>(scene_.positions_m.size());
+            const Vec3d position = scene_.positions_m[source];
+            scene_.positions_m.push_back(position);
+            scene_.normals.push_back(normal);
+            if (!scene_.uvs.empty()) {
+                const Vec2f uv = scene_.uvs[source];
+                scene_.uvs.push_back(uv);
+            }
+            if (!scene_.colors.empty()) {
+                const VertexColor color = scene_.colors[source];
+                scene_.colors.push_back(color);
+            }
+        }
+        made_.push_back({source, vertex, normal});
+    }
+
+    Scene& scene_;
+    const Smoothing& smoothing_;
+    Checkpoint& checkpoint_;
+    std::vector<std::uint32_t> begin_, sorted_;
+    std::vector<bool> is_taken_;
+    std::vector<Corner> corners_;
+    std::vector<Made> made_;
+};
+
+}  // namespace
+
+void smooth_normals(Scene& scene, const Smoothing& smoothing, Checkpoint& checkpoint) {
+    Smoother(scene, smoothing, checkpoint).smooth();
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,64 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "../../checkpoint.hpp"
+#include "../../scene/scene.hpp"
+#include "decoded_image.hpp"
+#include "file_scene.hpp"
+
+namespace realcam::io {
+
+/// The pictures of a scene file, each decoded once.
+class SceneTextures {
+public:
+    /// `scene`: gets textures and warnings. All arguments have to outlive it.
+    SceneTextures(Scene& scene, const FileScene& file, const ImageReader& read_image, Checkpoint& checkpoint);
+
+    struct Found {
+        TextureReference reference;
+        bool is_stand_in;
+    };
+    /// A picture of the file's as a texture in scene.textures, added if it is new. One that cannot be had becomes a
+    /// checker in magenta and black, with a warning. Throws SceneFileError where all together need more memory than is
+    /// free.
+    Found find(const FileTexture& texture, TextureUse use);
+
+    /// Likewise of what made_textures.hpp makes of pictures: a map of heights times `scale` as one of normals, maps of
+    /// roughness and metallic as one (with the transform of the first that there is), a map of glossiness times
+    /// `factor` as one of roughness. Nothing where a picture cannot be had.
+    std::optional<TextureReference> find_heights(const FileTexture& texture, float scale);
+    std::optional<TextureReference> find_roughness_and_metallic(const FileTexture& roughness,
+                                                                const FileTexture& metallic);
+    std::optional<TextureReference> find_glossiness(const FileTexture& texture, float factor);
+
+private:
+    /// What was made of which pictures (-1: none), by which number, and whether they go on beyond their edges.
+    enum class Made { normals, roughness_and_metallic, roughness };
+    using MadeKey = std::tuple<Made, std::int32_t, std::int32_t, float, bool>;
+    template <class Make>
+    std::optional<std::int32_t> made(const MadeKey& key, Make&& make);
+    std::string name_of(std::int32_t picture) const;
+
+    std::optional<DecodedImage> decode(std::int32_t picture);
+    struct Added {
+        std::int32_t texture;  // in scene_.textures
+        bool is_stand_in;
+    };
+    Added add(std::int32_t picture, TextureUse use);
+    std::int32_t keep(Texture texture);
+    void check_memory(std::size_t added);
+
+    Scene& scene_;
+    const FileScene& file_;
+    const ImageReader& read_image_;
+    Checkpoint& checkpoint_;
+    std::map<std::pair<std::int32_t, TextureUse>, Added> added_;
+    std::map<MadeKey, std::optional<std::int32_t>> made_;
+    std::size_t bytes_ = 0, checked_bytes_ = 0;  // of scene_.textures
+};
+
+}  // namespace realcam::io

@@ -1,0 +1,56 @@
+#pragma once
+#include <cmath>
+#include <initializer_list>
+
+#include "../../math/vec3.hpp"
+#include "../../scene/texture_reference.hpp"
+
+namespace realcam::io {
+
+/// From a vertex's texture coordinates to those in a picture. Identity by default.
+class TextureTransform {
+public:
+    TextureTransform() = default;
+    /// As glTF's KHR_texture_transform has them, with v downwards: scaled first, then turned, then moved.
+    TextureTransform(double scale_u, double scale_v, double rotation, double offset_u, double offset_v) {
+        const double c = std::cos(rotation), s = std::sin(rotation);
+        from_u_ = {c * scale_u, -s * scale_u, 0};
+        from_v_ = {s * scale_v, c * scale_v, 0};
+        offset_ = {offset_u, offset_v, 0};
+    }
+    /// As MTL's options -s and -o have them, with v upwards: (scale_u u + offset_u, scale_v v + offset_v).
+    static TextureTransform of_mtl(double scale_u, double scale_v, double offset_u, double offset_v) {
+        return {scale_u, scale_v, 0, offset_u, 1 - scale_v - offset_v};
+    }
+
+    /// v upwards; the extension itself has it downwards, and turns against the clock as seen on the picture.
+    Vec2f operator()(float u, float v) const {
+        const Vec3d out = double(u) * from_u_ + (1 - double(v)) * from_v_ + offset_;
+        return {static_cast<float>(out.x), static_cast<float>(1 - out.y)};
+    }
+
+    /// The same for a renderer, of that texture of the scene.
+    TextureReference of(std::int32_t texture) const {
+        const auto f = [](double v) { return static_cast<float>(v); };
+        return {texture,
+                {f(from_u_.x), f(-from_v_.x), f(from_v_.x + offset_.x)},
+                {f(-from_u_.y), f(from_v_.y), f(1 - from_v_.y - offset_.y)}};
+    }
+
+    /// Whether a renderer's floats can hold it.
+    bool is_finite() const {
+        const TextureReference r = of(0);
+        for (const float v : {r.to_u.x, r.to_u.y, r.to_u.z, r.to_v.x, r.to_v.y, r.to_v.z})
+            if (!std::isfinite(v)) return false;
+        return true;
+    }
+
+    bool operator==(const TextureTransform& b) const {
+        return from_u_ == b.from_u_ && from_v_ == b.from_v_ && offset_ == b.offset_;
+    }
+
+private:
+    Vec3d from_u_ = {1, 0, 0}, from_v_ = {0, 1, 0}, offset_ = {0, 0, 0};
+};
+
+}  // namespace realcam::io

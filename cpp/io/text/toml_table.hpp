@@ -1,0 +1,141 @@
+#pragma once
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "../../error.hpp"
+#include "nearest_names.hpp"
+#include "printable.hpp"
+
+namespace realcam::io {
+
+/// Throws the error of a kind of file. `line` and `surface` are 1-based; 0 where they do not apply.
+using RaiseFileError = void (*)(const std::string& message, const std::string& file, int line, int surface);
+
+[[noreturn]] inline void raise_lens_file_error(const std::string& message, const std::string& file, int line,
+                                               int surface) {
+    throw LensFileError(message, file, line, surface);
+}
+
+/// A table of a TOML file that knows where it stands, so that every complaint names file, line and, in a lens file,
+/// surface.
+class TomlTable {
+public:
+    TomlTable(const toml::table& table, std::string file, int surface = 0, RaiseFileError raise = raise_lens_file_error)
+        : table_(table), file_(std::move(file)), surface_(surface), raise_(raise) {}
+
+    [[noreturn]] void fail(const std::string& message, const toml::node* node = nullptr) const {
+        const toml::node& place = node ? *node : table_;
+        raise_(message, file_, static_cast<int>(place.source().begin.line), surface_);
+        std::abort();  // raise_ has thrown
+    }
+
+    /// Refuses keys that the format does not know: a misspelt one must not be ignored in silence.
+    void allow(const std::vector<std::string_view>& keys) const {
+        for (const auto& [key, node] : table_) {
+            bool known = false;
+            for (std::string_view allowed : keys) known |= key.str() == allowed;
+            if (!known)
+                fail("unknown key " + in_quotes(key.str()) +
+                         did_you_mean(key.str(), std::vector<std::string>(keys.begin(), keys.end())),
+                     &node);
+        }
+    }
+
+    const toml::node* find(std::string_view key) const { return table_.get(key); }
+
+    std::optional<double> number(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return std::nullopt;
+        return as_number(*node, '"' + std::string(key) + '"');
+    }
+
+    double as_number(const toml::node& node, const std::string& what) const {
+        // value_or gives nothing for a whole number that no double holds exactly.
+        const double value = node.is_integer()  ? static_cast<double>(node.as_integer()->get())
+                             : node.is_number() ? node.value_or(0.0)
+                                                : std::nan("");
+        if (!std::isfinite(value)) fail(what + " must be a finite number", &node);
+        return value;
+    }
+
+    std::string text(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return {};
+        if (!node->is_string()) fail('"' + std::string(key) + "\" must be a text in quotes", node);
+        return *node->value<std::string>();
+    }
+
+    /// A text that can stand in one line of a terminal, a drawing or a file: without control characters.
+    std::string line(std::string_view key) const {
+        std::string value = text(key);
+        if (printable(value) != value)
+            fail('"' + std::string(key) + "\" must be one line of text, without control characters", find(key));
+        return value;
+    }
+
+    /// The same for the name of the table under a key of this one.
+    void check_name(std::string_view key, const toml::node& node) const {
+        if (printable(key) != key)
+            fail("the name " + in_quotes(key) + " must be one line of text, without control characters", &node);
+    }
+
+    /// False where the key is absent.
+    bool flag(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return false;
+        if (!node->is_boolean()) fail('"' + std::string(key) + "\" must be true or false", node);
+        return *node->value<bool>();
+    }
+
+    /// An array of exactly `count` numbers (any number of them where count is 0); empty where the key is absent.
+    std::vector<double> numbers(std::string_view key, std::size_t count) const {
+        const toml::node* node = find(key);
+        if (!node) return {};
+        const toml::array* array = node->as_array();
+        const std::string what = '"' + std::string(key) + '"';
+        if (!array || array->empty() || (count && array->size() != count))
+            fail(what + " must be an array of " + (count ? std::to_string(count) + " " : "") + "numbers", node);
+        std::vector<double> values;
+        for (const toml::node& item : *array) values.push_back(as_number(item, "each value of " + what));
+        return values;
+    }
+
+    /// An array of texts; empty where the key is absent.
+    std::vector<std::string> texts(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return {};
+        const toml::array* array = node->as_array();
+        const std::string what = '"' + std::string(key) + "\" must be an array of texts in quotes";
+        if (!array) fail(what, node);
+        std::vector<std::string> values;
+        for (const toml::node& item : *array) {
+            if (!item.is_string()) fail(what, &item);
+            values.push_back(*item.value<std::string>());
+        }
+        return values;
+    }
+
+    std::optional<TomlTable> table(std::string_view key) const {
+        const toml::node* node = find(key);
+        if (!node) return std::nullopt;
+        if (!node->is_table()) fail('"' + std::string(key) + "\" must be a table", node);
+        return TomlTable(*node->as_table(), file_, surface_, raise_);
+    }
+
+    const toml::table& raw() const { return table_; }
+    const std::string& file() const { return file_; }
+
+private:
+    const toml::table& table_;
+    std::string file_;
+    int surface_;
+    RaiseFileError raise_;
+};
+
+}  // namespace realcam::io

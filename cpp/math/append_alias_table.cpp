@@ -1,0 +1,32 @@
+#include "append_alias_table.hpp"
+
+#include <cstddef>
+
+namespace realcam {
+
+void append_alias_table(const std::vector<double>& weights, std::vector<AliasEntry>& tables) {
+    double sum = 0;
+    for (const double weight : weights) sum += weight;
+    std::vector<double> share;  // of what an entry has in an even table
+    std::vector<std::size_t> less, more;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        share.push_back(weights[i] / sum * static_cast<double>(weights.size()));
+        (share[i] < 1 ? less : more).push_back(i);
+    }
+    AliasEntry* const table = (tables.resize(tables.size() + weights.size()), &tables[tables.size() - weights.size()]);
+    while (!less.empty() && !more.empty()) {
+        const std::size_t i = less.back(), giver = more.back();
+        less.pop_back();
+        table[i] = {static_cast<float>(share[i]), static_cast<std::int32_t>(giver)};
+        share[giver] -= 1 - share[i];
+        if (share[giver] < 1) {
+            more.pop_back();
+            less.push_back(giver);
+        }
+    }
+    // But for roundings, what is left over has its even share.
+    for (const auto& left : {less, more})
+        for (const std::size_t i : left) table[i] = {1, static_cast<std::int32_t>(i)};
+}
+
+}  // namespace realcam

@@ -1,0 +1,26 @@
+#include "field_rays.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "aim_all.hpp"
+
+namespace realcam {
+
+FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
+                     std::vector<PupilPoint> pattern, const RayLoop& loop) {
+    const RayAimer aim(lens, wavelength_nm, field);
+    FieldRays result{field.angle_rad, std::move(pattern), {}, aim.chief_ray()};
+    const std::string where = "at a field angle of " + object_point_detail::degrees(field.angle_rad);
+    if (result.chief.status != RayStatus::ok)
+        throw InputError("the ray " + where + " through the middle of the stop does not leave lens \"" + lens.name +
+                         "\"");
+    result.rays = aim_all(aim, result.pattern, stop_reach(lens), loop);
+    if (std::none_of(result.rays.begin(), result.rays.end(),
+                     [](const AimedRay& ray) { return ray.status == RayStatus::ok; }))
+        throw InputError("none of " + std::to_string(result.rays.size()) + " rays " + where + " passes lens \"" +
+                         lens.name + "\"");
+    return result;
+}
+
+}  // namespace realcam

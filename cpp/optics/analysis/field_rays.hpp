@@ -1,0 +1,31 @@
+#pragma once
+#include "../../platform.hpp"
+#include "../prescription/lens_system.hpp"
+#include "../pupil/pupil_pattern.hpp"
+#include "aim_request.hpp"
+#include "object_point.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The rays of one object point over the stop, behind the lens: what wavefronts and spots are made from. Lengths in mm;
+/// points relative to the last vertex.
+struct FieldRays {
+    double field_angle_rad;
+    std::vector<PupilPoint> pattern;
+    std::vector<AimedRay> rays;  ///< one for each point of the pattern; only those whose status is ok count
+    AimedRay chief;  ///< through the middle of the stop, even where the lens blocks it
+
+    bool passes(std::size_t i) const { return rays[i].status == RayStatus::ok; }
+};
+
+/// Where a ray, as a straight line, crosses the plane at z behind the last vertex.
+inline Vec3d crossing(const AimedRay& ray, double z) {
+    return ray.origin + ((z - ray.origin.z) / ray.direction.z) * ray.direction;
+}
+
+/// Aims a ray at every point of the pattern. Throws InputError where the field point makes no sense, or where the lens
+/// lets none of the rays pass, and what `loop` throws to stop it.
+FieldRays field_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
+                     std::vector<PupilPoint> pattern, const RayLoop& loop = {});
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,93 @@
+#pragma once
+#include "../../math/vec3.hpp"
+#include "../trace/lens_trace.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Which places of the entry rectangle the rays of a spot go through.
+enum class EntryPattern {
+    even,  ///< the additive sequence of M. Roberts (2018) in two dimensions: evenly spread in any number
+    grid,  ///< a square of points
+};
+
+/// Where the light of one object point lands on the film, by many rays that are not aimed at the stop: they fill a
+/// rectangle of the entry plane (ObjectPoint) over which the light is even, and those that pass are kept.
+template <class T>
+struct FilmPointsRequest {
+    LensView<T> lens;
+    Vec3<T> centre;  ///< of the rectangle, relative to the first vertex, mm
+    Vec3<T> towards;  ///< unit: of the ray through the entry plane's middle
+    Vec2<T> middle, reach;  ///< of the rectangle: from the entry plane's middle, and half its sides, mm
+    T inverse_distance;     ///< of the object from the entry plane's middle, 1/mm
+    T index;                ///< of the medium from which the rays enter
+    T film;                 ///< z of the film plane relative to the last vertex, mm
+    EntryPattern pattern;
+    std::int64_t columns;  ///< of the grid
+    std::int64_t first, count;  ///< rays to take
+    float* points;  ///< x and y of those that pass, mm from the axis; room for `count`
+    std::int64_t passed;  ///< is added to
+};
+
+namespace film_points_detail {
+
+/// Places of N rays from `first` on, each coordinate between -1 and 1.
+template <int N, class T>
+REALCAM_HD inline void places_of(const FilmPointsRequest<T>& request, std::int64_t first, T (&x)[N], T (&y)[N]) {
+    if (request.pattern == EntryPattern::grid) {
+        const T step = T(2) / static_cast<T>(request.columns);
+        for (int k = 0; k < N; ++k) {
+            const std::int64_t ray = first + k;
+            x[k] = (static_cast<T>(ray % request.columns) + T(0.5)) * step - T(1);
+            y[k] = (static_cast<T>(ray / request.columns) + T(0.5)) * step - T(1);
+        }
+        return;
+    }
+    // Multiples of 1 / g and 1 / g^2, g the real root of g^3 = g + 1, in steps of 2^-32.
+    const auto from = static_cast<std::uint32_t>(first);
+    REALCAM_LANES
+    for (int k = 0; k < N; ++k) {
+        const std::uint32_t ray = from + static_cast<std::uint32_t>(k);
+        x[k] = static_cast<T>(static_cast<std::int32_t>(ray * 3242174889u)) * T(0x1p-31);
+        y[k] = static_cast<T>(static_cast<std::int32_t>(ray * 2447445414u)) * T(0x1p-31);
+    }
+}
+
+}  // namespace film_points_detail
+
+/// Traces all rays of a request, N at a time.
+template <LensKind lens_kind, int N, class T>
+inline void find_film_points(FilmPointsRequest<T>& request) {
+    const FilmPointsRequest<T> r = request;
+    LensRays<T, N> rays;
+    alignas(kLaneAlignment<T, N>) T x[N], y[N];
+    float* to = r.points;
+    for (std::int64_t done = 0; done < r.count; done += N) {
+        const int used = static_cast<int>(r.count - done < N ? r.count - done : N);
+        film_points_detail::places_of<N>(r, r.first + done, x, y);
+        REALCAM_LANES
+        for (int k = 0; k < N; ++k) {
+            const T across = r.middle.x + r.reach.x * x[k], along = r.middle.y + r.reach.y * y[k];
+            const Vec3<T> offset = {across, along * r.towards.z, -along * r.towards.y};
+            const Vec3<T> way = r.towards + r.inverse_distance * offset;
+            const T scale = r.index / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+            rays.origin.set(k, r.centre + offset);
+            rays.direction.set(k, scale * way);
+            rays.status[k] = 0;
+        }
+        trace_lens<lens_kind>(r.lens, rays);
+        REALCAM_LANES
+        for (int k = 0; k < N; ++k) {
+            const T t = (r.film - rays.origin.z[k]) / rays.direction.z[k];
+            x[k] = rays.origin.x[k] + t * rays.direction.x[k];
+            y[k] = rays.origin.y[k] + t * rays.direction.y[k];
+        }
+        for (int k = 0; k < used; ++k) {
+            to[0] = static_cast<float>(x[k]);
+            to[1] = static_cast<float>(y[k]);
+            to += 2 * static_cast<std::int64_t>(rays.status[k] == 0);
+        }
+    }
+    request.passed += (to - r.points) / 2;
+}
+
+}  // namespace REALCAM_NAMESPACE

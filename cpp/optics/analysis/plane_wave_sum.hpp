@@ -1,0 +1,51 @@
+#pragma once
+#include <complex>
+
+#include "plane_waves.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Points of the film in a square, row by row: size x size of them at `pitch` mm. Point (size / 2, size / 2) lies at
+/// `centre`, mm from the chief ray.
+struct FilmGrid {
+    int size;
+    double pitch;
+    Vec2<double> centre;
+
+    double offset(int i) const { return (i - size / 2) * pitch; }
+};
+
+/// The sum of plane waves on a grid of points, the phases in double.
+///
+/// On a grid each wave is a product of a function of x and one of y, so the sum is a product of matrices. Points at x
+/// and -x share the cosine and the sine of x: a point takes two multiplications and additions a wave, and of light that
+/// is its own mirror image, which has no sines, one.
+class PlaneWaveSum {
+public:
+    PlaneWaveSum(FilmGrid grid, double wave_number);
+
+    /// Mirrored light only where the grid's middle has x = 0.
+    void add(const PlaneWaves& light, const RayLoop& loop);
+
+    /// At column x and row y.
+    std::complex<double> operator()(int x, int y) const;
+
+private:
+    static constexpr std::size_t kWaves = 256, kWidth = 8, kAtOnce = 4, kTurns = 16;
+
+    /// cos and sin of k slope.x x for x = 0, pitch, 2 pitch ..., of each wave.
+    void tabulate(const PlaneWave* waves, std::size_t count);
+
+    void add_to_rows(const PlaneWave* waves, std::size_t count, bool mirrored, std::size_t first, std::size_t last);
+
+    void start(const PlaneWave* waves, std::size_t count, std::size_t row, double* re, double* im) const;
+
+    void add_four(const double* re, const double* im, const double* of_x, double* re_sums, double* im_sums) const;
+
+    FilmGrid grid_;
+    double wave_number_;
+    std::size_t half_, rows_;
+    std::vector<double> sums_, cos_, sin_;
+};
+
+}  // namespace REALCAM_NAMESPACE

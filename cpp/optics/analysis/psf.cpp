@@ -1,0 +1,230 @@
+#include "psf.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace realcam {
+
+namespace {
+
+/// um: a quarter of wavelength x f-number, of the finest detail of an image half; for a spot that is larger than the
+/// window, up to twice that, which all of the detail still needs.
+double psf_pitch(const PointBundle& bundle, int size) {
+    const double across = std::max(bundle.slope_high.x - bundle.slope_low.x, bundle.slope_high.y - bundle.slope_low.y);
+    const double detail = 2e3 * std::numbers::pi / (bundle.wave_number * across);
+    const double spot = 2e3 * std::max(bundle.spot.x, bundle.spot.y) + 8 * detail;
+    return std::clamp(spot / size, 0.25 * detail, 0.5 * detail);
+}
+
+}  // namespace
+
+namespace psf_detail {
+
+namespace {
+
+constexpr double kMostWaves = 1 << 24;
+
+}  // namespace
+
+}  // namespace psf_detail
+
+namespace psf_detail {
+
+BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t rays) {
+    const double half = 0.5e-3 * psf.size * psf.pitch_um, phase = largest_phase(part.bundle, part.centre, half);
+    const auto count = [](BundleSampling s) { return static_cast<double>(s.spokes) * s.nodes; };
+    if (!(phase < 1e5) || count(sampling_for(phase)) > kMostWaves)
+        throw InputError("psf: the light's phase differs by " + std::to_string(std::lround(phase / std::numbers::pi)) +
+                         " waves on the array, too many for a sum of rays; give a smaller array, another "
+                         "film_distance_mm or the method \"geometric\"");
+    BundleSampling sampling = sampling_for(phase);
+    if (rays == 0) return sampling;
+    const double least = phase * (0.25 * phase + 1);
+    if (static_cast<double>(rays) < least)
+        throw InputError("psf: " + std::to_string(rays) +
+                         " rays cannot follow the wavefront over the array: at least " +
+                         std::to_string(static_cast<std::int64_t>(least) + 1) + " are wanted, " +
+                         std::to_string(static_cast<std::int64_t>(count(sampling))) + " are good");
+    const double more = std::sqrt(static_cast<double>(rays) / count(sampling));
+    return {static_cast<int>(std::ceil(more * sampling.spokes)), static_cast<int>(std::ceil(more * sampling.nodes))};
+}
+
+}  // namespace psf_detail
+
+namespace psf_detail {
+
+namespace {
+
+/// Irradiance per um^2 of a sum of 1.
+double scale_of(const Part& part) {
+    const double per_mm2 = part.bundle.wave_number / (2 * std::numbers::pi);
+    return 1e-6 * part.weight * per_mm2 * per_mm2 / part.light.energy;
+}
+
+}  // namespace
+
+}  // namespace psf_detail
+
+namespace psf_detail {
+
+void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values, const RayLoop& loop) {
+    values.assign(static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size), 0);
+    for (const Part& part : parts) {
+        FilmGrid own = grid;
+        own.centre = {grid.centre.x + part.centre.x, grid.centre.y + part.centre.y};
+        PlaneWaveSum sum(own, part.bundle.wave_number);
+        if (part.light.mirrored && own.centre.x != 0)
+            sum.add(with_mirror_images(part.light), loop);
+        else
+            sum.add(part.light, loop);
+        const double scale = scale_of(part);
+        for (int y = 0; y < grid.size; ++y)
+            for (int x = 0; x < grid.size; ++x)
+                values[static_cast<std::size_t>(y * grid.size + x)] += scale * std::norm(sum(x, y));
+    }
+}
+
+}  // namespace psf_detail
+
+namespace psf_detail {
+
+namespace {
+
+/// The largest value near the largest of the array's: between its points, by smaller and smaller grids.
+double peak_near(const std::vector<Part>& parts, const Psf& psf, const RayLoop& loop) {
+    const auto largest = [](const std::vector<double>& values, FilmGrid grid) {
+        const auto at = static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin());
+        return Vec2<double>{grid.centre.x + grid.offset(at % grid.size), grid.centre.y + grid.offset(at / grid.size)};
+    };
+    FilmGrid grid{psf.size, 1e-3 * psf.pitch_um, {0, 0}};
+    std::vector<double> values = psf.values;
+    double peak = *std::max_element(values.begin(), values.end());
+    Vec2<double> place = largest(values, grid);
+    for (int i = 0; i < 6; ++i) {
+        grid = {5, 1e-3 * psf.pitch_um * std::pow(0.5, i + 1), place};
+        add_waves(parts, grid, values, loop);
+        peak = std::max(peak, *std::max_element(values.begin(), values.end()));
+        place = largest(values, grid);
+    }
+    return peak;
+}
+
+/// Without diffraction: the energy of the rays that land around each point.
+void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop) {
+    const auto points_across = [&](double spot) { return 1 + 2e3 * spot / psf.pitch_um; };
+    const double enough = 16 * points_across(part.bundle.spot.x) * points_across(part.bundle.spot.y);
+    const double count = rays ? static_cast<double>(rays) : std::clamp(enough, 0x1p16, 0x1p22);
+    const double spokes = 2 * std::sqrt(count);
+    const std::vector<EntryPart> places =
+        entry_parts(part.bundle, {static_cast<int>(std::ceil(spokes)), static_cast<int>(std::ceil(spokes / 4))}, loop);
+    std::vector<Vec2<double>> points;
+    loop.append_all(points, places.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const PointBundle::Entry entries[1] = {places[i].entry};
+            FilmRay found[1];
+            part.bundle.trace(entries, found);
+            points[i] = found[0].at;
+        }
+    });
+    const auto nearest = [&](double mm) { return std::floor(1e3 * mm / psf.pitch_um + psf.size / 2 + 0.5); };
+    double energy = 0;
+    std::vector<double> values(psf.values.size());
+    const auto add = [&](Vec2<double> at, double share) {
+        const double x = nearest(at.x - part.centre.x), y = nearest(at.y - part.centre.y);
+        energy += share;
+        if (x >= 0 && y >= 0 && x < psf.size && y < psf.size)
+            values[static_cast<std::size_t>(y * psf.size + x)] += share;
+    };
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const double share = places[i].area * part.bundle.energy(places[i].entry);
+        add(points[i], part.bundle.mirrored ? 0.5 * share : share);
+        if (part.bundle.mirrored) add({-points[i].x, points[i].y}, 0.5 * share);
+    }
+    for (std::size_t i = 0; i < values.size(); ++i)
+        psf.values[i] += part.weight / (energy * psf.pitch_um * psf.pitch_um) * values[i];
+    psf.rays += static_cast<std::int64_t>(places.size());
+}
+
+}  // namespace
+
+}  // namespace psf_detail
+
+namespace psf_detail {
+
+Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& loop) {
+    if (request.colours.empty()) throw InputError("psf: no wavelength is given");
+    if (!(request.size >= 2 && request.size <= 4096)) throw InputError("psf: size must lie between 2 and 4096");
+    if (!(request.pitch_um >= 0 && request.pitch_um < 1e6)) throw InputError("psf: pitch_um must be a positive length");
+    if (request.rays < 0) throw InputError("psf: rays must be a positive number");
+    double sum = 0;
+    for (const PsfColour& colour : request.colours) {
+        if (!(colour.weight > 0 && colour.weight < kInfinity))
+            throw InputError("psf: weights must be positive numbers");
+        sum += colour.weight;
+    }
+    Start made;
+    Psf& psf = made.psf;
+    psf = {request.size, request.pitch_um, {0, 0}, request.colours, {}, std::numeric_limits<double>::quiet_NaN(), 0};
+    for (PsfColour& colour : psf.colours) {
+        colour.weight /= sum;
+        made.parts.push_back(
+            {PointBundle(lens, colour.wavelength_nm, request.field, request.film_distance, loop), colour.weight});
+    }
+    if (request.centre == PsfCentre::chief) psf.centre_mm = made.parts[0].bundle.chief;
+    for (const Part& part : made.parts) {
+        const PointBundle& bundle = part.bundle;
+        if (request.centre == PsfCentre::centroid)
+            psf.centre_mm = {psf.centre_mm.x + part.weight * (bundle.chief.x + bundle.centroid.x),
+                             psf.centre_mm.y + part.weight * (bundle.chief.y + bundle.centroid.y)};
+        if (request.pitch_um == 0) {
+            const double pitch = psf_pitch(bundle, psf.size);
+            psf.pitch_um = psf.pitch_um == 0 ? pitch : std::min(psf.pitch_um, pitch);
+        }
+    }
+    for (Part& part : made.parts)
+        part.centre = {psf.centre_mm.x - part.bundle.chief.x, psf.centre_mm.y - part.bundle.chief.y};
+    psf.values.assign(static_cast<std::size_t>(psf.size) * static_cast<std::size_t>(psf.size), 0);
+    return made;
+}
+
+}  // namespace psf_detail
+
+namespace psf_detail {
+
+namespace {
+
+/// Largest value of the same light without aberrations: all waves in phase, all colours in one place.
+double ideal_peak(const std::vector<Part>& parts) {
+    double ideal = 0;
+    for (const Part& part : parts) {
+        double amplitude = 0;
+        for (const PlaneWave& wave : part.light.waves) amplitude += wave.amplitude;
+        ideal += scale_of(part) * amplitude * amplitude;
+    }
+    return ideal;
+}
+
+}  // namespace
+
+}  // namespace psf_detail
+
+Psf psf_of(const LensSystem& lens, const PsfRequest& request, const RayLoop& loop) {
+    using namespace psf_detail;
+    auto [parts, psf] = start(lens, request, loop);
+    if (request.method == PsfMethod::geometric) {
+        for (const Part& part : parts) add_rays(part, psf, request.rays, loop);
+        return std::move(psf);
+    }
+    for (Part& part : parts) {
+        part.light = plane_waves(part.bundle, checked_sampling(part, psf, request.rays), loop);
+        psf.rays += static_cast<std::int64_t>(part.light.waves.size());
+    }
+    add_waves(parts, {psf.size, 1e-3 * psf.pitch_um, {0, 0}}, psf.values, loop);
+    psf.strehl = peak_near(parts, psf, loop) / ideal_peak(parts);
+    return std::move(psf);
+}
+
+}  // namespace realcam

@@ -1,0 +1,159 @@
+#include "ray_aiming.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../lens/paraxial.hpp"
+#include "../pupil/pupil_pattern.hpp"
+
+namespace realcam {
+
+AimingPath AimingPath::open(const LensPath<double>& path) {
+    AimingPath result(path);
+    for (SurfaceView<double>& step : result.steps_) {
+        step.rim_squared = std::numeric_limits<double>::max();
+        step.hole_squared = -1;
+        step.has_blades = false;
+    }
+    return result;
+}
+
+AimingPath::AimingPath(const LensPath<double>& path) {
+    const LensView<double> view = path.view();
+    steps_.assign(view.surfaces, view.surfaces + view.count);
+    iris_ = view.iris;
+}
+
+RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoint& field)
+    : object(lens, wavelength_nm, field),
+      path_(lens, LightDirection::to_film, wavelength_nm),
+      stop_(lens.stop_index()),
+      open_(AimingPath::open(path_)),
+      real_(AimingPath::real(path_)),
+      reach_(stop_reach(lens)),
+      stop_radius_(std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter)) {
+    const FirstOrder data = first_order(lens, wavelength_nm);
+    step_ = 1e-6 * data.entrance_pupil_diameter;
+    follow_chief_ray(lens, wavelength_nm, field);
+}
+
+AimedRay RayAimer::operator()(Vec2<double> place) const {
+    const std::optional<Entry> entry = aimed_from_chief(off_the_edge(place));
+    if (!entry) {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        return {RayStatus::no_convergence, {nan, nan}, {nan, nan, nan}, {nan, nan, nan}, nan};
+    }
+    return through(real_.view(), *entry);
+}
+
+Vec2<double> RayAimer::off_the_edge(Vec2<double> place) const {
+    const double share = std::hypot(place.x, place.y) / reach_;
+    const double inwards = std::fabs(share - 1) < kEdge ? (1 - kEdge) / share : 1.0;
+    return {inwards * place.x, inwards * place.y};
+}
+
+AimRequest RayAimer::request(const StopMap& map) const {
+    LensView<double> to_stop = open_.view();
+    to_stop.count = stop_ + 1;
+    return {to_stop,
+            real_.view(),
+            object.centre - Vec3d{0, 0, path_.entry_position},
+            object.towards,
+            object.inverse_distance,
+            path_.entry_index,
+            kMiss * stop_radius_,
+            &map,
+            0,
+            nullptr,
+            nullptr};
+}
+
+AimedRay RayAimer::through(LensView<double> view, Entry entry) const {
+    LensRays<double, 1> ray;
+    const Vec3d start = object.at(entry) - Vec3d{0, 0, path_.entry_position};
+    ray.origin.set(0, start);
+    ray.direction.set(0, path_.entry_index * object.direction(entry));
+    ray.status[0] = 0;
+    PathRecord<double, 1> record{};
+    trace_lens(view, ray, record);
+    return {static_cast<RayStatus>(ray.status[0]), entry, ray.origin[0], ray.direction[0],
+            record.optical_path[0] + path_.entry_index * object.path_difference(entry)};
+}
+
+std::optional<RayAimer::Probe> RayAimer::probe(const ObjectPoint& from, Entry entry) const {
+    LensView<double> to_stop = open_.view();
+    to_stop.count = stop_ + 1;
+    const Entry entries[3] = {entry, {entry.x + step_, entry.y}, {entry.x, entry.y + step_}};
+    LensRays<double, 3> rays;
+    for (int i = 0; i < 3; ++i) {
+        rays.origin.set(i, from.at(entries[i]) - Vec3d{0, 0, path_.entry_position});
+        rays.direction.set(i, path_.entry_index * from.direction(entries[i]));
+        rays.status[i] = 0;
+    }
+    PathRecord<double, 3> record{};
+    trace_lens(to_stop, rays, record);
+    for (const int status : rays.status)
+        if (status != 0) return {};
+    const auto slope = [&](int i) {
+        return Vec2<double>{(rays.origin.x[i] - rays.origin.x[0]) / step_,
+                            (rays.origin.y[i] - rays.origin.y[0]) / step_};
+    };
+    return Probe{{rays.origin.x[0], rays.origin.y[0]}, slope(1), slope(2)};
+}
+
+std::optional<RayAimer::Entry> RayAimer::aimed(const ObjectPoint& from, Vec2<double> place, Entry entry) const {
+    std::optional<Probe> here = probe(from, entry);
+    if (!here) return {};
+    for (int i = 0; i < kMaxSteps; ++i) {
+        const double error = miss(*here, place);
+        if (error <= kMiss * stop_radius_) return entry;
+        const double dx = place.x - here->at.x, dy = place.y - here->at.y;
+        const double determinant = here->by_x.x * here->by_y.y - here->by_y.x * here->by_x.y;
+        Entry change = {(dx * here->by_y.y - dy * here->by_y.x) / determinant,
+                        (dy * here->by_x.x - dx * here->by_x.y) / determinant};
+        std::optional<Probe> next;
+        for (int halving = 0; halving <= kMaxHalvings; ++halving) {
+            next = probe(from, {entry.x + change.x, entry.y + change.y});
+            if (next && miss(*next, place) < error) break;
+            next.reset();
+            change = {0.5 * change.x, 0.5 * change.y};
+        }
+        if (!next) return {};
+        entry = {entry.x + change.x, entry.y + change.y};
+        here = next;
+    }
+    return {};
+}
+
+std::optional<RayAimer::Entry> RayAimer::aimed_from_chief(Vec2<double> place) const {
+    for (const int parts : {1, 4, 16}) {
+        std::optional<Entry> entry = chief_;
+        for (int k = 1; k <= parts && entry; ++k) {
+            const double share = static_cast<double>(k) / parts;
+            entry = aimed(object, {share * place.x, share * place.y}, *entry);
+        }
+        if (entry) return entry;
+    }
+    return {};
+}
+
+void RayAimer::follow_chief_ray(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
+    constexpr double kLargest = 0.09, kSmallest = 1e-3;  // rad
+    double reached = 0, step = std::min(kLargest, std::fabs(field.angle_rad));
+    while (std::fabs(field.angle_rad) > reached) {
+        const double next = std::min(reached + step, std::fabs(field.angle_rad));
+        FieldPoint between = field;
+        between.angle_rad = std::copysign(next, field.angle_rad);
+        const ObjectPoint from(lens, wavelength_nm, between);
+        if (const std::optional<Entry> entry = aimed(from, {0, 0}, chief_)) {
+            chief_ = *entry;
+            reached = next;
+        } else if ((step *= 0.5) < kSmallest) {
+            throw InputError("no ray at a field angle of " + object_point_detail::degrees(field.angle_rad) +
+                             " reaches the middle of the stop of lens \"" + lens.name + "\"");
+        }
+    }
+}
+
+}  // namespace realcam

@@ -1,0 +1,65 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "../lens/paraxial.hpp"
+#include "object_point.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Third-order aberrations by surface, after W. T. Welford, Aberrations of Optical Systems (1986), chapters 8 and 10.
+// With A = n i the refraction invariants of the marginal ray and A' of the chief ray, y and y' their heights, H the
+// Lagrange invariant, and D(q) the change of q at the surface:
+//   S_I = -A^2 y D(u/n), S_II = -A A' y D(u/n), S_III = -A'^2 y D(u/n), S_IV = -H^2 c D(1/n), S_V = A'/A (S_III +
+//   S_IV), C_I = A y D(dn/n), C_II = A' y D(dn/n),
+// and of the figure, whose departure from the sphere is g r^4 with g = a4 + k c^3 / 8:
+//   S_I = 8 g D(n) y^4, S_II = S_I (y'/y), S_III = S_I (y'/y)^2, S_V = S_I (y'/y)^3.
+// Behind a mirror n is negative. W is positive where the wavefront is ahead of the reference sphere, as in
+// wavefront.hpp.
+
+/// What one surface adds. Lengths in mm.
+struct SeidelRow {
+    ParaxialRay marginal, chief;  ///< at the surface; slopes behind it
+    double marginal_invariant, chief_invariant;  ///< n i, i the angle of incidence
+    std::array<double, 5> sums;                  ///< S_I to S_V
+    std::array<double, 2> colour;                ///< C_I, C_II between the two wavelengths of colour
+    double petzval_curvature;  ///< share of the Petzval surface's curvature in the image space, 1/mm
+};
+
+/// Transverse aberrations at the edge of the field for the edge of the pupil, mm, along y: of a real ray to
+/// third order, less the paraxial image. The names and signs are CODE V's.
+struct TransverseAberrations {
+    double spherical;  ///< SA
+    double tangential_coma;  ///< TCO
+    double tangential_astigmatism;  ///< TAS: tangential field curvature, blur
+    double sagittal_astigmatism;  ///< SAS
+    double petzval;  ///< PTB
+    double distortion;  ///< DST
+    double axial_colour;  ///< AX: short less long wavelength
+    double lateral_colour;  ///< LAT
+};
+
+/// Coefficients of W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, r and h being
+/// shares of the pupil's radius and of the field; and of colour, W020 r^2 + W111 h r cos. In waves.
+struct WaveCoefficients {
+    double w040, w131, w222, w220, w311;
+    double w020_colour, w111_colour;
+};
+
+struct SeidelTable {
+    std::vector<SeidelRow> surfaces;
+    double image_invariant_slope;  ///< n' u' of the marginal ray behind the lens
+    double lagrange_invariant;  ///< H = n (u' y - u y'), u' and y' of the chief ray, mm
+    double wavelength_nm;
+
+    TransverseAberrations transverse(const SeidelRow& row) const;
+    WaveCoefficients waves(const SeidelRow& row) const;
+};
+
+/// Third-order sums surface by surface, for the edge of the field and of the stop's opening; colour between two
+/// wavelengths, short and long. Throws InputError for what is no place in the field, and for an afocal lens, whose
+/// transverse aberrations are infinite.
+SeidelTable seidel(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double short_nm,
+                   double long_nm);
+
+}  // namespace REALCAM_NAMESPACE

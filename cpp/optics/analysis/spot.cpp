@@ -1,0 +1,56 @@
+#include "spot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace realcam {
+
+namespace {
+
+SpotSize size_about(const Spot& spot, Vec2<double> middle, const RayLoop& loop) {
+    double sum = 0, weight = 0, largest = 0;
+    loop.in_order(spot.points.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (!spot.rays.passes(i)) continue;
+            const double radius = std::hypot(spot.points[i].x - middle.x, spot.points[i].y - middle.y);
+            sum += spot.rays.pattern[i].weight * radius * radius;
+            weight += spot.rays.pattern[i].weight;
+            largest = std::max(largest, radius);
+        }
+    });
+    return {std::sqrt(sum / weight), largest};
+}
+
+}  // namespace
+
+Spot spot_of(FieldRays rays, double film_distance, const RayLoop& loop) {
+    Spot spot{};
+    const auto on_film = [&](const AimedRay& ray) {
+        const Vec3d at = crossing(ray, film_distance);
+        return Vec2<double>{at.x, at.y};
+    };
+    spot.rays = std::move(rays);
+    spot.chief = on_film(spot.rays.chief);
+    spot.points.reserve(spot.rays.rays.size());
+    double weight = 0;
+    loop.in_order(spot.rays.rays.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+            const bool passes = spot.rays.passes(i);
+            spot.points.push_back(passes ? on_film(spot.rays.rays[i]) : Vec2<double>{nan, nan});
+            if (!passes) continue;
+            const double share = spot.rays.pattern[i].weight;
+            spot.centroid.x += share * spot.points[i].x;
+            spot.centroid.y += share * spot.points[i].y;
+            weight += share;
+        }
+    });
+    spot.centroid = {spot.centroid.x / weight, spot.centroid.y / weight};
+    spot.about_centroid = size_about(spot, spot.centroid, loop);
+    spot.about_chief = size_about(spot, spot.chief, loop);
+    return spot;
+}
+
+}  // namespace realcam

@@ -1,0 +1,127 @@
+#include "wavefront.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "../lens/paraxial.hpp"
+#include "spot.hpp"
+
+namespace realcam {
+
+namespace wavefront_detail {
+
+double reference_curvature(const LensSystem& lens, double wavelength_nm, const FieldRays& rays, double z,
+                           ExitPupil exit_pupil) {
+    const Vec3d direction = normalized(rays.chief.direction);
+    const Vec3d image = crossing(rays.chief, z);
+    // A chief ray on the axis does not cross it; one at 1e-6 crosses it within 1e-12 of the paraxial place, which is
+    // what rounding leaves of a quotient of two such numbers.
+    if (exit_pupil == ExitPupil::paraxial || std::fabs(rays.field_angle_rad) < 1e-6) {
+        const double pupil = first_order(lens, wavelength_nm).exit_pupil_position - lens.last_vertex();
+        return direction.z / (z - pupil);
+    }
+    // With t along the ray from the axis: image.y = t direction.y.
+    return direction.y / image.y;
+}
+
+}  // namespace wavefront_detail
+
+namespace wavefront_detail {
+
+namespace {
+
+/// Optical path of a ray to the reference sphere, mm, less a length that all rays share. With b from the centre to the
+/// ray, p their distance and 1/R the sphere's curvature, the ray meets the sphere at -b.d - sqrt(R^2 - p^2) along
+/// itself; R is taken off in the form in which nothing cancels, and which holds for a plane too.
+double path_to_sphere(const AimedRay& ray, Vec3d centre, double curvature, double index) {
+    const Vec3d d = normalized(ray.direction), b = ray.origin - centre, off = cross(b, d);
+    const double square = dot(off, off) * curvature;
+    return ray.path + index * (square / (1 + std::sqrt(1 - square * curvature)) - dot(b, d));
+}
+
+void remove_fit(Wavefront& wavefront, Removed removed, const RayLoop& loop) {
+    const std::size_t terms = removed == Removed::focus ? 4 : 3;
+    std::array<std::array<double, 4>, 4> matrix{};
+    std::array<double, 4> right{};
+    const auto basis = [](const PupilPoint& p) { return std::array<double, 4>{1, p.x, p.y, p.x * p.x + p.y * p.y}; };
+    loop.in_order(wavefront.opd.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (!wavefront.rays.passes(i)) continue;
+            const PupilPoint& point = wavefront.rays.pattern[i];
+            const std::array<double, 4> f = basis(point);
+            for (std::size_t j = 0; j < terms; ++j) {
+                for (std::size_t k = 0; k <= j; ++k) matrix[j][k] += point.weight * f[j] * f[k];
+                right[j] += point.weight * f[j] * wavefront.opd[i];
+            }
+        }
+    });
+    const std::array<double, 4> fit = solve_normal(matrix, right, terms);
+    if (!std::isfinite(fit[terms - 1]))
+        throw InputError("the rays that pass are too few, or too close together, for a fit of tilt and focus");
+    for (std::size_t i = 0; i < wavefront.opd.size(); ++i) {
+        const std::array<double, 4> f = basis(wavefront.rays.pattern[i]);
+        for (std::size_t j = 0; j < terms; ++j) wavefront.opd[i] -= fit[j] * f[j];
+    }
+}
+
+void summarize(Wavefront& wavefront, const RayLoop& loop) {
+    double weight = 0, sum = 0, low = kInfinity, high = -kInfinity, square = 0;
+    std::complex<double> amplitude = 0;
+    const auto for_passing = [&](auto&& f) {
+        loop.in_order(wavefront.opd.size(), [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                if (wavefront.rays.passes(i)) f(wavefront.rays.pattern[i].weight, wavefront.opd[i]);
+        });
+    };
+    for_passing([&](double share, double w) {
+        weight += share;
+        sum += share * w;
+        low = std::min(low, w);
+        high = std::max(high, w);
+        amplitude += std::polar(share, 2 * std::numbers::pi * w);
+    });
+    for_passing([&](double share, double w) { square += share * (w - sum / weight) * (w - sum / weight); });
+    wavefront.rms = std::sqrt(square / weight);
+    wavefront.peak_to_valley = high - low;
+    wavefront.strehl = std::norm(amplitude / weight);
+    wavefront.strehl_marechal = std::exp(-std::pow(2 * std::numbers::pi * wavefront.rms, 2));
+}
+
+}  // namespace
+
+}  // namespace wavefront_detail
+
+Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
+                       SphereCentre centre, Removed removed, ExitPupil exit_pupil, const RayLoop& loop) {
+    using namespace wavefront_detail;
+    Wavefront result{};
+    result.centre = crossing(rays.chief, film_distance);
+    result.reference_curvature = reference_curvature(lens, wavelength_nm, rays, film_distance, exit_pupil);
+    if (centre == SphereCentre::centroid) {
+        const Vec2<double> middle = spot_of(rays, film_distance, loop).centroid;
+        result.centre = {middle.x, middle.y, film_distance};
+    }
+    const double index = lens.indices(wavelength_nm).back(), curvature = result.reference_curvature;
+    const double waves_per_mm = 1e6 / wavelength_nm;
+    const double reference = path_to_sphere(rays.chief, result.centre, curvature, index);
+    result.opd.assign(rays.rays.size(), std::numeric_limits<double>::quiet_NaN());
+    loop.for_all(rays.rays.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (!rays.passes(i)) continue;
+            result.opd[i] = waves_per_mm * (reference - path_to_sphere(rays.rays[i], result.centre, curvature, index));
+            if (!std::isfinite(result.opd[i]))
+                throw InputError("no reference sphere from the exit pupil of lens \"" + lens.name +
+                                 "\" holds all its rays: the image is too far out of focus, or lies in the exit pupil");
+        }
+    });
+    result.rays = std::move(rays);
+    if (removed != Removed::nothing) remove_fit(result, removed, loop);
+    summarize(result, loop);
+    return result;
+}
+
+}  // namespace realcam

@@ -1,0 +1,77 @@
+#include "coated_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "coated_faces.hpp"
+
+namespace realcam {
+
+CoatedSurface::CoatedSurface(const Coating& coating, bool is_mirror, double wavelength_nm, double before, double behind,
+                             bool as_listed)
+    : stack_{wavelength_nm, before, {}, behind},
+      is_mirror_(is_mirror),
+      has_stated_reflectance_(is_mirror && coating.kind != CoatingKind::metal),
+      stated_(coating.kind == CoatingKind::reflectance ? coating.reflectance : 1) {
+    for (const CoatingLayer& layer : coating.layers)
+        stack_.films.push_back({known_index(layer.material, wavelength_nm), layer.thickness_nm});
+    if (!as_listed) std::reverse(stack_.films.begin(), stack_.films.end());
+    if (coating.kind == CoatingKind::metal) stack_.index_behind = known_index(coating.metal, wavelength_nm);
+}
+
+PolarisedResponse CoatedSurface::at(double cosine) const {
+    if (!has_stated_reflectance_) return response_of(stack_, cosine);
+    // As a perfect conductor, which turns the electric field along the surface around.
+    const double r = std::sqrt(stated_);
+    return {{-r, 0, stated_, 0, 1 - stated_}, {r, 0, stated_, 0, 1 - stated_}};
+}
+
+std::complex<double> CoatedSurface::known_index(const CoatingMaterial& material, double wavelength_nm) {
+    const WavelengthRange range = between_resonances(material.glass);
+    if (wavelength_nm > range.first && wavelength_nm < range.last) return material.index(wavelength_nm);
+    throw InputError("the coating material" + (material.name().empty() ? "" : " \"" + material.name() + '"') +
+                     " lets no light pass at " + std::to_string(std::lround(wavelength_nm)) +
+                     " nm, at or beyond a resonance");
+}
+
+namespace {
+
+/// Whether light on its way to the film meets the layers of a surface in the order of their list, from the air inwards.
+bool layers_listed_towards_film(const LensSystem& lens, std::size_t index) {
+    const Surface& surface = lens.surfaces[index];
+    return medium_before(lens, index).index(kLineD_nm) <= surface.material.index(kLineD_nm);
+}
+
+}  // namespace
+
+CoatedSurface coated_surface(const LensSystem& lens, std::size_t index, double wavelength_nm, LightDirection direction,
+                             const std::vector<double>& indices) {
+    const Surface& surface = lens.surfaces[index];
+    const bool to_film = direction == LightDirection::to_film, is_mirror = surface.type == SurfaceType::mirror;
+    try {
+        return {surface.coating,
+                is_mirror,
+                wavelength_nm,
+                to_film ? indices[index] : indices[index + 1],
+                to_film ? indices[index + 1] : indices[index],
+                is_mirror || to_film == layers_listed_towards_film(lens, index)};
+    } catch (const InputError& error) {
+        throw InputError("surface " + std::to_string(index + 1) + " of lens \"" + lens.name + "\": " + error.what());
+    }
+}
+
+std::vector<std::optional<CoatedSurface>> coated_surfaces(const LensSystem& lens, double wavelength_nm,
+                                                          LightDirection direction) {
+    const std::vector<double> indices = lens.indices(wavelength_nm);
+    std::vector<std::optional<CoatedSurface>> surfaces;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        surfaces.emplace_back();
+        if (lens.surfaces[i].bends_light())
+            surfaces.back() = coated_surface(lens, i, wavelength_nm, direction, indices);
+    }
+    if (direction == LightDirection::to_scene) std::reverse(surfaces.begin(), surfaces.end());
+    return surfaces;
+}
+
+}  // namespace realcam

@@ -1,0 +1,40 @@
+#include "fit_coatings.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "../trace/lens_dispersion.hpp"
+
+namespace realcam {
+
+namespace fit_coatings_detail {
+
+PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double before, double beyond, double lower,
+                    double scale) {
+    constexpr std::size_t kNodes = 2 * kCosineTerms;
+    std::vector<double> x, s, p;
+    for (std::size_t j = 0; j < kNodes; ++j) {
+        const double cosine = 0.5 + 0.5 * std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / kNodes);
+        // Of two nearly equal indices the other may be the lower one at this wavelength.
+        const double lowest = std::min(before, beyond);
+        const auto component_in = [&](double index) {
+            return std::sqrt(lowest * lowest * cosine * cosine + (index - lowest) * (index + lowest));
+        };
+        const double in = component_in(before), out = component_in(beyond);
+        const PolarisedResponse response = surface.at(std::min(in / before, 1.0));
+        const auto kept = [&](const SurfaceResponse& of) {
+            if (surface.is_mirror()) return of.reflectance;
+            return is_reflected ? 1 - of.reflectance : of.transmittance;
+        };
+        const double quotient = beyond * beyond / (before * before), sum_s = in + out, sum_p = quotient * in + out;
+        const bool unbent = surface.is_mirror();  // Fresnel's transmittance of a border between two equal media is 1
+        x.push_back(scale * component_in(lower) - 1);
+        s.push_back(kept(response.s) * (unbent ? 1 : sum_s * sum_s / (4 * in * out)));
+        p.push_back(kept(response.p) * (unbent ? 1 : sum_p * sum_p / (4 * quotient * in * out)));
+    }
+    return {fit_polynomial<kCosineTerms>(x, s), fit_polynomial<kCosineTerms>(x, p)};
+}
+
+}  // namespace fit_coatings_detail
+
+}  // namespace realcam

@@ -1,0 +1,87 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "../../math/fit_polynomial.hpp"
+#include "coated_surface.hpp"
+#include "coating_polynomials.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+namespace fit_coatings_detail {
+
+using CosineFit = std::array<double, kCosineTerms>;
+struct PolarisedFit {
+    CosineFit s{}, p{};
+};
+
+/// Of one wavelength. `before`, `beyond`, `lower`: indices of the media on both sides, and of that in which the cosine
+/// is meant. `scale`: as in CoatingPolynomials.
+PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double before, double beyond, double lower,
+                    double scale);
+
+}  // namespace fit_coatings_detail
+
+/// Of the surfaces on a way through the lens, in the order in which the light meets them; a stop changes nothing. Of
+/// those that reflect it where they could let it pass: see GhostCoating. `wavelengths_nm`: to be fitted with equal
+/// weights; one where kWavelengthTerms is 1. `variable`: of the spectrum. An unknown coating counts as CoatedSurface
+/// has it. Throws InputError where an index is not known.
+template <int kWavelengthTerms>
+std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens, const std::vector<Crossing>& way,
+                                                               const std::vector<double>& wavelengths_nm,
+                                                               WavelengthVariable variable = {0, 0}) {
+    using namespace fit_coatings_detail;
+    std::vector<CoatingPolynomials<kWavelengthTerms>> fitted(way.size());
+    const std::vector<double> design = lens.indices(lens.wavelength_nm);
+    for (std::size_t k = 0; k < way.size(); ++k) {
+        const double before = way[k].index_before(design), beyond = way[k].index_beyond(design);
+        fitted[k].scale = static_cast<float>(2 / std::min(before, beyond));
+        fitted[k].is_behind = beyond < before;
+    }
+    std::vector<double> x;
+    std::vector<std::vector<PolarisedFit>> fits(way.size());  // of each crossing, by wavelength; none of a stop's
+    for (const double wavelength : wavelengths_nm) {
+        x.push_back(static_cast<double>(variable.at(static_cast<float>(wavelength))));
+        const std::vector<double> indices = lens.indices(wavelength);
+        for (std::size_t k = 0; k < way.size(); ++k) {
+            const auto index = static_cast<std::size_t>(way[k].surface);
+            if (!lens.surfaces[index].bends_light()) continue;
+            const double before = way[k].index_before(indices), beyond = way[k].index_beyond(indices);
+            const CoatedSurface surface = coated_surface(
+                lens, index, wavelength, way[k].in_order ? LightDirection::to_film : LightDirection::to_scene, indices);
+            fits[k].push_back(fit_of(surface, way[k].is_reflected, before, beyond,
+                                     fitted[k].is_behind ? beyond : before, static_cast<double>(fitted[k].scale)));
+        }
+    }
+    const auto fit_wavelengths = [&](const std::vector<PolarisedFit>& of, CosineFit PolarisedFit::* polarisation,
+                                     float (&to)[kWavelengthTerms][kCosineTerms]) {
+        for (std::size_t i = 0; i < kCosineTerms; ++i) {
+            std::vector<double> values;
+            for (const PolarisedFit& fit : of) values.push_back((fit.*polarisation)[i]);
+            const auto terms = fit_polynomial<kWavelengthTerms>(x, values);
+            for (std::size_t j = 0; j < kWavelengthTerms; ++j) to[j][i] = static_cast<float>(terms[j]);
+        }
+    };
+    for (std::size_t k = 0; k < way.size(); ++k) {
+        if (fits[k].empty()) {
+            fitted[k].s[0][0] = fitted[k].p[0][0] = 1;
+            continue;
+        }
+        fit_wavelengths(fits[k], &PolarisedFit::s, fitted[k].s);
+        fit_wavelengths(fits[k], &PolarisedFit::p, fitted[k].p);
+    }
+    return fitted;
+}
+
+/// Of light on its way through the whole lens.
+template <int kWavelengthTerms>
+std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens, LightDirection direction,
+                                                               const std::vector<double>& wavelengths_nm,
+                                                               WavelengthVariable variable = {0, 0}) {
+    const std::vector<Crossing> to_film = crossings_of(lens);
+    return fit_coatings<kWavelengthTerms>(lens, direction == LightDirection::to_film ? to_film : reversed(to_film),
+                                          wavelengths_nm, variable);
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,84 @@
+#include "polarised_ray.hpp"
+
+#include <cmath>
+
+#include "../trace/lens_entry.hpp"
+#include "../trace/lens_trace.hpp"
+
+namespace realcam {
+
+PolarisedTrace::PolarisedTrace(const LensSystem& lens, LightDirection direction, double wavelength_nm,
+                               int surface_count)
+    : path_(lens, direction, wavelength_nm), surfaces_(coated_surfaces(lens, wavelength_nm, direction)) {
+    check_wavelength_in_glasses(lens, wavelength_nm, "transmission");
+    if (surface_count >= 0) surfaces_.erase(surfaces_.begin() + surface_count, surfaces_.end());
+}
+
+RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const {
+    const LensEntry entry =
+        enter_lens(origin - Vec3d{0, 0, path_.entry_position}, direction, path_.entry_index, path_.entry_reach);
+    LensRays<double, 1> ray;
+    ray.origin.set(0, entry.origin);
+    ray.direction.set(0, entry.direction);
+    ray.status[0] = static_cast<int>(entry.status);
+    const LensView<double> all = path_.view();
+    Fields fields;
+    double averaged = 1;
+    if (entry.status == RayStatus::ok) fields = unpolarised(normalized(entry.direction));
+    for (std::size_t i = 0; i < surfaces_.size() && ray.status[0] == 0; ++i) {
+        const SurfaceView<double>& surface = all.surfaces[i];
+        const Vec3d before = normalized(ray.direction[0]);
+        trace_lens(LensView<double>{&surface, 1, LensKind::any, all.iris}, ray, PathRecord<double, 1>{});
+        if (ray.status[0] != 0 || !surfaces_[i]) continue;
+        const Vec3d normal = normal_at(surface, ray.origin[0]);
+        const PolarisedResponse response = surfaces_[i]->at(std::fabs(dot(before, normal)));
+        const bool mirror = surfaces_[i]->is_mirror();
+        averaged *= mirror ? response.mean_reflectance() : response.mean_transmittance();
+        fields = across(fields, before, normalized(ray.direction[0]), normal,
+                        mirror ? response.s.r : scaled_to_power(response.s),
+                        mirror ? response.p.r : scaled_to_power(response.p));
+    }
+    const auto status = static_cast<RayStatus>(ray.status[0]);
+    if (status != RayStatus::ok) return {status, 0, 0};
+    return {status, (power(fields.first) + power(fields.second)) / 2, averaged};
+}
+
+PolarisedTrace::Complex PolarisedTrace::scaled_to_power(const SurfaceResponse& response) {
+    const double size = std::abs(response.t);
+    return size > 0 ? response.t * (std::sqrt(response.transmittance) / size) : Complex(0);
+}
+
+Vec3d PolarisedTrace::some_perpendicular(Vec3d unit) {
+    const Vec3d axis = std::fabs(unit.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    return normalized(cross(axis, unit));
+}
+
+PolarisedTrace::Fields PolarisedTrace::unpolarised(Vec3d direction) {
+    const Vec3d first = some_perpendicular(direction);
+    return {{first, {0, 0, 0}}, {cross(direction, first), {0, 0, 0}}};
+}
+
+PolarisedTrace::Fields PolarisedTrace::across(const Fields& fields, Vec3d before, Vec3d after, Vec3d normal,
+                                              Complex to_s, Complex to_p) {
+    const Vec3d across_plane = cross(before, normal);
+    // Nearer to the normal than this both polarisations are treated alike to all digits.
+    const bool normal_incidence = dot(across_plane, across_plane) < 1e-18;
+    const Vec3d s = normal_incidence ? some_perpendicular(before) : normalized(across_plane);
+    const Vec3d p_before = cross(s, before), p_after = cross(s, after);
+    const auto changed = [&](const Field& field) {
+        const Complex a = to_s * along(field, s), b = to_p * along(field, p_before);
+        return Field{a.real() * s + b.real() * p_after, a.imag() * s + b.imag() * p_after};
+    };
+    return {changed(fields.first), changed(fields.second)};
+}
+
+Vec3d PolarisedTrace::normal_at(const SurfaceView<double>& surface, Vec3d at) {
+    if (surface.kind == SurfaceShape::asphere) {
+        const double slope = 2 * asphere_sag(surface, at.x * at.x + at.y * at.y).derivative;
+        return normalized(Vec3d{-slope * at.x, -slope * at.y, 1});
+    }
+    const double c = surface.curvature;
+    return normalized(Vec3d{-c * at.x, -c * at.y, 1 - c * surface.conic_factor * at.z});
+}
+
+}  // namespace realcam

@@ -1,0 +1,95 @@
+#include "thin_film.hpp"
+#include "../../camera/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace realcam {
+
+namespace thin_film_detail {
+
+namespace {
+
+/// exp(z) - 1 without cancellation near 0.
+Complex expm1(Complex z) {
+    const double half_sine = std::sin(z.imag() / 2);
+    return {std::expm1(z.real()) * std::cos(z.imag()) - 2 * half_sine * half_sine,
+            std::exp(z.real()) * std::sin(z.imag())};
+}
+
+/// n cos(angle) in a medium of that index: the component of the wave vector along the normal, over that of vacuum.
+/// Of a medium that absorbs, or in which light does not propagate, the wave that fades.
+Complex normal_component(Complex index, double index_before, double cosine) {
+    // n'^2 - n^2 sin^2 in a form that keeps its digits at grazing incidence.
+    const Complex square =
+        (index - index_before) * (index + index_before) + index_before * index_before * cosine * cosine;
+    const Complex root = std::sqrt(square);
+    return root.imag() < 0 ? -root : root;
+}
+
+/// The tangential fields at one plane: electric and magnetic for s, magnetic and electric for p. Their quotient is the
+/// admittance.
+struct TangentialFields {
+    Complex u, v;
+};
+
+/// The fields in front of a film from those behind it, over exp(-i delta), which is their growth against an absorbing
+/// film's light: so no film is too thick. With h = (1 - exp(2 i delta)) / 2 the characteristic matrix
+/// {{cos d, -i sin d / y}, {-i y sin d, cos d}} over exp(-i d) is {{1 - h, h / y}, {y h, 1 - h}}.
+TangentialFields through_film(TangentialFields behind, const FilmStack::Film& film, double wave_number,
+                              Complex component, Complex scale) {
+    const Complex delta = wave_number * film.thickness_nm * component;
+    const Complex h = -0.5 * expm1(Complex(0, 2) * delta);
+    const Complex y = component * scale;
+    // At the film's critical angle both h and y are 0, and h / y is -i k d / scale.
+    const Complex quotient = component == Complex(0) ? Complex(0, -wave_number * film.thickness_nm) / scale : h / y;
+    return {(1.0 - h) * behind.u + quotient * behind.v, y * h * behind.u + (1.0 - h) * behind.v};
+}
+
+SurfaceResponse response(const FilmStack& stack, double cosine, bool is_p) {
+    const double before = stack.index_before, wave_number = 2 * std::numbers::pi / stack.wavelength_nm;
+    const auto scale_in = [&](Complex index) { return is_p ? 1.0 / (index * index) : Complex(1); };
+    const Complex behind = normal_component(stack.index_behind, before, cosine);
+    const Complex y_behind = behind * scale_in(stack.index_behind);
+    const double y_before = is_p ? cosine / before : cosine * before;
+    TangentialFields fields{1, y_behind};
+    Complex passed = 1;  // the transmitted field over what the fields in front have been divided by
+    for (std::size_t i = stack.films.size(); i-- > 0;) {
+        const FilmStack::Film& film = stack.films[i];
+        const Complex component = normal_component(film.index, before, cosine);
+        fields = through_film(fields, film, wave_number, component, scale_in(film.index));
+        passed *= std::exp(Complex(0, wave_number * film.thickness_nm) * component);
+        // A stack of some hundred films that reflects well would leave the range of double.
+        const double size = std::max(std::abs(fields.u), std::abs(fields.v));
+        if (size > 1e100) {
+            fields = {fields.u / size, fields.v / size};
+            passed /= size;
+        }
+    }
+    const Complex sum = y_before * fields.u + fields.v;
+    const double whole = std::norm(sum), power = 4 * y_before / whole;
+    const double out = y_behind.real() * std::norm(passed);
+    SurfaceResponse result{};
+    result.r = (y_before * fields.u - fields.v) / sum;
+    result.t = 2 * y_before * passed / sum;
+    if (is_p) result.t *= before / stack.index_behind;  // from the magnetic to the electric field
+    result.reflectance = std::norm(y_before * fields.u - fields.v) / whole;
+    result.transmittance = power * out;
+    // What flows in less what flows out. Rounding must not make a gain of it where nothing absorbs.
+    result.absorptance = std::max(0.0, power * ((fields.u * std::conj(fields.v)).real() - out));
+    return result;
+}
+
+}  // namespace
+
+}  // namespace thin_film_detail
+
+PolarisedResponse response_of(const FilmStack& stack, double cosine) {
+    // At 0 exactly nothing flows through the surface, of which no share can be taken; this is closer to it than any
+    // ray.
+    const double safe = std::clamp(cosine, 1e-100, 1.0);
+    return {thin_film_detail::response(stack, safe, false), thin_film_detail::response(stack, safe, true)};
+}
+
+}  // namespace realcam

@@ -1,0 +1,41 @@
+#include "ghost.hpp"
+
+#include "film_mirror.hpp"
+
+namespace realcam {
+
+GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pair) {
+    const int count = static_cast<int>(lens.surfaces.size());
+    if (!(0 <= pair.second && pair.second < pair.first && pair.first <= count))
+        throw InputError(
+            "a ghost is reflected by two surfaces, the first time by the one nearer to the film: wanted are "
+            "numbers with 0 <= second < first <= " +
+            std::to_string(count) + ", the last of which is the film's");
+    for (const int i : {pair.first, pair.second})
+        if (!is_film(lens, i) && lens.surfaces[static_cast<std::size_t>(i)].type != SurfaceType::refracting)
+            throw InputError("surface " + std::to_string(i) +
+                             " is no refracting one; a ghost is light that a refracting surface reflects");
+    const LensSystem with_film = with_film_mirror(lens, 1, kLongest);
+    const auto surface = [&](int i) -> const Surface& { return with_film.surfaces[static_cast<std::size_t>(i)]; };
+    const std::vector<double> n = with_film.indices(wavelength_nm), z = with_film.vertices();
+    ParaxialRay rays[] = {{1, 0}, {0, 1}};
+    double direction_sign = 1;  // of the light along z
+    double at = 0;              // z of the vertex that it met last
+    std::vector<GhostPath::Meeting> meetings;
+    for (const Crossing& crossing : crossings_of(lens, pair)) {
+        const double here = z[static_cast<std::size_t>(crossing.surface)];
+        const double before = direction_sign * crossing.index_before(n);
+        if (crossing.is_reflected || surface(crossing.surface).type == SurfaceType::mirror)
+            direction_sign = -direction_sign;
+        const double behind = direction_sign * crossing.index_behind(n);
+        for (ParaxialRay& ray : rays) {
+            ray.height += (here - at) * ray.slope;
+            ray = refract_paraxial(ray, surface(crossing.surface).curvature, before, behind);
+        }
+        if (!is_film(lens, crossing.surface)) meetings.push_back({crossing.surface, rays[0].height, rays[1].height});
+        at = here;
+    }
+    return {-1 / rays[0].slope, -rays[0].height / rays[0].slope, rays[0], rays[1], meetings};
+}
+
+}  // namespace realcam

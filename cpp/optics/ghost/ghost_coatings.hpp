@@ -1,0 +1,32 @@
+#pragma once
+#include <vector>
+
+#include "../coating/fit_coatings.hpp"
+#include "../trace/lens_dispersion.hpp"
+#include "ghost_media.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Of the crossings of a way, or of several. `coatings`: their fit_coatings; `range`: of wavelengths, a single one if
+/// kWavelengthTerms is 1. Throws InputError where a glass has no index.
+template <int kWavelengthTerms>
+std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
+    const LensSystem& lens, const std::vector<Crossing>& way,
+    const std::vector<CoatingPolynomials<kWavelengthTerms>>& coatings, WavelengthRange range) {
+    const auto difference = [](const Crossing& crossing, const std::vector<double>& indices) {
+        const double n = crossing.index_before(indices), other = crossing.index_beyond(indices);
+        return (other - n) * (other + n);
+    };
+    const auto change = [&](const Crossing& crossing, const std::vector<double>& indices) {
+        const double n = crossing.index_before(indices);
+        return difference(crossing, indices) / (n * n);
+    };
+    const std::vector<IndexCubic> changes = cubics_over(lens, way, range, change);
+    const std::vector<IndexCubic> differences = cubics_over(lens, way, range, difference);
+    std::vector<GhostCoating<kWavelengthTerms>> all;
+    for (std::size_t k = 0; k < way.size(); ++k)
+        all.push_back({coatings[k], changes[k], differences[k], way[k].is_reflected, {}});
+    return all;
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,58 @@
+#pragma once
+#include "../coating/coating_polynomials.hpp"
+#include "../trace/index_cubic.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A crossing on a ghost's way: of a reflection, the polynomials are those of 1 - reflectance over Fresnel's
+/// transmittance.
+template <int kWavelengthTerms>
+struct alignas(16) GhostCoating : CoatingPolynomials<kWavelengthTerms> {
+    // Of the medium behind, into which a reflected ray does not go:
+    IndexCubic other_change;      ///< n'^2 / n^2 - 1
+    IndexCubic other_difference;  ///< n'^2 - n^2
+    std::int32_t is_reflected;
+    std::int32_t unused[3];
+};
+
+/// Media on a ghost's way. `kWavelengthTerms`: of one wavelength, or of a spectrum, with one for each ray.
+template <int kWavelengthTerms, int N>
+struct GhostMedia {
+    static constexpr bool disperses = kWavelengthTerms > kOneWavelengthTerms;
+    using Uncoated = std::conditional_t<disperses, ManyWavelengths::Boundary, OneWavelength::Boundary<float>>;
+
+    const IndexCubic* indices;  ///< in the order in which the light meets them; not read for one wavelength
+    const GhostCoating<kWavelengthTerms>* coatings;
+    const float* variable;  ///< the WavelengthVariable of each ray; not read for one wavelength
+    PassedPower<N>& passed;
+
+    struct Boundary : Uncoated {
+        GhostCoating<kWavelengthTerms> coating;
+        const float* variable;
+        PassedPower<N>& passed;
+        static constexpr bool is_coated = true;
+
+        /// See CoatedMedia.
+        REALCAM_INLINE void pass(int lane, float before, float behind) const {
+            const float in = std::fabs(before), x = disperses ? variable[lane] : 0.0f;
+            const bool reflects = coating.is_reflected != 0;
+            const float change = disperses ? coating.other_change.at(x) : coating.other_change.c[0];
+            const float difference = disperses ? coating.other_difference.at(x) : coating.other_difference.c[0];
+            // 0 under total reflection: then nothing is let through, and all is reflected.
+            const float other = select(reflects, sqrt_or_zero(in * in + difference), behind);
+            const FresnelTransmittance through = coating.transmittance(in, other, 1.0f + change, x);
+            passed.s[lane] *= select(reflects, 1.0f - through.s, through.s);
+            passed.p[lane] *= select(reflects, 1.0f - through.p, through.p);
+        }
+    };
+
+    template <class Surface>
+    REALCAM_INLINE auto at(const Surface& surface, int place) const {
+        if constexpr (disperses)
+            return Boundary{{indices[place], variable}, load_constant(coatings + place), variable, passed};
+        else
+            return Boundary{{surface.squared_index_change}, load_constant(coatings + place), variable, passed};
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

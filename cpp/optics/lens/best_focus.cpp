@@ -1,0 +1,145 @@
+#include "best_focus.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "../trace/lens_path.hpp"
+#include "paraxial.hpp"
+
+namespace realcam {
+
+namespace best_focus_detail {
+
+namespace {
+
+/// Rays from one axial object point in the meridional plane, named by the height at which they meet the stop
+/// paraxially: that is finite wherever the pupil lies.
+class AxialRays {
+public:
+    AxialRays(const LensSystem& lens, double wavelength_nm, double object_distance)
+        : path_(lens, LightDirection::to_film, wavelength_nm) {
+        const int behind_stop = lens.stop_index() + 1;
+        const ParaxialRay level = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, behind_stop),
+                          inclined = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, behind_stop);
+        // At the stop: level.height y + inclined.height u for a ray of height y = u s and slope u at the front vertex,
+        // in the form that holds for any object distance s.
+        const double s = object_distance;
+        if (std::fabs(level.height * s) > std::fabs(inclined.height)) {
+            height_ = 1 / (level.height + inclined.height / s);
+            slope_ = height_ / s;
+        } else {
+            slope_ = 1 / (level.height * s + inclined.height);
+            height_ = slope_ * s;
+        }
+    }
+
+    template <int N>
+    void trace(const double (&at_stop)[N], LensRays<double, N>& rays) const {
+        for (int i = 0; i < N; ++i) {
+            // Begun at the front vertex: from an object kilometres away the intersections would lose all their digits.
+            rays.origin.set(i, {height_ * at_stop[i], 0, 0});
+            rays.direction.set(i, path_.entry_index * normalized(Vec3d{slope_ * at_stop[i], 0, 1}));
+            rays.status[i] = 0;
+        }
+        PathRecord<double, N> record{};
+        trace_lens(path_.view(), rays, record);
+    }
+
+private:
+    LensPath<double> path_;
+    double height_ = 0, slope_ = 0;  ///< at the front vertex, of the ray of height 1 at the stop
+};
+
+/// Intervals of the squared height at the stop whose rays pass.
+std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, double reach) {
+    constexpr int kRays = 256, kEdges = 8, kHalvings = 44;
+    const double cell = reach * reach / kRays;
+    LensRays<double, kRays> coarse;
+    double height[kRays];
+    for (int i = 0; i < kRays; ++i) height[i] = std::sqrt((i + 0.5) * cell);
+    rays.trace(height, coarse);
+    // Where the light begins or ends, to the last digit: a focus that jumps as single rays come and go cannot be found.
+    double open[kEdges], shut[kEdges];
+    int edges = 0;
+    for (int i = 1; i < kRays; ++i) {
+        const bool before = coarse.status[i - 1] == 0, here = coarse.status[i] == 0;
+        if (before == here || edges == kEdges) continue;
+        open[edges] = (i + (here ? 0.5 : -0.5)) * cell;
+        shut[edges] = (i + (here ? -0.5 : 0.5)) * cell;
+        ++edges;
+    }
+    // Where edges are few, the other lanes take what the next halvings may ask for: of each edge a binary tree of
+    // middles, below each those of its two halves: of the one behind it first, which follows if it passes.
+    const int depth = edges == 1 ? 3 : edges == 2 ? 2 : 1, nodes = (1 << depth) - 1;
+    for (int k = 0; k < kHalvings && edges > 0; k += depth) {
+        struct Node {
+            double open, shut;
+            double middle() const { return 0.5 * (open + shut); }
+        } tree[kEdges] = {};
+        double heights[kEdges] = {};
+        for (int e = 0; e < edges; ++e)
+            for (int n = 0; n < nodes; ++n) {
+                const Node& above = tree[e * nodes + (n - 1) / 2];
+                Node& node = tree[e * nodes + n];
+                node = n == 0       ? Node{open[e], shut[e]}
+                       : n % 2 == 1 ? Node{above.middle(), above.shut}
+                                    : Node{above.open, above.middle()};
+                heights[e * nodes + n] = std::sqrt(node.middle());
+            }
+        LensRays<double, kEdges> fine;
+        rays.trace(heights, fine);
+        for (int e = 0; e < edges; ++e)
+            for (int n = 0, level = 0; level < std::min(depth, kHalvings - k); ++level) {
+                const bool passes = fine.status[e * nodes + n] == 0;
+                (passes ? open : shut)[e] = tree[e * nodes + n].middle();
+                n = 2 * n + (passes ? 1 : 2);
+            }
+    }
+    std::vector<std::pair<double, double>> lit;
+    bool inside = coarse.status[0] == 0;
+    if (inside) lit.emplace_back(0.0, 0.0);
+    for (int e = 0; e < edges; ++e) {
+        inside = !inside;
+        if (inside)
+            lit.emplace_back(open[e], 0.0);
+        else
+            lit.back().second = open[e];
+    }
+    if (inside) lit.back().second = reach * reach;
+    return lit;
+}
+
+}  // namespace
+
+}  // namespace best_focus_detail
+
+double best_focus_distance(LensSystem lens, double wavelength_nm, double object_distance) {
+    using namespace best_focus_detail;
+    constexpr int kRays = 32;  // exact for aberrations up to the power 126 of the height
+    static const GaussRule<kRays> rule;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (std::isinf(object_distance) && first_order(lens, wavelength_nm).is_afocal()) return kNone;
+    lens.iris.blades = 0;
+    const AxialRays axial(lens, wavelength_nm, object_distance);
+    // Past the paraxial rim: real pupils are larger at times.
+    const double reach = 1.5 * std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    double cross = 0, square = 0;
+    for (const auto& [from, to] : passing_intervals(axial, reach)) {
+        double height[kRays];
+        for (int i = 0; i < kRays; ++i) height[i] = std::sqrt(from + (to - from) * rule.node[i]);
+        LensRays<double, kRays> rays;
+        axial.trace(height, rays);
+        for (int i = 0; i < kRays; ++i) {
+            if (rays.status[i] != 0) continue;
+            const double weight = (to - from) * rule.weight[i], slope = rays.direction.x[i] / rays.direction.z[i];
+            cross += weight * (rays.origin.x[i] - slope * rays.origin.z[i]) * slope;
+            square += weight * slope * slope;
+        }
+    }
+    return square > 0 ? -cross / square : kNone;
+}
+
+}  // namespace realcam

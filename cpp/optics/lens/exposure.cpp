@@ -1,0 +1,74 @@
+#include "exposure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "../trace/lens_path.hpp"
+
+namespace realcam {
+
+namespace {
+
+/// Which rays of these sines pass the lens, from the middle of the film in the meridional plane.
+std::vector<bool> passing(const LensPath<double>& path, double film_distance, const std::vector<double>& sines) {
+    constexpr std::size_t kBlock = 64;
+    const double n = path.entry_index;
+    std::vector<bool> passes;
+    for (std::size_t first = 0; first < sines.size(); first += kBlock) {
+        LensRays<double, kBlock> rays;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+            const double sine = sines[std::min(first + i, sines.size() - 1)];
+            const int lane = static_cast<int>(i);
+            rays.origin.set(lane, {0, 0, film_distance});
+            rays.direction.set(lane, {sine, 0, -std::sqrt(n * n - sine * sine)});
+            rays.status[lane] = 0;
+        }
+        trace_lens(path.view(), rays);
+        for (std::size_t i = 0; i < kBlock && first + i < sines.size(); ++i) passes.push_back(rays.status[i] == 0);
+    }
+    return passes;
+}
+
+}  // namespace
+
+double axis_irradiance(LensSystem lens) {
+    lens.iris.blades = 0;
+    const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
+    const Surface& last = lens.surfaces.back();
+    const double n = path.entry_index, rim = last.clear_semi_diameter;
+    // The steepest ray that can meet the last surface; its rim may bulge towards the film.
+    const double behind = lens.film_distance - std::max(last.sag(rim), 0.0);
+    const double widest = behind > 0 ? n * std::sin(std::atan(1.02 * rim / behind)) : n;
+    // Even steps find what is blocked, and steps by a share the smallest stop.
+    constexpr int kEven = 1024, kByShare = 512;
+    const double smaller = std::exp2(-0.125);
+    std::vector<double> sines;
+    for (int i = 0; i < kEven; ++i) sines.push_back(widest * (i + 0.5) / kEven);
+    double small = sines.front();
+    for (int i = 0; i < kByShare; ++i) sines.push_back(small *= smaller);
+    std::sort(sines.begin(), sines.end());
+    const std::vector<bool> passes = passing(path, lens.film_distance, sines);
+
+    // The edges of the light, halved to the last digit.
+    constexpr int kHalvings = 52;
+    std::vector<double> open, shut, sign;
+    for (std::size_t i = 1; i < sines.size(); ++i) {
+        if (passes[i] == passes[i - 1]) continue;
+        open.push_back(passes[i] ? sines[i] : sines[i - 1]);
+        shut.push_back(passes[i] ? sines[i - 1] : sines[i]);
+        sign.push_back(passes[i] ? -1 : 1);
+    }
+    for (int k = 0; k < kHalvings && !open.empty(); ++k) {
+        std::vector<double> middle;
+        for (std::size_t e = 0; e < open.size(); ++e) middle.push_back(0.5 * (open[e] + shut[e]));
+        const std::vector<bool> here = passing(path, lens.film_distance, middle);
+        for (std::size_t e = 0; e < open.size(); ++e) (here[e] ? open : shut)[e] = middle[e];
+    }
+    double squares = passes.back() ? widest * widest : 0.0;
+    for (std::size_t e = 0; e < open.size(); ++e) squares += sign[e] * open[e] * open[e];
+    return std::numbers::pi * squares;
+}
+
+}  // namespace realcam

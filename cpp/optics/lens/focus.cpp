@@ -1,0 +1,185 @@
+#include "focus.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "../../math/root.hpp"
+#include "paraxial.hpp"
+
+namespace realcam {
+
+namespace {
+
+/// With as many digits as tell it from `other`.
+std::string metres(double mm, double other = kInfinity) {
+    char text[40], against[40];
+    for (int digits = 3; digits <= 17; ++digits) {
+        std::snprintf(text, sizeof text, "%.*g m", digits, mm / 1000);
+        std::snprintf(against, sizeof against, "%.*g m", digits, other / 1000);
+        if (std::string(text) != against) break;
+    }
+    return text;
+}
+
+/// The lens with its focusing group moved towards the film.
+LensSystem with_group_moved(LensSystem lens, double shift) {
+    const auto first = static_cast<std::size_t>(lens.focusing.group_first);
+    const auto last = static_cast<std::size_t>(lens.focusing.group_last);
+    if (first > 0) lens.surfaces[first - 1].thickness += shift;
+    if (last + 1 < lens.surfaces.size()) {
+        lens.surfaces[last].thickness -= shift;
+    } else {
+        lens.film_distance -= shift;
+    }
+    return lens;
+}
+
+/// By which share of the focus distance the object plane of a focused lens may lie elsewhere than asked.
+constexpr double kFocusTolerance = 1e-9;
+
+[[noreturn]] void fail(const LensSystem& lens, double focus_distance, const std::string& reason) {
+    throw InputError("cannot focus at " + metres(focus_distance) + ": lens \"" + lens.name + "\" " + reason);
+}
+
+/// Object to film, by real rays, has its minimum near magnification -1; the far branch is the photographic one.
+LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
+    const auto image_of = [&](double object) { return best_focus_distance(lens, lens.wavelength_nm, object); };
+    if (std::isinf(focus_distance)) {
+        lens.film_distance = image_of(kInfinity);
+        return lens;
+    }
+    const double length = lens.last_vertex();
+    const auto excess = [&](double object) { return object + length + image_of(object) - focus_distance; };
+    // Paraxially s = -ffd + f / |m|, so m = -1 lies at s = f - ffd; inside the lens where the front focal point lies
+    // deep in it, as in a fisheye.
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    double near = std::max(0.0, std::fabs(data.effective_focal_length) - data.front_focal_distance);
+    double far = focus_distance - length;  // there object to film is longer by the image distance
+    double excess_near = excess(near);
+    // From very near no ray may pass the lens: a little further away some do.
+    for (int i = 30; i > 0 && std::isnan(excess_near) && near < far; --i) {
+        const double further = near + std::ldexp(far - near, -i);
+        excess_near = excess(further);
+        if (!std::isnan(excess_near)) near = further;
+    }
+    if (std::isnan(excess_near)) fail(lens, focus_distance, "lets no ray from there pass");
+    if (excess_near > 0 || far < near) {
+        const double nearest = focus_distance + excess_near;
+        throw InputError("cannot focus at " + metres(focus_distance, nearest) +
+                         ": the nearest object plane that lens \"" + lens.name + "\" can bring to a film is " +
+                         metres(nearest, focus_distance) + " from it");
+    }
+    const double excess_far = excess(far);
+    if (!(excess_far >= 0)) fail(lens, focus_distance, "makes no real image behind its last surface");
+    const Root object = find_root(excess, near, excess_near, far, excess_far, 1e-14 * focus_distance);
+    if (!(std::fabs(object.value) <= kFocusTolerance * focus_distance))
+        fail(lens, focus_distance, "has no plane there that its rays make sharp");
+    lens.film_distance = image_of(object.at);
+    return lens;
+}
+
+LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
+    const auto error = [&](double shift) {
+        const LensSystem moved = with_group_moved(lens, shift);
+        const double object = focus_distance - moved.film_position();
+        if (object < 0) return std::numeric_limits<double>::quiet_NaN();  // inside the lens
+        return best_focus_distance(moved, lens.wavelength_nm, object) - moved.film_distance;
+    };
+    const auto& s = lens.surfaces;
+    const auto first = static_cast<std::size_t>(lens.focusing.group_first);
+    const auto last = static_cast<std::size_t>(lens.focusing.group_last);
+    const double back = first > 0 ? s[first - 1].thickness : lens.last_vertex();
+    const double forth = last + 1 < s.size() ? s[last].thickness : lens.film_distance;
+    const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
+    if (start == 0) return lens;
+    std::optional<FaceCrossing> crossing;
+    // From the resting place outwards, to the first change of sign on either side that is a root: where the image goes
+    // through infinity, or the last ray ends, there is none.
+    constexpr int kSteps = 200;
+    double inner[2] = {start, start};
+    for (int i = 1; i <= kSteps; ++i)
+        for (const int side : {0, 1}) {
+            const double reach = (side == 0 ? -back : forth) / kSteps, outer = error(reach * i);
+            const bool bracket = std::isfinite(inner[side]) && std::isfinite(outer) && (inner[side] > 0) != (outer > 0);
+            if (bracket) {
+                const Root shift = find_root(error, reach * (i - 1), inner[side], reach * i, outer, 1e-5 * tolerance);
+                if (std::fabs(shift.value) <= tolerance) {
+                    LensSystem moved = with_group_moved(lens, shift.at);
+                    if (!lens.allow_crossing) crossing = find_crossing(moved);
+                    if (!crossing) return moved;
+                }
+            }
+            inner[side] = outer;
+        }
+    if (crossing)
+        fail(lens, focus_distance,
+             "would have to move its focusing group so far that surfaces " + std::to_string(crossing->first + 1) +
+                 " and " + std::to_string(crossing->second + 1) + " cross");
+    throw InputError("cannot focus at " + metres(focus_distance) + ": no position of the focusing group of lens \"" +
+                     lens.name + "\" (surfaces " + std::to_string(first + 1) + " to " + std::to_string(last + 1) +
+                     ") images it on the film");
+}
+
+}  // namespace
+
+LensSystem focused(const LensSystem& lens, double focus_distance) {
+    if (!(focus_distance > 0))
+        throw InputError("the focus distance is " + metres(focus_distance) + "; a positive distance or inf is wanted");
+    if (focus_distance < lens.focusing.nearest_mm)
+        throw InputError("cannot focus at " + metres(focus_distance, lens.focusing.nearest_mm) +
+                         ": the nearest focus of lens \"" + lens.name + "\" is " +
+                         metres(lens.focusing.nearest_mm, focus_distance));
+    if (first_order(lens, lens.wavelength_nm).is_afocal() && !lens.focusing.moves_group())
+        throw InputError("cannot focus lens \"" + lens.name + "\": it is afocal, parallel light leaves it parallel");
+    LensSystem open = lens;
+    open.stop_semi_diameter = lens.stop().clear_semi_diameter;
+    LensSystem result =
+        open.focusing.moves_group() ? moved_by_group(open, focus_distance) : moved_as_a_whole(open, focus_distance);
+    result.stop_semi_diameter = lens.stop_semi_diameter;
+    result.focus_distance = focus_distance;
+    if (!std::isfinite(result.film_distance))
+        throw InputError("cannot focus lens \"" + lens.name + "\": no ray from the object passes it");
+    if (!(result.film_distance > 0))
+        throw InputError("cannot focus lens \"" + lens.name + "\": it makes no real image behind its last surface");
+    if (const std::string why = film_distance_error(result); !why.empty()) fail(lens, focus_distance, "cannot: " + why);
+    return result;
+}
+
+double f_number_at_infinity(const LensSystem& lens) {
+    const double as_it_stands = first_order(lens, lens.wavelength_nm).f_number;
+    if (lens.focusing.moves_group() && std::isfinite(lens.focus_distance)) {
+        try {
+            const double far = first_order(focused(lens, kInfinity), lens.wavelength_nm).f_number;
+            // Some groups image infinity at a second place, nearer than the one that they came from, where the lens is
+            // quite another one (zoom-80-200mm: f/108). Focusing changes an f-number by less than two stops.
+            if (std::fabs(std::log2(far / as_it_stands)) <= 2) return far;
+        } catch (const InputError&) {  // no position of the group images infinity on the film
+        }
+    }
+    return as_it_stands;
+}
+
+LensSystem stopped_down(LensSystem lens, double f_number) {
+    const double full = lens.stop().clear_semi_diameter;
+    lens.stop_semi_diameter = full;
+    const double fastest = f_number_at_infinity(lens);
+    if (!(f_number > 0) || !std::isfinite(f_number))
+        throw InputError("the f-number is " + std::to_string(f_number) + "; a positive number is wanted");
+    if (!(fastest > 0) || !std::isfinite(fastest))
+        throw InputError("lens \"" + lens.name + "\" has no f-number: " +
+                         (first_order(lens, lens.wavelength_nm).is_afocal()
+                              ? "it is afocal, parallel light leaves it parallel"
+                              : "its entrance pupil lies at infinity"));
+    if (f_number < 0.995 * fastest) {
+        char text[160];
+        std::snprintf(text, sizeof text, "f/%.4g is faster than lens \"%s\", which opens to f/%.4g", f_number,
+                      lens.name.c_str(), fastest);
+        throw InputError(text);
+    }
+    lens.stop_semi_diameter = full * std::min(1.0, fastest / f_number);
+    return lens;
+}
+
+}  // namespace realcam

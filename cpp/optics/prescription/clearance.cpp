@@ -1,0 +1,127 @@
+#include "clearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace realcam {
+
+namespace {
+
+/// Faces that touch by design seem to cross by what is rounded off printed radii and thicknesses, which have four
+/// digits or more.
+constexpr double kPrintedDigits = 1e-4;
+
+/// A face between two mirrors, or from a mirror to the end: light meets these in the order of the list, and in one
+/// direction. Behind a mirror it may go through the same glass again, so that those of two runs may overlap.
+struct Face {
+    int index;
+    double vertex;  ///< z, mm
+};
+
+/// Where two faces are farthest into each other, between two distances from the axis. A face is edged flat at its rim.
+FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& second, double direction, double from,
+                     double to) {
+    const Surface &a = lens.surfaces[static_cast<std::size_t>(first.index)],
+                  &b = lens.surfaces[static_cast<std::size_t>(second.index)];
+    const double rim = std::min(a.clear_semi_diameter, b.clear_semi_diameter);
+    FaceCrossing result{first.index, second.index, from, -kInfinity};
+    const auto look_at = [&](double radius) {
+        const double gap = second.vertex + b.sag(std::min(radius, b.clear_semi_diameter)) - first.vertex -
+                           a.sag(std::min(radius, a.clear_semi_diameter));
+        if (-direction * gap > result.depth) result.radius = radius, result.depth = -direction * gap;
+    };
+    // The gap between two spheres only grows, or only shrinks, on the way to the rim, as its derivative by r^2 has the
+    // sign of the difference of the curvatures. Others are looked at in steps.
+    const auto is_sphere = [](const Surface& s) { return s.conic == 0 && !s.is_asphere(); };
+    const int steps = is_sphere(a) && is_sphere(b) ? 1 : 64;
+    const double middle = std::clamp(rim, from, to);
+    for (int i = 0; i <= steps; ++i) {
+        look_at(from + (middle - from) * i / steps);
+        look_at(middle + (to - middle) * i / steps);
+    }
+    return result;
+}
+
+/// Whether the smaller of an element's faces is hollow. It may be sunk into the glass then, which reaches past it to
+/// the rim of the other, as in the front element of a fisheye.
+bool is_sunk(const Surface& front, const Surface& back, double direction) {
+    const bool is_back = back.clear_semi_diameter < front.clear_semi_diameter;
+    const Surface& smaller = is_back ? back : front;
+    return direction * smaller.sag(smaller.clear_semi_diameter) * (is_back ? 1 : -1) > 0;
+}
+
+/// Appends the crossings of a run of faces, at most `most` in all. `in_glass`: for each face, whether glass lies
+/// between it and the next one.
+void append_crossings(const LensSystem& lens, const std::vector<Face>& run, const std::vector<bool>& in_glass,
+                      double direction, std::size_t most, std::vector<FaceCrossing>& crossings) {
+    const auto surface = [&](std::size_t i) -> const Surface& {
+        return lens.surfaces[static_cast<std::size_t>(run[i].index)];
+    };
+    for (std::size_t i = 0; i + 1 < run.size(); ++i) {
+        // Out to here faces in between keep the two apart, if they are themselves in order.
+        double between = 0;
+        for (std::size_t j = i + 1; j < run.size(); ++j) {
+            const Surface &a = surface(i), &b = surface(j);
+            const bool element = j == i + 1 && in_glass[i] && !is_sunk(a, b, direction);
+            const double from = std::max({between, a.inner_semi_diameter, b.inner_semi_diameter});
+            // Glass has to be there up to its rim; faces with air between them just must not overlap.
+            const double to = element ? std::max(a.clear_semi_diameter, b.clear_semi_diameter)
+                                      : std::min(a.clear_semi_diameter, b.clear_semi_diameter);
+            const double touch = kPrintedDigits * std::min(a.clear_semi_diameter, b.clear_semi_diameter);
+            if (from < to) {
+                const FaceCrossing found = deepest(lens, run[i], run[j], direction, from, to);
+                if (found.depth > touch) crossings.push_back(found);
+                if (crossings.size() >= most) return;
+            }
+            if (b.inner_semi_diameter == 0) between = std::max(between, b.clear_semi_diameter);
+            if (between >= a.clear_semi_diameter) break;
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<FaceCrossing> find_crossings(const LensSystem& lens, std::size_t most) {
+    const std::vector<double> z = lens.vertices();
+    std::vector<FaceCrossing> crossings;
+    std::vector<Face> run;
+    std::vector<bool> in_glass;
+    double direction = 1;
+    bool glass = false;
+    for (std::size_t i = 0; i < lens.surfaces.size() && crossings.size() < most; ++i) {
+        const Surface& surface = lens.surfaces[i];
+        if (!surface.bends_light()) continue;
+        if (surface.type == SurfaceType::refracting) glass = !surface.material.is_air();
+        run.push_back({static_cast<int>(i), z[i]});
+        in_glass.push_back(glass);
+        if (surface.type != SurfaceType::mirror) continue;
+        append_crossings(lens, run, in_glass, direction, most, crossings);
+        run = {run.back()};
+        in_glass = {glass};
+        direction = -direction;
+    }
+    if (crossings.size() < most) append_crossings(lens, run, in_glass, direction, most, crossings);
+    return crossings;
+}
+
+std::optional<FaceCrossing> find_crossing(const LensSystem& lens) {
+    const std::vector<FaceCrossing> first = find_crossings(lens, 1);
+    return first.empty() ? std::nullopt : std::optional(first.front());
+}
+
+bool film_crosses_lens(const LensSystem& lens) {
+    for (std::size_t i = lens.surfaces.size(); i-- > 0;) {
+        const Surface& last = lens.surfaces[i];
+        if (!last.bends_light()) continue;
+        const double distance = lens.film_position() - lens.vertices()[i];
+        const double corner = 0.5 * std::hypot(lens.film_width, lens.film_height);
+        const double reach = std::min(last.clear_semi_diameter, corner);
+        constexpr int kSteps = 64;
+        for (int k = 0; k <= kSteps; ++k)
+            if (distance - last.sag(reach * k / kSteps) < -kPrintedDigits * reach) return true;
+        return false;
+    }
+    return false;
+}
+
+}  // namespace realcam

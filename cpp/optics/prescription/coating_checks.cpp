@@ -1,0 +1,60 @@
+#include "coating_checks.hpp"
+#include "../analysis/aperture_diffraction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace realcam {
+
+namespace {
+
+void check_material(const CoatingMaterial& material, const std::string& what) {
+    for (std::size_t i = 0; i < material.points.size(); ++i) {
+        const CoatingMaterial::Point& p = material.points[i];
+        if (!(p.n > 0 && p.n <= 100) || !(p.k >= 0 && p.k <= 1000))
+            throw InputError("the refractive index n + ik of " + what +
+                             " needs n above 0, at most 100, and k from 0 (k > 0 absorbs) to 1000");
+        if (!(p.wavelength_nm > 0) || !std::isfinite(p.wavelength_nm))
+            throw InputError("the wavelengths of " + what + " must be positive numbers, in nm");
+        if (i > 0 && !(p.wavelength_nm > material.points[i - 1].wavelength_nm))
+            throw InputError("the wavelengths of " + what + " must rise from point to point");
+    }
+    if (!material.points.empty()) return;
+    const auto [first, last] = material.glass.known_nm();
+    const double n = material.glass.index(std::clamp(kLineD_nm, first, last));
+    if (!(n >= 1 && n <= 10))
+        throw InputError("the refractive index of " + what + " must lie between 1 and 10" +
+                         (std::isnan(n) ? "" : "; it is " + std::to_string(n)));
+}
+
+}  // namespace
+
+void check_coating(const Coating& coating) {
+    if (coating.layers.size() > kMaxCoatingLayers)
+        throw InputError("the coating has " + std::to_string(coating.layers.size()) + " layers; at most " +
+                         std::to_string(kMaxCoatingLayers) + " are supported");
+    for (std::size_t i = 0; i < coating.layers.size(); ++i) {
+        const std::string what = "layer " + std::to_string(i + 1);
+        check_material(coating.layers[i].material, what);
+        const double thickness = coating.layers[i].thickness_nm;
+        if (!(thickness >= 0 && thickness <= kThickestLayer_nm))
+            throw InputError("the thickness of " + what + " must lie between 0 and 1e6 nm");
+    }
+    const bool has_layers = coating.kind == CoatingKind::layers || coating.kind == CoatingKind::metal;
+    if (!has_layers && !coating.layers.empty()) throw InputError("this kind of coating has no layers");
+    if (coating.kind == CoatingKind::metal) check_material(coating.metal, "the metal");
+    if (!(coating.reflectance >= 0 && coating.reflectance <= 1))
+        throw InputError("the reflectance of a mirror must lie between 0 and 1");
+}
+
+void check_coating_fits(const Surface& surface) {
+    if (surface.coating.kind == CoatingKind::unknown) return;
+    if (!surface.bends_light()) throw InputError("a stop or an aperture is no surface that could be coated");
+    const bool mirror = surface.type == SurfaceType::mirror;
+    if (mirror && !surface.coating.is_for_mirrors())
+        throw InputError("a mirror's coating is a metal, with or without layers, or a reflectance");
+    if (!mirror && surface.coating.is_for_mirrors())
+        throw InputError("a metal or a reflectance is a mirror's coating; this surface is to let light pass");
+}
+
+}  // namespace realcam

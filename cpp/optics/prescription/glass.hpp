@@ -1,0 +1,88 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../error.hpp"
+#include "../../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline constexpr double kLineF_nm = 486.1327;  ///< hydrogen, blue
+inline constexpr double kLineD_nm = 587.5618;  ///< helium, yellow: the design line d
+inline constexpr double kLineC_nm = 656.2725;  ///< hydrogen, red
+
+/// An optical medium: refractive index relative to air at a wavelength in air.
+class Glass {
+public:
+    /// n_k of the Sellmeier equation n^2 = 1 + sum B l^2 / (l^2 - C), l in um, C in um^2.
+    struct SellmeierTerm {
+        double B, C;
+    };
+    /// One measured point.
+    struct TablePoint {
+        double wavelength_nm, index;
+
+        bool operator==(const TablePoint&) const = default;
+    };
+
+    static Glass constant(double index) { return {Formula::cauchy, {index}, {}}; }
+    static Glass air() { return constant(1.0); }
+
+    /// From the index at the d line and the Abbe number V_d = (n_d - 1) / (n_F - n_C): the two terms of Cauchy's
+    /// formula that have both. Throws InputError for an index below 1 or an Abbe number that is not positive.
+    static Glass from_abbe_number(double n_d, double abbe_number);
+    /// n = A + B / l^2 + C / l^4 + ..., l in um. Throws InputError where there is no coefficient, or one not finite.
+    static Glass cauchy(std::vector<double> coefficients);
+
+    /// Throws InputError where there is no term, or one not finite.
+    static Glass sellmeier(const std::vector<SellmeierTerm>& terms);
+    /// Interpolated in 1 / l^2 by the cubic through the four nearest points (fewer where fewer are given).
+    /// Throws InputError where there is no point, two have one wavelength, or a number makes no sense.
+    static Glass table(std::vector<TablePoint> points);
+
+    /// NaN where the formula has no real value.
+    double index(double wavelength_nm) const;
+
+    /// Whether it is the same at all wavelengths, as far as is known.
+    bool has_one_index() const;
+    /// The first and the last wavelength at which it is known, nm: of a table, those of its points; formulas have none.
+    std::pair<double, double> known_nm() const;
+
+    bool is_air() const { return formula_ == Formula::cauchy && coefficients_ == std::vector<double>{1.0}; }
+
+    bool operator==(const Glass&) const = default;
+
+    /// As the lens's author wrote it: a name, a number, a pair; empty for air.
+    std::string label;
+
+    enum class Formula { cauchy, sellmeier, table };
+
+    /// All that a glass consists of, for whoever stores it.
+    struct Parts {
+        Formula formula;
+        std::vector<double> coefficients;  ///< of Cauchy's formula; B and C by turns of Sellmeier's
+        std::vector<TablePoint> points;
+        std::string label;
+    };
+    Parts parts() const { return {formula_, coefficients_, points_, label}; }
+    static Glass from_parts(Parts parts);
+
+private:
+    Glass(Formula formula, std::vector<double> coefficients, std::vector<TablePoint> points)
+        : formula_(formula), coefficients_(std::move(coefficients)), points_(std::move(points)) {}
+
+    static void check_all_finite(const std::vector<double>& numbers);
+
+    static double per_um2(double wavelength_nm) { return 1e6 / (wavelength_nm * wavelength_nm); }
+
+    double sellmeier_index(double um2) const;
+
+    double table_index(double x) const;
+
+    Formula formula_;
+    std::vector<double> coefficients_;
+    std::vector<TablePoint> points_;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,203 @@
+#include "lens_checks.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "coating_checks.hpp"
+#include "lens_limits.hpp"
+
+namespace realcam {
+
+namespace lens_checks_detail {
+
+std::string mm(double v) {
+    std::string text = std::to_string(v);
+    return text.substr(0, text.find_last_not_of('0') + 1) + " mm";
+}
+
+}  // namespace lens_checks_detail
+
+namespace lens_checks_detail {
+
+namespace {
+
+void check_figure(const Surface& s, std::size_t i) {
+    if (!std::isfinite(s.curvature) || !std::isfinite(s.conic))
+        fail(i, "radius of curvature and conic must be finite numbers (leave the radius out for a plane)");
+    if (std::fabs(s.conic) > kLargestConic) fail(i, "the conic must lie between -1e6 and 1e6");
+    if (std::fabs(s.curvature) > 1 / kShortestRadius)
+        fail(i, "the curvature is larger than that of a radius of 1e-6 mm");
+    for (double a : s.aspheric)
+        if (!std::isfinite(a)) fail(i, "an aspheric coefficient is not a finite number");
+    if (s.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
+        fail(i, "aspheric coefficients go up to r^" + std::to_string(2 * kMaxAsphericTerms + 2));
+}
+
+void check_rim(const Surface& s, std::size_t i) {
+    if (!(s.clear_semi_diameter > 0) || !std::isfinite(s.clear_semi_diameter))
+        fail(i, "the clear semi-diameter is " + mm(s.clear_semi_diameter) + "; a positive length is wanted");
+    if (s.clear_semi_diameter < kShortestRadius || s.clear_semi_diameter > kLongest)
+        fail(i, "the clear semi-diameter must lie between 1e-6 and 1e9 mm");
+    double power = s.clear_semi_diameter * s.clear_semi_diameter;
+    for (double a : s.aspheric) {
+        power *= s.clear_semi_diameter * s.clear_semi_diameter;
+        if (std::fabs(a) > kLargestCoefficient || std::fabs(a) * power > kLongest)
+            fail(i, "an aspheric coefficient is too large: it is past 1e37, or its term past 1e9 mm at the rim");
+    }
+    if (!(s.inner_semi_diameter >= 0) || s.inner_semi_diameter >= s.clear_semi_diameter)
+        fail(i, "the inner semi-diameter must be at least 0 and less than the clear semi-diameter");
+    if (!std::isfinite(s.sag(s.clear_semi_diameter))) {
+        const double limit = 1 / (std::fabs(s.curvature) * std::sqrt(1 + s.conic));
+        fail(i, "the clear semi-diameter of " + mm(s.clear_semi_diameter) +
+                    " is larger than the surface, which ends at " + mm(limit) + " from the axis");
+    }
+}
+
+/// `direction`: of the light behind the surface, 1 or -1.
+void check_thickness(const Surface& s, std::size_t i, double direction) {
+    if (!std::isfinite(s.thickness)) fail(i, "the thickness is not a finite number");
+    if (std::fabs(s.thickness) > kLongest) fail(i, "the thickness is more than 1e9 mm");
+    if (s.thickness * direction < 0)
+        fail(i, direction > 0
+                    ? "the thickness is negative; light travels to the film here, so 0 or more is wanted"
+                    : "the thickness is positive; light travels back behind a mirror, so 0 or less is wanted");
+}
+
+void check_material(const Surface& s, std::size_t i, double design_wavelength_nm) {
+    for (double wavelength : {380.0, design_wavelength_nm, 780.0}) {
+        const double n = s.material.index(wavelength);
+        if (!(n >= 1) || !(n < 10))
+            fail(i, "the refractive index of its material at " + std::to_string(static_cast<int>(wavelength)) +
+                        " nm is " + std::to_string(n) + "; 1 to 10 is wanted");
+    }
+}
+
+void check_surface_coating(const Surface& s, std::size_t i) {
+    try {
+        check_coating(s.coating);
+        check_coating_fits(s);
+    } catch (const InputError& error) {
+        fail(i, error.what());
+    }
+}
+
+void check_stop(const LensSystem& lens) {
+    const int first = lens.stop_index();
+    if (first < 0) throw LensFileError("the lens has no surface of type \"stop\"; exactly one is wanted");
+    for (std::size_t i = static_cast<std::size_t>(first) + 1; i < lens.surfaces.size(); ++i)
+        if (lens.surfaces[i].type == SurfaceType::stop)
+            fail(i, "is a second \"stop\", after surface " + std::to_string(first + 1) + "; exactly one is wanted");
+}
+
+}  // namespace
+
+}  // namespace lens_checks_detail
+
+namespace lens_checks_detail {
+
+std::string short_mm(double v) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g mm", v);
+    return text;
+}
+
+}  // namespace lens_checks_detail
+
+void check_surfaces(const LensSystem& lens) {
+    using namespace lens_checks_detail;
+    if (lens.surfaces.empty()) throw LensFileError("the lens has no surfaces; at least one and a stop are wanted");
+    if (lens.surfaces.size() > kMaxSurfaces)
+        throw LensFileError("the lens has " + std::to_string(lens.surfaces.size()) + " surfaces; at most " +
+                            std::to_string(kMaxSurfaces) + " are supported");
+    double direction = 1;
+    std::size_t last_mirror = 0;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const Surface& s = lens.surfaces[i];
+        if (s.type == SurfaceType::mirror) direction = -direction, last_mirror = i;
+        check_figure(s, i);
+        check_rim(s, i);
+        check_thickness(s, i, direction);
+        check_material(s, i, lens.wavelength_nm);
+        check_surface_coating(s, i);
+    }
+    check_stop(lens);
+    if (direction < 0)
+        fail(last_mirror, "the lens has an odd number of mirrors, so its light never reaches a film behind it");
+    if (lens.allow_crossing) return;
+    if (const auto crossing = find_crossing(lens))
+        fail(static_cast<std::size_t>(crossing->first),
+             "crosses surface " + std::to_string(crossing->second + 1) + ", by " + short_mm(crossing->depth) + " at " +
+                 short_mm(crossing->radius) +
+                 " from the axis; faces that keep apart up to their rims are wanted (allow_crossing admits it)");
+}
+
+void check_iris(const IrisShape& iris) {
+    if (iris.blades != 0 && (iris.blades < 3 || iris.blades > kMaxIrisBlades))
+        throw LensFileError("the iris has " + std::to_string(iris.blades) + " blades; 0 (round) or 3 to " +
+                            std::to_string(kMaxIrisBlades) + " are wanted");
+    if (!(iris.rounding >= 0 && iris.rounding <= 1))
+        throw LensFileError("the rounding of the iris must lie between 0 (straight blades) and 1 (a circle)");
+    if (!std::isfinite(iris.rotation_rad)) throw LensFileError("the rotation of the iris is not a finite number");
+}
+
+void check_film_size(const LensSystem& lens) {
+    if (!(lens.film_width > 0) || !(lens.film_height > 0) || !(lens.film_width + lens.film_height <= kLongest))
+        throw LensFileError("the film's width and height must be positive lengths, of at most 1e9 mm");
+}
+
+void check_focusing(const LensSystem& lens) {
+    const int n = static_cast<int>(lens.surfaces.size());
+    if (lens.focusing.moves_group() &&
+        (lens.focusing.group_last < lens.focusing.group_first || lens.focusing.group_last >= n))
+        throw LensFileError("the focusing group must be [first, last] with 1 <= first <= last <= " + std::to_string(n));
+}
+
+void check_zoom(const LensSystem& lens) {
+    const ZoomRange& zoom = lens.zoom;
+    if (zoom.positions.empty()) return;
+    const int last = static_cast<int>(lens.surfaces.size()) - 1, count = static_cast<int>(zoom.positions.size());
+    if (zoom.current < 0 || zoom.current >= count) throw LensFileError("the lens is in a zoom position that it lacks");
+    for (std::size_t i = 0; i < zoom.surfaces.size(); ++i)
+        if (zoom.surfaces[i] < 0 || zoom.surfaces[i] >= last || (i > 0 && zoom.surfaces[i] <= zoom.surfaces[i - 1]))
+            throw LensFileError("zooming changes thicknesses of surfaces 1 to " + std::to_string(last) +
+                                "; what is behind the last one is the position's film distance");
+    for (std::size_t i = 0; i < zoom.positions.size(); ++i) {
+        const ZoomPosition& position = zoom.positions[i];
+        const std::string where = "in zoom position \"" + position.name + "\" ";
+        for (std::size_t j = 0; j < i; ++j)
+            if (zoom.positions[j].name == position.name)
+                throw LensFileError("two zoom positions are called \"" + position.name + '"');
+        if (position.name.empty()) throw LensFileError("a zoom position has no name");
+        if (position.thicknesses.size() != zoom.surfaces.size())
+            throw LensFileError(where + "not all thicknesses are given that zooming changes");
+        if (!(position.film_distance > 0) || !(position.film_distance <= kLongest))
+            throw LensFileError(where + "the film must lie behind the last surface, at most 1e9 mm away");
+        if (!(position.stop_semi_diameter >= 0) || !(position.focus_distance > 0))
+            throw LensFileError(where + "the stop's semi-diameter or the focus distance is not positive");
+        try {
+            check_surfaces(at_zoom_position(lens, static_cast<int>(i)));
+        } catch (const LensFileError& error) {
+            throw LensFileError(where + error.detail, {}, 0, error.surface);
+        }
+    }
+}
+
+void validate(const LensSystem& lens) {
+    check_surfaces(lens);
+    check_iris(lens.iris);
+    check_film_size(lens);
+    check_focusing(lens);
+    check_zoom(lens);
+}
+
+std::string film_distance_error(const LensSystem& lens) {
+    if (!(lens.film_distance > 0) || !(lens.film_distance <= kLongest))
+        return "the film must lie behind the last surface of the lens, at most 1e9 mm away";
+    if (!lens.allow_crossing && film_crosses_lens(lens))
+        return "the film, " + lens_checks_detail::short_mm(lens.film_distance) +
+               " behind the last vertex of the lens, cuts through its last face; a plane behind that face's rim is "
+               "wanted (allow_crossing admits it)";
+    return "";
+}
+
+}  // namespace realcam

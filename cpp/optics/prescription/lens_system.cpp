@@ -1,0 +1,51 @@
+#include "lens_system.hpp"
+
+#include <cmath>
+
+namespace realcam {
+
+int LensSystem::stop_index() const {
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+        if (surfaces[i].type == SurfaceType::stop) return static_cast<int>(i);
+    return -1;
+}
+
+std::vector<double> LensSystem::vertices() const {
+    std::vector<double> z(surfaces.size(), 0.0);
+    for (std::size_t i = 1; i < surfaces.size(); ++i) z[i] = z[i - 1] + surfaces[i - 1].thickness;
+    return z;
+}
+
+double LensSystem::last_vertex() const {
+    double z = 0;
+    for (std::size_t i = 0; i + 1 < surfaces.size(); ++i) z += surfaces[i].thickness;
+    return z;
+}
+
+std::vector<double> LensSystem::indices(double wavelength) const {
+    std::vector<double> n(surfaces.size() + 1, 1.0);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const Surface& s = surfaces[i];
+        n[i + 1] = s.type == SurfaceType::refracting ? s.material.index(wavelength) : n[i];
+        if (!(n[i + 1] > 0.1) || !(n[i + 1] < 100))
+            throw InputError("the material of surface " + std::to_string(i + 1) +
+                             (s.material.label.empty() ? "" : " (" + s.material.label + ")") +
+                             " has no refractive index at " + std::to_string(std::lround(wavelength)) + " nm");
+    }
+    return n;
+}
+
+LensSystem at_zoom_position(LensSystem lens, int position) {
+    const ZoomPosition& to = lens.zoom.positions[static_cast<std::size_t>(position)];
+    for (std::size_t i = 0; i < lens.zoom.surfaces.size(); ++i)
+        lens.surfaces[static_cast<std::size_t>(lens.zoom.surfaces[i])].thickness = to.thicknesses[i];
+    Surface& stop = lens.surfaces[static_cast<std::size_t>(lens.stop_index())];
+    if (to.stop_semi_diameter > 0) stop.clear_semi_diameter = to.stop_semi_diameter;
+    lens.stop_semi_diameter = stop.clear_semi_diameter;
+    lens.film_distance = to.film_distance;
+    lens.focus_distance = to.focus_distance;
+    lens.zoom.current = position;
+    return lens;
+}
+
+}  // namespace realcam

@@ -1,0 +1,39 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "coating.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+enum class SurfaceType {
+    refracting,
+    mirror,    ///< light goes back: thicknesses after it are negative until the next mirror
+    stop,      ///< the aperture stop, a plane
+    aperture,  ///< a plane that only blocks: a rim, or the shadow of a secondary mirror
+};
+
+/// One row of a lens table. Lengths in mm, lens frame.
+struct Surface {
+    SurfaceType type = SurfaceType::refracting;
+    double curvature = 0;          ///< 1/mm; positive where the centre lies on the film side; 0: plane
+    double conic = 0;              ///< k: 0 sphere, -1 paraboloid
+    std::vector<double> aspheric;  ///< coefficients of r^4, r^6, ..., mm^-3, mm^-5, ...
+    double thickness = 0;          ///< to the next vertex; of the last surface: 0
+    Glass material = Glass::air();  ///< behind the surface, on the light's way to the film
+    double clear_semi_diameter = 0;
+    double inner_semi_diameter = 0;  ///< light closer to the axis is blocked; 0: none
+    Coating coating;
+
+    bool operator==(const Surface&) const = default;
+
+    bool bends_light() const { return type == SurfaceType::refracting || type == SurfaceType::mirror; }
+    bool is_asphere() const {
+        return std::any_of(aspheric.begin(), aspheric.end(), [](double a) { return a != 0; });
+    }
+
+    /// Height of the surface over its vertex plane at a radial distance, mm; NaN past the edge of the conic.
+    double sag(double radius) const;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,160 @@
+#include "pupil.hpp"
+#include "../../camera/diffraction_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace realcam {
+
+Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
+    : search_(lens, std::move(tracer), wavelengths_nm), image_radius_(film_radius * (1 + 1e-6)) {
+    if (!(film_radius > 0) || !(film_radius <= kLongest))
+        throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
+    find_nodes();
+    follows_ = image_radius_ > 0 && nodes_follow();
+    if (image_radius_ > 0) {
+        find_outlines();
+    } else {
+        outline_.assign(kRows * kSectors, PupilSector{});  // no light at all; a sampler still reads the table
+    }
+}
+
+PupilView Pupil::view() const {
+    // Rounded up: the last lit film point must not fall outside.
+    const float radius = image_radius_ > 0 ? std::nextafter(static_cast<float>(image_radius_), 1e30f) : 0.0f;
+    return {nodes_.data(),
+            outline_.data(),
+            kRows,
+            kSectors,
+            radius,
+            radius > 0 ? 1 / radius : 0.0f,
+            static_cast<float>(search_.lens().index_squared())};
+}
+
+void Pupil::find_nodes() {
+    PupilRowBoxes boxes = rows().look_from_axis();
+    const auto lit = [](const std::optional<PupilBox>& box) { return box.has_value(); };
+    const auto last = std::find_if(boxes.rbegin(), boxes.rend(), lit);
+    if (last == boxes.rend()) {
+        image_radius_ = 0;
+        nodes_.assign(kRows + 1, PupilNode{});
+        return;
+    }
+    if (last != boxes.rbegin()) {
+        const PupilRowSearch::Edge edge = rows().edge_of_image(static_cast<int>(boxes.rend() - last - 1), boxes);
+        image_radius_ = edge.radius;
+        ends_inside_film_ = true;
+        boxes = rows().look_from_axis();
+        boxes.back() = edge.last_box;
+    }
+    std::optional<PupilBox> box = *std::find_if(boxes.begin(), boxes.end(), lit);
+    for (const auto& found : boxes) {
+        if (found) box = found;  // a node without light takes its inner neighbour's box
+        nodes_.push_back(
+            {static_cast<float>(box->l()), static_cast<float>(box->half_width()), static_cast<float>(box->m_max)});
+    }
+    if (!ends_inside_film_) return;
+    // The grid sees too little of a crescent's thin ends: its box must not shrink as fast as it does.
+    const float least = 0.75f * nodes_[kRows - kEdgeRows].half_width;
+    for (int i = kRows - kEdgeRows + 1; i <= kRows; ++i) {
+        float& width = nodes_[static_cast<std::size_t>(i)].half_width;
+        width = std::max(width, least);
+    }
+}
+
+bool Pupil::nodes_follow() const {
+    constexpr float kSmall = 1e-3f;
+    const float on_axis = nodes_.front().half_width;
+    if (on_axis > kSmall) return true;
+    PupilTrack track;
+    for (int row = 0; row < kRows; ++row) {
+        const PupilNode node = node_at(row + 0.5);
+        if (node.half_width < 0.5f * on_axis) continue;
+        const std::optional<PupilBox> box = search_.look(radius_at(row + 0.5), track);
+        const double width = static_cast<double>(node.half_width);
+        if (!box || !(std::fabs(box->l() - static_cast<double>(node.centre)) < 0.5 * width) ||
+            !(box->half_width() < 1.4 * width))
+            return false;
+    }
+    return true;
+}
+
+PupilNode Pupil::node_at(double position) const {
+    const int row = std::min(static_cast<int>(position), kRows - 1);
+    const float f = static_cast<float>(position - row);
+    const PupilNode &a = nodes_[static_cast<std::size_t>(row)], &b = nodes_[static_cast<std::size_t>(row) + 1];
+    return {a.centre + f * (b.centre - a.centre), a.half_width + f * (b.half_width - a.half_width),
+            a.half_height + f * (b.half_height - a.half_height)};
+}
+
+std::vector<PupilOutline> Pupil::outlines_at(const std::vector<double>& positions) const {
+    std::vector<OutlineLook> looks;
+    for (const double position : positions) looks.push_back({radius_at(position), node_at(position)});
+    return OutlineSearch::find(search_.lens(), looks);
+}
+
+void Pupil::find_outlines() {
+    const int rows = ends_inside_film_ ? kRows - kEdgeRows : kRows;
+    std::vector<double> positions;
+    for (int i = 0; i <= 2 * rows; ++i) positions.push_back(0.5 * i);
+    const std::vector<PupilOutline> halves = outlines_at(positions);
+    std::vector<std::vector<PupilOutline>> looks;
+    positions.clear();
+    for (int row = 0; row < rows; ++row) {
+        looks.emplace_back(halves.begin() + 2 * row, halves.begin() + 2 * row + 3);
+        const bool near_edge = ends_inside_film_ && row > kRows / 2;
+        if (!near_edge && largest_spread(looks.back()) <= 0.08) continue;
+        for (const int eighth : {1, 2, 3, 5, 6, 7}) positions.push_back(row + eighth / 8.0);
+    }
+    const std::vector<PupilOutline> eighths = outlines_at(positions);
+    for (std::size_t i = 0; i < eighths.size(); ++i)
+        looks[static_cast<std::size_t>(positions[i])].push_back(eighths[i]);
+    outline_.resize(kRows * kSectors);
+    search_.lens().for_each(kRows, [&](int row) {
+        if (row >= rows) {
+            add_row(row, PupilRow(box_outline()), 1.5, 16);
+            return;
+        }
+        const std::vector<PupilOutline>& seen = looks[static_cast<std::size_t>(row)];
+        const bool changes = seen.size() > 3;
+        add_row(row, PupilRow(holding_all(seen)), changes ? 1.4 : 1.15, changes ? 24 : 1);
+    });
+}
+
+void Pupil::add_row(int row, PupilRow sectors, double reach, int clean_rounds) {
+    constexpr int kMostRounds = 256, kBlock = PupilSearch::kBlock;
+    int held = 0, passing = 0;  // of the rays inside the sectors
+    for (int round = 0, clean = 0; round < kMostRounds && clean < clean_rounds; ++round) {
+        const auto stream = static_cast<std::uint32_t>(kMostRounds * row + round);
+        // Both ends of the row first.
+        const double position = row + (round == 0   ? 0.9999
+                                       : round == 1 ? 0.0
+                                                    : static_cast<double>(sample_2d(stream, 0, 1).x));
+        const PupilNode node = node_at(position);
+        const double radius = radius_at(position);
+        Vec2f places[kBlock];
+        PupilRays rays;
+        for (int i = 0; i < kBlock; ++i) {
+            const Vec2f u = sample_2d(stream, static_cast<std::uint32_t>(i), 0);
+            places[i] = {static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * u.y};
+            rays.set(i, radius,
+                     {static_cast<double>(node.centre + node.half_width * places[i].x),
+                      static_cast<double>(node.half_height * places[i].y)});
+        }
+        bool passes[kBlock], strayed = false;
+        search_.lens().trace(rays, passes);
+        for (int i = 0; i < kBlock; ++i) {
+            const bool holds = sectors.holds(places[i]);
+            held += static_cast<int>(holds);
+            passing += static_cast<int>(passes[i]);
+            strayed |= passes[i] && !holds && sectors.take_in(places[i]);
+        }
+        clean = strayed ? 0 : clean + 1;
+    }
+    if (passing < held / 4) sectors = PupilRow(box_outline());
+    std::copy(sectors.sectors().begin(), sectors.sectors().end(), outline_.begin() + row * kSectors);
+}
+
+}  // namespace realcam

@@ -1,0 +1,68 @@
+#pragma once
+#include <vector>
+
+#include "../../math/random.hpp"
+#include "pupil_outline_search.hpp"
+#include "pupil_row_search.hpp"
+#include "pupil_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The directions that pass a lens, for every film radius. Found with real rays; owns the memory of its view.
+class Pupil {
+public:
+    static constexpr int kRows = PupilRowSearch::kRows;
+    static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
+    /// No search traces more, whatever the lens: 270 looks at a film radius (two tables of nodes, both looked for ahead
+    /// too, the edge of the image, half-way between rows), outlines at both ends and seven places of each row, and 256
+    /// rounds for it. Lenses that can be made take a hundredth of it.
+    static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(2 * kRows + 1) +
+                                       OutlineSearch::most_blocks(6 * kRows) + 256 * kRows;
+
+    /// `film_radius` in mm: the film point furthest from the axis. Throws InputError where it is no positive length.
+    /// The pupil holds what passes at any of the wavelengths; none: the lens's design wavelength.
+    Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer = {},
+          const std::vector<double>& wavelengths_nm = {});
+
+    PupilView view() const;
+    double image_radius() const { return image_radius_; }
+    /// Whether the table holds the pupil between its rows too. A stop of some micrometres moves by more than its own
+    /// size from row to row.
+    bool follows() const { return follows_; }
+
+private:
+    /// Outermost rows, 0.4% of the image's area, that get no finer outline than a box.
+    static constexpr int kEdgeRows = 2;
+
+    /// Finds how far out there is light, and the region's box at each node from the axis to there.
+    void find_nodes();
+
+    PupilRowSearch rows() const { return {search_, image_radius_}; }
+    double radius_at(double position) const { return rows().radius_at(position); }
+
+    /// Whether a small pupil lies half-way between rows where its neighbours say. Of large ones the outlines see it;
+    /// and slivers at the edge of the image are small without a small stop.
+    bool nodes_follow() const;
+
+    PupilNode node_at(double position) const;
+
+    std::vector<PupilOutline> outlines_at(const std::vector<double>& positions) const;
+
+    /// A row holds what passes at its two ends and in between, and a share more of what changes over it. Where it
+    /// changes by much, as behind the last surface that cuts the light off, more film radii are looked at.
+    void find_outlines();
+
+    /// Adds a row. Sends rays all over its surroundings first, and widens the sectors beside which some pass, until so
+    /// many rounds in a row find none: the corners of slivers lie between spokes, and the ends of crescents between the
+    /// points of a grid. Sectors that few rays pass do not tell where the light is, which may lie in several rings: the
+    /// whole box takes their place.
+    void add_row(int row, PupilRow sectors, double reach, int clean_rounds);
+
+    PupilSearch search_;
+    double image_radius_;
+    bool ends_inside_film_ = false, follows_ = false;
+    std::vector<PupilNode> nodes_;
+    std::vector<PupilSector> outline_;
+};
+
+}  // namespace REALCAM_NAMESPACE

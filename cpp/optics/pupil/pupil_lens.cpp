@@ -1,0 +1,91 @@
+#include "pupil_lens.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "../trace/open_iris.hpp"
+
+namespace realcam {
+
+void PupilRays::set(int lane, double from_radius, PupilDirection d) {
+    radius[lane] = from_radius;
+    l[lane] = d.l;
+    m[lane] = d.m;
+}
+
+PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
+    : lens_(round_iris(lens)),
+      path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front()),
+      tracer_(std::move(tracer)),
+      has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
+                                [](const Surface& surface) { return surface.is_asphere(); })) {
+    for (std::size_t i = 1; i < wavelengths_nm.size(); ++i)
+        others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i]);
+    const LensView<float> all = path_.view();
+    surfaces_to_stop_.assign(all.surfaces, all.surfaces + all.count - lens_.stop_index());
+    surfaces_to_stop_.back().rim_squared = std::numeric_limits<float>::max();
+}
+
+void PupilLens::trace(const PupilRays& from, bool* passes) const {
+    PupilTracer::Rays rays;
+    trace(path_.view(), from, rays);
+    REALCAM_LANES
+    for (int i = 0; i < kBlock; ++i) passes[i] = rays.status[i] == 0;
+    for (const LensPath<float>& other : others_) {
+        trace(other.view(), from, rays);
+        REALCAM_LANES
+        for (int i = 0; i < kBlock; ++i) passes[i] |= rays.status[i] == 0;
+    }
+}
+
+void PupilLens::trace_to_stop(const PupilRays& from, PupilTracer::Rays& rays) const {
+    LensView<float> view = path_.view();
+    view.surfaces = surfaces_to_stop_.data();
+    view.count = static_cast<int>(surfaces_to_stop_.size());
+    trace(view, from, rays);
+}
+
+PupilBox PupilLens::box_of_last_surface(double radius) const {
+    const Surface& last = lens_.surfaces.back();
+    PupilBox box = PupilBox::none();
+    for (int ring = 0; ring <= 8; ++ring) {
+        const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r) - lens_.film_distance;
+        for (int spoke = 0; spoke <= 16; ++spoke) {
+            const double angle = std::numbers::pi * spoke / 16;
+            const Vec3d d = path_.entry_index * normalized(Vec3d{r * std::cos(angle) - radius, r * std::sin(angle), z});
+            box = box.with({d.x, d.y});
+        }
+    }
+    return box.grown(0.02);
+}
+
+LensSystem PupilLens::round_iris(LensSystem lens) {
+    const double rim = lens.stop().clear_semi_diameter;
+    if (lens.iris.blades > 0 && !lens.is_wide_open()) {
+        const Iris<double> open = open_iris(lens.iris, lens.stop_semi_diameter, rim);
+        const double h = open.apothem, q = open.curvature;
+        const double linear = (1 - q * h) * std::cos(std::numbers::pi / open.blades), constant = 2 * h - q * h * h;
+        lens.stop_semi_diameter = std::min(rim, constant / (linear + std::sqrt(linear * linear + q * constant)));
+    }
+    lens.iris.blades = 0;
+    return lens;
+}
+
+void PupilLens::trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const {
+    const double n2 = index_squared();
+    const auto z = static_cast<float>(lens_.film_distance);
+    REALCAM_LANES
+    for (int i = 0; i < kBlock; ++i) {
+        const double l = from.l[i], m = from.m[i], squared = n2 - l * l - m * m;
+        rays.origin.set(i, {static_cast<float>(from.radius[i]), 0, z});
+        rays.direction.set(i,
+                           {static_cast<float>(l), static_cast<float>(m), -static_cast<float>(sqrt_or_zero(squared))});
+        rays.status[i] = squared > 0 ? 0 : static_cast<int>(RayStatus::missed);
+    }
+    tracer_.trace(view, rays);
+}
+
+}  // namespace realcam

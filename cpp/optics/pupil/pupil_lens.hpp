@@ -1,0 +1,67 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "../trace/lens_path.hpp"
+#include "pupil_box.hpp"
+#include "pupil_tracer.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A block of rays from film points on the +x axis.
+struct PupilRays {
+    static constexpr int kBlock = PupilTracer::kBlock;
+
+    double radius[kBlock];  ///< of the film point, mm
+    double l[kBlock], m[kBlock];
+
+    void set(int lane, double from_radius, PupilDirection d);
+};
+
+/// A lens as the search for its pupil sees it, and what traces rays through it.
+class PupilLens {
+public:
+    static constexpr int kBlock = PupilTracer::kBlock;
+
+    /// `wavelengths_nm`: at any of which a ray may leave the lens; none: the design wavelength.
+    PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {});
+
+    double index_squared() const { return path_.entry_index * path_.entry_index; }
+
+    /// Sets passes[0] to passes[kBlock - 1] to whether these rays leave the lens.
+    void trace(const PupilRays& from, bool* passes) const;
+
+    /// To the plane of the stop, whose rim stops none.
+    void trace_to_stop(const PupilRays& from, PupilTracer::Rays& rays) const;
+
+    /// As PupilTracer::for_each.
+    template <class Task>
+    void for_each(int count, Task&& task) const {
+        tracer_.for_each(count, std::ref(task));
+    }
+    /// The same for tasks of one block of rays each. A block takes less time through spheres than a thread to wake up:
+    /// only aspheres are worth it.
+    template <class Task>
+    void for_each_block(int count, Task&& task) const {
+        if (has_aspheres_) return for_each(count, task);
+        for (int i = 0; i < count; ++i) task(i);
+    }
+
+    /// Box of the directions from a film point to the last surface's clear aperture.
+    PupilBox box_of_last_surface(double radius) const;
+
+private:
+    /// Blades are ignored here and reject rays later; the circle around their opening holds all that pass.
+    static LensSystem round_iris(LensSystem lens);
+
+    void trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const;
+
+    LensSystem lens_;
+    LensPath<float> path_;
+    std::vector<LensPath<float>> others_;  ///< of other wavelengths
+    PupilTracer tracer_;
+    std::vector<SurfaceView<float>> surfaces_to_stop_;
+    bool has_aspheres_;
+};
+
+}  // namespace REALCAM_NAMESPACE

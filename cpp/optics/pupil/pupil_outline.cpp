@@ -1,0 +1,143 @@
+#include "pupil_outline.hpp"
+#include "../analysis/aperture_diffraction.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace realcam {
+
+PupilDirection PupilOutline::fine_direction(int i) {
+    static const auto all = [] {
+        std::array<PupilDirection, kAzimuths * kFine + 1> directions;
+        for (std::size_t k = 0; k < directions.size(); ++k) {
+            const double angle = std::numbers::pi * static_cast<double>(k) / (kAzimuths * kFine);
+            directions[k] = {std::cos(angle), std::sin(angle)};
+        }
+        return directions;
+    }();
+    return all[static_cast<std::size_t>(i)];
+}
+
+PupilOutline box_outline() {
+    PupilOutline outline;
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
+        const PupilDirection d = PupilOutline::direction(a);
+        outline.outer[a] = 1.3 / std::max(std::fabs(d.l), std::fabs(d.m));
+    }
+    return outline;
+}
+
+double spread(const std::vector<PupilOutline>& looks, int azimuth) {
+    const auto [least, most] = std::minmax_element(
+        looks.begin(), looks.end(),
+        [azimuth](const PupilOutline& x, const PupilOutline& y) { return x.outer[azimuth] < y.outer[azimuth]; });
+    return most->outer[azimuth] - least->outer[azimuth];
+}
+
+double largest_spread(const std::vector<PupilOutline>& looks) {
+    double largest = 0;
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) largest = std::max(largest, spread(looks, a));
+    return largest;
+}
+
+PupilOutline holding_all(const std::vector<PupilOutline>& looks) {
+    constexpr double kMargin = 0.004, kSpreadShare = 0.05;
+    PupilOutline all;
+    for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
+        double outer = 0, inner = std::numeric_limits<double>::infinity();
+        for (const PupilOutline& look : looks) {
+            if (!(look.outer[a] > 0)) continue;
+            outer = std::max(outer, look.outer[a]);
+            inner = std::min(inner, look.inner[a]);
+        }
+        if (!(outer > 0)) continue;
+        const double more = kSpreadShare * spread(looks, a);
+        all.outer[a] = (1 + kMargin) * outer + more;
+        all.inner[a] = std::max(0.0, (1 - kMargin) * inner - more);
+    }
+    return all;
+}
+
+PupilRow::PupilRow(const PupilOutline& outline) {
+    constexpr int kAzimuths = PupilOutline::kAzimuths;
+    constexpr int kFine = PupilOutline::kFine, kPoints = kAzimuths * kFine;
+    double outer[kPoints + 1], inner[kPoints + 1], area[kPoints + 1];
+    for (int i = 0; i <= kPoints; ++i) {
+        const int a = std::min(i / kFine, kAzimuths - 1);
+        const double f = static_cast<double>(i - a * kFine) / kFine;
+        const double before = outline.outer[a], after = outline.outer[a + 1];
+        // Where the reach jumps, the corner of a sliver lies between the two spokes, further out than either.
+        const bool corner = std::fabs(after - before) > 0.2 * std::max(before, after);
+        outer[i] = corner ? 1.25 * std::max(before, after) : before + f * (after - before);
+        inner[i] = corner ? std::min(outline.inner[a], outline.inner[a + 1])
+                          : outline.inner[a] + f * (outline.inner[a + 1] - outline.inner[a]);
+    }
+    area[0] = 0;
+    for (int i = 1; i <= kPoints; ++i)
+        area[i] = area[i - 1] + outer[i] * outer[i - 1] - inner[i] * inner[i - 1] + 1e-12;
+    int from = 0;
+    for (int s = 0; s < kSectors; ++s) {
+        int to = from + 1;
+        while (to < kPoints - (kSectors - 1 - s) && area[to] < area[kPoints] * (s + 1) / kSectors) ++to;
+        if (s == kSectors - 1) to = kPoints;
+        sectors_.push_back(sector_over(outer, inner, from, to));
+        from = to;
+    }
+}
+
+bool PupilRow::holds(Vec2f place) const {
+    const std::optional<std::size_t> at = sector_of(place);
+    return at && holds(sectors_[*at], reach_in(sectors_[*at], place));
+}
+
+bool PupilRow::take_in(Vec2f place) {
+    const std::optional<std::size_t> at = sector_of(place);
+    if (!at) return false;
+    PupilSector& s = sectors_[*at];
+    const float reach = reach_in(s, place);
+    if (holds(s, reach)) return false;
+    const float scale = std::max(1.0f, 1.03f * reach);
+    s = {scale * s.x, scale * s.y, scale * s.dx, scale * s.dy,
+         std::min(s.hole_squared / (scale * scale), 0.98f * reach * reach / (scale * scale))};
+    return true;
+}
+
+std::optional<std::size_t> PupilRow::sector_of(Vec2f place) const {
+    const auto begins_before = [place](const PupilSector& s) { return s.x * place.y - s.y * place.x >= 0; };
+    const auto ends_before = [place](const PupilSector& s) {
+        return !(place.x * (s.y + s.dy) - place.y * (s.x + s.dx) >= 0);
+    };
+    // Bisection without a branch: no processor could guess it.
+    static_assert((kSectors & (kSectors - 1)) == 0);
+    std::size_t at = 0;
+    for (std::size_t half = kSectors / 2; half > 0; half /= 2)
+        at += half * static_cast<std::size_t>(ends_before(sectors_[at + half - 1]));
+    if (ends_before(sectors_[at]) || !begins_before(sectors_[at])) return std::nullopt;
+    return at;
+}
+
+PupilSector PupilRow::sector_over(const double* outer, const double* inner, int from, int to) {
+    const auto point = [&](int i) {
+        // Not less: next to a point a thousand times as far out, float32 would give the triangle no area.
+        const double r = std::max(outer[i], 1e-3);
+        const PupilDirection d = PupilOutline::fine_direction(i);
+        return Point{r * d.l, r * d.m};
+    };
+    const Point a = point(from), b = point(to);
+    const double twice_area = a.x * b.y - a.y * b.x;
+    // Distance from the middle to the edge along an azimuth, by Cramer's rule.
+    const auto edge = [&](int i) {
+        const PupilDirection d = PupilOutline::fine_direction(i);
+        return twice_area / ((b.y - a.y) * d.l - (b.x - a.x) * d.m);
+    };
+    double scale = 1, hole = 1;
+    for (int i = from; i <= to; ++i) scale = std::max(scale, outer[i] / edge(i));
+    for (int i = from; i <= to; ++i) hole = std::min(hole, inner[i] / (scale * edge(i)));
+    return {static_cast<float>(scale * a.x), static_cast<float>(scale * a.y), static_cast<float>(scale * (b.x - a.x)),
+            static_cast<float>(scale * (b.y - a.y)), static_cast<float>(hole * hole)};
+}
+
+}  // namespace realcam

@@ -1,0 +1,25 @@
+#pragma once
+#include <functional>
+
+#include "../trace/lens_trace.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What a backend brings to the search for a pupil: its vector instructions and its threads. By default the build's
+/// baseline on the calling thread. The pupil is the same bits whatever the threads.
+struct PupilTracer {
+    static constexpr int kBlock = 256;
+    using Rays = LensRays<float, kBlock>;
+    using Task = std::function<void(int)>;
+
+    /// Traces float rays from the film of one lens; their status says which leave it. Several threads may call it.
+    std::function<void(const LensView<float>&, Rays&)> trace = [](const LensView<float>& view, Rays& rays) {
+        trace_lens(view, rays);
+    };
+    /// Calls task(0) to task(count - 1), in any order and on any threads, and returns when all are done.
+    std::function<void(int count, const Task& task)> for_each = [](int count, const Task& task) {
+        for (int i = 0; i < count; ++i) task(i);
+    };
+};
+
+}  // namespace REALCAM_NAMESPACE

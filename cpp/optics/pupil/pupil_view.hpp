@@ -1,0 +1,128 @@
+#pragma once
+#include <cmath>
+
+#include "../../math/lanes.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// The pupil as a film point sees it is a region of directions. It is kept in optical direction cosines (l, m), because
+// there the exposure integral (source paper, equations 6 and 7) has no factors left: n^2 cos(theta') dω = dl dm, so
+// that the irradiance of a field of radiance L is L times the region's area (also on a film that glass covers), and
+// uniform samples all have the same weight.
+
+/// Where the region lies for film points at one radius, the film point lying on the +x axis.
+struct PupilNode {
+    float centre;       ///< l of the middle of the region's bounding box; its m is 0 by symmetry
+    float half_width;   ///< along l
+    float half_height;  ///< along m
+};
+
+/// A triangle from the middle of the region to a piece of its outline, in units of the box. Light that is blocked in
+/// the middle (a mirror lens) leaves out a smaller similar triangle.
+struct PupilSector {
+    float x, y;    ///< first corner on the outline
+    float dx, dy;  ///< to the second one
+    float hole_squared;
+};
+
+/// Rows of sectors over the film radius: row = rows * (1 - sqrt(1 - radius / image_radius)), so that they lie closer
+/// and closer towards the edge, where vignetting changes the outline fastest. Each row has `sectors` sectors for m >=
+/// 0; the others mirror them.
+struct PupilView {
+    const PupilNode* nodes;  ///< rows + 1
+    const PupilSector* outline;
+    int rows, sectors;
+    float image_radius;         ///< no light reaches film points further out, mm
+    float inverse_image_radius;  ///< 0 where there is no light at all
+    float index_squared;         ///< n^2 of the medium before the film
+};
+
+/// The box of a film point's region, and the row of sectors that fills it.
+struct PupilRowPosition {
+    float cos, sin;  ///< of the film point's azimuth, by which the region is turned
+    float centre, half_width, half_height;
+    int row;
+    float lit;  ///< 1 inside the image circle, else 0
+};
+
+REALCAM_INLINE PupilRowPosition pupil_row_position(const PupilView& pupil, float film_x, float film_y) {
+    const float squared = film_x * film_x + film_y * film_y;
+    const bool off_axis = squared > 0.0f;
+    const float radius = sqrt_or_zero(squared);
+    const float inverse = quotient(1.0f, select(off_axis, radius, 1.0f));
+    const float position =
+        static_cast<float>(pupil.rows) * (1.0f - sqrt_or_zero(1.0f - radius * pupil.inverse_image_radius));
+    int row = static_cast<int>(position);
+    row = select(row < pupil.rows, row, pupil.rows - 1);
+    const float f = position - static_cast<float>(row);
+    const PupilNode& near = pupil.nodes[row];
+    const PupilNode& far = pupil.nodes[row + 1];
+    return {select(off_axis, film_x * inverse, 1.0f),
+            film_y * inverse,
+            near.centre + f * (far.centre - near.centre),
+            near.half_width + f * (far.half_width - near.half_width),
+            near.half_height + f * (far.half_height - near.half_height),
+            row,
+            select(radius < pupil.image_radius, 1.0f, 0.0f)};
+}
+
+/// One over the density in a sector, steradians of projected solid angle: sectors are chosen evenly, so that it is
+/// their number times the area of this one. 0 outside the image circle.
+REALCAM_INLINE float pupil_weight(const PupilView& pupil, const PupilRowPosition& place, const PupilSector& sector) {
+    const float area = static_cast<float>(pupil.sectors) * (sector.x * sector.dy - sector.y * sector.dx) *
+                       (1.0f - sector.hole_squared);
+    return area * place.half_width * place.half_height * place.lit;
+}
+
+/// A ray's start direction.
+struct PupilSample {
+    Vec3f direction;  ///< optical, from the film point to the scene, lens frame
+    float weight;     ///< one over pupil_pdf; 0 outside the image circle, and where the direction does not exist
+};
+
+/// Chooses a direction for a film point (x, y) in mm, from u and v in [0, 1). Uniform over each sector of the row.
+REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, float film_y, float u, float v) {
+    const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
+    const float scaled = u * static_cast<float>(2 * pupil.sectors);
+    int index = static_cast<int>(scaled);
+    index = select(index < 2 * pupil.sectors, index, 2 * pupil.sectors - 1);
+    const float along = scaled - static_cast<float>(index);
+    const bool lower = index >= pupil.sectors;
+    index = select(lower, index - pupil.sectors, index);
+    const PupilSector& sector = pupil.outline[place.row * pupil.sectors + index];
+    const float reach = sqrt_or_zero(sector.hole_squared + v * (1.0f - sector.hole_squared));
+    const float x = reach * (sector.x + along * sector.dx);
+    const float y = reach * (sector.y + along * sector.dy);
+
+    const float l = place.centre + place.half_width * x;
+    const float m = place.half_height * select(lower, -y, y);
+    const float l_film = l * place.cos - m * place.sin, m_film = l * place.sin + m * place.cos;
+    // Past the edge of the half-space, to which the sectors of a film point far out beside the lens may reach, there
+    // are no directions.
+    const float rest = pupil.index_squared - l * l - m * m;
+    return {{l_film, m_film, -sqrt_or_zero(rest)}, select(rest > 0.0f, pupil_weight(pupil, place, sector), 0.0f)};
+}
+
+/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 where it never goes.
+REALCAM_INLINE float pupil_pdf(const PupilView& pupil, float film_x, float film_y, float l, float m) {
+    const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
+    const float x = (l * place.cos + m * place.sin - place.centre) / place.half_width;
+    const float y = std::fabs(m * place.cos - l * place.sin) / place.half_height;
+    // The sector by azimuth, from 0 to pi.
+    const PupilSector* row = pupil.outline + place.row * pupil.sectors;
+    int first = 0, last = pupil.sectors;
+    while (first + 1 < last) {
+        const int middle = (first + last) / 2;
+        const bool after = row[middle].x * y - row[middle].y * x >= 0.0f;
+        first = select(after, middle, first);
+        last = select(after, last, middle);
+    }
+    const PupilSector& s = row[first];
+    const float reach = (x * s.dy - y * s.dx) / (s.x * s.dy - s.y * s.dx);
+    const bool inside = reach <= 1.0f && reach * reach >= s.hole_squared;
+    const bool exists = l * l + m * m < pupil.index_squared;
+    const float weight = pupil_weight(pupil, place, s);
+    return select(inside && exists && weight > 0.0f, 1.0f / weight, 0.0f);
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,88 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "../../math/fit_polynomial.hpp"
+#include "../prescription/lens_system.hpp"
+#include "lens_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Sets the polynomial a4 + a6 u + ..., given by its terms at the search radius, mm. In long double, because sums
+/// cancel where the terms do.
+template <class T>
+void set_terms(SurfaceView<T>& view, const std::vector<long double>& terms) {
+    std::vector<long double> about_middle = terms;
+    // Horner's scheme again and again, each time for the next power of u - 1/2.
+    for (std::size_t power = 0; power < terms.size(); ++power)
+        for (std::size_t i = terms.size() - 1; i-- > power;) about_middle[i] += 0.5L * about_middle[i + 1];
+    std::transform(about_middle.begin(), about_middle.end(), view.aspheric,
+                   [](long double term) { return static_cast<T>(term); });
+}
+
+/// At most how steep an asphere is, as |d sag / d r|, from the axis to a share of the search radius; infinite where it
+/// stands on end. `terms` as for set_terms. A bound, not a sample: between two radii the conic's slope lies between
+/// those at both, and so do those of the terms that rise and of those that fall. The conic's numbers are the view's,
+/// whose roundings move an edge.
+template <class T>
+double steepest_slope(const SurfaceView<T>& view, const std::vector<long double>& terms, double share_of_radius) {
+    constexpr int kSteps = 1024;
+    const double reach = std::sqrt(static_cast<double>(view.search_squared)), c = static_cast<double>(view.curvature);
+    struct Slopes {
+        double conic, rising, falling;
+    };
+    const auto slopes_at = [&](double share) -> Slopes {
+        const double r = share * reach;
+        // Rounding can take an edge past the conic's end.
+        const double radicand = std::max(0.0, 1 - static_cast<double>(view.conic_factor) * c * c * r * r);
+        Slopes slopes{c * r / std::sqrt(radicand), 0, 0};
+        double power = share * share * share / reach;
+        for (std::size_t i = 0; i < terms.size(); ++i, power *= share * share) {
+            const double slope = (4 + 2 * static_cast<double>(i)) * static_cast<double>(terms[i]) * power;
+            (slope > 0 ? slopes.rising : slopes.falling) += slope;
+        }
+        return slopes;
+    };
+    double steepest = 0;
+    Slopes inner = slopes_at(0);
+    for (int i = 1; i <= kSteps; ++i) {
+        const Slopes outer = slopes_at(share_of_radius * i / kSteps);
+        const double most = std::max(inner.conic, outer.conic) + outer.rising + inner.falling,
+                     least = std::min(inner.conic, outer.conic) + inner.rising + outer.falling;
+        if (!std::isfinite(most) || !std::isfinite(least)) return kInfinity;
+        steepest = std::max({steepest, most, -least});
+        inner = outer;
+    }
+    return steepest;
+}
+
+/// Where Newton's method starts, and for which rays it needs no bracket.
+template <class T>
+void set_start(SurfaceView<T>& view, const Surface& surface, const std::vector<long double>& terms) {
+    const double search_squared = static_cast<double>(view.search_squared), reach = std::sqrt(search_squared);
+    constexpr double kInnerRadius = 0.9;
+    // Less than 3 degrees from the vertex plane, a ray is no function of the height.
+    constexpr double kLeastSlope = 0.05;
+    // A ray that is nearly parallel to the surface would be placed by its roundings.
+    const auto crossed_once = [&](double share_of_radius) {
+        const double steepest = std::max(1.02 * steepest_slope(view, terms, share_of_radius), kLeastSlope);
+        return static_cast<T>(1 / (steepest * steepest * search_squared));
+    };
+    view.inner_share = static_cast<T>(kInnerRadius * kInnerRadius);
+    view.crossed_once_inside = crossed_once(kInnerRadius);
+    view.crossed_once = crossed_once(1);
+    constexpr int kPoints = 64;
+    std::vector<double> u, height_over_u;
+    for (int i = 0; i < kPoints; ++i) {
+        u.push_back(
+            0.5 - 0.5 * std::cos(std::numbers::pi * (i + 0.5) / kPoints));  // dense at both ends, where a fit is worst
+        height_over_u.push_back(surface.sag(reach * std::sqrt(u.back())) / u.back());
+    }
+    view.start_parabola = static_cast<T>(fit_polynomial<1>(u, height_over_u)[0]);
+    const auto start = fit_polynomial<kStartTerms>(u, height_over_u);
+    std::transform(start.begin(), start.end(), view.start, [](double term) { return static_cast<T>(term); });
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,55 @@
+#pragma once
+#include "../../platform.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A variable in which refractive indices are nearly polynomials: like those of glass, it grows steeply towards the
+/// resonances in the ultraviolet. From -1 to 1 over the wavelengths of a picture; 0 where there is one alone.
+struct WavelengthVariable {
+    float scale, offset;
+
+    static constexpr float kPole_nm = 200;
+
+    REALCAM_INLINE float at(float wavelength_nm) const { return scale / (wavelength_nm - kPole_nm) + offset; }
+};
+
+/// What a surface does to light by its indices, a cubic of the WavelengthVariable: n'^2 / n^2 - 1, if nothing else is
+/// said.
+struct alignas(16) IndexCubic {
+    float c[4];
+
+    REALCAM_INLINE float at(float x) const { return ((c[3] * x + c[2]) * x + c[1]) * x + c[0]; }
+};
+
+/// The media of a trace in which all rays have the wavelength of the lens's view.
+struct OneWavelength {
+    template <class T>
+    struct Boundary {
+        T change;
+        static constexpr bool is_coated = false;
+        REALCAM_INLINE T squared_index_change(int) const { return change; }
+    };
+    template <class Surface>
+    REALCAM_INLINE auto at(const Surface& surface, int) const {
+        return Boundary<decltype(surface.curvature)>{surface.squared_index_change};
+    }
+};
+
+/// The media of a trace in which each ray has a wavelength of its own.
+struct ManyWavelengths {
+    const IndexCubic* surfaces;  ///< in the order in which the light meets them
+    const float* variable;       ///< of each ray
+
+    struct Boundary {
+        IndexCubic cubic;
+        const float* variable;
+        static constexpr bool is_coated = false;
+        REALCAM_INLINE float squared_index_change(int lane) const { return cubic.at(variable[lane]); }
+    };
+    template <class Surface>
+    REALCAM_INLINE Boundary at(const Surface&, int place) const {
+        return {surfaces[place], variable};
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

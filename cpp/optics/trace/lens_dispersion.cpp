@@ -1,0 +1,44 @@
+#include "lens_dispersion.hpp"
+
+namespace realcam {
+
+WavelengthVariable variable_over(WavelengthRange range) {
+    const auto pole = static_cast<double>(WavelengthVariable::kPole_nm);
+    const double low = 1 / (range.last - pole), high = 1 / (range.first - pole);
+    if (!(high - low > 1e-9)) return {0, 0};
+    return {static_cast<float>(2 / (high - low)), static_cast<float>(-(high + low) / (high - low))};
+}
+
+std::vector<int> surfaces_with_one_index(const LensSystem& lens) {
+    std::vector<int> found;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        const Surface& surface = lens.surfaces[i];
+        if (surface.type == SurfaceType::refracting && !surface.material.is_air() && surface.material.has_one_index())
+            found.push_back(static_cast<int>(i) + 1);
+    }
+    return found;
+}
+
+void check_dispersion(const LensSystem& lens, WavelengthRange range) {
+    check_glasses_known(lens, range, "dispersion");
+    const Glass* last = nullptr;
+    for (const Surface& surface : lens.surfaces)
+        if (surface.type == SurfaceType::refracting) last = &surface.material;
+    if (last && !last->has_one_index())
+        throw InputError("dispersion: the film of " + lens.name +
+                         " lies in glass; a lens with air behind its last surface is wanted");
+}
+
+std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way, WavelengthRange range) {
+    return cubics_over(lens, way, range, [](const Crossing& crossing, const std::vector<double>& indices) {
+        const double n = crossing.index_before(indices), behind = crossing.index_behind(indices);
+        return (behind - n) * (behind + n) / (n * n);
+    });
+}
+
+std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction, WavelengthRange range) {
+    const std::vector<Crossing> to_film = crossings_of(lens);
+    return index_cubics(lens, direction == LightDirection::to_film ? to_film : reversed(to_film), range);
+}
+
+}  // namespace realcam

@@ -1,0 +1,142 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "../prescription/crossing.hpp"
+#include "../prescription/lens_system.hpp"
+#include "asphere_start.hpp"
+#include "lens_trace.hpp"
+#include "open_iris.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+enum class LightDirection { to_film, to_scene };
+
+/// The surfaces of a lens in the order in which light of one wavelength meets them. Owns the memory of its view.
+template <class T>
+class LensPath {
+public:
+    LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm)
+        : LensPath(lens, crossings_of(lens), direction, wavelength_nm) {}
+
+    /// Of light that takes this way to the film, or the same way back to the scene.
+    LensPath(const LensSystem& lens, const std::vector<Crossing>& way, LightDirection direction, double wavelength_nm)
+        : iris_(iris_of(lens)) {
+        const std::vector<double> n = lens.indices(wavelength_nm);
+        const std::vector<double> z = lens.vertices();
+        const auto vertex = [&](std::size_t crossing) { return z[static_cast<std::size_t>(way[crossing].surface)]; };
+        const bool to_film = direction == LightDirection::to_film;
+        double direction_sign = 1;  // of light on its way to the film
+        for (std::size_t m = 0; m < way.size(); ++m) {
+            const Surface& surface = lens.surfaces[static_cast<std::size_t>(way[m].surface)];
+            const bool turns = way[m].is_reflected || surface.type == SurfaceType::mirror;
+            const double sign_behind = turns ? -direction_sign : direction_sign;
+            const double before = way[m].index_before(n), behind = way[m].index_behind(n);
+            SurfaceView<T> view = shape_of(surface);
+            view.surface_index = way[m].surface;
+            if (to_film) {
+                set_media(view, before, behind, direction_sign, sign_behind);
+                view.shift = static_cast<T>(m == 0 ? 0.0 : vertex(m) - vertex(m - 1));
+            } else {
+                set_media(view, behind, before, -sign_behind, -direction_sign);
+                view.shift = static_cast<T>(m + 1 == way.size() ? 0.0 : vertex(m) - vertex(m + 1));
+            }
+            if (surface.type == SurfaceType::stop) set_stop(view, lens);
+            views_.push_back(view);
+            direction_sign = sign_behind;
+        }
+        if (!to_film) std::reverse(views_.begin(), views_.end());
+        entry_index = to_film ? n.front() : n.back();
+        // A few diameters: what a float32 of the first surface's size can square.
+        entry_reach = 16 * (to_film ? lens.surfaces.front() : lens.surfaces.back()).clear_semi_diameter;
+        entry_position = to_film ? z.front() : z.back();
+        exit_position = to_film ? z.back() : z.front();
+    }
+
+    LensView<T> view() const {
+        const bool plain = std::all_of(views_.begin(), views_.end(), [](const SurfaceView<T>& view) {
+            return view.kind == SurfaceShape::sphere && view.hole_squared < T(0) && !view.has_blades;
+        });
+        return {views_.data(), static_cast<int>(views_.size()), plain ? LensKind::plain : LensKind::any, iris_};
+    }
+
+    double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by
+    double entry_reach = 0;     ///< rays from farther away than this are to start nearer (enter_lens), mm
+    double entry_position = 0;  ///< z of the vertex to which the origins of entering rays are relative
+    double exit_position = 0;  ///< the same for leaving rays
+
+private:
+    static SurfaceView<T> shape_of(const Surface& surface) {
+        SurfaceView<T> view{};
+        view.kind = surface.is_asphere() ? SurfaceShape::asphere
+                    : surface.conic != 0 ? SurfaceShape::conic
+                                         : SurfaceShape::sphere;
+        view.curvature = static_cast<T>(surface.curvature);
+        view.conic_factor = static_cast<T>(1 + surface.conic);
+        const double rim = surface.clear_semi_diameter, hole = surface.inner_semi_diameter;
+        view.rim_squared = static_cast<T>(rim * rim);
+        view.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
+        if (view.kind == SurfaceShape::asphere) set_search_region(view, surface);
+        return view;
+    }
+
+    /// The search goes 2% past the rim, so that a ray that just misses it is seen to miss it; the sag's bounds there
+    /// are sampled, and widened by more than it can change between two samples of a surface that can be made.
+    static void set_search_region(SurfaceView<T>& view, const Surface& surface) {
+        double reach = 1.02 * surface.clear_semi_diameter;
+        if (!std::isfinite(surface.sag(reach))) reach = surface.clear_semi_diameter;
+        constexpr int kSamples = 256;
+        double low = 0, high = 0;
+        for (int i = 1; i <= kSamples; ++i) {
+            const double sag = surface.sag(reach * i / kSamples);
+            low = std::min(low, sag);
+            high = std::max(high, sag);
+        }
+        const double margin = 0.02 * (high - low) + 1e-3 * reach;
+        view.sag_edge = static_cast<T>(surface.sag(reach));
+        view.search_squared = static_cast<T>(reach * reach);
+        view.inverse_search_squared = static_cast<T>(1 / (reach * reach));
+        // Not by std::pow, which would round the powers of a reach and of twice the reach differently.
+        std::vector<long double> terms;
+        long double power = static_cast<long double>(reach) * reach;
+        for (const double coefficient : surface.aspheric)
+            terms.push_back(coefficient * (power *= static_cast<long double>(reach) * reach));
+        set_terms(view, terms);
+        view.sag_min = static_cast<T>(low - margin);
+        view.sag_max = static_cast<T>(high + margin);
+        set_start(view, surface, terms);
+    }
+
+    static void set_media(SurfaceView<T>& view, double before, double after, double direction_sign_in,
+                          double direction_sign_out) {
+        view.index_squared = static_cast<T>(before * before);
+        view.squared_index_change = static_cast<T>((after - before) * (after + before) / (before * before));
+        view.direction_sign_in = static_cast<T>(direction_sign_in);
+        view.direction_sign_out = static_cast<T>(direction_sign_out);
+    }
+
+    static void set_stop(SurfaceView<T>& view, const LensSystem& lens) {
+        view.has_blades = lens.iris.blades > 0 && !lens.is_wide_open();
+        if (!view.has_blades) {
+            const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+            view.rim_squared = static_cast<T>(radius * radius);
+        }
+    }
+
+    static Iris<T> iris_of(const LensSystem& lens) {
+        Iris<T> iris{};
+        if (lens.iris.blades == 0 || lens.is_wide_open()) return iris;
+        const Iris<double> open = open_iris(lens.iris, lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+        iris.blades = open.blades;
+        iris.apothem = static_cast<T>(open.apothem);
+        iris.curvature = static_cast<T>(open.curvature);
+        std::transform(open.cos, open.cos + open.blades, iris.cos, [](double v) { return static_cast<T>(v); });
+        std::transform(open.sin, open.sin + open.blades, iris.sin, [](double v) { return static_cast<T>(v); });
+        return iris;
+    }
+
+    std::vector<SurfaceView<T>> views_;
+    Iris<T> iris_;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,55 @@
+#pragma once
+#include "../../math/lanes.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A lens as polynomials that a film point and a point of the last vertex's plane are put into.
+///
+/// A lens is the same from all sides, so that each vector that it makes of the film point x and the last point p is
+/// a x + b p, with a and b polynomials in x^2, p^2 and x p (J. Hanika and C. Dachsbacher, "Efficient Monte Carlo
+/// Rendering with Realistic Lenses", Computer Graphics Forum 33, 2014, with sparser variables).
+struct LensPolynomialView {
+    static constexpr int kVectors = 3;
+
+    /// Of each product of powers, x^2's the slowest to change and x p's the fastest, two for each vector.
+    const float* coefficients;
+    int terms;   ///< products of powers
+    int degree;  ///< of the highest products
+    float inverse_film_radius, inverse_last_radius;  ///< by which x and p become numbers up to 1
+    float plane;  ///< where positions are, mm from the front vertex
+    // The rims of the last and of the first surface, each from its vertex: radius squared, mm^2, and where it is, mm.
+    float last_radius_squared, last_rim;
+    float front_radius_squared, front_rim;
+};
+
+/// What comes of a ray: in front of the lens, and at its stop.
+struct LensPolynomialRay {
+    Vec2f position;  ///< in the plane, mm
+    Vec2f direction;  ///< x and y of the unit vector
+    Vec2f at_stop;  ///< in radii of the stop
+};
+
+REALCAM_INLINE LensPolynomialRay evaluate(const LensPolynomialView& lens, Vec2f film, Vec2f last) {
+    const Vec2f x = {lens.inverse_film_radius * film.x, lens.inverse_film_radius * film.y};
+    const Vec2f p = {lens.inverse_last_radius * last.x, lens.inverse_last_radius * last.y};
+    const float u = x.x * x.x + x.y * x.y, v = p.x * p.x + p.y * p.y, w = x.x * p.x + x.y * p.y;
+    constexpr int kSums = 2 * LensPolynomialView::kVectors;
+    float sums[kSums] = {};
+    const float* next = lens.coefficients;
+    float of_u = 1.0f;
+    for (int i = 0; i <= lens.degree; ++i, of_u *= u) {
+        float of_v = of_u;
+        for (int j = 0; i + j <= lens.degree; ++j, of_v *= v) {
+            float product = of_v;
+            for (int k = 0; i + j + k <= lens.degree; ++k, product *= w, next += kSums)
+                for (int s = 0; s < kSums; ++s) sums[s] += product * next[s];
+        }
+    }
+    const auto vector = [&](int i) {
+        const float a = sums[2 * i], b = sums[2 * i + 1];
+        return Vec2f{a * x.x + b * p.x, a * x.y + b * p.y};
+    };
+    return {vector(0), vector(1), vector(2)};
+}
+
+}  // namespace REALCAM_NAMESPACE

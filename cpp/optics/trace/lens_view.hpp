@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+
+#include "../../platform.hpp"
+#include "../prescription/lens_limits.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+inline constexpr int kStartTerms = 8;  ///< of the polynomial from which the search on an asphere starts
+
+enum class SurfaceShape : int { sphere, conic, asphere };
+
+/// One surface in the order in which the light meets it. Lengths in mm. What every ray needs comes first, in pieces
+/// that a GPU loads at once.
+template <class T>
+struct alignas(16) SurfaceView {
+    T shift;               ///< axial distance from the vertex before this one
+    T curvature;           ///< 0: plane
+    T direction_sign_in;  ///< +1 where the ray crosses towards the film, -1 towards the scene (a mirror turns it)
+    T direction_sign_out;
+    T squared_index_change;  ///< n'^2 / n^2 - 1
+    T rim_squared;  ///< squared clear semi-diameter
+    T hole_squared;  ///< squared radius inside which light is blocked; negative: none
+    T index_squared;  ///< n^2 of the medium before the surface
+    SurfaceShape kind;
+    std::int32_t has_blades;  ///< 1: the stop of a lens that has an iris
+    std::int32_t surface_index;  ///< in the lens system, 0 at the front
+    T conic_factor;  ///< 1 + k
+    T sag_min, sag_max;  ///< aspheres: bounds of the sag inside the search radius
+    T sag_edge;  ///< aspheres: the sag at the search radius
+    T search_squared;  ///< aspheres: the sag is continued as constant outside this squared radius
+    T inverse_search_squared;
+    /// Of u^2 times the powers of u - 1/2, u = r^2 / search_squared, mm; zeros after the last. The polynomial's own
+    /// coefficients leave the range of float32 where surfaces are large or small; and powers of u, where they cancel
+    /// towards the rim, would be a hundred times as large as these.
+    T aspheric[kMaxAsphericTerms];
+    T inner_share;  ///< aspheres: a part of search_squared, out to which the surface may be less steep than beyond
+    /// Aspheres: a ray crosses the surface once where the squared tangent of its angle with the axis, over
+    /// search_squared, is less than this; for rays that stay in the inner part, and for all. 0: not known of any.
+    T crossed_once_inside, crossed_once;
+    T start_parabola;  ///< aspheres: the sag is about this times u, mm
+    T start[kStartTerms];  ///< and nearly these times u, u^2, ..., with the conic's part
+};
+
+/// The opening of the aperture stop: n blades whose inner edges are arcs of one curvature.
+template <class T>
+struct Iris {
+    int blades;
+    T apothem;  ///< distance from the axis to the middle of a blade's edge
+    T curvature;  ///< of the edge: 0 straight, 1/apothem a circle
+    T cos[kMaxIrisBlades], sin[kMaxIrisBlades];
+};
+
+/// What a lens consists of. Code for plain ones alone needs fewer registers and instructions, of which a GPU has few.
+enum class LensKind : int {
+    plain,  ///< spheres and planes, open up to their rims, and a stop without blades
+    any,
+};
+
+/// A lens in one state of focus and stop, at one wavelength and in one direction of the light.
+/// Trivially copyable; the surfaces belong to a LensPath.
+template <class T>
+struct LensView {
+    const SurfaceView<T>* surfaces;
+    int count;
+    LensKind kind;
+    Iris<T> iris;
+};
+
+}  // namespace REALCAM_NAMESPACE

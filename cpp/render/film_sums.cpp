@@ -1,0 +1,48 @@
+#include "film_sums.hpp"
+
+#include <cstddef>
+
+namespace realcam {
+
+Image developed(const FilmSums& film, int width, int height, double exposure_time_s, const SplattedLight& splatted) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    image.exposure.reserve(3 * film.size());
+    image.depth.reserve(film.size());
+    for (std::size_t i = 0; i < film.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel)
+            image.exposure.push_back(
+                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel)));
+        image.depth.push_back(film[i].mean_depth());
+    }
+    return image;
+}
+
+std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_time_s, double iso, ToneCurve curve,
+                                          const SplattedLight& splatted) {
+    std::vector<std::uint8_t> codes;
+    codes.reserve(3 * film.size());
+    for (std::size_t i = 0; i < film.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            codes.push_back(film[i].code(channel, exposure_time_s, iso, curve,
+                                         splatted.irradiance(static_cast<std::int64_t>(i), channel)));
+    return codes;
+}
+
+LayerImage developed_variance(const FilmSums& film, double exposure_time_s) {
+    LayerImage image{Layer::variance, {}, {}};
+    image.values.reserve(3 * film.size());
+    for (const PixelSum& sum : film)
+        for (int channel = 0; channel < 3; ++channel) image.values.push_back(sum.variance(channel, exposure_time_s));
+    return image;
+}
+
+std::vector<std::int64_t> samples_of(const FilmSums& film) {
+    std::vector<std::int64_t> counts;
+    counts.reserve(film.size());
+    for (const PixelSum& sum : film) counts.push_back(static_cast<std::int64_t>(sum.samples));
+    return counts;
+}
+
+}  // namespace realcam

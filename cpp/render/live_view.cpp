@@ -1,0 +1,23 @@
+#include "live_view.hpp"
+
+namespace realcam {
+
+std::shared_ptr<const LiveFrame> LiveView::shoot(const Camera& camera, const RenderSettings& settings, ToneCurve curve,
+                                                 const KeepGoing& keep_going, std::shared_ptr<void> under_way) {
+    auto frame = session_->shoot(scene_, camera, settings, curve, keep_going, std::move(under_way));
+    has_frame_ = true;
+    return frame;
+}
+
+void LiveView::show(Assembly scene) {
+    session_->check(scene);
+    scene_ = std::move(scene);
+    has_frame_ = false;
+}
+
+Session& LiveView::collected() const {
+    if (!has_frame_) throw InputError("there is no picture yet; shoot() takes one");
+    return *session_;
+}
+
+}  // namespace realcam

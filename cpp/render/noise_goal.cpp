@@ -1,0 +1,41 @@
+#include "noise_goal.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace realcam {
+
+void validate(const NoiseGoal& goal) {
+    if (!(goal.noise > 0) || !std::isfinite(goal.noise))
+        throw InputError("noise must be above 0: a share of the light, or 8-bit codes");
+    if (goal.most_samples < 2 || goal.most_samples > (1 << 24))
+        throw InputError("max_spp must lie between 2 and 16777216");
+    if (!(goal.seconds > 0)) throw InputError("seconds must be above 0");
+}
+
+NoiseGoal goal_of(const NoiseRequest& request) {
+    if (request.noise && request.noise_codes)
+        throw InputError("noise (a share of the light) and noise_codes (8-bit codes) exclude each other");
+    NoiseGoal goal;
+    if (request.noise) goal.unit = NoiseUnit::relative;
+    goal.noise = request.noise.value_or(request.noise_codes.value_or(goal.noise));
+    goal.seconds = request.seconds.value_or(goal.seconds);
+    goal.most_samples = request.max_spp.value_or(goal.most_samples);
+    validate(goal);
+    return goal;
+}
+
+std::string shortfall_of(const ReachedNoise& reached, const NoiseGoal& goal) {
+    if (reached.is_reached) return "";
+    if (!(reached.noise >= 0)) return "too few samples were taken to know how large the noise is";
+    const char* unit = goal.unit == NoiseUnit::codes ? " codes" : "";
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "the noise is %.2g%s where the picture is noisiest, not %.2g%s; about %.2g samples a pixel are wanted "
+        "there",
+        reached.noise, unit, goal.noise, unit, reached.samples_wanted);
+    return text;
+}
+
+}  // namespace realcam
