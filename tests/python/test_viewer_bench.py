@@ -108,6 +108,21 @@ def test_a_click_focuses_at_its_point(bench: LensBench) -> None:
         assert np.argmax(sharp) == round(3 * u - 0.5)
 
 
+def test_the_drawing_and_the_sharp_range_are_of_the_film_that_is_chosen(bench: LensBench) -> None:
+    """Not of the lens's own: half of a diagonal of 15 mm reaches 7.5 mm from the axis, and of one of 90 mm, 45 mm."""
+    told, sharp = Told(bench), []
+    bench.listeners.sharp_range = lambda found: told.take(sharp, found)
+    bench.turn("aperture", 9)
+    for width, height, half in ((12.0, 9.0, 7.5), (72.0, 54.0, 45.0), (36.0, 24.0, 0.5 * math.hypot(36, 24))):
+        asked = len(sharp)
+        assert bench.set_film_mm(width, height)
+        told.until(lambda half=half: told.lenses and told.lenses[-1]["film"]["half"] == pytest.approx(half))
+        told.until(lambda asked=asked: len(sharp) > asked)
+        wanted = rc.depth_of_field(bench.controls.set_lens, 2 * half / 1500).real
+        told.until(lambda wanted=wanted: sharp[-1] == pytest.approx(wanted))
+        assert bench.controls.lens_on_film.film_mm == (width, height)
+
+
 def test_what_was_reported_ends_with_the_next_change(bench: LensBench) -> None:
     told = Told(bench)
     bench.report(Problem("there is no light where the meter looks", of="picture"))

@@ -75,6 +75,15 @@ class CameraControls:
         return lens.focused(self.focus_m)
 
     @cached_property
+    def lens_on_film(self) -> Lens:
+        """With its rings set, and the camera's film in place of its own: what is drawn and measured of both.
+
+        A film that is shifted is taken for the smallest one about the axis that holds it. Raises InputError.
+        """
+        right, up = self.film.shift_mm
+        return self.set_lens.with_film(self.film.width_mm + 2 * abs(right), self.film.height_mm + 2 * abs(up))
+
+    @cached_property
     def camera(self) -> Camera:
         """Raises InputError."""
         return Camera(

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 
 from .. import planning
-from .._core import Camera, InputError, Lens, Plan, RealcamError
+from .._core import Camera, Film, InputError, Lens, Plan, RealcamError
 from ..photography import SharpRange, depth_of_field
 from ..shot import Shot
 from .bench_state import state_of
@@ -43,10 +43,13 @@ class FollowUps:
         """The rays that end at heights on the film."""
         self._tracing.submit(lambda: self._listeners.rays(ray_view(lens, heights_mm)))
 
-    def measure_depth_of_field(self, lens: Lens) -> None:
+    def measure_depth_of_field(self, lens: Lens, film: Film) -> None:
+        """By the diagonal of the film that is behind the lens."""
+        circle_mm = math.hypot(film.width_mm, film.height_mm) / 1500
+
         def measure() -> None:
             try:
-                sharp = depth_of_field(lens).real
+                sharp = depth_of_field(lens, circle_mm).real
             except InputError:
                 sharp = SharpRange(math.nan, math.nan)
             self._listeners.sharp_range(sharp)

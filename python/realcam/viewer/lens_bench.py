@@ -307,13 +307,7 @@ class LensBench:
             self.controls = controls
         self.report(None)
         self._photograph()
-        lens_changed = (before.lens, before.zoom, before.focus_m, before.f_number) != (
-            controls.lens,
-            controls.zoom,
-            controls.focus_m,
-            controls.f_number,
-        )
-        if lens_changed:
+        if _drawn(before) != _drawn(controls):
             self._draw()
         self._ask_for_plan()
         self._keep()
@@ -350,12 +344,12 @@ class LensBench:
             self.report(Problem(f"the picture to compare with: {error}", of="picture"))
 
     def _draw(self) -> None:
-        self._follow_ups.draw(self.controls.set_lens)
-        self._follow_ups.measure_depth_of_field(self.controls.set_lens)
+        self._follow_ups.draw(self.controls.lens_on_film)
+        self._follow_ups.measure_depth_of_field(self.controls.set_lens, self.controls.film)
         self._trace()
 
     def _trace(self) -> None:
-        self._follow_ups.trace(self.controls.set_lens, drawn_heights_mm(self.controls.film, self.hovered))
+        self._follow_ups.trace(self.controls.lens_on_film, drawn_heights_mm(self.controls.film, self.hovered))
 
     def _keep(self) -> None:
         self._follow_ups.keep(self.controls, dict(self.switches.of))
@@ -373,3 +367,10 @@ class LensBench:
         self.listeners.plan(plan, note)
         if self.switches.named(plan) != before:
             self._photograph()
+
+
+def _drawn(controls: CameraControls) -> tuple[Any, ...]:
+    """What the drawing of a lens shows."""
+    film = controls.film
+    size = film.width_mm, film.height_mm, film.shift_mm
+    return controls.lens, controls.zoom, controls.focus_m, controls.f_number, size

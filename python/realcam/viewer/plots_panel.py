@@ -58,7 +58,7 @@ class PlotsPanel:
         self._help.set_text(PLOTS[kind][1])
         height = height_of(*self._at, controls.film)
         self._place.set_text(f"{height:.3g} mm from the lens's axis; in the plane in focus")
-        look = Look(kind, controls.set_lens, height)
+        look = Look(kind, controls.lens_on_film, height)
         if look != self._look:
             self._look = look
             self._plot.set_content("")
