@@ -11,7 +11,7 @@ import pytest
 import realcam as rc
 from realcam.fields import angle_of_height
 from realcam.viewer.camera_controls import CameraControls, opened
-from realcam.viewer.focus_scale import focus_scale_svg
+from realcam.viewer.focus_scale import distance_texts, focus_scale_svg
 from realcam.viewer.lens_view import ray_view
 from realcam.viewer.pose import Pose
 from realcam.viewer.ring_scales import ISO, SHUTTER_S, aperture_ring
@@ -183,6 +183,20 @@ def test_the_barrel_says_what_is_sharp() -> None:
     nowhere = focus_scale_svg(2.0, math.nan, math.nan, 0.5)
     assert "sharp nowhere" in nowhere
     assert "nan" not in nowhere
+
+
+@pytest.mark.parametrize(
+    ("near", "far", "texts"),
+    [
+        (0.745, 2.35, ("0.745 m", "2.35 m")),
+        (1.1987, 1.2019, ("1.199 m", "1.202 m")),
+        (12.3401, 12.3409, ("12.34 m", "12.341 m")),
+        (5.0, math.inf, ("5 m", "∞")),
+        (3.0, 3.0, ("3 m", "3 m")),
+    ],
+)
+def test_two_distances_have_as_many_digits_as_tell_them_apart(near: float, far: float, texts: tuple[str, str]) -> None:
+    assert distance_texts(near, far) == texts
 
 
 @pytest.mark.parametrize("name", ["double-gauss-50mm", "fisheye-6mm-220deg", "phone-4mm", "mirror-telephoto-500mm"])

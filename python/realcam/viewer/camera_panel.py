@@ -12,7 +12,7 @@ from nicegui.events import GenericEventArguments
 
 from ..photography import SharpRange
 from .elements import RingSlider, show_choice
-from .focus_scale import focus_scale_svg
+from .focus_scale import distance_text, distance_texts, focus_scale_svg
 from .ring_scales import ISO, SHUTTER_S, Ring
 from .window import Window
 
@@ -126,8 +126,8 @@ class CameraPanel:
         self._iso_text.set_text(f"ISO {ISO.text_of(now.iso)}")
         nearest = self._nearest_m
         step = round(_FOCUS_STEPS * (1 - nearest / now.focus_m)) if now.focus_m > nearest else 0
-        self._focus.set(step, _FOCUS_STEPS, _distance(now.focus_m))
-        self._focus_text.set_text(f"Focus {_distance(now.focus_m)}")
+        self._focus.set(step, _FOCUS_STEPS, distance_text(now.focus_m))
+        self._focus_text.set_text(f"Focus {distance_text(now.focus_m)}")
         self._show_scale()
         self._automatic.set_value(now.is_automatic)
         self._model.set_value(now.model)
@@ -154,7 +154,7 @@ class CameraPanel:
         if math.isnan(sharp.near_m):
             text = "Aberrations blur more than the usual measure, the film's diagonal / 1500, whatever the distance"
         else:
-            text = f"Sharp from {_distance(sharp.near_m)} to {_distance(sharp.far_m)}"
+            text = "Sharp from {} to {}".format(*distance_texts(sharp.near_m, sharp.far_m))
         self._sharp_text.set_text(text)
 
     @property
@@ -241,7 +241,3 @@ def _value(event: GenericEventArguments) -> Any:
 def _seconds(ring: Ring, value: float) -> str:
     text = ring.text_of(value)
     return f"{text} s" if "/" in text or float(text) >= 0.1 else f"1/{1 / value:.3g} s"
-
-
-def _distance(metres: float) -> str:
-    return "∞" if math.isinf(metres) else f"{metres:.0f} m" if metres >= 1000 else f"{metres:.3g} m"

@@ -42,12 +42,22 @@ def focus_scale_svg(focus_m: float, near_m: float, far_m: float, nearest_m: floa
     at = x(focus_m)
     parts.append(f'<line x1="{at:.1f}" x2="{at:.1f}" y1="1" y2="22" stroke="var(--rc-accent)" stroke-width="2.5"/>')
     parts.append(f'<text x="{_WIDTH - 2}" y="44" text-anchor="end" font-size="9" fill="var(--rc-faint)">m</text>')
-    label = f"Focused at {_text(focus_m)}; sharp from {_text(near_m)} to {_text(far_m)}"
+    label = "Focused at {}; sharp from {} to {}".format(distance_text(focus_m), *distance_texts(near_m, far_m))
     if math.isnan(near_m):
-        label = f"Focused at {_text(focus_m)}; the lens is sharp nowhere"
+        label = f"Focused at {distance_text(focus_m)}; the lens is sharp nowhere"
+    label = label.replace("∞", "infinity")
     head = f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" aria-label="{label}"><title>{label}</title>'
     return f"{head}{''.join(parts)}</svg>"
 
 
-def _text(distance_m: float) -> str:
-    return "infinity" if math.isinf(distance_m) else f"{distance_m:.3g} m"
+def distance_texts(near_m: float, far_m: float) -> tuple[str, str]:
+    """Both in words, with as many digits as tell them apart."""
+    for digits in range(3, 7):
+        texts = distance_text(near_m, digits), distance_text(far_m, digits)
+        if texts[0] != texts[1]:
+            break
+    return texts
+
+
+def distance_text(metres: float, digits: int = 3) -> str:
+    return "∞" if math.isinf(metres) else f"{metres:.0f} m" if metres >= 1000 else f"{metres:.{digits}g} m"
