@@ -253,9 +253,11 @@ def exposed_film(
     film_pitch_um = 1000 * math.sqrt(film.width_mm * film.height_mm / (width * height))
     pitch_um = sensor.pixel_pitch_um or film_pitch_um
     if abs(pitch_um / film_pitch_um - 1) > 0.01:
+        size = f"{columns * pitch_um / 1000:.4g} x {rows * pitch_um / 1000:.4g} mm"
         warnings.warn(
             f"the film's pixels of {film_pitch_um:.4g} um are exposed as the sensor's of {pitch_um:.4g} um: noise is "
-            "the sensor's, sharpness the film's (film=sensor.film() makes both agree)",
+            f"the sensor's, sharpness the film's (a film like the sensor, {size} of {columns} x {rows} pixels, makes "
+            "both agree)",
             stacklevel=stacklevel,
         )
     mosaic = _core._expose(
