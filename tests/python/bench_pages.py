@@ -58,11 +58,30 @@ def launched(driver: Any) -> Iterator[Any]:
     started.close()
 
 
-class Server:
-    """`realcam view` on a shot, in the shot's folder."""
+# `realcam view` of a server that forgets windows sooner: its arguments are those of Server and then the seconds.
+_FORGETFUL = """
+import sys
+from pathlib import Path
+from realcam.viewer.server import ServerSettings, serve
+from realcam.viewer.shot_source import ShotSource
 
-    def __init__(self, shot: Path, *options: str, port: int | None = None) -> None:
+shot, port, seconds = Path(sys.argv[2]), int(sys.argv[5]), float(sys.argv[6])
+source, opened = ShotSource.opened(shot, "auto")
+serve(opened, source, ServerSettings((Path.cwd(),), port=port, shows_browser=False, reconnect_s=seconds))
+"""
+
+
+class Server:
+    """`realcam view` on a shot, in the shot's folder.
+
+    reconnect_s: for so long it keeps a window whose page has gone, if not as long as it does for users.
+    """
+
+    def __init__(self, shot: Path, *options: str, port: int | None = None, reconnect_s: float | None = None) -> None:
         self.shot, self.options = shot, options
+        self.program = ["-m", "realcam"]
+        if reconnect_s is not None:
+            self.program, self.options = ["-c", _FORGETFUL], (*options, str(reconnect_s))
         self.port = port or free_port()
         self.log = shot.parent / f"server-{self.port}.log"
         self.start()
@@ -76,7 +95,7 @@ class Server:
         return self.log.read_text()
 
     def start(self) -> None:
-        command = [sys.executable, "-m", "realcam", "view", self.shot.name, "--no-browser", "--port", str(self.port)]
+        command = [sys.executable, *self.program, "view", self.shot.name, "--no-browser", "--port", str(self.port)]
         # NiceGUI has a mode for tests that are run within it, which this variable turns on.
         environment = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
         # Appended to, so that a server that is started anew hides no traceback of the first.

@@ -32,7 +32,6 @@ from .strange_requests import tell_in_one_line
 from .windows import Windows
 
 _STATIC = Path(__file__).with_name("static")
-_RECONNECT_S = 30.0  # for so long a window whose connection is lost keeps what it has
 _MOST_MESSAGE = 1 << 20  # bytes, of the page's own socket, too
 _UNKNOWN_WINDOW = 4404  # see stream.js
 _MOST_WINDOWS = 16
@@ -41,7 +40,10 @@ _GOODBYE_S = 1  # for so long the server waits at its end for browsers to close 
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """folders: the only ones that are read and written. token: "" makes one where it is wanted."""
+    """folders: the only ones that are read and written. token: "" makes one where it is wanted.
+
+    reconnect_s: for so long a window whose connection is lost keeps what it has.
+    """
 
     folders: tuple[Path, ...]
     host: str = "127.0.0.1"
@@ -49,6 +51,7 @@ class ServerSettings:
     device: str = "auto"
     token: str = ""
     shows_browser: bool = True
+    reconnect_s: float = 30.0
 
 
 def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
@@ -121,7 +124,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             show=address if settings.shows_browser else False,
             reload=False,
             show_welcome_message=False,
-            reconnect_timeout=_RECONNECT_S,
+            reconnect_timeout=settings.reconnect_s,
             binding_refresh_interval=None,
             ws_max_size=_MOST_MESSAGE,
             tailwind=True,
