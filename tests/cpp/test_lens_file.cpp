@@ -103,11 +103,11 @@ TEST_CASE("bad numbers of a surface are named with file, line and surface") {
     check_complaint(with_line(9, "clear_semi_diameter_mm = -8.0"), "probe.toml:5: surface 1",
                     "a positive length is wanted");
     check_complaint(with_line(9, "clear_semi_diameter_mm = 0.0"), "probe.toml:5: surface 1",
-                    "a positive length is wanted");
+                    "is 0 mm; a positive length is wanted");
     check_complaint(with_line(14, "clear_semi_diameter_mm = nan"), "probe.toml:14: surface 2",
                     "must be a finite number");
     check_complaint(with_line(18, "clear_semi_diameter_mm = 61.0"), "probe.toml:16: surface 3",
-                    "larger than the surface, which ends at 60. mm");
+                    "larger than the surface, which ends at 60 mm from");
     check_complaint(with_line(7, "thickness_mm = -4.0"), "probe.toml:5: surface 1", "the thickness is negative");
     check_complaint(with_line(7, "thickness_mm = nan"), "probe.toml:7: surface 1", "must be a finite number");
     check_complaint(with_line(7, "thickness_mm = inf"), "probe.toml:7: surface 1", "must be a finite number");

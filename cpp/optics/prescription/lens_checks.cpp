@@ -11,8 +11,9 @@ namespace realcam {
 namespace lens_checks_detail {
 
 std::string mm(double v) {
-    std::string text = std::to_string(v);
-    return text.substr(0, text.find_last_not_of('0') + 1) + " mm";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g mm", v);
+    return text;
 }
 
 }  // namespace lens_checks_detail
