@@ -100,6 +100,13 @@ def test_the_aperture_ring_begins_at_the_widest_opening(name: str) -> None:
 # The camera that they make.
 
 
+def test_a_film_that_is_shifted_is_drawn_as_the_smallest_that_holds_it() -> None:
+    """Its farther edges are 18 + 3 and 12 + 2 mm from the axis."""
+    film = FILM.replace(shift_mm=(3.0, -2.0))
+    assert replace(controls(), film=film).lens_on_film.film_mm == (42.0, 28.0)
+    assert controls().lens_on_film.film_mm == (36.0, 24.0)
+
+
 def test_the_stop_is_set_before_the_lens_is_focused() -> None:
     """Engraved f-numbers are those at infinity: a lens of which a group moves has another focal length when near."""
     lens = rc.Lens.load("telephoto-200mm-inner-focus")
