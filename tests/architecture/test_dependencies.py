@@ -1,9 +1,9 @@
 """The rules of the house: which folder of cpp/ may include which, and what the core must not know."""
 
 import re
+from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
-
-import pytest
 
 CPP = Path(__file__).resolve().parents[2] / "cpp"
 
@@ -220,6 +220,7 @@ CORE_SOURCES = [
 ]
 
 
+@cache
 def code_of(path: Path) -> str:
     """The text without comments; line breaks stay, so that positions keep their line."""
     comment = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
@@ -231,6 +232,7 @@ def code_of(path: Path) -> str:
     return comment.sub(keep, path.read_text(encoding="utf-8"))
 
 
+@cache
 def included_by(path: Path) -> list[Path]:
     """The files of cpp/ that `path` includes, whichever of the include folders a name starts from."""
     found = []
@@ -242,6 +244,19 @@ def included_by(path: Path) -> list[Path]:
     return found
 
 
+def uses(paths: Iterable[Path], pattern: str, meaning: str) -> list[str]:
+    """What a message says of each place where the code of one of `paths` matches."""
+    return [
+        f"{name_of(path)}:{code_of(path).count(chr(10), 0, match.start()) + 1} {meaning}: {match.group()}"
+        for path in paths
+        for match in re.finditer(pattern, code_of(path))
+    ]
+
+
+def fail_for(offenders: list[str]) -> None:
+    assert not offenders, "\n" + "\n".join(offenders)
+
+
 def test_there_is_something_to_check() -> None:
     assert any(folder_of(path) == "math" for path in SOURCES)
     assert any(included_by(path) for path in SOURCES)
@@ -251,56 +266,49 @@ def test_every_folder_has_a_rule() -> None:
     assert {folder_of(path) for path in SOURCES} <= set(MAY_INCLUDE)
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_includes_follow_the_rules(path: Path) -> None:
-    allowed = {"", folder_of(path)} | MAY_INCLUDE[folder_of(path)]
-    too = MAY_INCLUDE_TOO.get(name_of(path), set())
-    wrong = [
-        name_of(other) for other in included_by(path) if folder_of(other) not in allowed and name_of(other) not in too
-    ]
-    assert not wrong, f"{name_of(path)} may include {sorted(allowed - {''})} only"
+def test_includes_follow_the_rules() -> None:
+    offenders = []
+    for path in SOURCES:
+        allowed = {"", folder_of(path)} | MAY_INCLUDE[folder_of(path)]
+        too = MAY_INCLUDE_TOO.get(name_of(path), set())
+        offenders += [
+            f"{name_of(path)} includes {name_of(other)}, but may include {sorted(allowed - {''})} only"
+            for other in included_by(path)
+            if folder_of(other) not in allowed and name_of(other) not in too
+        ]
+    fail_for(offenders)
 
 
-@pytest.mark.parametrize("path", CORE_SOURCES, ids=name_of)
-@pytest.mark.parametrize("what", NOT_IN_CORE)
-def test_core_does_not_know(path: Path, what: str) -> None:
-    code = code_of(path)
-    match = re.search(NOT_IN_CORE[what], code)
-    line = code.count("\n", 0, match.start()) + 1 if match else 0
-    assert not match, f"{name_of(path)}:{line} knows {what}: {match.group()}"
+def test_core_knows_no_platform() -> None:
+    fail_for([line for what, pattern in NOT_IN_CORE.items() for line in uses(CORE_SOURCES, pattern, f"knows {what}")])
 
 
-@pytest.mark.parametrize("path", CORE_SOURCES, ids=name_of)
-def test_device_code_neither_allocates_nor_throws(path: Path) -> None:
-    if name_of(path) in HOST_ONLY:
-        return
-    match = re.search(NOT_ON_DEVICE, code_of(path))
-    assert not match, f"{name_of(path)} is not host-only, and uses {match.group()}"
-    wrong = [name_of(other) for other in included_by(path) if name_of(other) in HOST_ONLY]
-    assert not wrong, f"{name_of(path)} is not host-only, and includes headers that are"
+def test_device_code_neither_allocates_nor_throws() -> None:
+    on_device = [path for path in CORE_SOURCES if name_of(path) not in HOST_ONLY]
+    fail_for(
+        uses(on_device, NOT_ON_DEVICE, "is not host-only, and uses")
+        + [
+            f"{name_of(path)} is not host-only, and includes {name_of(other)}, which is"
+            for path in on_device
+            for other in included_by(path)
+            if name_of(other) in HOST_ONLY
+        ]
+    )
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_one_folder_knows_embree(path: Path) -> None:
-    if folder_of(path) != "embree":
-        assert not re.search(NOT_IN_CORE["Embree"], code_of(path))
+def test_one_folder_knows_embree() -> None:
+    fail_for(uses((path for path in SOURCES if folder_of(path) != "embree"), NOT_IN_CORE["Embree"], "knows Embree"))
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_one_file_changes_the_current_gpu(path: Path) -> None:
-    # It also brings back the one that was; others would leave the caller's thread with another GPU than it had.
-    if name_of(path) != "cuda/current_device.hpp":
-        assert "cudaSetDevice" not in code_of(path)
-
-
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_only_platform_asks_for_the_compiler(path: Path) -> None:
-    if name_of(path) != "platform.hpp":
-        assert "__CUDACC__" not in code_of(path)
-
-
-@pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_one_file_lets_go_of_pythons_lock(path: Path) -> None:
-    # It counts the work under way, for which Python's end has to wait: bindings take Unlocked.
-    if name_of(path).startswith("bindings/") and not name_of(path).startswith("bindings/unlocked."):
-        assert "gil_scoped_release" not in code_of(path)
+def test_one_file_has_what_must_be_in_one_place() -> None:
+    offenders = []
+    for pattern, where, home in (
+        # It also brings back the one that was; others would leave the caller's thread with another GPU than it had.
+        (r"cudaSetDevice", "", "cuda/current_device."),
+        (r"__CUDACC__", "", "platform."),
+        # It counts the work under way, for which Python's end has to wait: bindings take Unlocked.
+        (r"gil_scoped_release", "bindings/", "bindings/unlocked."),
+    ):
+        paths = [path for path in SOURCES if name_of(path).startswith(where) and not name_of(path).startswith(home)]
+        offenders += uses(paths, pattern, f"uses what only {home}* may use")
+    fail_for(offenders)
