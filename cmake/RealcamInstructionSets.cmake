@@ -1,19 +1,41 @@
 # Builds one source once for each instruction set; the program chooses at run time. REALCAM_ISA names the inline
 # namespace that the core then lives in (cpp/platform.hpp), so that the builds share no symbol.
+# REALCAM_INSTRUCTION_SETS is the choice: every one of them runs on any machine that a package may land on, and takes its
+# share of the build; `machine` is the widest that the processor at hand has.
+set(REALCAM_INSTRUCTION_SETS v2 v3 v4 CACHE STRING "On x86: which of v2, v3, v4 (x86-64-v2 ...) to build, or machine")
 # Jump threading would turn the selects of the lane loops back into branches, and gcc then gives up on vector code:
 # the lens trace runs ten times slower with it.
 set(REALCAM_KERNEL_FLAGS -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math -fno-thread-jumps)
+
+# Asked anew at each configuration: the build folder may stand on another machine than the last time.
+function(realcam_widest_instruction_set variable)
+  unset(REALCAM_MACHINE_LEVEL CACHE)
+  try_run(REALCAM_MACHINE_LEVEL compiles SOURCE_FROM_CONTENT level.cpp [[
+    int main() {
+        return __builtin_cpu_supports("x86-64-v4") ? 4 : __builtin_cpu_supports("x86-64-v3") ? 3 : 2;
+    }]])
+  if(NOT compiles)
+    message(FATAL_ERROR "The compiler cannot tell what this processor has: give REALCAM_INSTRUCTION_SETS (v2, v3, v4).")
+  endif()
+  set(${variable} v${REALCAM_MACHINE_LEVEL} PARENT_SCOPE)
+endfunction()
 
 function(realcam_add_instruction_sets target source)
   if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${source})
     return()
   endif()
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
-    set(names v2 v3 v4)
-    target_compile_definitions(${target} PRIVATE REALCAM_KERNELS_X86=1)
+    set(names ${REALCAM_INSTRUCTION_SETS})
+    if(names STREQUAL machine)
+      realcam_widest_instruction_set(names)
+    endif()
   else()
     set(names native)
   endif()
+  list(SORT names)
+  list(TRANSFORM names REPLACE "(.+)" "SET(\\1)" OUTPUT_VARIABLE sets)
+  string(REPLACE ";" " " sets "${sets}")
+  set_property(SOURCE cpp/embree/kernels_dispatch.cpp APPEND PROPERTY COMPILE_DEFINITIONS "REALCAM_INSTRUCTION_SETS=${sets}")
   foreach(name IN LISTS names)
     set(object ${target}_${name})
     add_library(${object} OBJECT ${source})

@@ -41,7 +41,9 @@ if(NOT REALCAM_OPENIMAGEIO)
   set(REALCAM_APP_SOURCES "")
 endif()
 
-if(REALCAM_CUDA STREQUAL OFF)
+# A GPU shows as a device, under WSL as another one.
+file(GLOB gpus /dev/nvidia[0-9]* /dev/dxg)
+if(REALCAM_CUDA STREQUAL OFF OR (REALCAM_CUDA STREQUAL AUTO AND NOT gpus))
   set(REALCAM_CUDA_SOURCES "")
 elseif(REALCAM_CUDA_SOURCES)
   include(CheckLanguage)

@@ -4,23 +4,24 @@
 #include "../error.hpp"
 #include "kernels.hpp"
 
-#if defined(REALCAM_KERNELS_X86)
-extern "C" const realcam_kernels realcam_kernels_v2, realcam_kernels_v3, realcam_kernels_v4;
-#else
-extern "C" const realcam_kernels realcam_kernels_native;
-#endif
+// REALCAM_INSTRUCTION_SETS names what was built, the narrowest first: SET(v2) SET(v3) SET(v4), some of them, or
+// SET(native).
+#define SET(name) extern "C" const realcam_kernels realcam_kernels_##name;
+REALCAM_INSTRUCTION_SETS
+#undef SET
 
 namespace realcam {
 
 std::vector<const realcam_kernels*> available_kernels() {
     std::vector<const realcam_kernels*> list;
-#if defined(REALCAM_KERNELS_X86)
-    if (__builtin_cpu_supports("x86-64-v2")) list.push_back(&realcam_kernels_v2);
-    if (__builtin_cpu_supports("x86-64-v3")) list.push_back(&realcam_kernels_v3);
-    if (__builtin_cpu_supports("x86-64-v4")) list.push_back(&realcam_kernels_v4);
+#if defined(__x86_64__)
+#define SET(name) \
+    if (__builtin_cpu_supports("x86-64-" #name)) list.push_back(&realcam_kernels_##name);
 #else
-    list.push_back(&realcam_kernels_native);
+#define SET(name) list.push_back(&realcam_kernels_##name);
 #endif
+    REALCAM_INSTRUCTION_SETS
+#undef SET
     return list;
 }
 
@@ -28,7 +29,10 @@ namespace {
 
 const realcam_kernels& choose() {
     const auto list = available_kernels();
-    if (list.empty()) throw DeviceError("this processor is older than x86-64-v2 (SSE4.2), which realcam needs");
+#define SET(name) " " #name
+    const std::string built = REALCAM_INSTRUCTION_SETS;
+#undef SET
+    if (list.empty()) throw DeviceError("this realcam is built for x86-64" + built + ", which this processor is not");
     const char* asked = std::getenv("REALCAM_INSTRUCTION_SET");
     if (!asked) return *list.back();
     std::string names;
@@ -36,7 +40,8 @@ const realcam_kernels& choose() {
         if (kernel->instruction_set == std::string(asked)) return *kernel;
         names += (names.empty() ? "" : ", ") + std::string(kernel->instruction_set);
     }
-    throw DeviceError("REALCAM_INSTRUCTION_SET is \"" + std::string(asked) + "\"; this machine has " + names);
+    throw DeviceError("REALCAM_INSTRUCTION_SET is \"" + std::string(asked) + "\"; this build has for this machine " +
+                      names);
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ def run(*command: object) -> str:
 
 
 def forget_what_was_moved(folder: Path) -> str:
-    """What ./run does before it sets up; `shell-help` only defines its functions. Returns what it says."""
-    return run("bash", "-c", 'source "$0" shell-help && forget_what_was_moved build/dev', folder / "run")
+    """What ./run does before it sets up; `help` only defines its functions. Returns what it says."""
+    return run("bash", "-c", 'source "$0" help && forget_what_was_moved build/dev', folder / "run")
 
 
 @pytest.fixture

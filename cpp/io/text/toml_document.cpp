@@ -1,3 +1,4 @@
+#define TOML_IMPLEMENTATION
 #include "toml_document.hpp"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 #pragma once
+// The parser is compiled once, in toml_document.cpp.
+#define TOML_HEADER_ONLY 0
 #include <toml++/toml.h>
 
 #include <cmath>
