@@ -70,7 +70,7 @@ def test_the_picture_of_a_star_is_airys_disc(f_number: float) -> None:
     lens, side = perfect_lens(f_number), 96
     airy_um = airy_radius_um(f_number)
     pixel = airy_um / 12
-    star = picture(far_lamp(0.0, 0.0, distance_m=1e6), lens, film_of(pixel, side), spp=4096)
+    star = picture(far_lamp(0.0, 0.0, distance_m=1e6), lens, film_of(pixel, side), spp=1024)
     r = radii(side, pixel)
     flux = math.pi * lens.stop_semi_diameter_mm**2 / (pixel / 1000) ** 2  # of a lamp of 1 lux, in pixels
     inside = star[r < airy_um].sum() / flux
@@ -96,7 +96,7 @@ def perfect_contrast(frequency: np.ndarray) -> np.ndarray:
     return 2 / np.pi * (np.arccos(frequency) - frequency * np.sqrt(1 - frequency**2))
 
 
-@pytest.mark.parametrize("f_number", [4.0, 8.0, 16.0, 22.0])
+@pytest.mark.parametrize("f_number", [4.0, 22.0])
 @pytest.mark.parametrize("emits", [False, True])
 def test_an_edge_has_the_contrast_of_a_perfect_lens(f_number: float, emits: bool) -> None:
     """Samples see a surface that reflects; of one that emits, starbursts bring a part."""
@@ -144,10 +144,10 @@ def test_nothing_is_lost_of_a_lamp_that_rays_meet() -> None:
     intensity = 1e6 * (2 * half) ** 2
     behind = scenes.scene_of(scenes.quad((0, 0, 1e5), half))
     point = behind.with_point_light((0, 0, -distance), (intensity,) * 3)
-    seen, star = (picture(scene, lens, film, spp=4096) for scene in (lamp, point))
-    # 26000 samples meet the lamp.
+    seen, star = (picture(scene, lens, film, spp=spp) for scene, spp in ((lamp, 2048), (point, 1024)))
+    # 13000 samples meet the lamp.
     camera = rc.Camera(lens, film=film, exposure_time_s=1)
-    without = rc.render(lamp, camera, effects=(), spp=4096, device="cpu").pixels[:, :, 1].astype(float)
+    without = rc.render(lamp, camera, effects=(), spp=2048, device="cpu").pixels[:, :, 1].astype(float)
     hold(Measurement("Effects", "light of a small lamp with diffraction over that without", "f/16", "cpu", "float32",
                      abs(seen.sum() / without.sum() - 1), 0.02, ""))  # fmt: skip
     r = radii(96, 20.0)
@@ -163,11 +163,11 @@ def test_nothing_is_lost_of_a_lamp_that_rays_meet() -> None:
                      "float32", abs(star[far].sum() / star.sum() / expected - 1), 0.03, ""))  # fmt: skip
 
 
-@pytest.mark.parametrize("blades", [5, 6, 7, 8, 9])
+@pytest.mark.parametrize("blades", [5, 8, 9])
 def test_blades_make_spikes(blades: int) -> None:
     lens = rc.Lens.load("double-gauss-50mm").with_iris(blades=blades, rotation_deg=10).stopped_down(16)
     side = 161
-    star = picture(far_lamp(0.0, 0.0), lens, film_of(10.0, side), spp=2048)
+    star = picture(far_lamp(0.0, 0.0), lens, film_of(10.0, side), spp=512)
     place = np.arange(side) - side // 2
     x, y = np.meshgrid(place, -place)
     ring = (np.hypot(x, y) > 30) & (np.hypot(x, y) < 75)
