@@ -14,6 +14,7 @@ namespace realcam::test {
 /// A lens in a state of its rings, with words for it.
 struct LensState {
     LensSystem lens;
+    bool is_open;
     std::string description;
 };
 
@@ -21,16 +22,16 @@ inline double half_diagonal(const LensSystem& lens) {
     return 0.5 * std::hypot(lens.film_width, lens.film_height);
 }
 
-/// A bundled lens far and near, wide open, at f/5.6 (where it is faster) and at f/22.
+/// A bundled lens far and near, wide open; far at f/22, and near at f/5.6 (where it is faster).
 inline std::vector<LensState> states_of(const std::string& name) {
     const LensSystem lens = io::read_lens(name);
     const double full = first_order(lens, lens.wavelength_nm).f_number;
     std::vector<LensState> states;
     for (const double distance : {kInfinity, near_focus(lens)})
-        for (const double f_number : {full, 5.6, 22.0}) {
+        for (const double f_number : {full, std::isinf(distance) ? 22.0 : 5.6}) {
             if (f_number < 1.001 * full && f_number != full) continue;
             const std::string focus = std::isinf(distance) ? "infinity" : std::to_string(distance) + " mm";
-            states.push_back({focused(stopped_down(lens, f_number), distance),
+            states.push_back({focused(stopped_down(lens, f_number), distance), f_number == full,
                               name + " at f/" + std::to_string(f_number) + ", focused at " + focus});
         }
     return states;
