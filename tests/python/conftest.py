@@ -60,5 +60,5 @@ def bench(browser: Any, server: Server) -> Iterator[BenchPage]:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    if item.get_closest_marker("pictures") and find_spec("realcam._pictures") is None:
+    if item.get_closest_marker("picture_files") and find_spec("realcam._pictures") is None:
         pytest.skip("this build of realcam has no OpenImageIO")

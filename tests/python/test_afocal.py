@@ -82,7 +82,7 @@ def test_an_object_nearer_than_the_nearest_is_refused_with_the_nearest() -> None
     assert near.best_focus_mm(object_m) == pytest.approx(near.film_distance_mm, rel=1e-9)
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 def test_the_command_line_writes_infinite_figures_as_json_that_anyone_reads(tmp_path: Path) -> None:
     path = tmp_path / "hole.toml"
     path.write_text(

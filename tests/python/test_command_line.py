@@ -25,7 +25,7 @@ finish_help(TREE)
 OF_THE_EXECUTABLE = ["render", "plan", "devices", "lens list", "lens info"]
 QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
 
-pictures = pytest.mark.pictures  # a build without picture files has no executable
+pictures = pytest.mark.picture_files  # a build without picture files has no executable
 
 
 def commands(command: Any = TREE, words: tuple[str, ...] = ()) -> Iterator[str]:

@@ -63,7 +63,7 @@ def test_mitsuba_rays_exposes_the_film_as_render_does(mitsuba_rays: ModuleType) 
     np.testing.assert_allclose(seen, ours, rtol=1e-5)
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 def test_dataset_makes_pictures_and_labels_and_goes_on(tmp_path: Path) -> None:
     import OpenImageIO as oiio
 

@@ -112,7 +112,7 @@ def test_films_say_their_shift_and_keep_it(tmp_path: Path) -> None:
     assert rc.vision.camera_json(camera_with(PART))["film_shift_mm"] == [12, 7]
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 def test_shot_files_and_the_command_line_shift_the_film(tmp_path: Path) -> None:
     shot = tmp_path / "shot.toml"
     shot.write_text(

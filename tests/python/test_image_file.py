@@ -19,7 +19,7 @@ from . import scenes
 
 oiio = pytest.importorskip("OpenImageIO")
 
-pytestmark = pytest.mark.pictures
+pytestmark = pytest.mark.picture_files
 ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -384,7 +384,7 @@ def test_images_with_layers_are_values() -> None:
     assert "layers" not in repr(rc.render(two_walls(), camera(), effects=(), spp=2))
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 def test_layers_that_do_not_fit_the_picture_are_not_written(tmp_path: Path) -> None:
     image = rc.render(two_walls(), camera(), effects=(), spp=1, layers="all")
     image.layers["albedo"] = image.layers["albedo"][:-1]  # type: ignore[index]

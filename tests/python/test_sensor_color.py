@@ -252,7 +252,7 @@ def test_darktable_opens_the_dng(name: str, tmp_path: Path) -> None:
     assert differences(scaled_to(patch_means(pixels), reference), reference).max() < WITHIN_DE00
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 def test_the_command_takes_a_film_to_raw(tmp_path: Path) -> None:
     import os
     import sys

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-pytestmark = pytest.mark.pictures
+pytestmark = pytest.mark.picture_files
 ROOT = Path(__file__).resolve().parents[2]
 QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
 

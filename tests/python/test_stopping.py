@@ -240,7 +240,7 @@ exposure_time_s = 0.01
 """
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 @pytest.mark.parametrize("what", PICTURES)
 def test_python_ends_cleanly_while_a_daemon_thread_is_at_a_picture(what: str, tmp_path: Path) -> None:
     (tmp_path / "shot.toml").write_text(SHOT)
@@ -365,7 +365,7 @@ def renders_of(process: int) -> list[str]:
     return [child for child in children if Path(f"/proc/{child}/comm").read_text() == "realcam\n"]
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 def test_the_demo_takes_its_render_along_when_it_is_terminated(tmp_path: Path) -> None:
     """And leaves no empty folder."""
     command = [sys.executable, "-m", "realcam", "demo", "-o", str(tmp_path / "a" / "b"), "--spp", str(2**24)]

@@ -116,7 +116,7 @@ def test_exposure_scales_with_time_over_18_orders(device: str, backend: str) -> 
     hold(Measurement("Sums", "exposure over its time", tried, backend, "float32", worst, 2 * ROUNDING, "relative"))
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 @pytest.mark.parametrize("time_s", [1e-9, 1e9, 1e30, 1e38])
 def test_nothing_becomes_infinite(time_s: float, device: str, tmp_path: Path) -> None:
     """The brightest lights that a scene may have, one of them 1e-7 m off a wall; and the files of the picture."""

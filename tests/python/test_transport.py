@@ -71,7 +71,7 @@ def test_wrong_names_and_numbers() -> None:
             picture(scene, clamp_cd_m2=clamp)
 
 
-@pytest.mark.pictures
+@pytest.mark.picture_files
 def test_a_shot_file_has_them_too(tmp_path: Path) -> None:
     (tmp_path / "quad.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nf 1 2 3\n")
     text = 'format = 1\nscene = "quad.obj"\nexposure_time_s = 1\nenvironment_cd_m2 = 1\n'

@@ -17,7 +17,7 @@ from realcam_command import executable
 oiio = pytest.importorskip("OpenImageIO")
 
 ROOT = Path(__file__).resolve().parents[2]
-pytestmark = pytest.mark.pictures
+pytestmark = pytest.mark.picture_files
 
 CARD = (
     "mtllib card.mtl\nusemtl m\nv -1 -1 -2\nv 1 -1 -2\nv 1 1 -3\nv -1 1 -3\n"

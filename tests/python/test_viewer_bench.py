@@ -24,7 +24,7 @@ from realcam.viewer.shot_source import ShotSource
 
 from . import bench_shots
 
-pytestmark = pytest.mark.pictures
+pytestmark = pytest.mark.picture_files
 
 
 class Told:

@@ -18,7 +18,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 from . import bench_shots  # noqa: E402
 from .bench_pages import CHROMIUM, BenchPage, Server, fetch, until  # noqa: E402
 
-pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
+pytestmark = [pytest.mark.picture_files, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
 
 def is_there(pid: int) -> bool:

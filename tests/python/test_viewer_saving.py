@@ -15,7 +15,7 @@ playwright = pytest.importorskip("playwright.sync_api")
 
 from .bench_pages import CHROMIUM, BenchPage, Server, until  # noqa: E402
 
-pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
+pytestmark = [pytest.mark.picture_files, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
 
 def ask_to_save(bench: BenchPage, what: str, name: str, button: str = "save") -> None:

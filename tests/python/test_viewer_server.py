@@ -22,7 +22,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
 from . import bench_shots  # noqa: E402
 from .bench_pages import CHROMIUM, BenchPage, Server, fetch, until  # noqa: E402
 
-pytestmark = [pytest.mark.pictures, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
+pytestmark = [pytest.mark.picture_files, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
 
 def done(bench: BenchPage) -> None:

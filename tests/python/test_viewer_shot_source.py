@@ -18,7 +18,7 @@ from realcam.viewer.shot_source import ShotSource
 
 from . import bench_shots
 
-pytestmark = pytest.mark.pictures
+pytestmark = pytest.mark.picture_files
 
 
 def test_a_scene_file_is_seen_as_render_sees_it(tmp_path: Path) -> None:
