@@ -23,7 +23,7 @@ struct Leak {
 // Random directions to the whole last surface, and more of them around the region itself (stopped down it is
 // a thousandth of the surface): which of those that pass lie outside the region?
 Leak find_leaks(const LensSystem& lens, const Pupil& pupil, unsigned seed) {
-    constexpr int kRadii = 30, kRays = 2048;
+    constexpr int kRadii = 18, kRays = 2048;
     const FilmPointTracer trace(lens);
     Random random(seed);
     Leak leak;
@@ -31,8 +31,8 @@ Leak find_leaks(const LensSystem& lens, const Pupil& pupil, unsigned seed) {
     for (int k = 0; k < kRadii; ++k) {
         // From the axis to past the corner of the film; the table's own rows lie elsewhere.
         double radius = half_diagonal(lens) * (k == 0 ? 0.0 : k == 1 ? 1.0 : random());
-        if (k >= 24) radius = pupil.image_radius() * (1 - std::pow(10.0, 20.0 - k));  // towards the edge of the image
-        if (k == 29) radius = pupil.image_radius() * 1.002;
+        if (k >= 12) radius = pupil.image_radius() * (1 - std::pow(10.0, 8.0 - k));  // towards the edge of the image
+        if (k == 17) radius = pupil.image_radius() * 1.002;
         if (radius > half_diagonal(lens)) continue;
         const PupilRegion region(pupil.view(), radius);
         const Vec3d film{radius, 0, lens.film_position()};
