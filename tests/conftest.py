@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 FOLDERS_OF_LAWS = {"architecture", "truth"}
-LAWS = set(
+LAWS = frozenset(
     """
     afocal analysis analysis_api bundled_lenses coatings cross_section device_rays diffraction dispersion distortion
     environment exposure glass_scale lens_api lens_edits lens_files lens_limits mapped_lens materials opacity

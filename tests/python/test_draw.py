@@ -160,8 +160,8 @@ def test_a_lens_file_is_not_drawn_over(tmp_path: Path) -> None:
 def test_the_output_is_named_after_the_lens_without_its_suffix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     rc.Lens.load("singlet-100mm").save("mine.v2.zmx")
-    for command in ("draw", "report"):
-        result = CliRunner().invoke(cli.app, ["lens", command, "mine.v2.zmx"])
+    for command, *options in (["draw"], ["report", "--wavelengths", "546"]):
+        result = CliRunner().invoke(cli.app, ["lens", command, "mine.v2.zmx", *options])
         assert result.exit_code == 0, result.output
     assert {path.name for path in tmp_path.iterdir()} == {"mine.v2.zmx", "mine.v2.svg", "mine.v2.pdf"}
 

@@ -89,11 +89,11 @@ def test_relative_illumination_equals_the_integral_summed_by_force(name: str) ->
         ring = np.abs(middle - wanted) < 0.6 * pitch
         # Over the width of the ring, and of its pixels, the irradiance is a parabola through three sums.
         nodes = wanted + 1.2 * pitch * np.array([-1, 0, 1])
-        sums = [yardsticks.brute_force_irradiance(lens, r, 350) for r in nodes]
+        sums = [yardsticks.brute_force_irradiance(lens, r, 180) for r in nodes]
         expected = np.polyval(np.polyfit(nodes - wanted, sums, 2), radius - wanted).mean(axis=(1, 3))[ring].mean()
         # At least 100 pixels of 64 samples lie in a ring. For the least that may pass, 60% of the samples at
         # the edge of a fisheye, one standard deviation is sqrt(0.67 / 6400) = 1% of independent samples;
-        # these are stratified, and elsewhere more pass. The sums are good to 350^-1.5 = 0.02%.
+        # these are stratified, and elsewhere more pass. The sums are good to 180^-1.5 = 0.04%.
         assert ring.sum() >= 100
         assert picture[ring].mean(dtype=np.float64) / rendered_axis == pytest.approx(expected / axis, rel=0.01), share
 

@@ -37,7 +37,7 @@ def balls() -> rc.Scene:
 def test_a_shifted_film_sees_its_part_of_a_larger_one(model: str) -> None:
     scene, layers = balls(), ["depth_middle", "normal"]
     whole, part = (
-        rc.render(scene, camera_with(film, model), spp=64, effects=(), layers=layers, device="cpu")
+        rc.render(scene, camera_with(film, model), spp=16, effects=(), layers=layers, device="cpu")
         for film in (WHOLE, PART)
     )
     # The middle ray of a pixel is the same, but for roundings of its place and for the table of the pupil, whose rows

@@ -166,18 +166,31 @@ class SequentialTrace:
 
 
 @pytest.mark.parametrize("degrees", [0.0, 12.0, 30.0])
-def test_all_pairs_of_a_double_gauss_bring_as_much_light_as_an_independent_sum(degrees: float) -> None:
+def test_all_pairs_of_a_double_gauss_and_a_film_bring_as_much_light_as_an_independent_sum(degrees: float) -> None:
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)
     tangent = float(np.tan(np.radians(degrees)))
-    trace = SequentialTrace(lens)
-    pairs = [(b, a) for a, b in itertools.combinations(trace.refracting, 2)]
-    assert len(pairs) == 45
-    expected = sum(trace.flux(pair, tangent, 24, 192) for pair in pairs)
-    camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
-    total = ghosts(far_lamp(tangent, 0.0), camera, spp=256).mean(axis=2).sum() * (24 / 96) ** 2
+    trace = SequentialTrace(lens, 0.1, float(np.hypot(12, 12)))
+    pairs = [(b, a) for a, b in itertools.combinations([*trace.refracting, trace.film], 2)]
+    assert len(pairs) == 45 + 10
+    # Sums over n x n points are good to n^-1.5 where edges cut them: 0.1% of each of 55.
+    flux = {pair: trace.flux(pair, tangent, 24, 96) for pair in pairs}
+    of_film = sum(light for (first, _), light in flux.items() if first == trace.film)
+    camera, scene = rc.Camera(lens, film=FILM, exposure_time_s=1), far_lamp(tangent, 0.0)
+
+    def total(**settings: object) -> float:
+        return ghosts(scene, camera, spp=64, **settings).mean(axis=2).sum() * (24 / 96) ** 2  # type: ignore[arg-type]
+
     hold(Measurement("Effects", "light that all 45 ghosts of a double Gauss bring to the film",
                      f"a far lamp at {degrees:g} degrees, against a sum over rays in double", "cpu", "float32",
-                     abs(total / expected - 1), 0.01, ""))  # fmt: skip
+                     abs(total() / (sum(flux.values()) - of_film) - 1), 0.01, ""))  # fmt: skip
+    if degrees == 30:
+        return
+    hold(Measurement("Effects", "light that the ghosts of film and double Gauss bring to the film",
+                     f"a tenth reflected, a far lamp at {degrees:g} degrees, against a sum over rays in double", "cpu",
+                     "float32", abs(total(effects={"film_reflection=0.1"}) / sum(flux.values()) - 1), 0.01,
+                     ""))  # fmt: skip
+    # Without those that bring less than 1e-6 of the lens's light.
+    assert total(effect="film_reflection=0.1") == pytest.approx(of_film, rel=0.02)
 
 
 @pytest.mark.parametrize("wavelength_nm", [400.0, 450.0, 650.0])
@@ -197,33 +210,13 @@ def test_ghosts_under_a_line_have_the_reflectances_of_that_line(wavelength_nm: f
     tangent = float(np.tan(np.radians(9)))
     trace = SequentialTrace(lens_for(wavelength_nm))
     pairs = [(b, a) for a, b in itertools.combinations(trace.refracting, 2)]
-    expected = sum(trace.flux(pair, tangent, 24, 256) for pair in pairs)
+    expected = sum(trace.flux(pair, tangent, 24, 128) for pair in pairs)
     camera = rc.Camera(lens_for(587.5618), film=FILM, exposure_time_s=1)
     lit = ghosts(far_lamp(tangent, 0.0), camera, spp=256, effects={"dispersion"}, illuminant=wavelength_nm)
     total = lit.mean(axis=2).sum() * (24 / 96) ** 2
     hold(Measurement("Effects", "light of the ghosts of a singlet and a window of N-SF11",
                      f"{wavelength_nm:g} nm, against a sum over rays in double", "cpu", "float32",
                      abs(total / expected - 1), 0.01, ""))  # fmt: skip
-
-
-@pytest.mark.parametrize("degrees", [0.0, 12.0])
-def test_a_film_that_reflects_brings_as_much_light_as_an_independent_sum(degrees: float) -> None:
-    lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)
-    tangent = float(np.tan(np.radians(degrees)))
-    trace = SequentialTrace(lens, 0.1, float(np.hypot(12, 12)))
-    pairs = [(b, a) for a, b in itertools.combinations([*trace.refracting, trace.film], 2)]
-    assert len(pairs) == 55
-    flux = {pair: trace.flux(pair, tangent, 24, 192) for pair in pairs}
-    camera = rc.Camera(lens, film=FILM, exposure_time_s=1)
-    scene = far_lamp(tangent, 0.0)
-    both = ghosts(scene, camera, spp=256, effects={"film_reflection=0.1"}).mean(axis=2).sum() * (24 / 96) ** 2
-    hold(Measurement("Effects", "light that the ghosts of film and double Gauss bring to the film",
-                     f"a tenth reflected, a far lamp at {degrees:g} degrees, against a sum over rays in double", "cpu",
-                     "float32", abs(both / sum(flux.values()) - 1), 0.01, ""))  # fmt: skip
-    alone = ghosts(scene, camera, spp=256, effect="film_reflection=0.1").mean(axis=2).sum() * (24 / 96) ** 2
-    # Without those that bring less than 1e-6 of the lens's light.
-    of_film = sum(light for (first, _), light in flux.items() if first == trace.film)
-    assert alone == pytest.approx(of_film, rel=0.02)
 
 
 def lit_board(*, emits: bool) -> rc.Scene:
@@ -234,7 +227,7 @@ def lit_board(*, emits: bool) -> rc.Scene:
     return scenes.scene_of(scenes.quad(place, half_width, diffuse=1.0)).with_sun((0, 0, -1), (np.pi, np.pi, np.pi))
 
 
-@pytest.mark.parametrize("effects", [set(), {"dispersion"}, {"film_reflection"}])
+@pytest.mark.parametrize("effects", [set(), {"dispersion", "film_reflection"}])
 def test_what_reflects_light_has_the_ghosts_of_what_emits_it(effects: set[str]) -> None:
     """Those are traced from the film, these from the light: two ways of computing the same."""
     lens = rc.Lens.load("double-gauss-50mm").with_coating("bare").focused(5.0)
@@ -242,15 +235,16 @@ def test_what_reflects_light_has_the_ghosts_of_what_emits_it(effects: set[str]) 
     plain, seen = effects - {"film_reflection"}, []
     for emits in (True, False):
         scene = lit_board(emits=emits)
-        light = ghosts(scene, camera, spp=1024, effects=effects)
-        light -= lit_without_ghosts(scene, camera, spp=1024, effects=plain)
+        light = ghosts(scene, camera, spp=512, effects=effects)
+        light -= lit_without_ghosts(scene, camera, spp=512, effects=plain)
         seen.append(light.mean(axis=2).reshape(4, 24, 4, 24).mean(axis=(1, 3)))
     emitted, reflected = seen
     hold(Measurement("Effects", "ghosts of a board that reflects light against those of one that emits it",
                      " and ".join(["light", *sorted(effects)]), "cpu", "float32",
                      abs(reflected.sum() / emitted.sum() - 1), 0.01, ""))  # fmt: skip
-    # Five standard deviations of these means, the largest of which was seen to be 1.2% over a few seeds.
-    np.testing.assert_allclose(reflected, emitted, atol=0.06 * emitted.max())
+    # Five standard deviations of these means, the largest of which was seen to be 1.2% of 1024 samples over a few
+    # seeds: 1.7% of 512.
+    np.testing.assert_allclose(reflected, emitted, atol=0.085 * emitted.max())
     assert emitted.min() < 0.5 * emitted.max()
 
 
@@ -258,15 +252,15 @@ def test_the_veil_of_a_sky_is_that_of_lamps_all_around() -> None:
     """The sum of flux(angle) over a half-space: a sky of radiance 1 is a lamp of 1 lux in each steradian."""
     lens, side, film_mm = singlet(stop_mm=5.0), 48, 24
     camera = rc.Camera(lens, film=rc.Film(film_mm, film_mm, (side, side)), exposure_time_s=1)
-    effect = {"spp": 1024, "device": "cpu", "seed": 3}
-    light = ghosts(scenes.sky(), camera, **effect) - lit_without_ghosts(scenes.sky(), camera, spp=1024, seed=3)  # type: ignore[arg-type]
+    effect = {"spp": 512, "device": "cpu", "seed": 3}
+    light = ghosts(scenes.sky(), camera, **effect) - lit_without_ghosts(scenes.sky(), camera, spp=512, seed=3)  # type: ignore[arg-type]
     place = (np.arange(side) + 0.5) * film_mm / side - film_mm / 2
     inside = np.hypot(place[None, :], place[:, None]) <= film_mm / 2
     total = (light.mean(axis=2) * inside).sum() * (film_mm / side) ** 2
     trace = SequentialTrace(lens)
     nodes, weights = np.polynomial.legendre.leggauss(48)
     angles = np.radians(89) * (1 + nodes) / 2
-    flux = [trace.flux((2, 1), float(np.tan(angle)), film_mm, 256, disc=True) for angle in angles]
+    flux = [trace.flux((2, 1), float(np.tan(angle)), film_mm, 192, disc=True) for angle in angles]
     expected = float((2 * np.pi * np.sin(angles) * flux) @ weights) * np.radians(89) / 2
     # The disc's border cuts pixels: a few of 1800, of light that is the same on both sides.
     hold(Measurement("Effects", "veil of a constant sky by a singlet's ghost", "against a sum over rays in double",

@@ -136,10 +136,10 @@ def brute_force_irradiance(lens: rc.Lens, film_radius_mm: float, steps: int = 50
 
     low, high = np.full(2, -reach), np.full(2, reach)
     for _ in range(2):  # the second time over the box that the first one found
-        points, passing, _ = over(low, high, 400)
+        points, passing, _ = over(low, high, 150)
         if not passing.any():
             return 0.0
-        cell = (high - low) / 400
+        cell = (high - low) / 150
         low, high = points[passing].min(axis=0) - 1.5 * cell, points[passing].max(axis=0) + 1.5 * cell
     _, passing, weights = over(low, high, steps)
     return float(weights[passing].sum())
