@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 FOLDERS_OF_LAWS = {"architecture", "truth"}
+# ruff: noqa: SIM905
 LAWS = frozenset(
     """
     afocal analysis analysis_api bundled_lenses coatings cross_section device_rays diffraction dispersion distortion

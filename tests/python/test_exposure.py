@@ -59,11 +59,11 @@ def test_constant_field_when_focused_near_and_stopped_down(name: str, f_number: 
 def illuminated_radius(lens: rc.Lens) -> float:
     """Film radius up to which the film gets light, but at most its corner, mm."""
     low, high = 0.0, 0.5 * math.hypot(*lens.film_mm)
-    if yardsticks.brute_force_irradiance(lens, high, 100) > 0:
+    if yardsticks.brute_force_irradiance(lens, high, 100, 400) > 0:
         return high
     for _ in range(8):
         middle = 0.5 * (low + high)
-        lit = yardsticks.brute_force_irradiance(lens, middle, 100) > 0
+        lit = yardsticks.brute_force_irradiance(lens, middle, 100, 400) > 0
         low, high = (middle, high) if lit else (low, middle)
     return low
 

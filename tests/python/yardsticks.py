@@ -107,12 +107,12 @@ def axial_irradiance(lens: rc.Lens) -> float:
     return math.pi * (squares[0] if len(squares) == 1 else squares[1] - squares[0])
 
 
-def brute_force_irradiance(lens: rc.Lens, film_radius_mm: float, steps: int = 500) -> float:
+def brute_force_irradiance(lens: rc.Lens, film_radius_mm: float, steps: int = 500, coarse: int = 150) -> float:
     """The exposure integral (source paper, equations 6 and 7) at a film point, for a field of radiance 1.
 
     E = sum of cos(theta') cos(theta'') / d^2 dA over a plane across the light's path, here the plane of the
     paraxial exit pupil where that lies well in front of the film, else that of the last vertex. Where the
-    rays pass is first looked for on a coarse grid, whose passing part is then covered by steps x steps
+    rays pass is first looked for on a grid of coarse x coarse, whose passing part is then covered by steps x steps
     midpoints. The error of that rule for a region with an edge falls as steps^-1.5: 1e-4 here.
     """
     film = lens.film_position_mm
@@ -136,10 +136,10 @@ def brute_force_irradiance(lens: rc.Lens, film_radius_mm: float, steps: int = 50
 
     low, high = np.full(2, -reach), np.full(2, reach)
     for _ in range(2):  # the second time over the box that the first one found
-        points, passing, _ = over(low, high, 150)
+        points, passing, _ = over(low, high, coarse)
         if not passing.any():
             return 0.0
-        cell = (high - low) / 150
+        cell = (high - low) / coarse
         low, high = points[passing].min(axis=0) - 1.5 * cell, points[passing].max(axis=0) + 1.5 * cell
     _, passing, weights = over(low, high, steps)
     return float(weights[passing].sum())
