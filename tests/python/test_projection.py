@@ -25,14 +25,17 @@ def grid(camera: rc.Camera, places: int = 31) -> np.ndarray:
     return np.column_stack([x.ravel(), y.ravel()])
 
 
-@pytest.mark.parametrize("through", ["light", "chief"])
-def test_a_point_on_a_pixels_ray_shows_in_the_pixel(through: str) -> None:
-    worst, tried = 0.0, 0
-    # A table of lines of sight is made for each state of a lens, in up to a second: every fifth is stopped down, too.
+def test_a_point_on_a_pixels_ray_shows_in_the_pixel() -> None:
+    worst, tried = {"light": 0.0, "chief": 0.0}, 0
+    # A table of lines of sight is made for each state of a lens, in up to a second: lenses take turns, and of every
+    # fifth both kinds are tried, the other one stopped down.
     for number, name in enumerate(rc.lens_names()):
         wide_open = rc.Lens.load(name)
-        stopped = [wide_open.stopped_down(1.3 * wide_open.first_order().f_number)] if number % 5 == 0 else []
-        for lens in (wide_open, *stopped):
+        through, other = ("light", "chief") if number % 2 else ("chief", "light")
+        states = [(wide_open, through)]
+        if number % 5 == 0:
+            states.append((wide_open.stopped_down(1.3 * wide_open.first_order().f_number), other))
+        for lens, through in states:
             camera = rc.Camera(
                 lens, film=rc.Film.for_lens(lens), position=(3, 1, -2), look_at=(1, 1.5, 4), up=(1, 3, 0)
             )
@@ -46,21 +49,13 @@ def test_a_point_on_a_pixels_ray_shows_in_the_pixel(through: str) -> None:
                 seen, status = camera.project(origins + distance * directions, through=through, return_status=True)
                 assert (status[lit] == rc.ProjectionStatus.OK).all(), name
                 assert (status[~lit] == rc.ProjectionStatus.BAD_INPUT).all()
-                worst = max(worst, float(np.abs(seen[lit] - pixels[lit]).max()))
+                worst[through] = max(worst[through], float(np.abs(seen[lit] - pixels[lit]).max()))
                 tried += int(lit.sum())
     # What is left is the rounding of coordinates of metres: 1e-16 m over a pixel of 1e-6 m or more.
-    hold(
-        Measurement(
-            "Computer vision",
-            f"`project` of a point on the line of `ray`, through {through}",
-            f"all bundled lenses, some at two stops, {tried} pixels and distances",
-            "core",
-            "float64",
-            worst,
-            1e-6,
-            "pixels",
-        )
-    )
+    for through, error in worst.items():
+        hold(Measurement("Computer vision", f"`project` of a point on the line of `ray`, through {through}",
+                         f"half of all bundled lenses, some stopped down, of {tried} pixels and distances", "core",
+                         "float64", error, 1e-6, "pixels"))  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["double-gauss-50mm", "tessar-50mm", "phone-4mm", FISHEYE])
