@@ -1,5 +1,5 @@
 """`python -m realcam`: the command."""
 
-from realcam_command import main
+from realcam_command.main import main
 
 main()

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import io
 import os
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ._core import InputError, __version__
 from .files import write_whole
-
-if TYPE_CHECKING:
-    from .raw_image import RawImage
 
 # EXIF's LightSource. Any other light has no number.
 LIGHT_SOURCES = {"": 21, "D65": 21, "A": 17, "FL2": 14}
@@ -20,27 +19,58 @@ OTHER_LIGHT_SOURCE = 255
 CFA, LINEAR_RAW = 32803, 34892  # PhotometricInterpretation
 # IEC 61966-2-1.
 SRGB_FROM_XYZ = (3.2404542, -1.5371385, -0.4985314, -0.969266, 1.8760108, 0.041556, 0.0556434, -0.2040259, 1.0572252)
+# Of the film's exposure that saturates a sensor, middle grey is this share of what it is on screen (ISO 12232): white,
+# in pictures 0.018 iso lux seconds, is reached at 1 / 1.404 of the 78 / iso lux seconds that saturate.
+SATURATION_OVER_WHITE = 0.018 * 78
 ASCII, BYTE, SHORT, LONG, RATIONAL, SRATIONAL = "s", "B", "H", "I", "2I", "2i"
 
 
-def write(raw: RawImage, path: str | os.PathLike[str]) -> None:
-    """Writes a mosaic with what raw developers need. Raises ImageFileError and InputError."""
+@dataclass(frozen=True)
+class ColorFilters:
+    """What a mosaic has where its pixels see through filters of red, green and blue.
+
+    array: of two rows of two pixels from the top left, as "RGGB". illuminant: named as in LIGHT_SOURCES, or another.
+    camera_from_xyz, d50_from_balanced: (3, 3), and as_shot_neutral: (3,), as RawImage has them.
+    """
+
+    array: str
+    illuminant: str
+    camera_from_xyz: np.ndarray
+    as_shot_neutral: np.ndarray
+    d50_from_balanced: np.ndarray
+
+
+@dataclass(frozen=True)
+class Negative:
+    """A mosaic, (H, W) uint16, with what raw developers need; filters: None where all pixels see alike."""
+
+    mosaic: np.ndarray
+    sensor: str
+    exposure_time_s: float
+    iso: float
+    black_level_dn: float
+    white_level_dn: int
+    filters: ColorFilters | None
+    metadata: Mapping[str, str]
+
+
+def write(raw: Negative, path: str | os.PathLike[str]) -> None:
+    """Writes a .dng file. Raises ImageFileError and InputError."""
     try:
         import tifffile
     except ImportError as error:
         raise InputError(f"tifffile is not here ({error}); pip install realcam[raw] brings it") from None
     buffer = io.BytesIO()
-    has_filters = bool(raw.color_filter_array)
     with tifffile.TiffWriter(buffer, byteorder="<") as file:
         file.write(
             # Without filters as three equal colours: of one alone LibRaw makes a grey picture, and darktable 4.2 takes
             # each pixel and its two neighbours for red, green and blue.
-            raw.mosaic if has_filters else np.repeat(raw.mosaic[..., None], 3, axis=2),
-            photometric=CFA if has_filters else LINEAR_RAW,
-            planarconfig=None if has_filters else "contig",
+            raw.mosaic if raw.filters else np.repeat(raw.mosaic[..., None], 3, axis=2),
+            photometric=CFA if raw.filters else LINEAR_RAW,
+            planarconfig=None if raw.filters else "contig",
             software=f"realcam {__version__}",
             # TIFF knows ASCII alone.
-            description="\n".join(f"{name} = {value}" for name, value in raw.metadata().items())
+            description="\n".join(f"{name} = {value}" for name, value in raw.metadata.items())
             .encode("ascii", "replace")
             .decode(),
             metadata=None,
@@ -70,14 +100,12 @@ def _rationals(values: Any, signed: bool = False) -> tuple[int, ...]:
     return tuple(flat)
 
 
-def _tags(raw: RawImage) -> list[tuple[int, str, int, Any]]:
+def _tags(raw: Negative) -> list[tuple[int, str, int, Any]]:
     """Code, type, count and value of DNG's and EXIF's tags, in the order of the codes."""
-    from .raw_image import SATURATION_OVER_WHITE
-
     height, width = raw.mosaic.shape
-    model = f"realcam {raw.sensor.name}"
-    entries = raw.metadata()
-    samples = 1 if raw.color_filter_array else 3
+    model = f"realcam {raw.sensor}"
+    filters = raw.filters
+    samples = 1 if filters else 3
 
     def text(code: int, value: str) -> tuple[int, str, int, Any]:
         return code, ASCII, 0, value.encode("ascii", "replace").decode()
@@ -105,19 +133,19 @@ def _tags(raw: RawImage) -> list[tuple[int, str, int, Any]]:
         (50829, LONG, 4, (0, 0, height, width)),  # ActiveArea
     ]
     for code, name in ((33437, "realcam:f_number"), (37386, "realcam:focal_length_mm")):
-        value = float(entries.get(name, "inf"))
+        value = float(raw.metadata.get(name, "inf"))
         if 0 < value < 1e6:
             tags.append(rational(code, value))
-    if raw.color_filter_array:
+    if filters:
         tags += [
             (33421, SHORT, 2, (2, 2)),  # CFARepeatPatternDim
-            (33422, BYTE, 4, tuple("RGB".index(color) for color in raw.color_filter_array)),  # CFAPattern
+            (33422, BYTE, 4, tuple("RGB".index(color) for color in filters.array)),  # CFAPattern
             (50710, BYTE, 3, (0, 1, 2)),  # CFAPlaneColor
             (50711, SHORT, 1, 1),  # CFALayout: rectangular
-            rational(50721, raw.camera_from_xyz, signed=True),  # ColorMatrix1
-            rational(50728, raw.as_shot_neutral),  # AsShotNeutral
-            (50778, SHORT, 1, LIGHT_SOURCES.get(raw.illuminant, OTHER_LIGHT_SOURCE)),  # CalibrationIlluminant1
-            rational(50964, raw.d50_from_balanced, signed=True),  # ForwardMatrix1
+            rational(50721, filters.camera_from_xyz, signed=True),  # ColorMatrix1
+            rational(50728, filters.as_shot_neutral),  # AsShotNeutral
+            (50778, SHORT, 1, LIGHT_SOURCES.get(filters.illuminant, OTHER_LIGHT_SOURCE)),  # CalibrationIlluminant1
+            rational(50964, filters.d50_from_balanced, signed=True),  # ForwardMatrix1
         ]
     else:
         tags += [

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core, denoiser, image_file
 from ._core import Camera, InputError, RenderStats
+from .files import system_name
 from .pickling import set_checked_state
 
 
@@ -117,7 +118,33 @@ class Image:
         no half-written file is left. An image does not know which files its scene was read from: one of the same name
         is replaced, as any other.
         """
-        image_file.write_image(self, path, tone)
+        if tone not in ("film", "linear"):
+            raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
+        entries = self.metadata()
+        try:
+            image_file.pictures().write_picture(
+                system_name(path),
+                self.pixels,
+                self.depth,
+                self.camera,
+                self.spp,
+                self.seed,
+                tone == "film",
+                dict(self.layers),
+                list(self.object_names),
+                list(self.material_names),
+                self.transport == "whitted",
+                self.clamp_cd_m2,
+                self.denoiser,
+                entries.get("realcam:effects", ""),
+                entries.get("realcam:illuminant", ""),
+                entries.get("realcam:coatings", ""),
+                entries.get("realcam:plan", ""),
+            )
+        except TypeError:
+            raise InputError(
+                "pixels, depth, camera, spp, seed, layers and names of the image must be such as rc.render gives"
+            ) from None
 
     def metadata(self) -> dict[str, str]:
         """Names ("realcam:...") and values of what is written into picture files."""

@@ -9,20 +9,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from . import _core, demosaicing, dng, image_file
 from ._core import Film, InputError, Sensor
+from .image import Image
 from .pickling import set_checked_state
-
-if TYPE_CHECKING:
-    from .image import Image
-
-# Of the film's exposure that saturates a sensor, middle grey is this share of what it is on screen (ISO 12232): white,
-# in pictures 0.018 iso lux seconds, is reached at 1 / 1.404 of the 78 / iso lux seconds that saturate.
-SATURATION_OVER_WHITE = 0.018 * 78
 
 # Exposure times, s, and ISO numbers that a camera takes.
 LEAST_DIAL, MOST_DIAL = 1e-37, 1e38
@@ -161,7 +155,7 @@ class RawImage:
         """
         suffix = os.path.splitext(os.fsdecode(path))[1].lower()  # noqa: PTH122 - bytes are paths, too
         if suffix == ".dng":
-            dng.write(self, path)
+            dng.write(self._negative(), path)
         elif suffix == ".npy":
             dng.write_array(self.mosaic, path)
         elif suffix == ".png":
@@ -170,6 +164,24 @@ class RawImage:
             )
         else:
             raise InputError(f"{os.fsdecode(path)}: .dng, .npy (the mosaic) or .png (developed) is wanted")
+
+    def _negative(self) -> dng.Negative:
+        filters = None
+        if self.color_filter_array:
+            white, camera_from_xyz, _, d50_from_balanced = self._color
+            filters = dng.ColorFilters(
+                self.color_filter_array, self.illuminant, camera_from_xyz, white, d50_from_balanced
+            )
+        return dng.Negative(
+            mosaic=self.mosaic,
+            sensor=self.sensor.name,
+            exposure_time_s=self.exposure_time_s,
+            iso=self.iso,
+            black_level_dn=self.black_level_dn,
+            white_level_dn=self.white_level_dn,
+            filters=filters,
+            metadata=self.metadata(),
+        )
 
     def metadata(self) -> dict[str, str]:
         """Names ("realcam:...") and values of what is written into files: the picture's, and the sensor's."""
@@ -196,8 +208,6 @@ def exposed(
     threads: int,
 ) -> RawImage:
     """Sensor.expose. Raises InputError."""
-    from .image import Image
-
     if not isinstance(image, Image):
         raise InputError(f"image must be a realcam.Image; it is {image!r:.60}")
     camera = image.camera

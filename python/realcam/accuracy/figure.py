@@ -15,13 +15,13 @@ from matplotlib.axes import Axes
 
 from .. import files
 from .._core import ImageFileError
-from .ladder import AccuracyCost, Rung
+from .measurements import Measurements, Rung
 from .report import tables_of
 
 MOST_CODES = 32.0  # white in the thumbnails
 
 
-def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
+def save_figure(cost: Measurements, path: str | os.PathLike[str]) -> None:
     """Writes .svg, or .html with the table below; either holds all that it shows. Raises ImageFileError."""
     target = Path(path)
     if target.suffix.lower() not in (".svg", ".html"):
@@ -34,7 +34,7 @@ def save_figure(cost: AccuracyCost, path: str | os.PathLike[str]) -> None:
     files.write_whole(target, text.encode())
 
 
-def _drawing(cost: AccuracyCost) -> str:
+def _drawing(cost: Measurements) -> str:
     count = len(cost.rungs)
     heights = [3.2, 2.4, 1.5] if cost.samplings else [3.2, 1.5]
     figure = matplotlib.figure.Figure(figsize=(12, 2.6 * sum(heights) / 1.5), layout="constrained")
@@ -89,7 +89,7 @@ def _draw_frontier(axes: Axes, rungs: tuple[Rung, ...]) -> None:
     axes.plot(np.exp(times), np.exp(best), color="black", linewidth=5, alpha=0.15, label="frontier", zorder=0)
 
 
-def _page(cost: AccuracyCost, drawing: str) -> str:
+def _page(cost: Measurements, drawing: str) -> str:
     tables = "\n".join(f"<table>\n{_rows([title, *heads], rows)}\n</table>" for title, heads, rows in tables_of(cost))
     left_out = [
         f"<p>{html.escape(text)}: {html.escape(', '.join(names))}.</p>"

@@ -8,7 +8,7 @@ from rich.box import MARKDOWN
 from rich.console import Console
 from rich.table import Table
 
-from .ladder import AccuracyCost, Rung
+from .measurements import Measurements, Rung
 
 
 def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
@@ -20,7 +20,7 @@ def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
     return [4 * best, 2 * best, best]
 
 
-def tables_of(cost: AccuracyCost) -> list[tuple[str, list[str], list[list[str]]]]:
+def tables_of(cost: Measurements) -> list[tuple[str, list[str], list[list[str]]]]:
     """Of each table what it is of, heads and cells."""
     return [
         (title, *_rows_of(rungs))
@@ -51,7 +51,7 @@ def _cells(rung: Rung, goals: list[float]) -> list[str]:
     ]
 
 
-def text_of(cost: AccuracyCost) -> str:
+def text_of(cost: Measurements) -> str:
     """Markdown tables, with what was compared above, and what is missing below."""
     lines = [
         f"{cost.size[0]} x {cost.size[1]} pixels on {cost.device}. Bias, noise (with the most samples) and errors in "

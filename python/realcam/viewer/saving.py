@@ -41,9 +41,7 @@ def picture_content(image: Image, name: str, tone: str) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"picture{suffix}"
         if suffix == ".dng":
-            from .. import dng
-
-            dng.write(Sensor.load("ideal").expose(image), path)
+            Sensor.load("ideal").expose(image).save(path)
         else:
             image.save(path, tone)
         return path.read_bytes()

@@ -1,0 +1,89 @@
+"""No two modules of the Python package need each other, neither directly nor by way of others."""
+
+from __future__ import annotations
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+PYTHON = Path(__file__).resolve().parents[2] / "python"
+
+
+def modules_of(root: Path) -> dict[str, Path]:
+    """Names and files of modules, extensions by their stubs."""
+    found = {}
+    for path in sorted(root.rglob("*.py*")):
+        if path.suffix in (".py", ".pyi"):
+            parts = path.relative_to(root).with_suffix("").parts
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def imported_by(name: str, path: Path, modules: dict[str, Path]) -> set[str]:
+    """What a module imports of `modules`, wherever it does: in functions and for type checkers, too.
+
+    A package that is imported on the way to one of its modules does not count, because all would need `realcam` then.
+    """
+    package = name.split(".") if path.stem == "__init__" else name.split(".")[:-1]
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) + 1 - node.level] if node.level else []
+            base = ".".join([*above, *([node.module] if node.module else [])])
+            members = {f"{base}.{alias.name}" for alias in node.names}
+            found |= members & modules.keys()
+            if members - modules.keys():
+                found.add(base)
+    return (found & modules.keys()) - {name}
+
+
+def imports_under(root: Path) -> dict[str, set[str]]:
+    modules = modules_of(root)
+    # A stub names the types that Python gives to an extension, which is below all of Python.
+    return {name: imported_by(name, path, modules) for name, path in modules.items() if path.suffix == ".py"}
+
+
+def circle_in(imports: dict[str, set[str]]) -> list[str] | None:
+    try:
+        TopologicalSorter(imports).prepare()
+    except CycleError as error:
+        return list(reversed(error.args[1]))
+    return None
+
+
+def test_python_modules_import_in_one_direction() -> None:
+    imports = imports_under(PYTHON)
+    assert "realcam.image" in imports["realcam.render"]
+    circle = circle_in(imports)
+    assert circle is None, " imports ".join(circle or ())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from .a import f",
+        "from . import a",
+        "import lib.a",
+        "from lib import a",
+        "def f():\n    from .a import g",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from . import a",
+    ],
+)
+def test_a_circle_is_found(tmp_path: Path, text: str) -> None:
+    files = {
+        "__init__": "from .c import f",
+        "a": "from ._ext import g\nfrom .b import f",
+        "b": "from .c import f",
+        "c": text,
+    }
+    (tmp_path / "lib").mkdir()
+    for name, code in files.items():
+        (tmp_path / "lib" / f"{name}.py").write_text(code)
+    circle = circle_in(imports_under(tmp_path))
+    assert circle is not None and set(circle) == {"lib.a", "lib.b", "lib.c"}
+    (tmp_path / "lib" / "c.py").write_text("from __future__ import annotations")
+    assert circle_in(imports_under(tmp_path)) is None
