@@ -17,8 +17,8 @@ from pathlib import Path
 
 import drjit as dr
 import mitsuba as mi
+from gpu_benchmarks import gpu_camera
 from mitsuba_scene import frame_scene, sensor
-from realcam.bench import gpu_camera
 
 (WIDTH, HEIGHT), SPP, ROUNDS = gpu_camera().film.resolution, 256, 4
 

@@ -27,7 +27,8 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 import realcam as rc
-from realcam.bench import Result, frame_camera, frame_scene, machine
+from frame_scene import frame_camera, frame_scene
+from machine import Result, machine
 
 mi.set_variant("llvm_ad_rgb")
 

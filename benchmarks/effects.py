@@ -14,7 +14,8 @@ import time
 import warnings
 
 import realcam as rc
-from realcam.bench import frame_camera, frame_scene, machine
+from frame_scene import frame_camera, frame_scene
+from machine import machine
 
 EFFECTS: list[tuple[str, ...]] = [
     (),

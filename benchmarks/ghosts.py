@@ -16,7 +16,7 @@ import warnings
 
 import numpy as np
 import realcam as rc
-from realcam.bench import machine
+from machine import machine
 from srgb import srgb_codes
 
 SIDE = 640

@@ -28,7 +28,7 @@ SMALL = 2
 def take_picture(program: str, device: str, spheres: int) -> None:
     """A picture of 64 x 64 pixels with one sample each."""
     import realcam as rc
-    from realcam.bench import frame_camera, frame_scene
+    from frame_scene import frame_camera, frame_scene
 
     camera = frame_camera("pinhole", rc.Film(24, 24, (64, 64)))
     if program == "realcam":

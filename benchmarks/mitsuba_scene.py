@@ -7,7 +7,7 @@ import math
 import mitsuba as mi
 import numpy as np
 import realcam as rc
-from realcam.bench import FRAME_EMITTER_RADIANCE, frame_scene_arrays
+from frame_scene import FRAME_EMITTER_RADIANCE, frame_scene_arrays
 
 Settings = dict[str, object]
 
@@ -26,7 +26,7 @@ def mesh(name: str, vertices: np.ndarray, faces: np.ndarray, radiance: float = 0
 
 
 def frame_scene(spheres: int, boxes: int, sky: float = 0.0) -> mi.Scene:
-    """realcam.bench.frame_scene: the same triangles, emitter and sky (cd/m^2)."""
+    """frame_scene of realcam: the same triangles, emitter and sky (cd/m^2)."""
     vertices, faces, materials = frame_scene_arrays(spheres=spheres, boxes=boxes)
     emitter = materials == 1
     parts = {

@@ -25,9 +25,9 @@ from statistics import median
 import flip_evaluator
 import numpy as np
 import realcam as rc
+from machine import machine
 from picture_changes import Comparison, Picture, Size, added_codes, square_means, values
 from plan_shots import Shot, drawn_shot
-from realcam.bench import machine
 from srgb import srgb_codes
 from tile_samples import seconds_of
 

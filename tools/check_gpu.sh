@@ -11,7 +11,7 @@ steps=("${@:-build test sanitize bench}")
 read -ra steps <<<"${steps[*]}"
 python=$(command -v "${PYTHON:-python3}")
 mkdir -p "$out"
-export PYTHONPATH=$PWD/python${PYTHONPATH:+:$PYTHONPATH}
+export PYTHONPATH=$PWD/python:$PWD/benchmarks${PYTHONPATH:+:$PYTHONPATH}
 failed=()
 
 step() {  # step NAME COMMAND...: its output goes to a log, of which the end is shown where it fails
@@ -45,7 +45,7 @@ foreign() {
     cp -r python/realcam build/foreign/package/ && cp --remove-destination build/foreign/python/_core*.so build/foreign/package/realcam/ || return
     PYTHONPATH=build/foreign/package:$PYTHONPATH "$python" - <<'TEXT'
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 
 assert "foreign" in rc.__file__
 print("\n".join(rc.devices()))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 
 pytestmark = pytest.mark.gpu
 

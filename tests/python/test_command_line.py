@@ -109,7 +109,6 @@ def test_examples_are_command_lines(name: str, example: str) -> None:
         ("bench --threads many", "--threads"),
         ("lens plot mtf-feild tessar-50mm", r'unknown plot "mtf-feild" \(did you mean mtf-field'),
         ("bench lens-ray", r"did you mean lens-rays"),
-        ("paper --only snel", r"did you mean snell"),
         ("lens photo tessar-50mm --iso -3", "--iso: a positive number is wanted"),
         ("lens plot mtf tessar-50mm -o mtf.txt", r"\.json or \.csv is wanted"),
     ],
@@ -121,6 +120,16 @@ def test_mistyped_words(
     assert (code, output, errors.count("\n")) == (2, "", 1)
     assert errors.startswith("realcam: error: ")
     assert re.search(meant, errors), errors
+
+
+def test_bench_says_where_the_benchmarks_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # As installed: the package alone.
+    monkeypatch.setattr("realcam.cli.bench.__file__", str(tmp_path / "site-packages/realcam/cli/bench.py"))
+    code, output, errors = said(["bench", "frame"], monkeypatch, capsys)
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert "source repository" in errors and "./run bench" in errors
 
 
 @pictures

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 
 GUIDES = ("albedo", "normal")
 

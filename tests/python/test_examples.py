@@ -98,3 +98,19 @@ def test_dataset_makes_pictures_and_labels_and_goes_on(tmp_path: Path) -> None:
     run(again, 1)
     assert (again / "00000.json").read_text() == (first / "00000.json").read_text()
     assert (again / "00000.png").read_bytes() == (first / "00000.png").read_bytes()
+
+
+def test_paper_page_is_made_by_one_command(tmp_path: Path) -> None:
+    def run(*words: object) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, EXAMPLES / "paper_page.py", *words]
+        return subprocess.run(
+            [str(word) for word in command], check=False, capture_output=True, text=True, timeout=300, cwd=tmp_path
+        )
+
+    made = run("--only", "snell", "-o", "page.html")
+    assert made.returncode == 0 and "wrote page.html" in made.stdout, made.stderr
+    assert "degrees traced" in (tmp_path / "page.html").read_text(encoding="utf-8")
+    for words, message in ((["--only", "snel"], "snell"), (["--output", "page.pdf"], r".html is wanted")):
+        refused = run(*words)
+        assert refused.returncode == 2 and message in refused.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 from realcam_command import executable
 
 from . import scenes

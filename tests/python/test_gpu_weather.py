@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 
 GPUS = [line.split(":")[1] for line in rc.devices() if line.startswith("cuda:")]
 needs_gpu = pytest.mark.skipif(not GPUS, reason="no GPU on this machine")
@@ -24,7 +24,7 @@ LENS = rc.Lens.load("tessar-50mm").focused(4.0)
 
 TAKE = """
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 lens = rc.Lens.load("tessar-50mm").focused(4.0)
 camera = rc.Camera(lens, film=rc.Film(36, 24, (90, 60)), position=(0, 1, 3), look_at=(0, 0.6, -2))
 scene = frame_scene(spheres=3, boxes=3)
@@ -38,7 +38,7 @@ def camera(resolution: tuple[int, int] = (90, 60)) -> rc.Camera:
 def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", TAKE + code],
-        env=os.environ | environment,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)} | environment,
         capture_output=True,
         text=True,
         timeout=300,

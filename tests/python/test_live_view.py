@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 
 HAS_GPU = any(line.startswith("cuda:") for line in rc.devices())
 needs_gpu = pytest.mark.skipif(not HAS_GPU, reason="no GPU on this machine")

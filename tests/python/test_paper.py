@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.paper import EXPERIMENTS, save_page
-from realcam.paper.depth_of_field import CIRCLE_MM, magnification_for, measured_blur_mm
-from realcam.paper.snell import refracted
+from paper import EXPERIMENTS, save_page
+from paper.depth_of_field import CIRCLE_MM, magnification_for, measured_blur_mm
+from paper.snell import refracted
 
 
 @pytest.mark.parametrize("angle", [10.0, 40.0, 80.0])

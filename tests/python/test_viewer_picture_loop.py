@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.bench import frame_scene
+from frame_scene import frame_scene
 from realcam.viewer.noise_measurement import NoiseMeasurement
 from realcam.viewer.pace import Pace
 from realcam.viewer.picture_loop import PictureLoop

@@ -10,7 +10,7 @@ import typer
 
 from .. import __version__
 from .._core import LensFileError, RealcamError, one_line
-from . import bench, cost, demo, lens, paper, sensor, view
+from . import bench, cost, demo, lens, sensor, view
 from .help_texts import finish_help
 from .options import add_command_of_the_executable, advice_on
 
@@ -33,7 +33,6 @@ app.command("expose")(sensor.expose)
 app.command("demo")(demo.demo)
 app.command("bench")(bench.bench)
 app.command("cost")(cost.cost)
-app.command("paper")(paper.paper)
 app.command("view")(view.view)
 
 

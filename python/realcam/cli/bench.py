@@ -1,14 +1,16 @@
-"""realcam bench: measure this machine."""
+"""realcam bench: measure this machine. What is measured is in benchmarks/ of the source repository."""
 
 from __future__ import annotations
 
 import json
+import sys
+from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
 from rich.console import Console
 
-from .._core import devices
+from .._core import InputError, devices
 from .options import check_known
 
 
@@ -26,19 +28,26 @@ def bench(
     as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit.")] = False,
 ) -> None:
     """Measure rays through the lens, pupil set-up, sampling efficiency, a frame and a sensor on this machine."""
-    from ..bench import BENCHMARKS, GPU_BENCHMARKS, machine
+    folder = Path(__file__).resolve().parents[3] / "benchmarks"
+    if not (folder / "cpu_benchmarks.py").is_file():
+        raise InputError("the benchmarks are in the source repository, where ./run bench starts them")
+    sys.path.insert(0, str(folder))
+    from cpu_benchmarks import CPU_BENCHMARKS
+    from gpu_benchmarks import GPU_BENCHMARKS
+    from machine import machine
 
+    benchmarks = CPU_BENCHMARKS | GPU_BENCHMARKS
     has_gpu = any(line.startswith("cuda") for line in devices())
-    wanted = names or [name for name in BENCHMARKS if has_gpu or name not in GPU_BENCHMARKS]
+    wanted = names or list(benchmarks if has_gpu else CPU_BENCHMARKS)
     for name in wanted:
-        check_known(name, BENCHMARKS, "benchmark")
+        check_known(name, benchmarks, "benchmark")
     results: dict[str, object] = {}
     status = Console(stderr=True)
     for name in wanted:
         with status.status(f"measuring {name}"):
-            results[name] = BENCHMARKS[name](threads)
+            results[name] = benchmarks[name](threads)
         if not as_json:
-            _print(name, results[name], BENCHMARKS[name].__doc__ or "")
+            _print(name, results[name], benchmarks[name].__doc__ or "")
     if as_json:
         typer.echo(json.dumps({"machine": machine(), "threads": threads, "results": results}, indent=2))
 

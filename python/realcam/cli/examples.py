@@ -31,7 +31,6 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "demo": ("realcam demo -o pictures --spp 200",),
     "bench": ("realcam bench lens-rays frame --json",),
     "cost": ("realcam cost shot.toml -o cost.html",),
-    "paper": ("realcam paper -o paper.html",),
     "view": (
         "realcam view",
         "realcam view shot.toml --port 8081 --no-browser",

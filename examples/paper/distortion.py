@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from realcam import Camera, Film, Lens, render
+from realcam.analysis import distortion
 
-from .._core import Camera, Film, Lens
-from ..analysis import distortion
-from ..render import render
 from .experiment import Experiment, Row, photographed
 from .scenes import grid_board, room
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from .._core import Lens
-from ..draw import draw_states
+from realcam import Lens
+from realcam.draw import draw_states
+
 from .experiment import Experiment, Row, drawn
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import matplotlib.figure
 import numpy as np
+from realcam import Camera, Film, Lens, render
+from realcam._core import develop
+from realcam.draw import draw_cross_section
 
-from .._core import Camera, Film, Lens, develop
-from ..draw import draw_cross_section
-from ..render import render
 from .experiment import Experiment, Figure, Row, drawn, pixels
 from .scenes import stars
 

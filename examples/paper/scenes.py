@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-
-from .._core import Material, Scene
+from realcam import Material, Scene
 
 
 def stars(places_m: Sequence[tuple[float, float, float]], side_m: Sequence[float] | float, radiance: float) -> Scene:

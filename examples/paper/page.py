@@ -7,8 +7,8 @@ import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from .. import files
-from .._core import ImageFileError, InputError
+from realcam import ImageFileError, InputError, files
+
 from . import aberrations, depth_of_field, distortion, double_gauss, interaction, pixel_pupil, snell, speed
 from .experiment import Experiment
 

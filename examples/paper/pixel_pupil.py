@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
-from .._core import Camera, Film, Lens
-from ..accuracy import accuracy_cost
-from ..bench import frame_scene
+from frame_scene import frame_scene
+from realcam import Camera, Film, Lens
+from realcam.accuracy import accuracy_cost
+
 from .experiment import Experiment, Row
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 
-from .._core import LiveView, devices
-from ..bench import frame_camera, frame_scene
-from ..render import render
+from frame_scene import frame_camera, frame_scene
+from realcam import LiveView, devices, render
+
 from .experiment import Experiment, Row
 
 SAMPLES = 20

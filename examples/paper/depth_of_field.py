@@ -6,10 +6,9 @@ import math
 
 import matplotlib.figure
 import numpy as np
+from realcam import Camera, Film, Lens, render
+from realcam.photography import depth_of_field
 
-from .._core import Camera, Film, Lens
-from ..photography import depth_of_field
-from ..render import render
 from .experiment import Experiment, Row, drawn
 from .scenes import stars
 

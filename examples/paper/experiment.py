@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import matplotlib
 import matplotlib.figure
 import numpy as np
-
-from .._core import develop
-from ..figure_files import figure_bytes
-from ..image import Image
+from realcam._core import develop
+from realcam.figure_files import figure_bytes
+from realcam.image import Image
 
 
 @dataclass(frozen=True)

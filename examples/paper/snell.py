@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from realcam import Lens, Surface
+from realcam.lens import Stop
 
-from .._core import Lens, Surface
-from ..lens import Stop
 from .experiment import Experiment, Row
 
 

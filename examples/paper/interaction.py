@@ -7,15 +7,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .._core import Film, Lens, devices
-from ..bench import frame_camera, frame_scene
-from ..draw import draw_states
-from ..shot import Shot
+from frame_scene import frame_camera, frame_scene
+from realcam import Film, Lens, devices
+from realcam.draw import draw_states
+from realcam.shot import Shot
+
 from .experiment import Experiment, Figure, Row, drawn, photographed
 
 if TYPE_CHECKING:
-    from ..viewer.lens_bench import LensBench
-    from ..viewer.picture_request import Frame
+    from realcam.viewer.lens_bench import LensBench
+    from realcam.viewer.picture_request import Frame
 
 SIDE = 320
 SAMPLES = 64
@@ -25,7 +26,7 @@ BENT_MM = 26.0  # the first radius, instead of 29.475
 def experiment(device: str) -> Experiment:
     title = "Figure 9: the interactive system"
     try:
-        from ..viewer.lens_bench import LensBench
+        from realcam.viewer.lens_bench import LensBench
     except ImportError as error:
         return Experiment(title, (f"Left out: it needs {error.name}; pip install realcam[view] brings it.",))
     lens, scene = Lens.load("double-gauss-50mm"), frame_scene()

@@ -1,0 +1,40 @@
+"""The machine that figures are of."""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+import time
+from pathlib import Path
+
+from realcam import _core
+
+Result = dict[str, object]
+
+
+def machine() -> Result:
+    """Processor, system, version and commit: what a figure means nothing without."""
+    return {
+        "processor": _processor(),
+        "system": f"{platform.system()} {platform.release()}",
+        "devices": _core.devices(),
+        "realcam": _core.__version__,
+        "commit": _commit(),
+        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+    }
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor()
+    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+
+
+def _commit() -> str | None:
+    command = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--dirty", "--abbrev=12"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return None
