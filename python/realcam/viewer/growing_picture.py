@@ -1,0 +1,87 @@
+"""The picture that collects samples."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Camera
+from .noise_measurement import NoiseMeasurement
+from .pace import Size
+from .picture_request import Costs, Frame, PictureRequest
+
+Arrays = tuple[NDArray[np.float32], NDArray[np.float32]]  # exposure and depth
+
+
+@dataclass
+class GrowingPicture:
+    """What is known of it; a PictureTaker adds samples."""
+
+    request: PictureRequest
+    serial: int
+    begun: float
+    size: Size
+    samples: int = 0
+    spent_s: float = 0.0  #: by these
+    exposure_time_s: float = 0.0  #: with which the samples were developed last
+    is_final: bool = False
+    refines_from: float = 0.0  #: time.perf_counter()
+    is_given_up: bool = False  #: and its samples with it
+    noise_codes: float | None = None
+    noise_tiles: list[list[float]] | None = None
+    costs: Costs | None = None
+    noise: NoiseMeasurement = field(default_factory=NoiseMeasurement)
+    kept: Arrays | None = None  #: of the last frame, where the next one is slow
+
+    def can_be(self, request: PictureRequest) -> bool:
+        """Whether its samples are there and serve a request."""
+        return not self.is_given_up and self.request.is_same_picture(request)
+
+    @property
+    def whole(self) -> Size:
+        """The resolution that is wanted in the end."""
+        return self.request.camera.film.resolution
+
+    def effects(self) -> list[str]:
+        """Of fewer pixels diffraction is left out: it is smaller than they are, and its tables take 50 ms of a core."""
+        return [effect for effect in self.request.effects if self.size == self.whole or effect != "diffraction"]
+
+    def camera(self, metered_s: float) -> Camera:
+        """With the pixels of now. metered_s: the exposure time where it follows the light."""
+        camera = self.request.camera
+        film = camera.film.replace(resolution=self.size)
+        time_s = metered_s if self.request.is_automatic else camera.exposure_time_s
+        return camera.replace(film=film, exposure_time_s=time_s)
+
+    def tell_noise(self, exposure_time_s: float) -> None:
+        developed = exposure_time_s, self.request.camera.iso, self.request.tone
+        self.noise_codes = self.noise.codes(*developed)
+        self.noise_tiles = self.noise.tiles(*developed)
+
+    def is_good_enough(self) -> bool:
+        is_quiet = self.noise_codes is not None and self.noise_codes <= self.request.noise_codes
+        return is_quiet or self.samples >= self.request.max_spp
+
+    def frame_of(self, codes: NDArray[np.uint8], exposure_time_s: float) -> Callable[..., Frame]:
+        """Makes the Frame that shows it as it stands, of jpeg and jpeg_quality."""
+        return partial(
+            Frame,
+            serial=self.serial,
+            width=codes.shape[1],
+            height=codes.shape[0],
+            whole_width=self.whole[0],
+            whole_height=self.whole[1],
+            samples=self.samples,
+            is_preview=codes.shape[1::-1] != self.whole,
+            is_final=self.is_final,
+            noise_codes=self.noise_codes,
+            noise_tiles=self.noise_tiles,
+            seconds=time.perf_counter() - self.begun,
+            exposure_time_s=exposure_time_s,
+            costs=self.costs,
+        )

@@ -1,0 +1,128 @@
+"""Takes and develops the samples of a picture that grows."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Camera, LiveFrame, LiveView, develop
+from ..image import Image, image_of
+from .growing_picture import Arrays, GrowingPicture
+from .light_meter import metered_exposure_lx_s, middle_grey_lx_s
+from .pace import Pace
+from .picture_request import Costs, PictureRequest
+
+_FEW_PIXELS = 50_000  # are developed here sooner than one more sample of them is taken
+
+
+class PictureTaker:
+    """Works on one thread; what it has metered stays from picture to picture.
+
+    wait_for: called with a frame that is under way while the one before is kept, and returns when it is ready.
+    """
+
+    def __init__(self, live: LiveView, seed: int, wait_for: Callable[[LiveFrame, GrowingPicture], None]) -> None:
+        self._live = live
+        self._seed = seed
+        self._wait_for = wait_for
+        self._metered_s = 0.0
+        self.pace = Pace()
+
+    def new_picture(self, request: PictureRequest, serial: int, begun: float) -> GrowingPicture:
+        """Without samples yet."""
+        self._metered_s = self._metered_s or request.camera.exposure_time_s
+        return GrowingPicture(request, serial, begun, self.pace.preview_size(request.camera.film.resolution))
+
+    def camera(self, picture: GrowingPicture) -> Camera:
+        return picture.camera(self._metered_s)
+
+    def shoot(self, picture: GrowingPicture, spp: int) -> NDArray[np.uint8]:
+        """Takes samples; all that are there, as they are wanted now."""
+        request, camera, effects = picture.request, self.camera(picture), picture.effects()
+        start = time.perf_counter()
+        frame = self._live.shoot(
+            camera,
+            spp=spp,
+            tone=request.tone,
+            effects=effects,
+            illuminant=request.illuminant_with(effects),
+            transport=request.transport,
+            clamp_cd_m2=request.clamp_cd_m2,
+        )
+        if picture.kept:
+            self._wait_for(frame, picture)
+        codes = frame.codes
+        seconds = max(time.perf_counter() - start, 1e-6)
+        self.pace.took(spp * math.prod(picture.size), seconds, is_first=picture.samples == 0)
+        picture.spent_s += seconds
+        picture.samples, picture.exposure_time_s = frame.samples, camera.exposure_time_s
+        picture.kept = self._live_arrays() if self.pace.was_slow(seconds) else None
+        is_as_wanted = picture.request is request  # another exposure may have been set while this frame was taken
+        return codes if is_as_wanted else self._developed_here(picture)
+
+    def keep(self, picture: GrowingPicture) -> None:
+        """Keeps the last frame, where the next one is slow."""
+        picture.kept = self._live_arrays()
+
+    def meter(self, picture: GrowingPicture) -> bool:
+        """Sets the exposure time by the light of the picture. Whether it has changed so that it is seen."""
+        exposure, _ = self.arrays(picture)
+        mean = metered_exposure_lx_s(exposure)
+        if not (mean > 0 and math.isfinite(mean)):
+            return False
+        before = picture.exposure_time_s
+        wanted = middle_grey_lx_s(picture.request.camera.iso, picture.request.compensation_ev)
+        self._metered_s = min(max(before * wanted / mean, 1e-6), 1e4)
+        return abs(math.log2(self._metered_s / before)) > 0.02
+
+    def developed(self, picture: GrowingPicture) -> NDArray[np.uint8]:
+        """The samples that are there with another exposure."""
+        if not picture.kept and math.prod(picture.size) > _FEW_PIXELS:
+            return self.shoot(picture, 1)  # the device takes a sample and develops in less time
+        return self._developed_here(picture)
+
+    def measure_noise(self, picture: GrowingPicture) -> None:
+        """Where it is due; and whether the picture is good enough with it."""
+        if picture.noise.is_due(picture.samples):
+            exposure, _ = self.arrays(picture)
+            picture.noise.add(picture.samples, exposure / np.float32(picture.exposure_time_s))
+            picture.tell_noise(self.camera(picture).exposure_time_s)
+            if picture.noise_codes is not None:
+                picture.costs = Costs.of(self._collected(picture).stats, picture.spent_s)
+        picture.is_final = picture.is_good_enough()
+
+    def image(self, picture: GrowingPicture) -> Image:
+        """All samples, with the exposure time that is wanted now."""
+        image = self._collected(picture)
+        time_s = self.camera(picture).exposure_time_s
+        ratio = np.float32(time_s / image.camera.exposure_time_s)
+        return replace(image, pixels=image.pixels * ratio, camera=image.camera.replace(exposure_time_s=time_s))
+
+    def arrays(self, picture: GrowingPicture) -> Arrays:
+        return picture.kept or self._live_arrays()
+
+    def _developed_here(self, picture: GrowingPicture) -> NDArray[np.uint8]:
+        exposure, _ = self.arrays(picture)
+        ratio = self.camera(picture).exposure_time_s / picture.exposure_time_s
+        return develop(exposure * np.float32(ratio), picture.request.camera.iso, picture.request.tone)
+
+    def _live_arrays(self) -> Arrays:
+        exposure, depth = self._live.picture()
+        return np.asarray(exposure), np.asarray(depth)
+
+    def _collected(self, picture: GrowingPicture) -> Image:
+        request = picture.request
+        return image_of(
+            self._live._image(),
+            self.camera(picture).replace(exposure_time_s=picture.exposure_time_s),
+            self._seed,
+            request.transport,
+            request.clamp_cd_m2,
+            request.effects,
+            request.illuminant_with(request.effects),
+        )
