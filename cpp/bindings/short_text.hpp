@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "../io/text/utf8.hpp"
 #include "../math/color.hpp"
 
 namespace realcam::bindings {
@@ -37,9 +38,7 @@ inline std::string shortened(std::string name) {
     for (char& c : name)
         if (static_cast<unsigned char>(c) < ' ') c = ' ';
     if (name.size() <= kRoom) return name;
-    std::size_t end = kRoom - 3;
-    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;  // no half character of UTF-8
-    return name.substr(0, end) + "...";
+    return name.substr(0, io::utf8_begin(name, kRoom - 3)) + "...";
 }
 
 /// "1/125 s", "2 s".

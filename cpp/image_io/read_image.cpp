@@ -8,6 +8,7 @@
 #include "../io/files/free_memory.hpp"
 #include "../io/scene/decoded_image.hpp"
 #include "../io/text/printable.hpp"
+#include "../io/text/utf8.hpp"
 #include "environment_map.hpp"
 #include "image_file.hpp"
 #include "open_picture.hpp"

@@ -5,27 +5,12 @@
 
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
+#include "../text/utf8.hpp"
 
 namespace realcam::io {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\v\f";
-
-void add_utf8(std::string& out, unsigned point) {
-    const auto add = [&](unsigned byte) { out += static_cast<char>(byte); };
-    if (point < 0x80) return add(point);
-    if (point < 0x800) {
-        add(0xc0 | (point >> 6));
-    } else if (point < 0x10000) {
-        add(0xe0 | (point >> 12));
-        add(0x80 | ((point >> 6) & 0x3f));
-    } else {
-        add(0xf0 | (point >> 18));
-        add(0x80 | ((point >> 12) & 0x3f));
-        add(0x80 | ((point >> 6) & 0x3f));
-    }
-    add(0x80 | (point & 0x3f));
-}
 
 std::string from_utf16(std::string_view bytes, bool big_endian, const std::string& file) {
     const auto fail = [&](const std::string& out, const char* what) {
@@ -42,10 +27,10 @@ std::string from_utf16(std::string_view bytes, bool big_endian, const std::strin
         if (point >= 0xd800 && point < 0xe000) {
             const unsigned low = i + 3 < bytes.size() ? unit(i + 2) : 0;
             if (point >= 0xdc00 || low < 0xdc00 || low >= 0xe000) fail(out, "a character of it is broken");
-            point = 0x10000 + ((point - 0xd800) << 10) + (low - 0xdc00);
+            point = from_surrogates(point, low);
             i += 2;
         }
-        add_utf8(out, point);
+        append_utf8(out, point);
     }
     if (bytes.size() % 2) fail(out, "ends in the middle of a character");
     return out;
@@ -53,7 +38,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian, const std::strin
 
 std::string from_latin1(std::string_view bytes) {
     std::string out;
-    for (const char c : bytes) add_utf8(out, static_cast<unsigned char>(c));
+    for (const char c : bytes) append_utf8(out, static_cast<unsigned char>(c));
     return out;
 }
 

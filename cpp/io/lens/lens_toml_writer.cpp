@@ -7,6 +7,7 @@
 #include "../../optics/prescription/named_coatings.hpp"
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
+#include "../text/utf8.hpp"
 #include "lens_format.hpp"
 #include "lens_glass.hpp"
 #include "lens_material.hpp"

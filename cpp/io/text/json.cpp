@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "text_number.hpp"
+#include "utf8.hpp"
 
 namespace realcam::io {
 namespace {
@@ -148,9 +149,9 @@ private:
                 at_ += 2;
                 const unsigned second = hex4();
                 if (second < 0xdc00 || second >= 0xe000) fail("the second half of a surrogate pair after '\\u'");
-                point = 0x10000 + ((point - 0xd800) << 10) + (second - 0xdc00);
+                point = from_surrogates(point, second);
             }
-            add_utf8(out, point);
+            append_utf8(out, point);
         } else {
             at_ = std::min(at_, text_.size());
             fail("an escape of JSON after '\\'");
@@ -164,23 +165,6 @@ private:
         if (error != std::errc() || end != digits.data() + 4) fail("four hexadecimal digits after '\\u'");
         at_ += 4;
         return value;
-    }
-
-    static void add_utf8(std::string& out, unsigned point) {
-        const auto add = [&](unsigned byte) { out += static_cast<char>(byte); };
-        if (point < 0x80) return add(point);
-        if (point < 0x800) {
-            add(0xc0 | (point >> 6));
-        } else {
-            if (point < 0x10000) {
-                add(0xe0 | (point >> 12));
-            } else {
-                add(0xf0 | ((point >> 18) & 7));
-                add(0x80 | ((point >> 12) & 0x3f));
-            }
-            add(0x80 | ((point >> 6) & 0x3f));
-        }
-        add(0x80 | (point & 0x3f));
     }
 
     std::string_view text_;

@@ -10,7 +10,4 @@ std::string printable(std::string_view bytes);
 /// The same between quotes, cut to some 60 bytes: what an error message repeats of its input.
 std::string in_quotes(std::string_view bytes);
 
-/// Whether bytes are valid UTF-8.
-bool is_utf8(std::string_view bytes);
-
 }  // namespace realcam::io
