@@ -178,7 +178,7 @@ void draw_large_means(SensorLanes<N>& lanes) {
         const PoissonAttempt attempt = hat.attempt(open_unit_double(attempt_bits(lanes.stream[k], 0, 0)),
                                                    open_unit_double(attempt_bits(lanes.stream[k], 0, 1)));
         lanes.count[k] = is_large ? attempt.count : lanes.count[k];
-        lanes.is_left[k] = is_large & !attempt.is_accepted ? 1 : 0;
+        lanes.is_left[k] = (is_large & !attempt.is_accepted) ? 1 : 0;
         left += lanes.is_left[k];
     }
     if (left == 0) return;

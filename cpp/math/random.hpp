@@ -147,7 +147,7 @@ REALCAM_INLINE Vec2f sample_joint_2d(std::uint32_t stream, std::uint32_t sample,
 
 /// Density of each of its points by itself, over all streams.
 REALCAM_INLINE float square_pdf(Vec2f u) {
-    return (u.x >= 0.0f) & (u.x < 1.0f) & (u.y >= 0.0f) & (u.y < 1.0f) ? 1.0f : 0.0f;
+    return ((u.x >= 0.0f) & (u.x < 1.0f) & (u.y >= 0.0f) & (u.y < 1.0f)) ? 1.0f : 0.0f;
 }
 
 }  // namespace REALCAM_NAMESPACE

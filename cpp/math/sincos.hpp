@@ -16,7 +16,7 @@ REALCAM_INLINE Vec2f cos_sin_of_turn(float turns) {
     const bool swapped = (nearest & 1) != 0;
     const float a = swapped ? sin : cos, b = swapped ? cos : sin;
     const int quadrant = nearest & 3;
-    return {(quadrant == 1) | (quadrant == 2) ? -a : a, quadrant >= 2 ? -b : b};
+    return {((quadrant == 1) | (quadrant == 2)) ? -a : a, quadrant >= 2 ? -b : b};
 }
 
 /// Density per radian of the angle of a turn that is drawn evenly.

@@ -53,7 +53,7 @@ REALCAM_INLINE void scatter_glossy(const PathSettings& settings, int bounce, con
         // The diffuse lobe that sends no ray is left out.
         const Color sum = diffuse_sends * value.diffuse + value.specular;
         const Color next = select(pdf > 0.0f, (1.0f / pdf) * throughput * sum, Color{0, 0, 0});
-        path.rays.active[i] = is_used & !is_black(next) ? 1 : 0;
+        path.rays.active[i] = (is_used & !is_black(next)) ? 1 : 0;
         path.throughput.set(i, select(is_used, next, throughput));
         path.rays.origin.set(i, ray_start(place, direction));
         path.rays.direction.set(i, select(is_used, direction, arriving));

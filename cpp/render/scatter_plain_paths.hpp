@@ -33,7 +33,7 @@ REALCAM_INLINE void scatter_lambert(const PathSettings& settings, int bounce, co
         const float density = cosine_pdf(normal, direction);
         const float above = select(density > 0.0f, dot(place.geometric_normal, direction), 0.0f);
         const Color throughput = path.throughput[i] * surfaces.diffuse[i];
-        path.rays.active[i] = (above > 0.0f) & (i < count) & !is_black(throughput) ? 1 : 0;
+        path.rays.active[i] = ((above > 0.0f) & (i < count) & !is_black(throughput)) ? 1 : 0;
         path.throughput.set(i, throughput);
         path.rays.origin.set(i, ray_start(place, direction));
         path.rays.direction.set(i, direction);

@@ -16,7 +16,7 @@ namespace {
 class Averaging {
 public:
     Averaging(const TextureView& texture, Checkpoint& checkpoint)
-        : texture_(texture), checkpoint_(checkpoint), light_(light_of_codes(texture.encoding)) {
+        : checkpoint_(checkpoint), light_(light_of_codes(texture.encoding)) {
         if (texture.rgba) {
             // Codes by light; 4096 steps of a square root keep dark codes apart.
             for (std::size_t i = 0; i < codes_.size(); ++i) codes_[i] = exact_code(light_at(i));
@@ -83,7 +83,6 @@ private:
         return v - *(above - 1) < *above - v ? static_cast<std::uint8_t>(code - 1) : code;
     }
 
-    const TextureView& texture_;
     Checkpoint& checkpoint_;
     std::array<float, 256> light_;
     std::array<std::uint8_t, kSteps + 1> codes_{};
