@@ -97,7 +97,7 @@ public:
 
     /// Relative to the folder of the shot file; empty where the key is absent.
     std::string path(const char* key) const {
-        const std::string text = name(key);
+        std::string text = name(key);
         if (text.empty()) {
             if (find(key)) fail('"' + std::string(key) + "\" is empty", find(key));
             return text;
