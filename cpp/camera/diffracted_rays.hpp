@@ -12,7 +12,7 @@ template <int N>
 struct DiffractedPoints {
     Vec2Lanes<float, N> points;  ///< mm
     Vec2Lanes<float, N> kicks;   ///< from them to the places of the samples, mm for each nm of wavelength
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t from_edge[N];  ///< 1: see DiffractionKick
+    Lanes<std::int32_t, N> from_edge;  ///< 1: see DiffractionKick
 
     REALCAM_INLINE Vec2f operator[](int lane) const { return points[lane]; }
 };

@@ -55,7 +55,7 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
     to_film.surfaces = view.film_surfaces;
     for (int step = 1; step < kSharedWavelengths; ++step) {
         LensRays<float, N> back;
-        alignas(kLaneAlignment<float, N>) float nm[N], variable[N];
+        Lanes<float, N> nm, variable;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
             back.origin.set(i, left.origin[i]);
@@ -102,7 +102,7 @@ REALCAM_HD inline void generate_dispersed_rays_from(const CameraView& camera, co
                                                     SampleWavelengths<N>& wavelengths, CameraRays<N>& rays) {
     using namespace dispersed_rays_detail;
     const DispersionView& view = camera.dispersion;
-    alignas(kLaneAlignment<float, N>) float variable[N];
+    Lanes<float, N> variable;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) variable[i] = view.variable.at(wavelengths.nm[i]);
     LensRays<float, N> inside;

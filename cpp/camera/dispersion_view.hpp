@@ -29,9 +29,9 @@ struct DispersionView {
 /// Wavelengths for which samples count: one that was drawn, and others at steps from its place, see film_color.
 template <int N>
 struct SampleWavelengths {
-    alignas(kLaneAlignment<float, N>) float nm[N], place[N];
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t shares[N];
-    alignas(kLaneAlignment<float, N>) float passed[kSharedWavelengths][N];  ///< by a coated lens, at each step
+    Lanes<float, N> nm, place;
+    Lanes<std::int32_t, N> shares;
+    Lanes<float, N> passed[kSharedWavelengths];  ///< by a coated lens, at each step
 };
 
 /// Wavelengths are drawn evenly over the cells: this one is the same share of its cell as the place's.

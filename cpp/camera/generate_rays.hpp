@@ -11,11 +11,11 @@ namespace REALCAM_NAMESPACE {
 /// Which samples a block of lanes takes. Unused lanes have used = 0 and otherwise valid numbers.
 template <int N>
 struct SampleBlock {
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t column[N],
-        row[N];  ///< of the pixel; row 0 at the top of the picture
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t used[N];
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t stream[N];  ///< pixel_stream() of the pixel
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t sample[N];
+    Lanes<std::int32_t, N> column,
+        row;  ///< of the pixel; row 0 at the top of the picture
+    Lanes<std::int32_t, N> used;
+    Lanes<std::uint32_t, N> stream;  ///< pixel_stream() of the pixel
+    Lanes<std::uint32_t, N> sample;
 
     REALCAM_INLINE Vec2f random(int lane, std::uint32_t dimension) const {
         return dimension < kJointPairs ? sample_joint_2d(stream[lane], sample[lane], dimension)
@@ -54,10 +54,9 @@ REALCAM_INLINE constexpr std::uint32_t of_bounce(int bounce) {
 template <int N>
 struct CameraRays {
     Vec3Lanes<float, N> origin, direction;
-    alignas(
-        kLaneAlignment<float, N>) float weight[N];  ///< times the radiance seen: the sample's irradiance on the film
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N];  ///< 1 where a ray was sent into the lens
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t passed[N];  ///< 1 where it left the lens
+    Lanes<float, N> weight;  ///< times the radiance seen: the sample's irradiance on the film
+    Lanes<std::int32_t, N> sampled;  ///< 1 where a ray was sent into the lens
+    Lanes<std::int32_t, N> passed;  ///< 1 where it left the lens
 };
 
 /// Film point of a sample, mm (source paper, equation 1). The lens turns the picture upside down, so the film's axes

@@ -38,7 +38,7 @@ REALCAM_INLINE int next_place(const PupilView& pupil, const PupilRowPosition& ro
 template <int N>
 REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     LensRays<float, N> inside;
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t place[N];
+    Lanes<std::int32_t, N> place;
     int searching = 0;
     for (int i = 0; i < N; ++i) {
         const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});

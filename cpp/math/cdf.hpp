@@ -31,8 +31,8 @@ struct CdfChoice {
 
 template <int N>
 struct CdfChoices {
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t index[N];
-    alignas(kLaneAlignment<float, N>) float probability[N], fresh[N];
+    Lanes<std::int32_t, N> index;
+    Lanes<float, N> probability, fresh;
 
     REALCAM_INLINE CdfChoice operator[](int lane) const { return {index[lane], probability[lane], fresh[lane]}; }
 };
@@ -55,7 +55,7 @@ REALCAM_INLINE CdfChoice choose_from_cdf(const float* cdf, int count, float u) {
 template <int N>
 REALCAM_INLINE void choose_from_cdfs(const float* tables, const std::int32_t (&begin)[N], int count,
                                      const float (&u)[N], int places, CdfChoices<N>& chosen) {
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t first[N], last[N];
+    Lanes<std::int32_t, N> first, last;
     REALCAM_LANES
     for (int i = 0; i < places; ++i) {
         first[i] = begin[i];

@@ -58,7 +58,7 @@ REALCAM_INLINE constexpr Color select(bool condition, Color a, Color b) {
 /// N colours as Vec3Lanes are N vectors.
 template <int N>
 struct ColorLanes {
-    alignas(kLaneAlignment<float, N>) float r[N], g[N], b[N];
+    Lanes<float, N> r, g, b;
 
     REALCAM_INLINE Color operator[](int lane) const { return {r[lane], g[lane], b[lane]}; }
     REALCAM_INLINE void set(int lane, Color c) {

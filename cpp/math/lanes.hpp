@@ -5,10 +5,16 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Alignment of an array of N lanes: a cache line, which vector loads want. A GPU thread has one lane, which a compiler
+/// The alignment is that of a cache line, which vector loads want. A GPU thread has one lane, which a compiler
 /// keeps in registers only where it need not lie in memory at such an address.
 template <class T, int N>
-inline constexpr std::size_t kLaneAlignment = N > 1 ? 64 : alignof(T);
+struct AlignedLanes {
+    using type[[gnu::aligned(N > 1 ? 64 : alignof(T))]] = T[N];
+};
+
+/// An array of N lanes. It is aligned by way of a class, because clang forgets the alignment of an alias template.
+template <class T, int N>
+using Lanes = typename AlignedLanes<T, N>::type;
 
 /// The first `count` of N lanes, and those beside them that a vector register holds too: a loop to this number needs no
 /// scalar code for what is left over.
@@ -23,7 +29,7 @@ REALCAM_INLINE constexpr int whole_vectors(int count) {
 /// A GPU thread uses N = 1, and the arrays become registers.
 template <class T, int N>
 struct Vec3Lanes {
-    alignas(kLaneAlignment<T, N>) T x[N], y[N], z[N];
+    Lanes<T, N> x, y, z;
 
     REALCAM_INLINE Vec3<T> operator[](int lane) const { return {x[lane], y[lane], z[lane]}; }
     REALCAM_INLINE void set(int lane, Vec3<T> v) {
@@ -36,7 +42,7 @@ struct Vec3Lanes {
 /// Likewise of pairs.
 template <class T, int N>
 struct Vec2Lanes {
-    alignas(kLaneAlignment<T, N>) T x[N], y[N];
+    Lanes<T, N> x, y;
 
     REALCAM_INLINE Vec2<T> operator[](int lane) const { return {x[lane], y[lane]}; }
     REALCAM_INLINE void set(int lane, Vec2<T> v) {

@@ -78,7 +78,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     Hits<N> hits;
     std::conditional_t<N == 1, Surfaces<N>, std::conditional_t<kIsPlain, PlainSurfaces<N>, GlossySurfaces<N>>> surfaces;
     ShadowRays<N> shadow;
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t hidden[N];
+    Lanes<std::int32_t, N> hidden;
     std::int32_t darkens[N];  // surfaces that show nothing but shadows
 
     if constexpr (scene_kind == SceneKind::any) {

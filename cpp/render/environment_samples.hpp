@@ -9,7 +9,7 @@ class EnvironmentSamples {
 public:
     REALCAM_INLINE EnvironmentSamples(const EnvironmentView& environment, const Vec2Lanes<float, N>& u, int places)
         : environment_(environment) {
-        alignas(kLaneAlignment<std::int32_t, N>) std::int32_t begin[N];
+        Lanes<std::int32_t, N> begin;
         REALCAM_LANES
         for (int i = 0; i < places; ++i) begin[i] = 0;
         choose_from_cdfs(environment.marginal_cdf, begin, environment.height, u.y, places, row_);

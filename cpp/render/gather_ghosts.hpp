@@ -22,7 +22,7 @@ template <int N>
 struct FilmRays {
     SampleBlock<N> block;
     LensRays<float, N> rays;
-    alignas(kLaneAlignment<float, N>) float weight[N];  ///< times radiance: irradiance on the film
+    Lanes<float, N> weight;  ///< times radiance: irradiance on the film
 };
 
 template <int N>
@@ -67,7 +67,7 @@ REALCAM_HD inline void gather_ghosts(const SceneView& view, const CameraView& ca
     const GhostBlock block = ghost_block(ghosts, range);
     FilmRays<N> film;
     start_film_rays(camera, ghosts, block, first, film);
-    [[maybe_unused]] alignas(kLaneAlignment<float, N>) float place[N], variable[N];  // of the wavelength
+    [[maybe_unused]] Lanes<float, N> place, variable;  // of the wavelength
     if constexpr (has_wavelengths) {
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {

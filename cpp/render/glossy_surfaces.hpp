@@ -10,8 +10,8 @@ template <int N>
 struct GlossySurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> base, f0;
-    alignas(kLaneAlignment<float, N>) float self_offset[N], f90[N], metallic[N], alpha[N];
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t is_glossy[N];
+    Lanes<float, N> self_offset, f90, metallic, alpha;
+    Lanes<std::int32_t, N> is_glossy;
     Surfaces<N> others;
 
     REALCAM_INLINE void set(int place, const SurfacePoint& point) {

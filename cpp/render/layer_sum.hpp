@@ -6,11 +6,11 @@ namespace REALCAM_NAMESPACE {
 /// What one sample of a pixel saw first.
 template <int N>
 struct LayerResults {
-    alignas(kLaneAlignment<float, N>) float weight[N];  ///< of the sample in the exposure; 0: blocked in the lens
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t met[N];  ///< 1 where there is a surface
+    Lanes<float, N> weight;  ///< of the sample in the exposure; 0: blocked in the lens
+    Lanes<std::int32_t, N> met;  ///< 1 where there is a surface
     Vec3Lanes<float, N> normal;  ///< shading normal, unit, scene axes, on the side from which it is seen
     ColorLanes<N> albedo;
-    alignas(kLaneAlignment<float, N>) float circle_mm[N];  ///< of confusion, diameter on the film
+    Lanes<float, N> circle_mm;  ///< of confusion, diameter on the film
 };
 
 /// What the layers of one pixel have collected, weighted as the samples are in the exposure.

@@ -11,7 +11,7 @@ template <int N>
 struct LightSamples {
     Vec3Lanes<float, N> direction;
     ColorLanes<N> irradiance;
-    alignas(kLaneAlignment<float, N>) float distance[N], reach[N], pdf[N];
+    Lanes<float, N> distance, reach, pdf;
 
     REALCAM_INLINE LightSample operator[](int lane) const {
         return {direction[lane], distance[lane], reach[lane], irradiance[lane], pdf[lane]};
@@ -39,15 +39,15 @@ enum class Source : std::int32_t { none, area, sky, other };
 /// The lights that lanes have picked.
 template <int N>
 struct PickedLights {
-    alignas(kLaneAlignment<std::int32_t, N>) Source source[N];
-    alignas(kLaneAlignment<float, N>) float probability[N];
+    Lanes<Source, N> source;
+    Lanes<float, N> probability;
     Vec2Lanes<float, N> u;  ///< what the choice has left of the random numbers
     LightSamples<N> others;
     // Of area lights:
     Vec3Lanes<float, N> corner, edge_u, edge_v, normal;
     ColorLanes<N> radiance;
-    alignas(kLaneAlignment<float, N>) float area[N], margin[N];
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t is_two_sided[N];
+    Lanes<float, N> area, margin;
+    Lanes<std::int32_t, N> is_two_sided;
     bool any_area = false, any_sky = false, any_other = false;
 
     REALCAM_INLINE void set_area(int lane, const AreaLight& light) {
@@ -84,7 +84,7 @@ public:
     template <class SurfacesT>
     REALCAM_INLINE LightKindsLanes(const SceneView& scene, const SurfacesT& surfaces, int count) {
         const int places = whole_vectors<N>(count);
-        alignas(kLaneAlignment<float, N>) float local[N] = {}, suns[N] = {};
+        Lanes<float, N> local = {}, suns = {};
         if (count_light_kinds(scene) > 1) {
             if (scene.light_node_count > 0) {
                 const LightNode all = scene.light_nodes[0];
@@ -112,7 +112,7 @@ public:
     }
 
 private:
-    alignas(kLaneAlignment<float, N>) float even_[N], scale_[N], local_[N], environment_[N];
+    Lanes<float, N> even_, scale_, local_, environment_;
 };
 
 /// Where it is at a time, with the radiance of the place that these numbers choose.

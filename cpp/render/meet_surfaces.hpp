@@ -17,7 +17,7 @@ template <int N>
 struct PlainSurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
     ColorLanes<N> diffuse, phong;
-    alignas(kLaneAlignment<float, N>) float self_offset[N], shininess[N];
+    Lanes<float, N> self_offset, shininess;
     bool has_phong = false;  ///< any of them
 
     REALCAM_INLINE void set(int place, const SurfacePoint& point) {

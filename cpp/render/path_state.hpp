@@ -14,11 +14,11 @@ namespace REALCAM_NAMESPACE {
 template <int N>
 struct SceneRays {
     Vec3Lanes<float, N> origin, direction;
-    alignas(kLaneAlignment<float, N>) float far[N];  ///< how far along the ray to look, in lengths of the direction
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t active[N];
+    Lanes<float, N> far;  ///< how far along the ray to look, in lengths of the direction
+    Lanes<std::int32_t, N> active;
     // For scenes of SceneKind::any alone:
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];  ///< by which a ray decides at holes
-    alignas(kLaneAlignment<float, N>) float time[N];  ///< share of the exposure (see instance_at.hpp)
+    Lanes<std::uint32_t, N> number;  ///< by which a ray decides at holes
+    Lanes<float, N> time;  ///< share of the exposure (see instance_at.hpp)
 };
 
 /// The number of the ray that a sample sends out at a bounce; the camera's is bounce 0.
@@ -31,10 +31,10 @@ REALCAM_INLINE std::uint32_t ray_number(const SampleBlock<N>& block, int lane, i
 template <int N>
 struct PathResults {
     ColorLanes<N> irradiance;
-    alignas(kLaneAlignment<float, N>) float depth[N];  ///< of the first hit along the camera's axis from the film,
-                                                       ///< metres; below 0 behind the film; kFarAway: none
-    alignas(kLaneAlignment<float, N>) float weight[N];  ///< of the sample in the exposure (CameraRays)
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t sampled[N], passed[N];
+    Lanes<float, N> depth;  ///< of the first hit along the camera's axis from the film,
+                            ///< metres; below 0 behind the film; kFarAway: none
+    Lanes<float, N> weight;  ///< of the sample in the exposure (CameraRays)
+    Lanes<std::int32_t, N> sampled, passed;
 };
 
 /// Paths on their way from the film into the scene: the next ray of each, and what is known of the way up to it. At
@@ -44,8 +44,8 @@ struct PathState {
     int count = N;  ///< places in use, some of them perhaps by paths that have ended since
     SceneRays<N> rays;
     ColorLanes<N> throughput;  ///< irradiance on the film for a unit of radiance that comes along the ray
-    alignas(kLaneAlignment<float, N>) float weight[N];  ///< the throughput with which the path began
-    alignas(kLaneAlignment<float, N>) float pdf[N];  ///< with which the ray's direction was drawn, per steradian
+    Lanes<float, N> weight;  ///< the throughput with which the path began
+    Lanes<float, N> pdf;  ///< with which the ray's direction was drawn, per steradian
     Vec3Lanes<float, N> receiver_position, receiver_normal;  ///< of the surface that the ray left (LightReceiver)
     ColorLanes<N> absorption;  ///< of the medium that the ray is in, per metre
 
@@ -82,7 +82,7 @@ struct PathState {
     }
 
 private:
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t lane_[N];
+    Lanes<std::int32_t, N> lane_;
 };
 
 /// The same, of samples that each have a wavelength.

@@ -62,15 +62,15 @@ REALCAM_INLINE float exposure_weight(const CameraView& camera, std::int32_t row,
 /// Samples on their way from a light to the film.
 template <int N>
 struct GhostSamples {
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t number[N];
-    alignas(kLaneAlignment<float, N>) float place[N], variable[N];  ///< of the wavelength
-    alignas(kLaneAlignment<float, N>) float time[N];
+    Lanes<std::uint32_t, N> number;
+    Lanes<float, N> place, variable;  ///< of the wavelength
+    Lanes<float, N> time;
     LightPick lights[N];
     Vec3Lanes<float, N> from;  ///< unit, towards the light, as the middle of the lens sees it; in the lens's axes
     LensRays<float, N> rays;  ///< first in front of the lens, then behind it
-    alignas(kLaneAlignment<float, N>) float density[N];  ///< of the place where it enters, per mm^2
-    alignas(kLaneAlignment<float, N>) float light_density[N];  ///< of its place on the lights, per steradian; kDelta:
-                                                               ///< no ray meets it
+    Lanes<float, N> density;  ///< of the place where it enters, per mm^2
+    Lanes<float, N> light_density;  ///< of its place on the lights, per steradian; kDelta:
+                                    ///< no ray meets it
     ColorLanes<N> color;  ///< irradiance that its pixel would have if all samples were like it
     SceneRays<N> shadow;
 };
@@ -243,7 +243,7 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     send_light<scene_kind>(view, camera, 1.0f / (pixel_area * block.way.probability), samples);
     PassedPower<N> passed;
     pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
-    alignas(kLaneAlignment<std::int32_t, N>) std::int32_t pixel[N], hidden[N];
+    Lanes<std::int32_t, N> pixel, hidden;
     reach_film<scene_kind, has_wavelengths>(camera, ghosts, stream, first_sample, passed, samples, pixel);
     scene.occluded(samples.shadow, hidden);
     for (int i = 0; i < N; ++i)

@@ -18,10 +18,10 @@ struct Hit {
 
 template <int N>
 struct Hits {
-    alignas(kLaneAlignment<float, N>) float distance[N];
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t triangle[N];
-    alignas(kLaneAlignment<float, N>) float u[N], v[N];
-    alignas(kLaneAlignment<std::uint32_t, N>) std::uint32_t instance[N];
+    Lanes<float, N> distance;
+    Lanes<std::uint32_t, N> triangle;
+    Lanes<float, N> u, v;
+    Lanes<std::uint32_t, N> instance;
 
     REALCAM_INLINE Hit operator[](int lane) const {
         return {distance[lane], triangle[lane], u[lane], v[lane], instance[lane]};

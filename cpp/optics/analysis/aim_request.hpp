@@ -103,7 +103,7 @@ REALCAM_HD inline void aim_rays(const AimRequest& request) {
     Vec2Lanes<double, N> wanted{}, asked{}, entries{};
     LensRays<double, N> rays;
     PathRecord<double, N> record;
-    alignas(kLaneAlignment<double, N>) double missed[N];
+    Lanes<double, N> missed;
     for (std::int64_t first = 0; first < r.count; first += N) {
         const int used = static_cast<int>(r.count - first < N ? r.count - first : N);
         for (int k = 0; k < N; ++k) wanted.set(k, r.places[first + (k < used ? k : 0)]);

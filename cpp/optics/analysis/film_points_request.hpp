@@ -59,7 +59,7 @@ template <LensKind lens_kind, int N, class T>
 inline void find_film_points(FilmPointsRequest<T>& request) {
     const FilmPointsRequest<T> r = request;
     LensRays<T, N> rays;
-    alignas(kLaneAlignment<T, N>) T x[N], y[N];
+    Lanes<T, N> x, y;
     float* to = r.points;
     for (std::int64_t done = 0; done < r.count; done += N) {
         const int used = static_cast<int>(r.count - done < N ? r.count - done : N);

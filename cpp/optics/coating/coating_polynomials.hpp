@@ -64,7 +64,7 @@ struct alignas(16) CoatingPolynomials {
 /// all the way.
 template <int N>
 struct PassedPower {
-    alignas(kLaneAlignment<float, N>) float s[N], p[N];
+    Lanes<float, N> s, p;
 
     REALCAM_INLINE PassedPower() {
         REALCAM_LANES

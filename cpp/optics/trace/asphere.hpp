@@ -41,8 +41,8 @@ REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_square
 /// crossing in the right direction lies between them. NaN: the ray does not meet the surface.
 template <class T, int N>
 struct AsphereSearch {
-    alignas(kLaneAlignment<T, N>) T t[N], below[N], above[N];
-    alignas(kLaneAlignment<T, N>) T residual[N], tolerance[N];  ///< |f|, and what rounding alone can leave of it
+    Lanes<T, N> t, below, above;
+    Lanes<T, N> residual, tolerance;  ///< |f|, and what rounding alone can leave of it
 };
 
 /// Newton's steps alone for as long as they do on a lens that can be made; then every other step halves the bracket,

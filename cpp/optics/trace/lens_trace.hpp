@@ -15,7 +15,7 @@ template <class T, int N>
 struct LensRays {
     Vec3Lanes<T, N> origin;
     Vec3Lanes<T, N> direction;
-    alignas(kLaneAlignment<int, N>) int status[N];
+    Lanes<int, N> status;
 };
 
 /// What a trace may write down besides the rays. `NoRecord` is for pictures: rays that end are only marked, as
@@ -28,10 +28,8 @@ struct NoRecord {
 template <class T, int N>
 struct PathRecord {
     static constexpr bool enabled = true;
-    alignas(kLaneAlignment<T, N>) T
-        optical_path[N];     ///< sum of index times distance, mm; from the origin to the last surface met
-    alignas(
-        kLaneAlignment<int, N>) int surface_index[N];  ///< surface at which the ray ended, in the lens system's order
+    Lanes<T, N> optical_path;     ///< sum of index times distance, mm; from the origin to the last surface met
+    Lanes<int, N> surface_index;  ///< surface at which the ray ended, in the lens system's order
 };
 
 /// Parameters beyond are those of rays that miss. Their squares still fit in float32.
@@ -105,9 +103,9 @@ REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, const Boundary
 /// Where N rays meet an asphere.
 template <class T, int N>
 struct AsphereHits {
-    alignas(kLaneAlignment<T, N>) T parameter[N];
-    alignas(kLaneAlignment<T, N>) T slope[N];  ///< d height / d r, over r
-    alignas(kLaneAlignment<T, N>) T slack[N];  ///< by how much the search ended within its tolerance
+    Lanes<T, N> parameter;
+    Lanes<T, N> slope;  ///< d height / d r, over r
+    Lanes<T, N> slack;  ///< by how much the search ended within its tolerance
 };
 
 /// Newton's method without a bracket, for the rays that cross the surface once. Leaves all others, and those that it
@@ -115,7 +113,7 @@ struct AsphereHits {
 template <class T, int N>
 REALCAM_HD inline int find_single_crossings(const SurfaceView<T>& surface, const LensRays<T, N>& rays,
                                             AsphereHits<T, N>& hits) {
-    alignas(kLaneAlignment<T, N>) T per_height[N], plane[N], change[N], spread[N], height[N], inverse_rise[N];
+    Lanes<T, N> per_height, plane, change, spread, height, inverse_rise;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const HeightRay<T> ray = height_ray(surface, rays.origin[i], rays.direction[i]);
@@ -171,7 +169,7 @@ REALCAM_HD inline void search_in_brackets(const SurfaceView<T>& surface, const L
     AsphereSearch<T, N> search;
     // Zeros, because gcc fears that a lane is read before it is written.
     Vec3Lanes<T, N> origin{}, direction{};
-    alignas(kLaneAlignment<T, N>) T outside[N]{};
+    Lanes<T, N> outside{};
     int lane_of[N], count = 0;
     for (int i = 0; i < N; ++i) {
         if (rays.status[i] != 0 || hits.slack[i] >= T(0)) continue;
@@ -239,7 +237,7 @@ REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Bounda
 /// its largest extent towards any blade.
 template <class T, int N>
 REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
-    alignas(kLaneAlignment<T, N>) T extent[N];
+    Lanes<T, N> extent;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) extent[i] = -std::numeric_limits<T>::max();
     for (int blade = 0; blade < iris.blades; ++blade) {
