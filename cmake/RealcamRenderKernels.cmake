@@ -1,18 +1,34 @@
 # The GPU's kernels that take samples: a file for each kind of lens, kind of scene and set of effects, so that they
 # compile side by side. Together they take minutes, so those with effects are compiled for fewer kinds: the rest is
-# served by a kernel for any lens and any scene (kernel_for in cpp/cuda/render_kernel.cu).
+# served by a kernel for any lens and any scene. kernel_for in cpp/cuda/render_kernel.cu takes the first of their list,
+# which is written here, that serves a picture.
 function(realcam_add_render_kernels target)
+  # As many sets as kCompiledEffects has, by their numbers there.
+  set(effects_file ${PROJECT_SOURCE_DIR}/cpp/camera/effects.hpp)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${effects_file})
+  file(READ ${effects_file} text)
+  string(REGEX MATCH "kCompiledEffects\\[\\] = {([^;]*)}" sets "${text}")
+  string(REGEX MATCHALL "{[^{}]*}" sets "${CMAKE_MATCH_1}")
+  list(LENGTH sets count)
+  if(count LESS 1)
+    message(FATAL_ERROR "${effects_file} has no list kCompiledEffects")
+  endif()
   set(kinds "0 plain plain" "0 plain opaque" "0 plain any" "0 any plain" "0 any opaque" "0 any any")
-  foreach(effects IN ITEMS 1 2 3 4 5) # their numbers in kCompiledEffects
+  math(EXPR last "${count} - 1")
+  foreach(effects RANGE 1 ${last})
     list(APPEND kinds "${effects} plain plain" "${effects} any plain" "${effects} any any")
   endforeach()
+  set(kernels "// Made by cmake/RealcamRenderKernels.cmake: the kernels that were compiled, those for fewer pictures first.\n")
   foreach(kind IN LISTS kinds)
     separate_arguments(kind)
     list(GET kind 0 effects)
     list(GET kind 1 lens)
     list(GET kind 2 scene)
+    string(APPEND kernels "REALCAM_RENDER_KERNEL(${effects}, ${lens}, ${scene})\n")
     set(file ${PROJECT_BINARY_DIR}/cuda/render_kernel_effects${effects}_${lens}_lens_${scene}_scene.cu)
     configure_file(${PROJECT_SOURCE_DIR}/cpp/cuda/render_kernel_instance.cu.in ${file} @ONLY)
     target_sources(${target} PRIVATE ${file})
   endforeach()
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/cuda/include/render_kernels.inc CONTENT "${kernels}" @ONLY)
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/cuda/include)
 endfunction()

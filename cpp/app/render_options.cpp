@@ -232,7 +232,8 @@ void add_shot_options(CLI::App& command, RenderWords& w) {
     option("--threshold-px", w.threshold_px, "In pixels, in place of that of the quality", "PIXELS");
     option("--threshold-codes", w.threshold_codes, "In 8-bit codes, in place of that of the quality", "CODES");
     option("--illuminant", w.illuminant,
-           "Of dispersion and diffraction, the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]",
+           "Of " + effects_that(&EffectInfo::has_wavelengths) +
+               ", the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]",
            "SPECTRUM");
     option("--threads", w.threads, "0: all [0]", "N");
     option("--device", w.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1 [auto]", "DEVICE");

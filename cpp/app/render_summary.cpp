@@ -58,7 +58,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
         for (const std::string& name : effects) names += (names.empty() ? "" : ", ") + name;
         const auto light = settings.spectral_light();
         line("effects", names + (light ? ", illuminant " + light->text() : ""));
-        if (settings.effects.coatings || settings.effects.have_ghosts()) line("coatings", coating_summary(lens));
+        if (any_is(settings.effects, &EffectInfo::needs_coatings)) line("coatings", coating_summary(lens));
     }
     if (verbose) {
         const double busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds;

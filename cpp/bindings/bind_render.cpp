@@ -173,7 +173,7 @@ void bind_render(py::module_& m) {
         "effects",
         [] {
             std::vector<std::string> lines;
-            for (const EffectInfo& effect : kEffects) lines.push_back(std::string(effect.name) + ": " + effect.line);
+            for (const EffectInfo& effect : kEffects) lines.push_back(std::string(effect.name) + ": " + line_of(effect));
             return lines;
         },
         "What can be simulated besides, a line each: the name for effects=..., a colon and a blank, and what it is "

@@ -284,24 +284,15 @@ void validate_on_gpu(const Camera& camera) {
 CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraSetup* last, const LensEffects& effects)
     : camera_(validated(camera)),
       effects_(effects),
-      path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm) {
-    if (effects.illuminant) set_wavelengths(*effects.illuminant);
-    if (effects.coatings) set_coatings(last);
+      path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm),
+      tables_(camera.lens, film_radius(), effects, tracer, last ? &last->tables_ : nullptr) {
     const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
     for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
-    if (last && last->has_pupil_of(camera, pupil_wavelengths_, effects.pupil_sampling))
+    if (last && last->has_pupil_of(camera, tables_.pupil_wavelengths(), effects.pupil_sampling))
         pupil_ = last->pupil_;
     else if (has_real_pupil(camera.model))
         pupil_ = std::make_shared<const Pupil>(sampled_lens(camera.lens, effects.pupil_sampling), film_radius(), tracer,
-                                               pupil_wavelengths_);
-    if (effects.ghosts) {
-        if (last && last->ghosts_ && last->effects_ == effects && last->has_lens_and_film_of(camera))
-            ghosts_ = last->ghosts_;
-        else
-            ghosts_ = std::make_shared<const GhostTables>(camera.lens, film_radius(), *effects.ghosts, tracer,
-                                                          effects.dispersion ? &*spectrum_ : nullptr);
-    }
-    if (effects.diffraction) set_diffraction(tracer, last);
+                                               tables_.pupil_wavelengths());
     if (!pupil_) {
         camera_detail::validate_ideal(camera.lens, camera.model);
         axis_irradiance_ = last && !last->pupil_ && last->camera_.lens == camera.lens
@@ -353,20 +344,8 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     view.lens = path_.view();
     if (path_in_double_) view.lens_in_double = &view_in_double_;
     if (polynomial_) view.polynomial = polynomial_->view();
-    const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
-    if (spectrum_) {
-        view.dispersion = {spectrum_->cells().data(),
-                           static_cast<int>(spectrum_->cells().size()),
-                           variable_over(spectrum_->range()),
-                           data_of(to_scene_),
-                           data_of(to_film_),
-                           film_path_ ? film_path_->view().surfaces : nullptr};
-    }
-    if (diffraction_) {
-        const double across = std::fabs(static_cast<double>(view.thin.image_distance));
-        view.diffraction = diffraction_->view(camera_.film.width_mm * camera_.film.height_mm / (across * across));
-    }
-    view.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
+    const double across = std::fabs(static_cast<double>(view.thin.image_distance));
+    static_cast<EffectViews&>(view) = tables_.views(camera_.film.width_mm * camera_.film.height_mm / (across * across));
     set_times(view, scene_moves);
     return view;
 }
@@ -374,54 +353,6 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
 const Camera& CameraSetup::validated(const Camera& camera) {
     validate(camera);
     return camera;
-}
-
-void CameraSetup::set_wavelengths(const Illuminant& illuminant) {
-    spectrum_.emplace(illuminant);
-    if (!effects_.dispersion && !effects_.coatings) return;
-    // The code for diffraction and coatings together takes the indices of a spectrum: here, of one wavelength.
-    const double design = camera_.lens.wavelength_nm;
-    const WavelengthRange range = effects_.dispersion ? spectrum_->range() : WavelengthRange{design, design};
-    check_dispersion(camera_.lens, range);
-    to_scene_ = index_cubics(camera_.lens, LightDirection::to_scene, range);
-    to_film_ = index_cubics(camera_.lens, LightDirection::to_film, range);
-    film_path_.emplace(camera_.lens, LightDirection::to_film, camera_.lens.wavelength_nm);
-    pupil_wavelengths_ = {std::clamp(design, range.first, range.last)};
-    for (const double end : {range.first, range.last})
-        if (end != pupil_wavelengths_.front()) pupil_wavelengths_.push_back(end);
-}
-
-void CameraSetup::set_coatings(const CameraSetup* last) {
-    const LensSystem& lens = camera_.lens;
-    if (last && last->effects_ == effects_ && last->camera_.lens == lens) {
-        coatings_ = last->coatings_;
-        coatings_to_scene_ = last->coatings_to_scene_;
-        coatings_to_film_ = last->coatings_to_film_;
-        return;
-    }
-    if (!spectrum_) {
-        check_wavelength_in_glasses(lens, lens.wavelength_nm, "coatings");
-        coatings_ = fit_coatings<kOneWavelengthTerms>(lens, LightDirection::to_scene, {lens.wavelength_nm});
-        return;
-    }
-    const std::vector<double> wavelengths = spectrum_->even_wavelengths();
-    for (const double end : {wavelengths.front(), wavelengths.back()})
-        check_wavelength_in_glasses(lens, end, "coatings");
-    const WavelengthVariable variable = variable_over(spectrum_->range());
-    coatings_to_scene_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_scene, wavelengths, variable);
-    coatings_to_film_ = fit_coatings<kSpectrumTerms>(lens, LightDirection::to_film, wavelengths, variable);
-}
-
-void CameraSetup::set_diffraction(const PupilTracer& tracer, const CameraSetup* last) {
-    const LensSystem& lens = camera_.lens;
-    if (last && last->diffraction_ && last->effects_ == effects_ && last->has_lens_and_film_of(camera_)) {
-        diffraction_ = last->diffraction_;
-        starbursts_ = last->starbursts_;
-        return;
-    }
-    diffraction_ = std::make_shared<const DiffractionTables>(lens, film_radius(), tracer);
-    starbursts_ = std::make_shared<const StarburstTables>(
-        lens, film_radius(), StarburstTables::Light{*spectrum_, effects_.dispersion, effects_.coatings}, tracer);
 }
 
 void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
@@ -457,7 +388,7 @@ bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
 bool CameraSetup::has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths,
                                PupilSampling sampling) const {
     return pupil_ && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&
-           pupil_wavelengths_ == wavelengths && effects_.pupil_sampling == sampling;
+           tables_.pupil_wavelengths() == wavelengths && effects_.pupil_sampling == sampling;
 }
 
 }  // namespace realcam

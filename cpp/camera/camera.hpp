@@ -6,18 +6,13 @@
 
 #include "../math/affine.hpp"
 #include "../math/motion.hpp"
-#include "../optics/coating/fit_coatings.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/lens_polynomial.hpp"
 #include "../optics/lens/paraxial.hpp"
 #include "../optics/pupil/pupil.hpp"
 #include "camera_view.hpp"
-#include "diffraction_tables.hpp"
-#include "film_spectrum.hpp"
-#include "ghost_tables.hpp"
+#include "effect_tables.hpp"
 #include "lens_map.hpp"
-#include "pupil_sampling.hpp"
-#include "starburst_tables.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -156,18 +151,6 @@ void set_motion(Camera& camera, std::vector<PoseKey> keys);
 /// pixel's width at the plane in focus.
 bool lies_near(const Camera& camera, Vec3d origin_m);
 
-/// What is simulated of the light in the lens besides its refraction at the design wavelength.
-struct LensEffects {
-    std::optional<Illuminant> illuminant;  ///< of a picture whose samples have wavelengths: dispersion, diffraction
-    bool dispersion = false;  ///< indices of those wavelengths
-    bool diffraction = false;  ///< by the edges of the aperture
-    bool coatings = false;  ///< what the surfaces pass on of the light
-    std::optional<GhostChoice> ghosts = {};
-    PupilSampling pupil_sampling = PupilSampling::outline;
-
-    bool operator==(const LensEffects&) const = default;
-};
-
 /// Throws InputError where a GPU has no code for the camera's model.
 void validate_on_gpu(const Camera& camera);
 
@@ -186,24 +169,14 @@ public:
     const Camera& camera() const { return camera_; }
     /// Of a camera with the model polynomial_lens; else null.
     const LensPolynomial* polynomial() const { return polynomial_ ? &*polynomial_ : nullptr; }
-    /// Of a picture with ghosts; else null.
-    const GhostTables* ghosts() const { return ghosts_.get(); }
-    /// Of a picture with diffraction; else null.
-    const StarburstTables* starbursts() const { return starbursts_.get(); }
+    const EffectTables& effects() const { return tables_; }
 
 private:
     /// Before anything is made from it: a camera without a lens has no surface to begin with.
     static const Camera& validated(const Camera& camera);
 
-    /// Rays of the shortest and of the longest wavelength leave the lens farthest apart.
-    void set_wavelengths(const Illuminant& illuminant);
-
     /// Of the film point furthest from the axis, mm.
     double film_radius() const { return camera_.film.radius_mm(); }
-
-    void set_coatings(const CameraSetup* last);
-
-    void set_diffraction(const PupilTracer& tracer, const CameraSetup* last);
 
     void set_map(const PupilTracer& tracer, const CameraSetup* last);
 
@@ -217,22 +190,14 @@ private:
     Camera camera_;
     LensEffects effects_;
     LensPath<float> path_;
+    EffectTables tables_;
     std::optional<LensPath<double>> path_in_double_;
     LensView<double> view_in_double_{};
     std::optional<LensPolynomial> polynomial_;
     std::vector<CameraPlacement> keys_;  ///< positions relative to the first
-    std::optional<FilmSpectrum> spectrum_;  ///< of a picture whose samples have wavelengths, as what follows
-    std::vector<IndexCubic> to_scene_, to_film_;
-    std::optional<LensPath<float>> film_path_;
-    std::vector<CoatingPolynomials<kOneWavelengthTerms>> coatings_;
-    std::vector<CoatingPolynomials<kSpectrumTerms>> coatings_to_scene_, coatings_to_film_;
-    std::vector<double> pupil_wavelengths_;
     std::shared_ptr<const Pupil> pupil_;
     float axis_irradiance_ = 0;  ///< of an ideal lens
     std::shared_ptr<const LensMap> map_;  ///< of the model mapped_lens
-    std::shared_ptr<const GhostTables> ghosts_;  ///< of a picture with ghosts
-    std::shared_ptr<const DiffractionTables> diffraction_;  ///< of a picture with diffraction, as the next
-    std::shared_ptr<const StarburstTables> starbursts_;
 };
 
 }  // namespace REALCAM_NAMESPACE

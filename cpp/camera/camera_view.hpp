@@ -6,9 +6,7 @@
 #include "../optics/trace/lens_polynomial_view.hpp"
 #include "../optics/trace/lens_view.hpp"
 #include "circle_of_confusion.hpp"
-#include "coating_view.hpp"
-#include "diffraction_view.hpp"
-#include "dispersion_view.hpp"
+#include "effect_views.hpp"
 #include "lens_map_view.hpp"
 #include "pixel_pupil.hpp"
 
@@ -52,7 +50,7 @@ struct CameraPlacement {
 };
 
 /// Its own placement is that at the begin of the exposure.
-struct CameraView : CameraPlacement {
+struct CameraView : CameraPlacement, EffectViews {
     CameraModel model;
     int width, height;                    ///< pixels
     float film_half_width, film_half_height;  ///< mm
@@ -75,9 +73,6 @@ struct CameraView : CameraPlacement {
     float exposed_time;  ///< for which each is exposed
     const CameraPlacement* keys;  ///< of a camera that moves, at even times; positions relative to its own
     int key_count;
-    DispersionView dispersion;
-    CoatingView coatings;
-    DiffractionView diffraction;
 };
 
 /// The camera at a time of the exposure. Between two keys its axes are interpolated, and made unit and right-angled
@@ -109,19 +104,9 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     };
     move(view.lens.surfaces, view.lens.count);
     move(view.keys, view.key_count);
-    move(view.dispersion.to_scene, view.lens.count);
-    move(view.dispersion.to_film, view.lens.count);
-    move(view.dispersion.film_surfaces, view.lens.count);
-    move(view.dispersion.cells, view.dispersion.cell_count);
     move(view.map.nodes, view.map.count);
     move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);
-    move(view.coatings.one_wavelength, view.lens.count);
-    move(view.coatings.to_scene, view.lens.count);
-    move(view.coatings.to_film, view.lens.count);
-    const int diffracting = view.diffraction.radii * view.diffraction.azimuths;
-    move(view.diffraction.nodes, diffracting);
-    move(view.diffraction.entries, diffracting * kDiffractionEntries);
-    move(view.diffraction.edges, diffracting * kDiffractionEdges);
+    view.move_arrays(view.lens.count, move);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
     return view;

@@ -3,19 +3,21 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// generate_rays of a full lens with coatings: the weights are less by what its surfaces do not pass on.
-template <LensKind lens_kind = LensKind::any, int N>
-REALCAM_HD inline void generate_coated_rays(const CameraView& camera, const SampleBlock<N>& block,
-                                            CameraRays<N>& rays) {
-    LensRays<float, N> inside;
-    PassedPower<N> passed;
-    start_lens_rays(camera, block, PixelPoints<N>{camera, block}, inside, rays);
-    trace_lens<lens_kind>(
-        camera.lens, inside, NoRecord{},
-        CoatedMedia<OneWavelength, kOneWavelengthTerms, N>{{}, camera.coatings.one_wavelength, nullptr, passed});
-    REALCAM_LANES
-    for (int i = 0; i < N; ++i) rays.weight[i] *= select(inside.status[i] == 0, passed.of_unpolarised(i), 0.0f);
-    place_lens_rays(camera, inside, rays);
+/// Takes rays through the lens. `indices`: OneWavelength or ManyWavelengths. `passed`: what they keep of their light,
+/// if the lens is `coated`.
+template <LensKind lens_kind, bool coated, class Indices, int terms, int N>
+REALCAM_HD inline void trace_surfaces(const LensView<float>& lens, LensRays<float, N>& rays, const Indices& indices,
+                                      const CoatingPolynomials<terms>* coatings, const float* variable,
+                                      float (&passed)[N]) {
+    if constexpr (coated) {
+        PassedPower<N> power;
+        trace_lens<lens_kind>(lens, rays, NoRecord{},
+                              CoatedMedia<Indices, terms, N>{indices, coatings, variable, power});
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) passed[i] = select(rays.status[i] == 0, power.of_unpolarised(i), 0.0f);
+    } else {
+        trace_lens<lens_kind>(lens, rays, NoRecord{}, indices);
+    }
 }
 
 }  // namespace REALCAM_NAMESPACE

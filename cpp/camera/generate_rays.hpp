@@ -128,6 +128,8 @@ struct PixelPoints {
     REALCAM_INLINE Vec2f operator[](int lane) const {
         return film_point(camera, block.column[lane], block.row[lane], block.random(lane, dimension::film));
     }
+    /// Where light of a wavelength falls that the lens brings to the place `at`.
+    REALCAM_INLINE Vec2f landing(int, Vec2f at, float) const { return at; }
 };
 
 template <int N, class Points, class RayOf>

@@ -28,7 +28,8 @@ std::vector<Crossing> all_crossings(const LensSystem& lens) {
 
 GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const GhostChoice& choice,
                          const PupilTracer& tracer, const FilmSpectrum* spectrum)
-    : film_radius_(static_cast<float>(film_radius)),
+    : effects_{.dispersion = spectrum != nullptr, .coatings = true},
+      film_radius_(static_cast<float>(film_radius)),
       film_index_(static_cast<float>(of_lens.indices(of_lens.wavelength_nm).back())),
       entry_reach_(entry_reach(of_lens)),
       exit_reach_(static_cast<float>(exit_reach(of_lens))) {
@@ -94,6 +95,7 @@ GhostView GhostTables::view_of_objects() const {
 GhostView GhostTables::view_of(const Ways& of, GhostLight light, std::int32_t pixel_samples, float reach) const {
     const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
     return {light,
+            effects_,
             pixel_samples,
             of.ways.data(),
             static_cast<int>(of.ways.size()),

@@ -59,6 +59,7 @@ private:
     /// By what the ways bring to the film; a tenth without regard to it, because light comes from one side.
     void set_probabilities();
 
+    Effects effects_;
     std::vector<GhostPair> pairs_;
     std::vector<double> shares_;
     Ways to_film_, to_scene_;

@@ -3,6 +3,7 @@
 
 #include "../optics/ghost/ghost_media.hpp"
 #include "../optics/trace/lens_view.hpp"
+#include "effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -30,9 +31,13 @@ enum class GhostLight : std::int32_t {
     of_objects,  ///< ghosts of what objects reflect, from the film
 };
 
+/// Of one picture.
+inline constexpr int kMostSplats = 3;
+
 /// The ghosts of a lens, or the lens's own way, for starbursts. Lengths in mm.
 struct GhostView {
     GhostLight light;
+    Effects effects;  ///< of that light
     std::int32_t pixel_samples;  ///< so many samples of pixels have one of these
     const GhostWay* ways;
     int way_count;
@@ -41,8 +46,8 @@ struct GhostView {
     int crossing_count;
     const SurfaceView<float>* surfaces;  ///< of all crossings of all ways, as the next three
     const GhostCoating<kOneWavelengthTerms>* coatings;
-    const IndexCubic* indices;  ///< where samples have wavelengths, as the next; else null
-    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< null: surfaces pass on all light
+    const IndexCubic* indices;  ///< where samples have wavelengths, as the next
+    const GhostCoating<kGhostSpectrumTerms>* spectral_coatings;  ///< where surfaces do not pass on all light
     float largest_half_tangent;  ///< of the angle between axis and light from which any ghost comes
     float film_radius;           ///< of a circle that holds the film
     float film_index;            ///< of the medium before the film

@@ -12,19 +12,16 @@ namespace REALCAM_NAMESPACE {
 /// view.
 class StarburstTables {
 public:
-    struct Light {
-        const FilmSpectrum& spectrum;
-        bool disperses, has_coatings;
-    };
-
     /// `film_radius`: of a circle that holds the film, mm. Throws InputError where an index is not known.
-    StarburstTables(const LensSystem& lens, double film_radius, const Light& light, const PupilTracer& tracer);
+    StarburstTables(const LensSystem& lens, double film_radius, const FilmSpectrum& spectrum, const Effects& effects,
+                    const PupilTracer& tracer);
 
     GhostView view() const;
 
 private:
     static constexpr std::array<float, 2> kCdf = {0, 1};
 
+    Effects effects_;
     LensPath<float> path_;
     GhostWay way_;
     GhostEntries entries_{};

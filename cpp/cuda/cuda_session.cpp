@@ -64,22 +64,10 @@ private:
     }
 
     void set_splats(const CameraView& camera) {
-        GhostView ghosts, ghosts_of_objects, starbursts;
-        const auto source_of = [&](const GhostView& view) -> DeviceRenderer::SplatSource {
-            return {&view, ghost_units_per_lux(scene_.placed().view(), camera, view)};
-        };
-        DeviceRenderer::SplatSource sources[3];
-        if (setup_->ghosts()) {
-            ghosts = setup_->ghosts()->view();
-            ghosts_of_objects = setup_->ghosts()->view_of_objects();
-            sources[0] = source_of(ghosts);
-            sources[1] = source_of(ghosts_of_objects);
-        }
-        if (setup_->starbursts()) {
-            starbursts = setup_->starbursts()->view();
-            sources[2] = source_of(starbursts);
-        }
-        front().set_splats(sources[0], sources[1], sources[2]);
+        std::vector<SplatSource> sources;
+        for (const GhostView& light : setup_->effects().splats())
+            sources.push_back({light, ghost_units_per_lux(scene_.placed().view(), camera, light)});
+        front().set_splats(sources);
     }
 
     void clear() override {

@@ -11,17 +11,23 @@
 
 namespace realcam {
 
-/// Ghosts or starbursts of one GPU's picture. All functions throw DeviceError.
+/// Light that is traced apart from the samples of pixels. The view is the host's.
+struct SplatSource {
+    GhostView view;
+    double units_per_lux;
+};
+
+/// One such light of one GPU's picture. All functions throw DeviceError.
 class DeviceGhosts {
 public:
     /// The host's copy may go afterwards. Null: the picture has none.
-    void set(const GhostView* ghosts, double units_per_lux, CudaStream& stream) {
+    void set(const SplatSource* source, CudaStream& stream) {
         arrays_.restart();
         view_ = {};
-        units_per_lux_ = units_per_lux;
-        if (ghosts)
-            view_ = with_copied_arrays(
-                *ghosts, [&](const auto* from, std::size_t count) { return arrays_.copy(from, count, stream); });
+        if (!source) return;
+        units_per_lux_ = source->units_per_lux;
+        view_ = with_copied_arrays(
+            source->view, [&](const auto* from, std::size_t count) { return arrays_.copy(from, count, stream); });
     }
 
     /// An empty film of so many pixels.
@@ -50,22 +56,23 @@ public:
 
     GhostFilmView seen() const {
         if (sums_.size() == 0) return {};
-        return {sums_.data(), units_per_lux_, blocks_done_.data(), width_, height_};
+        return {view_.light, sums_.data(), units_per_lux_, blocks_done_.data(), width_, height_};
     }
 
     /// Copies all to the host, and waits for it.
     struct OnHost {
+        GhostLight light = GhostLight::of_lights;
         std::vector<GhostSum> sums;
         unsigned long long blocks = 0;
         double units_per_lux = 1;
         int width = 0, height = 0;
 
         GhostFilmView view() const {
-            return {sums.empty() ? nullptr : sums.data(), units_per_lux, &blocks, width, height};
+            return {light, sums.empty() ? nullptr : sums.data(), units_per_lux, &blocks, width, height};
         }
     };
     OnHost download(const CudaStream& stream) const {
-        OnHost here{std::vector<GhostSum>(sums_.size()), 0, units_per_lux_, width_, height_};
+        OnHost here{view_.light, std::vector<GhostSum>(sums_.size()), 0, units_per_lux_, width_, height_};
         sums_.download(here.sums.data(), stream);
         blocks_done_.download(&here.blocks, stream);
         stream.wait("copying ghosts from it");

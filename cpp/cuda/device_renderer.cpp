@@ -89,30 +89,33 @@ void DeviceRenderer::learn_pupils() {
                "copying on it");
 }
 
-void DeviceRenderer::set_splats(const SplatSource& ghosts, const SplatSource& ghosts_of_objects,
-                                const SplatSource& starbursts) {
+void DeviceRenderer::set_splats(const std::vector<SplatSource>& sources) {
     const CurrentDevice current(ordinal_);
-    ghosts_.set(ghosts.view, ghosts.units_per_lux, stream_);
-    ghosts_of_objects_.set(ghosts_of_objects.view, ghosts_of_objects.units_per_lux, stream_);
-    starbursts_.set(starbursts.view, starbursts.units_per_lux, stream_);
+    for (std::size_t i = 0; i < splats_.size(); ++i)
+        splats_[i].set(i < sources.size() ? &sources[i] : nullptr, stream_);
 }
 
 void DeviceRenderer::clear_splats(int width, int height) {
     const CurrentDevice current(ordinal_);
-    ghosts_.clear(width, height, stream_);
-    ghosts_of_objects_.clear(width, height, stream_);
-    starbursts_.clear(width, height, stream_);
+    for (DeviceGhosts& light : splats_) light.clear(width, height, stream_);
 }
 
 void DeviceRenderer::splat(const SampleRange& range, const PathSettings& settings) {
     const CurrentDevice current(ordinal_);
-    for (DeviceGhosts* light : {&ghosts_, &ghosts_of_objects_, &starbursts_})
-        light->add(scene_, camera_, stop_.data(), range, settings, stream_);
+    for (DeviceGhosts& light : splats_) light.add(scene_, camera_, stop_.data(), range, settings, stream_);
 }
 
 DeviceRenderer::SplatsOnHost DeviceRenderer::download_splats() {
     const CurrentDevice current(ordinal_);
-    return {ghosts_.download(stream_), ghosts_of_objects_.download(stream_), starbursts_.download(stream_)};
+    SplatsOnHost here;
+    for (std::size_t i = 0; i < splats_.size(); ++i) here.films[i] = splats_[i].download(stream_);
+    return here;
+}
+
+SplattedLight DeviceRenderer::splatted() const {
+    SplattedLight light;
+    for (std::size_t i = 0; i < splats_.size(); ++i) light.films[i] = splats_[i].seen();
+    return light;
 }
 
 void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {

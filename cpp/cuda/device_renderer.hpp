@@ -1,6 +1,9 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <string>
+#include <vector>
 
 #include "../render/render_settings.hpp"
 #include "../render/sample_range.hpp"
@@ -38,20 +41,19 @@ public:
     /// Later samples know what those until now have found.
     void learn_pupils();
 
-    /// What is traced from lights on. Without a view there is nothing.
-    struct SplatSource {
-        const GhostView* view = nullptr;
-        double units_per_lux = 1;
-    };
-    /// Of the pictures that follow, and an empty film for them.
-    void set_splats(const SplatSource& ghosts, const SplatSource& ghosts_of_objects, const SplatSource& starbursts);
+    /// Of the pictures that follow, at most kMostSplats, and empty films for them.
+    void set_splats(const std::vector<SplatSource>& sources);
     void clear_splats(int width, int height);
     /// Starts to add the samples that belong to those of pixels.
     void splat(const SampleRange& range, const PathSettings& settings);
     struct SplatsOnHost {
-        DeviceGhosts::OnHost ghosts, ghosts_of_objects, starbursts;
+        std::array<DeviceGhosts::OnHost, kMostSplats> films;
 
-        SplattedLight view() const { return {ghosts.view(), ghosts_of_objects.view(), starbursts.view()}; }
+        SplattedLight view() const {
+            SplattedLight light;
+            std::transform(films.begin(), films.end(), light.films, [](const auto& film) { return film.view(); });
+            return light;
+        }
     };
     SplatsOnHost download_splats();
 
@@ -110,7 +112,7 @@ private:
     void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
                 bool timed);
 
-    SplattedLight splatted() const { return {ghosts_.seen(), ghosts_of_objects_.seen(), starbursts_.seen()}; }
+    SplattedLight splatted() const;
 
     LayerJob layer_job(const FilmPart& part, std::uint32_t seed) const;
 
@@ -120,7 +122,7 @@ private:
     DeviceScene scene_;
     DeviceArrays camera_arrays_;
     CameraView camera_{};
-    DeviceGhosts ghosts_, ghosts_of_objects_, starbursts_;
+    std::array<DeviceGhosts, kMostSplats> splats_;
     DeviceArray<PixelSum> sums_, others_;
     DeviceArray<std::uint32_t> sample_counts_;
     DeviceArray<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils

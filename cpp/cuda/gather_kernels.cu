@@ -19,7 +19,7 @@ __global__ void __launch_bounds__(kGhostBlock, 2) gather_ghosts_of(const __grid_
 }  // namespace
 
 void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream) {
-    const auto kernel = job.ghosts.indices ? gather_ghosts_of<true> : gather_ghosts_of<false>;
+    const auto kernel = job.ghosts.effects.have_wavelengths() ? gather_ghosts_of<true> : gather_ghosts_of<false>;
     kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);
     check_cuda(cudaGetLastError(), "starting to trace ghosts of objects");
 }

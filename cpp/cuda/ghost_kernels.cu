@@ -21,7 +21,7 @@ __global__ void __launch_bounds__(kGhostBlock, 2) splat_ghosts_of(const __grid_c
 
 void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream) {
     const bool plain = kind_of(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
-    const bool has_wavelengths = job.ghosts.indices != nullptr;
+    const bool has_wavelengths = job.ghosts.effects.have_wavelengths();
     const auto kernel = plain ? (has_wavelengths ? splat_ghosts_of<SceneKind::plain, false, true>
                                                  : splat_ghosts_of<SceneKind::plain, false, false>)
                               : (has_wavelengths ? splat_ghosts_of<SceneKind::any, true, true>

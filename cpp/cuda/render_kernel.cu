@@ -1,7 +1,5 @@
 #include "render_kernel.hpp"
 
-#include <iterator>
-
 #include "../render/kind_of.hpp"
 #include "cuda_error.hpp"
 #include "lanes_per_pixel.hpp"
@@ -38,40 +36,40 @@ __global__ void merge(PixelSum* sums, const PixelSum* other, std::int64_t pixels
     if (i < pixels) sums[i] += other[i];
 }
 
-RenderKernel kernel_without_effects(SceneKind scene_kind, LensKind lens_kind, bool instanced, bool timed) {
-    const auto of_kind = [&]<SceneKind known>() {
-        return lens_kind == LensKind::plain ? render_kernel_of<LensKind::plain, known, 0>(instanced, timed)
-                                            : render_kernel_of<LensKind::any, known, 0>(instanced, timed);
-    };
-    switch (scene_kind) {
-        case SceneKind::plain: return of_kind.template operator()<SceneKind::plain>();
-        case SceneKind::opaque: return of_kind.template operator()<SceneKind::opaque>();
-        default: return of_kind.template operator()<SceneKind::any>();
+/// One of the kernels that were compiled.
+struct CompiledKernel {
+    int effects;
+    LensKind lens;
+    SceneKind scene;
+    RenderKernel (*of)(bool instanced, bool timed);
+
+    bool serves(const RenderJob& job) const {
+        const SceneKind wanted = kind_of(job.scene, job.camera);
+        return effects == number_of(job.camera.effects) &&
+               (lens == LensKind::any || lens == lens_kind_of(job.camera)) &&
+               (scene == SceneKind::any || scene == wanted);
     }
-}
+};
 
-template <int effects>
-RenderKernel kernel_with_effects(SceneKind scene_kind, LensKind lens_kind, bool instanced, bool timed) {
-    if (scene_kind != SceneKind::plain)
-        return render_kernel_of<LensKind::any, SceneKind::any, effects>(instanced, timed);
-    return lens_kind == LensKind::plain ? render_kernel_of<LensKind::plain, SceneKind::plain, effects>(instanced, timed)
-                                        : render_kernel_of<LensKind::any, SceneKind::plain, effects>(instanced, timed);
-}
+constexpr CompiledKernel kKernels[] = {
+#define REALCAM_RENDER_KERNEL(effects, lens, scene) \
+    {effects, LensKind::lens, SceneKind::scene, render_kernel_of<LensKind::lens, SceneKind::scene, effects>},
+#include "render_kernels.inc"
+#undef REALCAM_RENDER_KERNEL
+};
 
+/// The last one of each set serves any lens and any scene.
 RenderKernel kernel_for(const RenderJob& job, bool timed) {
-    using Chooser = RenderKernel (*)(SceneKind, LensKind, bool, bool);
-    static constexpr Chooser kChoosers[] = {kernel_without_effects, kernel_with_effects<1>, kernel_with_effects<2>,
-                                            kernel_with_effects<3>, kernel_with_effects<4>, kernel_with_effects<5>};
-    static_assert(kCompiledEffects[0] == kNoEffects && std::size(kChoosers) == std::size(kCompiledEffects));
-    return kChoosers[number_of(effects_of(job.camera))](kind_of(job.scene, job.camera), lens_kind_of(job.camera),
-                                                        job.scene.instance_count > 0, timed);
+    const CompiledKernel* kernel = kKernels;
+    while (!kernel->serves(job)) ++kernel;
+    return kernel->of(job.scene.instance_count > 0, timed);
 }
 
 }  // namespace
 
 void check_render_code() {
     cudaFuncAttributes attributes{};
-    const RenderKernel kernel = kernel_without_effects(SceneKind::any, LensKind::any, true, false);
+    const RenderKernel kernel = render_kernel_of<LensKind::any, SceneKind::any, 0>(true, false);
     check_cuda(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)), "loading its code");
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "../render/effects.hpp"
+#include "../camera/effects.hpp"
 #include "render_kernel.hpp"
 
 namespace realcam {

@@ -34,8 +34,9 @@ DeviceError rtc_error(RTCError code) {
     return DeviceError(text + (code == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(code)));
 }
 
-/// What was traced from lights on. Of a picture without that, no sums.
+/// What was traced apart from the samples of pixels, of one light.
 struct SplatFilm {
+    GhostLight light;
     std::vector<GhostSum> sums;  ///< of all pixels
     unsigned long long blocks = 0;  ///< in them
     double units_per_lux = 1;
@@ -78,12 +79,9 @@ private:
         const Film& film = camera().film;
         const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
         film_.assign(pixels, PixelSum{});
-        const auto empty_film = [&](bool wanted) {
-            return SplatFilm{std::vector<GhostSum>(wanted ? pixels : 0), 0, 1};
-        };
-        ghosts_ = empty_film(settings().effects.have_ghosts());
-        ghosts_of_objects_ = empty_film(settings().effects.have_ghosts());
-        starbursts_ = empty_film(settings().effects.diffraction);
+        splats_.clear();
+        for (const GhostView& light : setup_->effects().splats())
+            splats_.push_back({light.light, std::vector<GhostSum>(pixels)});
         const bool learns = settings().pupil_sampling == PupilSampling::pixel;
         known_.assign(learns ? pixels : 0, PixelPupil{});
         found_ = known_;
@@ -221,11 +219,8 @@ private:
 
     /// Adds what belongs to these samples of each pixel.
     void splat(const SampleRange& range, const RenderSettings& settings) {
-        if (!ghosts_.sums.empty() && !setup_->ghosts()->pairs().empty()) {
-            splat_on(ghosts_, setup_->ghosts()->view(), range, settings);
-            splat_on(ghosts_of_objects_, setup_->ghosts()->view_of_objects(), range, settings);
-        }
-        if (!starbursts_.sums.empty()) splat_on(starbursts_, setup_->starbursts()->view(), range, settings);
+        const std::vector<GhostView> lights = setup_->effects().splats();
+        for (std::size_t i = 0; i < lights.size(); ++i) splat_on(splats_[i], lights[i], range, settings);
     }
 
     void splat_on(SplatFilm& film, const GhostView& ghosts, const SampleRange& range, const RenderSettings& settings) {
@@ -257,11 +252,11 @@ private:
     }
 
     SplattedLight splatted() const {
-        const auto seen = [&](const SplatFilm& film) {
-            return GhostFilmView{film.sums.empty() ? nullptr : film.sums.data(), film.units_per_lux, &film.blocks,
-                                 camera_view_.width, camera_view_.height};
-        };
-        return {seen(ghosts_), seen(ghosts_of_objects_), seen(starbursts_)};
+        SplattedLight splatted;
+        for (std::size_t i = 0; i < splats_.size(); ++i)
+            splatted.films[i] = {splats_[i].light,   splats_[i].sums.data(), splats_[i].units_per_lux,
+                                 &splats_[i].blocks, camera_view_.width,     camera_view_.height};
+        return splatted;
     }
 
     /// visit(x, y, some samples) of the tile with that first pixel, until all samples of all tiles were taken.
@@ -339,7 +334,7 @@ private:
     std::vector<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils
     SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
-    SplatFilm ghosts_, ghosts_of_objects_, starbursts_;
+    std::vector<SplatFilm> splats_;  ///< as EffectTables::splats
     std::mutex stats_mutex_;
     RenderStats stats_;
 };

@@ -158,7 +158,7 @@ void render_tile_with(realcam_tile* tile, SceneKind scene_kind) {
 void render_tile(realcam_tile* tile) {
     const auto& scene = *static_cast<const SceneView*>(tile->scene_view);
     const auto& camera = *static_cast<const CameraView*>(tile->camera_view);
-    const int wanted = number_of(effects_of(camera));
+    const int wanted = number_of(camera.effects);
     [&]<int... number>(std::integer_sequence<int, number...>) {
         (void)((number == wanted && (render_tile_with<number>(tile, kind_of(scene, camera)), true)) || ...);
     }(std::make_integer_sequence<int, std::size(kCompiledEffects)>());
@@ -235,7 +235,7 @@ void gather_ghosts_with(realcam_ghosts* job) {
 void splat_ghosts_of(realcam_ghosts* job) {
     const auto& camera = *static_cast<const CameraView*>(job->camera_view);
     const auto& ghosts = *static_cast<const GhostView*>(job->ghost_view);
-    const bool has_wavelengths = ghosts.indices != nullptr;
+    const bool has_wavelengths = ghosts.effects.have_wavelengths();
     if (ghosts.light == GhostLight::of_objects)
         return has_wavelengths ? gather_ghosts_with<true>(job) : gather_ghosts_with<false>(job);
     switch (kind_of(*static_cast<const SceneView*>(job->scene_view), camera)) {

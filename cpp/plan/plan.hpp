@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "../camera/camera_view.hpp"
+#include "../camera/effects.hpp"
 #include "../error.hpp"
-#include "../render/effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 

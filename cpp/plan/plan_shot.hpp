@@ -55,12 +55,7 @@ public:
 private:
     /// Whether the effect is one of surfaces, which an ideal lens has not.
     bool is_impossible(const EffectInfo& effect) const {
-        EffectChoice alone;
-        alone.*effect.member = true;
-        return needs_surfaces(alone) && !request_.may_choose_model && camera_.model != CameraModel::full_lens;
-    }
-    static bool needs_surfaces(const EffectChoice& effects) {
-        return effects.dispersion || effects.coatings || effects.have_ghosts();
+        return effect.needs_full_lens && !request_.may_choose_model && camera_.model != CameraModel::full_lens;
     }
 
     /// `reason`: what is so large. `doubt`: why it is left to the user; empty: it is not.
@@ -157,7 +152,7 @@ private:
         CameraModel model = CameraModel::full_lens;
         if (!request_.may_choose_model)
             model = camera_.model;
-        else if (!needs_surfaces(plan_.effects))
+        else if (!any_is(plan_.effects, &EffectInfo::needs_full_lens))
             model = errors_.pinhole.is_within(thresholds)  ? CameraModel::pinhole
                     : errors_.thin.is_within(thresholds)   ? CameraModel::thin_lens
                     : errors_.mapped.is_within(thresholds) ? CameraModel::mapped_lens

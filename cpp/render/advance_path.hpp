@@ -1,8 +1,7 @@
 #pragma once
 #include <type_traits>
 
-#include "../camera/coated_rays.hpp"
-#include "../camera/diffracted_rays.hpp"
+#include "../camera/rays_with_effects.hpp"
 #include "scatter_glossy_paths.hpp"
 #include "scatter_plain_paths.hpp"
 #include "start_paths.hpp"
@@ -43,17 +42,9 @@ template <LensKind lens_kind, SceneKind scene_kind, Effects effects = kNoEffects
 REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N>& block,
                                    PathStateWith<N, effects>& path, PathResults<N>& results) {
     CameraRays<N> camera_rays;
-    [[maybe_unused]] std::conditional_t<effects.diffraction, DiffractedPoints<N>, NoKicks> film;
-    if constexpr (effects.diffraction && effects.dispersion)
-        generate_rays_with_all<lens_kind>(camera, block, film, path.wavelengths, camera_rays);
-    else if constexpr (effects.diffraction)
-        generate_diffracted_rays<lens_kind>(camera, block, film, path.wavelengths, camera_rays);
-    else if constexpr (effects.dispersion)
-        generate_dispersed_rays<lens_kind, effects.coatings>(camera, block, path.wavelengths, camera_rays);
-    else if constexpr (effects.coatings)
-        generate_coated_rays<lens_kind>(camera, block, camera_rays);
-    else
-        generate_rays<lens_kind>(camera, block, camera_rays);
+    if constexpr (effects.have_wavelengths()) draw_wavelengths(camera.dispersion, block, path.wavelengths);
+    const FilmPointsWith<N, effects> film(camera, block, path.wavelengths);
+    generate_rays_with<lens_kind, effects>(camera, block, film, path.wavelengths, camera_rays);
     if constexpr (scene_kind == SceneKind::any) expose_rays(camera, block, camera_rays, path.rays.time);
     start_paths(camera_rays, path, results);
     // The edges of the aperture spread the light of lamps, which is looked for with the density at which both ways are

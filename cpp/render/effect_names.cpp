@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 
 namespace realcam {
@@ -32,15 +33,25 @@ std::string shortest(double value) {
 }  // namespace
 
 const EffectInfo* find_effect(const std::string& name) {
-    const auto found =
-        std::find_if(kEffects.begin(), kEffects.end(), [&](const EffectInfo& effect) { return name == effect.name; });
-    return found == kEffects.end() ? nullptr : &*found;
+    const auto* const found = std::ranges::find_if(kEffects, [&](const auto& effect) { return name == effect.name; });
+    return found == std::end(kEffects) ? nullptr : found;
+}
+
+std::string line_of(const EffectInfo& effect) {
+    return std::string(effect.what) + "; needs " + effect.needs + (*effect.usage ? "; " : "") + effect.usage;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+    return text;
 }
 
 std::string effect_names() {
     std::string names = "auto, none, ";
     for (const EffectInfo& effect : kEffects)
-        names += std::string(&effect == kEffects.data() ? "" : ", ") + (effect.is_on() ? "-" : "") + effect.name;
+        names += std::string(&effect == kEffects ? "" : ", ") + (effect.is_on() ? "-" : "") + effect.name;
     return names;
 }
 
@@ -97,10 +108,9 @@ namespace {
 
 /// "surface 3 of ", "surfaces 1, 2 and 3 of " and the lens. `numbers`: from 1.
 std::string surfaces_text(const std::vector<int>& numbers, const LensSystem& lens) {
-    std::string text = numbers.size() == 1 ? "surface " : "surfaces ";
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == numbers.size() ? " and " : ", ") + std::to_string(numbers[i]);
-    return text + " of " + lens.name;
+    std::vector<std::string> words;
+    for (const int number : numbers) words.push_back(std::to_string(number));
+    return (words.size() == 1 ? "surface " : "surfaces ") + listed(words) + " of " + lens.name;
 }
 
 }  // namespace
@@ -115,10 +125,8 @@ std::vector<std::string> effect_notices(const EffectChoice& effects, const LensS
     }
     std::vector<int> unknown = surfaces_with_unknown_coating(lens);
     for (int& surface : unknown) ++surface;
-    if ((effects.coatings || effects.have_ghosts()) && !unknown.empty())
-        notices.push_back(std::string(effects.coatings ? "coatings"
-                                      : effects.ghosts ? "ghosts"
-                                                       : "film_reflection") +
+    if (any_is(effects, &EffectInfo::needs_coatings) && !unknown.empty())
+        notices.push_back(std::string(first_that(effects, &EffectInfo::needs_coatings)->name) +
                           ": it is not known what covers " + surfaces_text(unknown, lens) +
                           "; glass is taken as bare, and a mirror as perfect");
     return notices;

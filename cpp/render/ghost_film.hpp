@@ -32,21 +32,19 @@ REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float d
     return static_cast<std::int64_t>(units < kMost ? std::floor(units) : kMost);
 }
 
-/// The ghosts or the starbursts of a picture, to be added to what its samples saw.
+/// One light of a picture that was traced apart from its samples, to be added to what these saw.
 struct GhostFilmView {
+    GhostLight light = GhostLight::of_lights;
     const GhostSum* sums = nullptr;  ///< of all pixels; null: there are none
     double units_per_lux = 1;
     const unsigned long long* blocks = nullptr;  ///< of kGhostBlock samples of the whole film, that are in the sums
     int width = 0, height = 0;                   ///< pixels
 
+    /// Ghosts are smoothed by one pixel (a binomial filter of five by five), which costs them no detail worth the name
+    /// and takes as much noise from them as thirteen times the samples would.
     REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
-        return sums && *blocks > 0 ? irradiance_of(static_cast<double>(sums[pixel].units[channel])) : 0;
-    }
-
-    /// Smoothed by one pixel (a binomial filter of five by five), which costs ghosts no detail worth the name and takes
-    /// as much noise from them as thirteen times the samples would.
-    REALCAM_HD double smooth_irradiance(std::int64_t pixel, int channel) const {
         if (!sums || *blocks == 0) return 0;
+        if (light == GhostLight::starbursts) return irradiance_of(static_cast<double>(sums[pixel].units[channel]));
         constexpr double kWeights[] = {1, 4, 6, 4, 1}, kSum = 256;
         const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
         const auto inside = [](int place, int count) { return place < 0 ? 0 : place < count ? place : count - 1; };
@@ -68,11 +66,12 @@ private:
 
 /// All light of a picture that was traced apart from the samples of its pixels.
 struct SplattedLight {
-    GhostFilmView ghosts, ghosts_of_objects, starbursts;
+    GhostFilmView films[kMostSplats];
 
     REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
-        return ghosts.smooth_irradiance(pixel, channel) + ghosts_of_objects.smooth_irradiance(pixel, channel) +
-               starbursts.irradiance(pixel, channel);
+        double sum = 0;
+        for (const GhostFilmView& film : films) sum += film.irradiance(pixel, channel);
+        return sum;
     }
 };
 

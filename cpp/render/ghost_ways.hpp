@@ -77,7 +77,7 @@ REALCAM_INLINE void pass_ghost_way(const GhostView& ghosts, const GhostWay& way,
                                    const float (&variable)[N], PassedPower<N>& passed) {
     const LensView<float> lens{ghosts.surfaces + way.first, way.count, ghosts.kind, ghosts.iris};
     if constexpr (has_wavelengths) {
-        if (ghosts.spectral_coatings)
+        if (ghosts.effects.coatings)
             trace_lens<lens_kind>(
                 lens, rays, NoRecord{},
                 GhostMedia<kGhostSpectrumTerms, N>{ghosts.indices + way.first, ghosts.spectral_coatings + way.first,

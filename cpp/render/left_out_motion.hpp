@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "../camera/camera.hpp"
+#include "../camera/effects.hpp"
 #include "../scene/assembly.hpp"
-#include "effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 

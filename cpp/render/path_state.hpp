@@ -1,12 +1,10 @@
 #pragma once
-#include <type_traits>
-
 #include "../camera/exposed_rays.hpp"
+#include "../camera/rays_with_effects.hpp"
 #include "../math/color.hpp"
 #include "../scene/light_sample.hpp"
 #include "../scene/opacity.hpp"
 #include "../scene/scattering.hpp"
-#include "effects.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -85,14 +83,10 @@ private:
     Lanes<std::int32_t, N> lane_;
 };
 
-/// The same, of samples that each have a wavelength.
-template <int N>
-struct DispersedPathState : PathState<N> {
-    SampleWavelengths<N> wavelengths;
-};
-
 /// What paths with these effects carry.
 template <int N, Effects effects>
-using PathStateWith = std::conditional_t<effects.have_wavelengths(), DispersedPathState<N>, PathState<N>>;
+struct PathStateWith : PathState<N> {
+    WavelengthsWith<N, effects> wavelengths;
+};
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,17 +1,23 @@
 #include "render_settings.hpp"
 
-#include <string>
+#include "effect_names.hpp"
 
 namespace realcam {
 
 LensEffects RenderSettings::lens_effects() const {
-    return {spectral_light(), effects.dispersion, effects.diffraction,
-            effects.coatings, ghost_choice(),     pupil_sampling};
+    return {effects, spectral_light(), ghost_choice(), pupil_sampling};
 }
 
 std::optional<GhostChoice> RenderSettings::ghost_choice() const {
     if (!effects.have_ghosts()) return std::nullopt;
     return GhostChoice{effects.ghosts, effects.film_reflection ? effects.film_reflectance : 0, effects.ghost_share};
+}
+
+std::string illuminant_error(const RenderSettings& settings) {
+    const EffectChoice& effects = settings.effects;
+    if (!settings.illuminant || effects.have_wavelengths() || effects.is_automatic) return "";
+    return "illuminant belongs to the effects " + effects_that(&EffectInfo::has_wavelengths) +
+           ", which are not switched on";
 }
 
 void validate(const RenderSettings& settings) {
@@ -22,8 +28,7 @@ void validate(const RenderSettings& settings) {
     if (!(settings.clamp >= 0)) throw InputError("clamp must be 0 (none) or a radiance in cd/m^2");
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
-    if (settings.illuminant && !settings.effects.have_wavelengths() && !settings.effects.is_automatic)
-        throw InputError("illuminant belongs to the effects dispersion and diffraction, which are not switched on");
+    if (const std::string why = illuminant_error(settings); !why.empty()) throw InputError(why);
 }
 
 void validate_effects(const RenderSettings& settings, const Camera& camera) {
@@ -32,17 +37,12 @@ void validate_effects(const RenderSettings& settings, const Camera& camera) {
     const EffectChoice& effects = settings.effects;
     if (settings.pupil_sampling != PupilSampling::outline && camera.model != CameraModel::full_lens)
         throw InputError("pupil_sampling: the camera's model must be full");
-    if (settings.pupil_sampling == PupilSampling::pixel && (effects.have_wavelengths() || effects.coatings))
-        throw InputError(
-            "pupil_sampling: pixels learn where light passes only without dispersion, coatings and "
-            "diffraction");
+    if (settings.pupil_sampling == PupilSampling::pixel && static_cast<const Effects&>(effects) != kNoEffects)
+        throw InputError("pupil_sampling: pixels learn where light passes only without " +
+                         effects_that(&EffectInfo::is_compiled));
     if (camera.model == CameraModel::full_lens) return;
-    if (effects.dispersion || effects.coatings || effects.have_ghosts())
-        throw InputError(std::string(effects.dispersion ? "dispersion"
-                                     : effects.coatings ? "coatings"
-                                     : effects.ghosts   ? "ghosts"
-                                                        : "film_reflection") +
-                         ": the camera's model must be full");
+    if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_full_lens))
+        throw InputError(std::string(effect->name) + ": the camera's model must be full");
 }
 
 }  // namespace realcam

@@ -1,9 +1,10 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "../camera/camera.hpp"
-#include "effects.hpp"
+#include "../camera/effects.hpp"
 #include "layers.hpp"
 #include "noise_goal.hpp"
 #include "path_settings.hpp"
@@ -21,7 +22,7 @@ struct RenderSettings {
     float clamp = 0;  ///< see PathSettings
     LayerSet layers = {};
     EffectChoice effects = {};
-    std::optional<Illuminant> illuminant = {};  ///< of dispersion and diffraction; none: D65, the white of RGB
+    std::optional<Illuminant> illuminant = {};  ///< of effects with wavelengths; none: D65, the white of RGB
     std::optional<NoiseGoal> noise = {};  ///< instead of spp
     PupilSampling pupil_sampling = PupilSampling::outline;  ///< of a full lens
 
@@ -38,6 +39,9 @@ struct RenderSettings {
 inline void validate_spp(int spp) {
     if (spp < 1 || spp > (1 << 24)) throw InputError("spp must lie between 1 and 16777216");
 }
+
+/// Why an illuminant does not go with the effects; empty: it does.
+std::string illuminant_error(const RenderSettings& settings);
 
 /// Throws InputError where the settings make no sense.
 void validate(const RenderSettings& settings);

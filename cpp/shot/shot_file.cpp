@@ -185,9 +185,8 @@ private:
             table_.checked("effects", [&] { settings.effects = effects_named(effects); });
         }
         table_.checked("illuminant", [&] { settings.illuminant = read_illuminant(); });
-        if (settings.illuminant && !settings.effects.have_wavelengths() && !settings.effects.is_automatic)
-            table_.fail("illuminant belongs to the effects dispersion and diffraction, which are not switched on",
-                        table_.find("illuminant"));
+        if (const std::string why = illuminant_error(settings); !why.empty())
+            table_.fail(why, table_.find("illuminant"));
         table_.checked(settings.clamp >= 0 ? "spp" : "clamp_cd_m2", [&] { validate(settings); });
         const std::vector<std::string> layers = table_.texts("layers");
         table_.checked("layers", [&] { settings.layers = layers_named(layers); });

@@ -46,6 +46,7 @@ HOST_ONLY = {
     "camera/camera.hpp",
     "camera/default_film.hpp",
     "camera/diffraction_tables.hpp",
+    "camera/effect_tables.hpp",
     "camera/entry_search.hpp",
     "camera/field_of_view.hpp",
     "camera/film_spectrum.hpp",

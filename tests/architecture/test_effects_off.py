@@ -23,22 +23,21 @@ template __global__ void render<LensKind::plain, SceneKind::plain, 0, false, NoC
 """
 # What is cut out of which file: each pattern must be found once.
 CUTS = {
-    "camera/camera_view.hpp": [
-        (r"    DispersionView dispersion;\n    CoatingView coatings;\n    DiffractionView diffraction;\n", ""),
-        (r"(    move\(view\.(dispersion|coatings)\.\w+, .*\);\n)+", ""),
-        (r"(    move\(view\.(dispersion|coatings)\.\w+, .*\);\n)+", ""),
-        (r"    const int diffracting = .*\n(    move\(view\.diffraction\.\w+, .*\);\n)+", ""),
+    "camera/effect_views.hpp": [
+        (r"    Effects effects;.*?\n\n", ""),
+        (r"(?<=int surfaces, Move&& move\) \{\n).*?(?=    \}\n\};)", "        (void)surfaces, (void)move;\n"),
     ],
-    "render/effects.hpp": [(r"kCompiledEffects\[\] = \{[^;]*\};", "kCompiledEffects[] = {kNoEffects};")],
-    "render/kind_of.hpp": [(r"    const bool disperses = .*?\n\}\n", "    (void)camera;\n    return {};\n}\n")],
+    "camera/effects.hpp": [(r"kCompiledEffects\[\] = \{[^;]*\};", "kCompiledEffects[] = {{}};")],
+    "camera/rays_with_effects.hpp": [
+        (r'#include "diffracted_rays.hpp"', '#include "generate_rays.hpp"'),
+        (r"template <int N, Effects effects>\n    requires\(effects\.diffraction\).*?\n\};\n", ""),
+        (r"/// generate_rays_from of a full lens whose.*?(?=/// generate_rays_from with effects)", ""),
+        (r"    if constexpr \(may_lack_coatings.*?    \} else \{\n(.*?;\n).*?    \}\n\}\n", r"\1}\n"),
+        (r"std::conditional_t<.*?>;", "NoWavelengths;"),
+    ],
     "render/advance_path.hpp": [
-        (r'#include "../camera/coated_rays.hpp"\n#include "../camera/diffracted_rays.hpp"\n', ""),
-        (r"    \[\[maybe_unused\]\] std::conditional_t<.*?\n    else\n        gen", "        gen"),
+        (r"    if constexpr \(effects\.have_wavelengths\(\)\) draw_wavelengths.*?\n", ""),
         (r"    // The edges of the aperture spread.*?\n    \}\n", ""),
-    ],
-    "render/path_state.hpp": [
-        (r"/// The same, of samples that each have a wavelength\..*?\};\n", ""),
-        (r"std::conditional_t<effects\.have_wavelengths\(\), DispersedPathState<N>, PathState<N>>", "PathState<N>"),
     ],
     "render/render_samples.hpp": [
         (r"    if constexpr \(effects\.have_wavelengths\(\)\)\n.*?(?=\}\n\n\}  // namespace)", "")

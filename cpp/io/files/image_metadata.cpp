@@ -73,7 +73,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     for (const std::string& name : names_of(settings.effects))
         metadata.effects += (metadata.effects.empty() ? "" : ",") + name;
     if (const auto light = settings.spectral_light()) metadata.illuminant = light->text();
-    if (settings.effects.coatings || settings.effects.have_ghosts()) metadata.coatings = coating_summary(camera.lens);
+    if (any_is(settings.effects, &EffectInfo::needs_coatings)) metadata.coatings = coating_summary(camera.lens);
     return metadata;
 }
 

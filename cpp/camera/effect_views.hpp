@@ -1,0 +1,33 @@
+#pragma once
+#include "coating_view.hpp"
+#include "diffraction_view.hpp"
+#include "dispersion_view.hpp"
+#include "effects.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// What the effects of a camera need of it. Of an effect that it has not, the view is empty.
+struct EffectViews {
+    Effects effects;  ///< for which the camera was made ready
+    DispersionView dispersion;
+    CoatingView coatings;
+    DiffractionView diffraction;
+
+    /// move(array, count) for every array. `surfaces`: of the lens.
+    template <class Move>
+    void move_arrays(int surfaces, Move&& move) {
+        move(dispersion.to_scene, surfaces);
+        move(dispersion.to_film, surfaces);
+        move(dispersion.film_surfaces, surfaces);
+        move(dispersion.cells, dispersion.cell_count);
+        move(coatings.one_wavelength, surfaces);
+        move(coatings.to_scene, surfaces);
+        move(coatings.to_film, surfaces);
+        const int nodes = diffraction.radii * diffraction.azimuths;
+        move(diffraction.nodes, nodes);
+        move(diffraction.entries, nodes * kDiffractionEntries);
+        move(diffraction.edges, nodes * kDiffractionEdges);
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE
