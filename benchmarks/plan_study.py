@@ -1,7 +1,7 @@
 """Is the planner right, and what does it save? Drawn shots with everything, without each effect, and as planned.
 
     python benchmarks/plan_study.py [--device cpu] [--shots 36] [--seed 1] [--spp 1024]  # one device's figures
-    python benchmarks/plan_study.py --page  # docs/plan-study.md from the figures of all devices
+    python benchmarks/plan_study.py --page  # docs/generated/plan-study.md from the figures of all devices
 
 An effect is measured by leaving it out of a picture that has all, a camera model against the next better one without
 effects. A decision is too noisy to tell where the threshold lies within four standard deviations of what is measured.
@@ -41,7 +41,7 @@ MODELS = {  # without, with
 NOISY = "too noisy to tell"
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
-PAGE = ROOT / "docs" / "plan-study.md"
+PAGE = ROOT / "docs" / "generated" / "plan-study.md"
 
 
 @dataclass
@@ -260,11 +260,11 @@ def summary(outcomes: list[Outcome]) -> list[str]:
         f"drops, {sum(d.verdict == 'false keep' for d in wrong)} false keeps; "
         f"{len(every) - len(decisions)} more are too noisy to tell. "
         f"Dropped with more than twice the threshold: {len(large_drops)}.",
-        f"- Time as planned over time with everything: median {median(times):.2f}, worst {max(times):.2f}; the oracle "
-        f"has {median(ideal):.2f} and {max(ideal):.2f}, and {100 * saved / savable:.0f}% of what it saves is saved.",
+        f"- Time as planned over time with everything: median {median(times):.2f}, worst {max(times):.2f}. The oracle "
+        f"has {median(ideal):.2f} and {max(ideal):.2f}. {100 * saved / savable:.0f}% of what it saves is saved.",
         f"- FLIP of the planned picture against that with everything: median {median(o.flip for o in outcomes):.4f}, "
         f"worst {max(o.flip for o in outcomes):.4f} (of noise alone: "
-        f"{median(o.flip_noise for o in outcomes):.4f}, {max(o.flip_noise for o in outcomes):.4f}); root mean square "
+        f"{median(o.flip_noise for o in outcomes):.4f}, {max(o.flip_noise for o in outcomes):.4f}). Root mean square "
         f"as a share of white: median {median(o.rms for o in outcomes):.4f}, worst {max(o.rms for o in outcomes):.4f}.",
         f"- Planning: median {1e3 * median(o.planning_s for o in outcomes):.0f} ms, worst "
         f"{1e3 * max(o.planning_s for o in outcomes):.0f} ms.",
@@ -275,10 +275,9 @@ def write_page() -> None:
     lines = [
         "# Is the planner right?",
         "",
-        "Written by `python benchmarks/plan_study.py --page` from `benchmarks/results/*-plan.json`. An effect is "
-        "measured by",
-        "leaving it out of a picture that has all of them; sizes in pixels (px) or 8-bit codes, as in "
-        "[the planner](plan.md).",
+        "This page is written by the command `python benchmarks/plan_study.py --page`, from the files",
+        "`benchmarks/results/*-plan.json`. An effect is measured by leaving it out of a picture that has all of them.",
+        "Sizes are in pixels (px) or 8-bit codes, as on the page [planner](../plan.md).",
     ]
     for path in sorted(RESULTS.glob("*-plan.json")):
         record = json.loads(path.read_text(encoding="utf-8"))

@@ -1,7 +1,7 @@
 """Accuracy as a measured figure.
 
 A test states what it tried, the worst error that it found and the limit, and the same statement is the assertion and
-a line of docs/numerics.md (`./run numerics`). tests/cpp/measurement.hpp is the same for the C++ tests.
+a line of docs/generated/numerics.md (`./run numerics`). tests/cpp/measurement.hpp is the same for the C++ tests.
 """
 
 from __future__ import annotations

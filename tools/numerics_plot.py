@@ -1,4 +1,4 @@
-"""The plot of docs/numerics.md: float32 errors of each lens over field and aperture."""
+"""The plot of docs/generated/numerics.md: float32 errors of each lens over field and aperture."""
 
 from __future__ import annotations
 

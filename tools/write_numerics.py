@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Write docs/numerics.md and its plot from what the tests measured.
+"""Write docs/generated/numerics.md and its plot from what the tests measured.
 
     ./run numerics
-    python tools/write_numerics.py build/dev/measurements.jsonl [--page docs/numerics.md] [--lens NAME ...]
+    python tools/write_numerics.py build/dev/measurements.jsonl [--page docs/generated/numerics.md] [--lens NAME ...]
 
 The tests append their figures, a line of JSON each, to the file that the environment variable REALCAM_MEASUREMENTS
 names. The page is written only where all of them hold: one past its limit, or a broken routine that stays within one,
@@ -28,7 +28,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 
 from machine import machine
 
-PAGE = Path(__file__).parents[1] / "docs" / "numerics.md"
+PAGE = Path(__file__).parents[1] / "docs" / "generated" / "numerics.md"
 PLOT = Path("images") / "float32-error.png"
 SEPARATOR = " · "
 LIMIT = "\N{NO-BREAK SPACE}≤\N{NO-BREAK SPACE}"
@@ -36,30 +36,31 @@ LIMIT = "\N{NO-BREAK SPACE}≤\N{NO-BREAK SPACE}"
 INTRODUCTION = """\
 # How exact the figures are
 
-Written by `./run numerics`, which repeats it all, from what the tests measure; never by hand. Each line is a hard case:
-the largest error that was found, the limit that the test holds it to, and what was tried. An error is the distance from
-a figure found in another way: by a closed form, with the same rays in 50 digits, by another program, from a printed
-listing, or, for float32, in float64.
+This page is written by the command `./run numerics`, from what the tests measure, and never by hand.
 
-`0.53 ≤ 4` is the largest error and its limit. Where the head of a column names several backends, their errors stand in
-that order, or there is one that all of them have. An *ulp* is the distance from 1 to the next number: 2⁻²³ = 1.2e-7 in
-float32, 2⁻⁵² = 2.2e-16 in float64. An *ulp of scale* is that times the largest length in the case: what one rounding
-may cost.
+Each line is a hard case. It gives the largest error that was found, the limit that the test asserts, and what was
+tried. An error is the distance from a figure found in another way. That is a closed form, the same rays in 50 digits,
+another program, a printed listing, or float64 for a figure in float32.
+
+`0.53 ≤ 4` is the largest error and its limit. Where the head of a column names several backends, their errors follow in
+that order. A single error is that of all of them. An *ulp* is the distance from 1 to the next number: 2⁻²³ = 1.2e-7 in
+float32, 2⁻⁵² = 2.2e-16 in float64. An *ulp of scale* is that times the largest length in the case. It is what one
+rounding may cost.
 """
 
 PLOT_TEXT = """\
 ![Error of float32 image points over field and aperture]({plot})
 
-{count:,} rays from the film to the scene in float32, and back in float64: how far they miss the film point that they
-started from is by how much a picture has a point in the wrong place. The limit is 1/50 of a pixel of 4 µm. Colours
-show the worst ray at each film radius and height in the stop; what is white no light reaches.
+{count:,} rays go from the film to the scene in float32, and back in float64. The distance by which they miss the film
+point where they started is the error of the point in a picture. The limit is 1/50 of a pixel of 4 µm. Colours show the
+worst ray at each film radius and height in the stop. White areas receive no light.
 """
 
 BROKEN = """\
 ## Broken on purpose
 
-A test that cannot fail proves nothing. These routines are wrong by intent, and go past the limit that the real ones are
-held to.
+A test that cannot fail proves nothing. These routines are wrong by intent, and exceed the limit that the tests assert
+for the real ones.
 """
 
 

@@ -1,5 +1,5 @@
 #pragma once
-// The hard lenses, in the groups of docs/numerics.md.
+// The hard lenses, in the groups of docs/generated/numerics.md.
 
 #include <string>
 #include <vector>

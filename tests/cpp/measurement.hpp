@@ -1,6 +1,6 @@
 #pragma once
 // Accuracy as a measured figure: a test states what it tried, the worst error that it found and the limit, and the same
-// statement is the assertion and a line of docs/numerics.md (`./run numerics`).
+// statement is the assertion and a line of docs/generated/numerics.md (`./run numerics`).
 
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-"""docs/numerics.md: what tools/write_numerics.py makes of measurements, and what it refuses."""
+"""docs/generated/numerics.md: what tools/write_numerics.py makes of measurements, and what it refuses."""
 
 from __future__ import annotations
 
