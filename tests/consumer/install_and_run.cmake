@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.25)
 
-# Builds one part of realcam as README says (OPTION), installs it into an empty prefix, then configures, builds and runs
+# Builds one part of realcam as docs/cpp.md says (OPTION), installs it into an empty prefix, then configures, builds and runs
 # the consumer of that PART against it.
 file(REMOVE_RECURSE ${WORK})
 set(run COMMAND_ERROR_IS_FATAL ANY)

@@ -17,7 +17,7 @@ from frame_scene import frame_scene
 
 from .device_memory import LENS, needs_gpu, small_camera
 
-README = Path(__file__).parents[2] / "README.md"
+TOUR = Path(__file__).parents[2] / "docs" / "python.md"
 
 
 def test_device_arrays_are_made_by_realcam_alone() -> None:
@@ -169,9 +169,9 @@ def test_out_of_device_memory() -> None:
 
 @pytest.mark.gpu
 @needs_gpu
-def test_the_example_of_the_readme() -> None:
+def test_the_example_of_the_tour() -> None:
     pytest.importorskip("torch")
-    (example,) = re.findall(r"```python\n([^`]*?from_dlpack[^`]*?)```", README.read_text(encoding="utf-8"))
+    (example,) = re.findall(r"```python\n([^`]*?from_dlpack[^`]*?)```", TOUR.read_text(encoding="utf-8"))
     names = {"rc": rc, "lens": LENS, "camera": small_camera(), "scene": frame_scene(spheres=1, boxes=1)}
     exec(example, names)
     assert isinstance(names["out"], rc.TraceResult)
