@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds realcam on a machine with an NVIDIA GPU, runs all tests on both backends, looks for memory errors and races,
-# and benchmarks. Needs no network: what is missing is to be there already (CONTRIBUTING.md, "On a GPU machine").
+# and benchmarks. Needs no network: what is missing is to be there already (docs/testing.md, "On a GPU machine").
 #   tools/check_gpu.sh FOLDER [build|test|sanitize|foreign|bench|mitsuba]...
 # Writes FOLDER/gpu.json, FOLDER/gpu.md and a log of each step.
 set -uo pipefail
