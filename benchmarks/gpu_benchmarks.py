@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from frame_scene import frame_camera, frame_objects, frame_scene
 from machine import Result
-from realcam import Camera, Film, Lens, Scene, _core, render
+from realcam import Camera, Film, Lens, LiveView, Scene, _core, render
 
 
 def _gpu_scene() -> Scene:
@@ -103,7 +103,7 @@ def _frames_per_second(shoot: Callable[[int], _core.LiveFrame]) -> float:
 def gpu_frames(threads: int) -> Result:
     """Frames per second of a live view, 640 x 640 pixels of 20 samples, while camera, focus or stop change; a stop."""
     del threads
-    view = _core.LiveView(_gpu_scene(), device="cuda", max_bounces=0)
+    view = LiveView(_gpu_scene(), device="cuda", max_bounces=0)
     lens = Lens.load("double-gauss-50mm").focused(5.0)
 
     def camera(lens: Lens = lens, x: float = 0.0) -> Camera:
@@ -124,7 +124,7 @@ def gpu_frames(threads: int) -> Result:
     return {"frames_per_second": rates, "milliseconds_to_stop": _milliseconds_to_stop(view, camera())}
 
 
-def _milliseconds_to_stop(view: _core.LiveView, camera: Camera) -> float:
+def _milliseconds_to_stop(view: LiveView, camera: Camera) -> float:
     """The longest of ten stops of a frame that would take minutes."""
     longest = 0.0
     for _ in range(10):
@@ -148,7 +148,7 @@ def gpu_objects(threads: int) -> Result:
             seconds.setdefault(name, []).append(stats.seconds - stats.setup_seconds)
     hits = {name: _core._gpu_hit_rates(scene, camera, "cuda") for name, scene in scenes.items()}
 
-    scene, view = scenes["objects"], _core.LiveView(scenes["objects"], device="cuda", max_bounces=0)
+    scene, view = scenes["objects"], LiveView(scenes["objects"], device="cuda", max_bounces=0)
     small = Camera(camera.lens, film=Film(24, 24, (640, 640)), position=(0, 1.5, 4), look_at=(0, 0.3, -4))
     matrix = np.eye(4)
 

@@ -7,7 +7,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from realcam import _core
+from realcam import _core, devices
 
 Result = dict[str, object]
 
@@ -17,7 +17,7 @@ def machine() -> Result:
     return {
         "processor": _processor(),
         "system": f"{platform.system()} {platform.release()}",
-        "devices": _core.devices(),
+        "devices": [str(device) for device in devices()],
         "realcam": _core.__version__,
         "commit": _commit(),
         "date": time.strftime("%Y-%m-%d", time.gmtime()),

@@ -303,7 +303,7 @@ def write_page() -> None:
 
 def gpu_name() -> str:
     """As the list of devices has it."""
-    return next(line.split(": ", 1)[1] for line in rc.devices() if line.startswith("cuda"))
+    return next(device.description for device in rc.devices() if device.name.startswith("cuda"))
 
 
 def write_record(path: Path, where: str, outcomes: list[Outcome]) -> None:

@@ -178,7 +178,7 @@ def main() -> None:
             film = shot.camera.film.replace(height_mm=wide * height / width, resolution=(width, height))
             shot = replace(shot, camera=shot.camera.replace(film=film))
         if options.plain:
-            shot = replace(shot, effects=())
+            shot = replace(shot, settings=shot.settings.with_(effects=()))
         serve(shot, options.device, options.serve)
         return
     port = free_port()
@@ -193,8 +193,8 @@ def main() -> None:
             results = asyncio.run(measure(port, server.pid, options.idle))
         finally:
             server.terminate()
-    names = [line for line in rc.devices() if line.startswith("cpu" if options.device == "cpu" else "cuda")]
-    text = json.dumps({"device": (names or rc.devices())[0], "cores": os.cpu_count(), **results}, indent=1)
+    names = [str(d) for d in rc.devices() if d.name.startswith("cpu" if options.device == "cpu" else "cuda")]
+    text = json.dumps({"device": (names or [str(rc.devices()[0])])[0], "cores": os.cpu_count(), **results}, indent=1)
     print(text)
     if options.output:
         options.output.write_text(text + "\n")

@@ -187,7 +187,7 @@ def main() -> None:
     options = parser.parse_args()
     size = tuple(map(int, options.size.split("x")))
     options.output.mkdir(parents=True, exist_ok=True)
-    on_gpu = any(name.startswith("cuda") for name in rc.devices())
+    on_gpu = any(device.name.startswith("cuda") for device in rc.devices())
     workers = 1 if on_gpu else len(os.sched_getaffinity(0))
     device, threads = ("cuda", 0) if on_gpu else ("cpu", 1)
     orders = [Order(i, options.seed, size, options.spp, device, threads, options.output) for i in range(options.count)]

@@ -48,7 +48,7 @@ import realcam as rc
 from frame_scene import frame_scene
 
 assert "foreign" in rc.__file__
-print("\n".join(rc.devices()))
+print(*rc.devices(), sep="\n")
 camera = rc.Camera(rc.Lens.load("tessar-50mm").focused(4.0), position=(0, 1, 3), look_at=(0, 0.6, -2))
 scene = frame_scene(spheres=3, boxes=3)
 assert rc.render(scene, camera, spp=1, device="auto").stats.device.startswith("CPU")

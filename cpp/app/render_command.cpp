@@ -133,9 +133,7 @@ private:
     /// Meters first, because sizes in codes depend on the exposure.
     Plan planned(Session& session, shot::Shot& shot, const shot::ShotRequest& request, bool measures_times) const {
         meter(shot, request, session, {});
-        const PlanRequest wanted{request.settings.effects, thresholds_of(words_),
-                                 shot.camera.model == CameraModel::full_lens, measures_times};
-        return make_plan(session, shot.scene, shot.camera, request.settings, wanted, fast_pupil_tracer());
+        return make_plan(session, shot.scene, shot.camera, request.settings, measures_times, fast_pupil_tracer());
     }
 
     static std::string json_of(const Plan& plan) {

@@ -6,7 +6,6 @@
 #include "../io/files/image_metadata.hpp"
 #include "../plan/make_plan.hpp"
 #include "../plan/plan_text.hpp"
-#include "../plan/quality.hpp"
 #include "bindings.hpp"
 #include "render_turn.hpp"
 #include "short_text.hpp"
@@ -42,30 +41,13 @@ Planned planned_of(const Plan& plan) {
     return planned;
 }
 
-PlanThresholds thresholds_from(const std::string& quality, std::optional<double> pixels, std::optional<double> codes) {
-    const std::optional<PlanThresholds> named = quality_named(quality);
-    if (!named) throw InputError("unknown quality \"" + quality.substr(0, 60) + "\"; " + kQualityNames + " is wanted");
-    return {pixels.value_or(named->pixels), codes.value_or(named->codes)};
-}
-
-Planned plan(const Assembly& scene, const Camera& camera, const std::string& device, std::int64_t seed, int max_bounces,
-             int threads, std::vector<std::string> effects, const std::string& quality,
-             std::optional<double> threshold_px, std::optional<double> threshold_codes, bool times) {
-    PlanRequest request;
-    request.measures_times = times;
-    effects.push_back("auto");
-    request.effects = effects_named(effects);
-    request.thresholds = thresholds_from(quality, threshold_px, threshold_codes);
-    request.may_choose_model = camera.model == CameraModel::full_lens;
-    RenderSettings settings;
-    settings.seed = seed_from(seed);
-    settings.max_bounces = max_bounces;
-    settings.threads = threads;
+Planned plan(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
+             bool times) {
     Session& session = session_for(device);
     const Unlocked unlocked;
     const RenderTurn turn;
-    return planned_of(make_plan(session, scene, camera, settings, request, fast_pupil_tracer(),
-                                [](double) { return heed_signals(); }));
+    return planned_of(
+        make_plan(session, scene, camera, settings, times, fast_pupil_tracer(), [](double) { return heed_signals(); }));
 }
 
 }  // namespace
@@ -105,8 +87,7 @@ void bind_plan(py::module_& m) {
             for (const std::string& name : p.effects) names += (names.empty() ? "" : ", ") + name;
             return "<realcam.Plan: model " + p.model + ", effects " + (names.empty() ? "none" : names) + '>';
         });
-    m.def("_plan", &plan, "scene"_a, "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "threads"_a, "effects"_a,
-          "quality"_a, "threshold_px"_a, "threshold_codes"_a, "times"_a);
+    m.def("_plan", &plan, "scene"_a, "camera"_a, "settings"_a, "device"_a, "times"_a);
 }
 
 }  // namespace realcam::bindings

@@ -47,34 +47,10 @@ ToneCurve tone_curve_from(const std::string& name) {
     throw InputError("unknown tone curve \"" + name + "\"; film or linear is wanted");
 }
 
-namespace {
-
-LightTransport transport_from(const std::string& name) {
-    if (const auto transport = shot::transport_named(name)) return *transport;
-    throw InputError("unknown transport \"" + name + "\"; " + shot::kTransportNames + " is wanted");
-}
-
-PupilSampling pupil_sampling_from(const std::string& name) {
-    if (const auto sampling = shot::pupil_sampling_named(name)) return *sampling;
-    throw InputError("unknown pupil_sampling \"" + name + "\"; " + shot::kPupilSamplingNames + " is wanted");
-}
-
-}  // namespace
-
 std::uint32_t seed_from(std::int64_t seed, const char* what) {
     if (seed < 0 || seed > 0xffffffff)
         throw InputError("the " + std::string(what) + " must lie between 0 and 4294967295");
     return static_cast<std::uint32_t>(seed);
-}
-
-RenderSettings settings_from(int spp, std::int64_t seed, int max_bounces, const std::string& transport,
-                             float clamp_cd_m2, int threads, const std::vector<std::string>& layers,
-                             const std::vector<std::string>& effects, const std::string& illuminant) {
-    RenderSettings settings{
-        spp,         seed_from(seed),      max_bounces,           threads, transport_from(transport),
-        clamp_cd_m2, layers_named(layers), effects_named(effects)};
-    if (!illuminant.empty()) settings.illuminant = Illuminant::parse(illuminant);
-    return settings;
 }
 
 bool heed_signals() {
@@ -103,15 +79,8 @@ Progress progress_of(const py::object& callback) {
 
 namespace {
 
-py::tuple render(const Assembly& scene, const Camera& camera, int spp, const std::optional<NoiseRequest>& noise,
-                 const std::string& device, std::int64_t seed, int max_bounces, const std::string& transport,
-                 float clamp_cd_m2, int threads, const std::vector<std::string>& layers,
-                 const std::vector<std::string>& effects, const std::string& illuminant,
-                 const std::string& pupil_sampling, const py::object& progress) {
-    RenderSettings settings =
-        settings_from(spp, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, illuminant);
-    settings.pupil_sampling = pupil_sampling_from(pupil_sampling);
-    if (noise) settings.noise = goal_of(*noise);
+py::dict render(const Assembly& scene, const Camera& camera, const RenderSettings& settings, const std::string& device,
+                const py::object& progress) {
     Session& session = session_for(device);
     const Progress report = progress_of(progress);
     Image image;
@@ -156,29 +125,23 @@ void bind_render(py::module_& m) {
         .def("__repr__", [](const RenderStats& s) {
             return "<realcam.RenderStats " + digits(s.seconds) + " s on " + s.device + '>';
         });
-    py::class_<NoiseRequest>(m, "_NoiseRequest")
-        .def(py::init<std::optional<double>, std::optional<double>, std::optional<double>,
-                      std::optional<std::int64_t>>(),
-             "noise"_a, "noise_codes"_a, "seconds"_a, "max_spp"_a);
-    m.def("_render", &render, "scene"_a, "camera"_a, "spp"_a, "noise"_a, "device"_a, "seed"_a, "max_bounces"_a,
-          "transport"_a, "clamp_cd_m2"_a, "threads"_a, "layers"_a, "effects"_a, "illuminant"_a, "pupil_sampling"_a,
-          "progress"_a);
+    m.def("_render", &render, "scene"_a, "camera"_a, "settings"_a, "device"_a, "progress"_a);
     m.def(
         "_effect_notices",
-        [](const LensSystem& lens, const std::vector<std::string>& effects) {
-            return effect_notices(effects_named(effects), lens);
-        },
-        "lens"_a, "effects"_a);
-    m.def(
-        "effects",
-        [] {
-            std::vector<std::string> lines;
-            for (const EffectInfo& effect : kEffects) lines.push_back(std::string(effect.name) + ": " + line_of(effect));
-            return lines;
-        },
-        "What can be simulated besides, a line each: the name for effects=..., a colon and a blank, and what it is "
-        "and\n"
-        "needs of lens, scene and camera.");
+        [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },
+        "lens"_a, "settings"_a);
+    m.def("_effects", [] {
+        py::list rows;
+        for (const EffectInfo& effect : kEffects)
+            rows.append(
+                py::dict("name"_a = effect.name, "what"_a = effect.what, "needs"_a = effect.needs,
+                         "usage"_a = effect.usage, "is_on"_a = effect.is_on(),
+                         "parameter"_a = effect.parameter ? py::cast(EffectChoice().*effect.parameter) : py::none(),
+                         "has_wavelengths"_a = effect.has_wavelengths, "needs_full_lens"_a = effect.needs_full_lens,
+                         "needs_coatings"_a = effect.needs_coatings, "shows_in_previews"_a = effect.shows_in_previews,
+                         "cpu_time"_a = effect.cpu_time, "gpu_time"_a = effect.gpu_time));
+        return rows;
+    });
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");
@@ -190,15 +153,12 @@ void bind_render(py::module_& m) {
             return metered_exposure(image);
         },
         "exposure"_a);
-    m.def(
-        "devices",
-        [] {
-            std::vector<std::string> lines;
-            for (const Device& device : devices()) lines.push_back(device.name + ": " + device.description);
-            return lines;
-        },
-        "What this machine can render with, a line each: the name for device=..., a colon and a blank, and what it "
-        "is.");
+    m.def("_devices", [] {
+        py::list rows;
+        for (const Device& device : devices())
+            rows.append(py::dict("name"_a = device.name, "description"_a = device.description));
+        return rows;
+    });
 }
 
 }  // namespace realcam::bindings

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "../devices/devices.hpp"
-#include "../render/effect_names.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "picture.hpp"
@@ -18,11 +17,8 @@ namespace {
 /// What realcam.Session has of the core.
 class PythonSession {
 public:
-    PythonSession(const Assembly& scene, const Camera& camera, const std::string& device, std::int64_t seed,
-                  int max_bounces, const std::string& transport, float clamp_cd_m2, int threads,
-                  const std::vector<std::string>& layers, const std::vector<std::string>& effects,
-                  const std::string& illuminant)
-        : settings_(settings_from(1, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, illuminant)) {
+    PythonSession(const Assembly& scene, const Camera& camera, RenderSettings settings, const std::string& device)
+        : settings_(std::move(settings)) {
         {
             const Unlocked unlocked;
             session_ = make_session(device);
@@ -52,8 +48,9 @@ public:
         session_->add(spp, [](double) { return heed_signals(); });
     }
 
-    py::tuple add_until(const NoiseRequest& noise) {
-        const NoiseGoal goal = goal_of(noise);
+    /// `wanted`: the settings of which the goal of the noise counts.
+    py::dict add_until(const RenderSettings& wanted) {
+        const NoiseGoal goal = wanted.noise.value_or(NoiseGoal());
         const Assembly scene = scene_;
         const Camera camera = camera_;
         const ReachedNoise reached = [&] {
@@ -61,10 +58,11 @@ public:
             session_->set(scene, camera, settings_, heed_signals);  // anew, after what failed
             return session_->add_until(goal, [](double) { return heed_signals(); });
         }();
-        return py::make_tuple(reached.noise, reached.is_reached, reached.samples_wanted);
+        return py::dict("noise"_a = reached.noise, "is_reached"_a = reached.is_reached,
+                        "spp_wanted"_a = reached.samples_wanted);
     }
 
-    py::tuple picture() {
+    py::dict picture() {
         const Image image = [&] {
             const Unlocked unlocked;
             return session_->picture(heed_signals);
@@ -96,13 +94,11 @@ private:
 
 void bind_session(py::module_& m) {
     py::class_<PythonSession>(m, "_Session")
-        .def(py::init<const Assembly&, const Camera&, const std::string&, std::int64_t, int, const std::string&, float,
-                      int, const std::vector<std::string>&, const std::vector<std::string>&, const std::string&>(),
-             "scene"_a, "camera"_a, "device"_a, "seed"_a, "max_bounces"_a, "transport"_a, "clamp_cd_m2"_a, "threads"_a,
-             "layers"_a, "effects"_a, "illuminant"_a)
+        .def(py::init<const Assembly&, const Camera&, const RenderSettings&, const std::string&>(), "scene"_a,
+             "camera"_a, "settings"_a, "device"_a)
         .def("set", &PythonSession::set, "scene"_a, "camera"_a)
         .def("add", &PythonSession::add, "spp"_a)
-        .def("add_until", &PythonSession::add_until, "noise"_a)
+        .def("add_until", &PythonSession::add_until, "wanted"_a)
         .def("picture", &PythonSession::picture)
         .def("cancel", &PythonSession::cancel, py::call_guard<Unlocked>())
         .def_property_readonly("samples", &PythonSession::samples)

@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 
 #include "../io/files/image_metadata.hpp"
-#include "../render/effect_names.hpp"
 #include "../shot/shot_file.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"
@@ -13,8 +12,8 @@ using namespace py::literals;
 
 namespace {
 
-/// Scene, camera and the settings for render().
-py::tuple read_shot(const py::object& path, const std::string& device, const py::object& progress) {
+/// What realcam.Shot is made of, by the names of its fields.
+py::dict read_shot(const py::object& path, const std::string& device, const py::object& progress) {
     shot::ShotRequest request;
     Camera camera;
     Assembly scene;
@@ -40,23 +39,16 @@ py::tuple read_shot(const py::object& path, const std::string& device, const py:
         const RenderTurn turn;
         meter(shot, request, session, report);
     }
-    const RenderSettings& settings = request.settings;
-    const py::object spp = request.has_noise_goal ? py::object(py::str("auto")) : py::int_(settings.spp);
-    const NoiseRequest& noise = request.noise;
-    return py::make_tuple(shot.scene, shot.camera, spp, settings.seed, settings.max_bounces,
-                          request.tone == ToneCurve::film ? "film" : "linear",
-                          py::tuple(py::cast(names_of(settings.layers))), io::name_of(settings.transport),
-                          settings.clamp, py::tuple(py::cast(names_of(settings.effects))),
-                          settings.illuminant ? settings.illuminant->text() : std::string(), noise.noise,
-                          noise.noise_codes, noise.seconds, noise.max_spp);
+    return py::dict("scene"_a = shot.scene, "camera"_a = shot.camera, "settings"_a = request.settings,
+                    "tone"_a = request.tone == ToneCurve::film ? "film" : "linear");
 }
 
-py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::string& transport, float clamp_cd_m2,
-                  const std::vector<std::string>& effects, const std::string& illuminant, const std::string& plan,
-                  const std::string& denoiser) {
+py::dict metadata(const Camera& camera, const RenderSettings& settings, int spp, std::uint32_t seed,
+                  const std::string& plan, const std::string& denoiser) {
     py::dict entries;
-    io::ImageMetadata metadata =
-        io::metadata_of(camera, settings_from(spp, seed, 0, transport, clamp_cd_m2, 0, {}, effects, illuminant));
+    io::ImageMetadata metadata = io::metadata_of(camera, settings);
+    metadata.spp = spp;
+    metadata.seed = seed;
     metadata.plan = plan;
     metadata.denoiser = denoiser;
     for (const auto& [name, value] : metadata.entries()) entries[py::str(name)] = value;
@@ -67,8 +59,7 @@ py::dict metadata(const Camera& camera, int spp, std::uint32_t seed, const std::
 
 void bind_shot(py::module_& m) {
     m.def("_read_shot", &read_shot, "path"_a, "device"_a, "progress"_a);
-    m.def("_metadata", &metadata, "camera"_a, "spp"_a, "seed"_a, "transport"_a, "clamp_cd_m2"_a, "effects"_a,
-          "illuminant"_a, "plan"_a, "denoiser"_a);
+    m.def("_metadata", &metadata, "camera"_a, "settings"_a, "spp"_a, "seed"_a, "plan"_a, "denoiser"_a);
 }
 
 }  // namespace realcam::bindings

@@ -35,7 +35,8 @@ Camera metered(Camera camera, const Assembly& scene, const std::string& device, 
     const Progress report = progress_of(progress);
     const Unlocked unlocked;
     const RenderTurn turn;
-    camera.exposure_time_s = metered_exposure_time(session, scene, camera, {.max_bounces = max_bounces}, report);
+    camera.exposure_time_s =
+        metered_exposure_time(session, scene, camera, {.max_bounces = max_bounces, .effects = {}}, report);
     return camera;
 }
 

@@ -43,6 +43,7 @@ void bind_material(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_scene_materials(py::class_<Assembly>& scene);
 void bind_instances(py::class_<Assembly>& scene);
+void bind_settings(py::module_& m);
 void bind_render(py::module_& m);
 void bind_plan(py::module_& m);
 void bind_view(py::module_& m);
@@ -63,12 +64,6 @@ ToneCurve tone_curve_from(const std::string& name);
 
 /// Throws InputError for what does not fit 32 bits.
 std::uint32_t seed_from(std::int64_t seed, const char* what = "seed");
-
-/// Settings as Python's users write them. `transport`: "paths" or "whitted"; `illuminant`: as Illuminant::parse reads
-/// it, empty: none. Throws InputError.
-RenderSettings settings_from(int spp, std::int64_t seed, int max_bounces, const std::string& transport,
-                             float clamp_cd_m2, int threads, const std::vector<std::string>& layers,
-                             const std::vector<std::string>& effects, const std::string& illuminant);
 
 /// Python's share of the progress: signals (Ctrl-C), then the caller's function (None: nothing more). Called without
 /// the interpreter's lock. The callback must outlive the result.

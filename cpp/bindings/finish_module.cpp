@@ -118,7 +118,7 @@ bool is_class_of_this_module(const py::object& thing) {
 
 void finish_module(py::module_& m) {
     const py::object cleaned = py::module_::import("realcam.arguments").attr("cleaned");
-    pybind_call = reinterpret_cast<PyCFunctionObject*>(m.attr("devices").ptr())->m_ml->ml_meth;
+    pybind_call = reinterpret_cast<PyCFunctionObject*>(m.attr("develop").ptr())->m_ml->ml_meth;
     for (const auto& [name, thing] : py::dict(m.attr("__dict__"))) {
         const auto object = py::reinterpret_borrow<py::object>(thing);
         finish_function(object, cleaned);

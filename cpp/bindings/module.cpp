@@ -23,6 +23,7 @@ PYBIND11_MODULE(_core, m) {
     bind_projection(m);
     bind_material(m);
     bind_scene(m);
+    bind_settings(m);
     bind_render(m);
     bind_plan(m);
     bind_view(m);

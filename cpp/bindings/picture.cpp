@@ -5,6 +5,8 @@
 
 namespace realcam::bindings {
 
+using namespace py::literals;
+
 namespace {
 
 py::tuple texts_from(const IdNames& names) {
@@ -22,15 +24,16 @@ py::array array_of_layer(const LayerImage& layer, py::ssize_t height, py::ssize_
 
 }  // namespace
 
-py::tuple picture_from(const Image& image, LayerSet layers) {
+py::dict picture_from(const Image& image, LayerSet layers) {
     const py::array pixels = copy_of(image.exposure, {image.height, image.width, 3}),
                     depth = copy_of(image.depth, {image.height, image.width});
     py::dict arrays;
     if (layers.has(Layer::depth)) arrays[info_of(Layer::depth).name] = depth;
     for (const LayerImage& layer : image.layers)
         arrays[info_of(layer.layer).name] = array_of_layer(layer, image.height, image.width);
-    return py::make_tuple(pixels, depth, image.stats, arrays, texts_from(image.object_names),
-                          texts_from(image.material_names), image.spp, image.shortfall);
+    return py::dict("pixels"_a = pixels, "depth"_a = depth, "spp"_a = image.spp, "stats"_a = image.stats,
+                    "layers"_a = arrays, "object_names"_a = texts_from(image.object_names),
+                    "material_names"_a = texts_from(image.material_names), "shortfall"_a = image.shortfall);
 }
 
 }  // namespace realcam::bindings

@@ -5,8 +5,8 @@
 
 namespace realcam::bindings {
 
-/// What realcam.image.image_of makes an Image of: pixels, depth, stats, a dict of the layers that were asked for, and
+/// What the core says of an Image, by the names of its fields: a dict of the layers that were asked for among them, and
 /// the names of objects and materials by their ids.
-pybind11::tuple picture_from(const Image& image, LayerSet layers);
+pybind11::dict picture_from(const Image& image, LayerSet layers);
 
 }  // namespace realcam::bindings

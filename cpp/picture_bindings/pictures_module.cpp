@@ -91,10 +91,9 @@ std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, co
 }
 
 void write_picture(const std::string& path, const FloatArray& exposure, const FloatArray& depth, const Camera& camera,
-                   int spp, std::uint32_t seed, bool film_tone, const py::dict& layers, const IdNames& object_names,
-                   const IdNames& material_names, bool is_whitted, float clamp_cd_m2, const std::string& denoiser,
-                   const std::string& effects, const std::string& illuminant, const std::string& coatings,
-                   const std::string& plan) {
+                   const RenderSettings& settings, int spp, std::uint32_t seed, bool film_tone, const py::dict& layers,
+                   const IdNames& object_names, const IdNames& material_names, const std::string& plan,
+                   const std::string& denoiser) {
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
         throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
@@ -107,12 +106,10 @@ void write_picture(const std::string& path, const FloatArray& exposure, const Fl
                                         object_names,
                                         material_names};
     const Unlocked unlocked;
-    io::ImageMetadata metadata = io::metadata_of(
-        camera, {spp, seed, 0, 0, is_whitted ? LightTransport::whitted : LightTransport::paths, clamp_cd_m2});
+    io::ImageMetadata metadata = io::metadata_of(camera, settings);
+    metadata.spp = spp;
+    metadata.seed = seed;
     metadata.denoiser = denoiser;
-    metadata.effects = effects;
-    metadata.illuminant = illuminant;
-    metadata.coatings = coatings;
     metadata.plan = plan;
     image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
 }
@@ -146,9 +143,8 @@ PYBIND11_MODULE(_pictures, m) {
     m.doc() = "Picture files, through OpenImageIO. Paths are bytes, as os.fsencode makes them.";
     m.def("read_texture", &read_texture, "path"_a, "encoded"_a);
     m.def("read_environment", &read_environment, "path"_a);
-    m.def("write_picture", &write_picture, "path"_a, "exposure"_a, "depth"_a, "camera"_a, "spp"_a, "seed"_a,
-          "film_tone"_a, "layers"_a, "object_names"_a, "material_names"_a, "is_whitted"_a, "clamp_cd_m2"_a,
-          "denoiser"_a, "effects"_a, "illuminant"_a, "coatings"_a, "plan"_a);
+    m.def("write_picture", &write_picture, "path"_a, "exposure"_a, "depth"_a, "camera"_a, "settings"_a, "spp"_a,
+          "seed"_a, "film_tone"_a, "layers"_a, "object_names"_a, "material_names"_a, "plan"_a, "denoiser"_a);
     m.def("write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
     m.def("read_film", &read_film, "path"_a);
     m.def("check_image_path", &image_io::check_image_path, "path"_a);

@@ -8,10 +8,8 @@ namespace REALCAM_NAMESPACE {
 /// Looks at the scene and at the lens, and plans. `settings`: of the picture. Throws what probe_scene throws, and
 /// InputError for a lens that passes nothing and for thresholds that are none.
 inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
-                      const PlanRequest& request, const PupilTracer& tracer, const Progress& progress = {}) {
-    for (const double threshold : {request.thresholds.pixels, request.thresholds.codes})
-        if (!(threshold > 0) || !std::isfinite(threshold))
-            throw InputError("thresholds of a plan must be above 0: pixels and 8-bit codes");
+                      bool measures_times, const PupilTracer& tracer, const Progress& progress = {}) {
+    validate(settings);
     const SceneFacts facts = probe_scene(session, scene, camera, settings, progress);
     Camera full = camera, ideal = camera;
     full.model = CameraModel::full_lens;
@@ -19,8 +17,8 @@ inline Plan make_plan(Session& session, const Assembly& scene, const Camera& cam
     const CameraSetup of_surfaces(full, tracer), of_ideal(ideal, tracer);
     const LensErrors errors =
         lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), camera.lens, facts, tracer);
-    Plan plan = plan_shot(camera, errors, facts, request);
-    if (request.measures_times) measure_times(session, scene, camera, settings, plan, progress);
+    Plan plan = plan_shot(camera, errors, facts, settings);
+    if (measures_times) measure_times(session, scene, camera, settings, plan, progress);
     return plan;
 }
 

@@ -6,6 +6,7 @@
 #include "../camera/camera_view.hpp"
 #include "../camera/effects.hpp"
 #include "../error.hpp"
+#include "../render/plan_thresholds.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -14,14 +15,6 @@ enum class SizeUnit { pixels, codes };
 /// A shot in which there is nothing to decide upon.
 struct NothingToPlan : InputError {
     using InputError::InputError;
-};
-
-/// From which size on something is simulated.
-struct PlanThresholds {
-    double pixels = 0.5;  ///< by which something moves or is blurred
-    double codes = 1;     ///< by which an 8-bit code of the developed picture changes
-
-    bool operator==(const PlanThresholds&) const = default;
 };
 
 /// Who decided.

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <string>
 
-#include "../optics/coating/coated_faces.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "lens_errors.hpp"
@@ -11,14 +10,6 @@
 #include "plan.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-/// What a user leaves to the planner.
-struct PlanRequest {
-    EffectChoice effects;  ///< those that were named stay as they are
-    PlanThresholds thresholds = {};
-    bool may_choose_model = true;  ///< else the camera's stays
-    bool measures_times = false;  ///< what effects add to the time of the picture, which itself takes some seconds
-};
 
 /// The effects of a picture for which there is no plan: those that somebody has named.
 inline EffectChoice without_plan(EffectChoice effects) {
@@ -38,11 +29,11 @@ inline std::string short_size(double size) {
 
 class Planner {
 public:
-    Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const PlanRequest& request)
-        : camera_(camera), errors_(errors), facts_(facts), request_(request) {}
+    Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const RenderSettings& settings)
+        : camera_(camera), errors_(errors), facts_(facts), settings_(settings) {}
 
     Plan plan() {
-        plan_.effects = without_plan(request_.effects);
+        plan_.effects = without_plan(settings_.effects);
         decide_coatings();
         decide_ghosts();
         decide_diffraction();
@@ -55,16 +46,16 @@ public:
 private:
     /// Whether the effect is one of surfaces, which an ideal lens has not.
     bool is_impossible(const EffectInfo& effect) const {
-        return effect.needs_full_lens && !request_.may_choose_model && camera_.model != CameraModel::full_lens;
+        return effect.needs_full_lens && !may_choose_model_;
     }
 
     /// `reason`: what is so large. `doubt`: why it is left to the user; empty: it is not.
     void decide(const char* name, double size, SizeUnit unit, std::string reason, const std::string& doubt = "") {
         const EffectInfo& effect = *find_effect(name);
-        const double threshold = unit == SizeUnit::pixels ? request_.thresholds.pixels : request_.thresholds.codes;
-        const bool is_named = (request_.effects.named & bit_of(effect)) != 0;
+        const double threshold = unit == SizeUnit::pixels ? settings_.thresholds.pixels : settings_.thresholds.codes;
+        const bool is_named = (settings_.effects.named & bit_of(effect)) != 0;
         const bool is_kept =
-            is_named ? request_.effects.*effect.member : size >= threshold && doubt.empty() && !is_impossible(effect);
+            is_named ? settings_.effects.*effect.member : size >= threshold && doubt.empty() && !is_impossible(effect);
         if (!is_named && size >= threshold && !is_kept)
             reason += "; " + (doubt.empty() ? "an ideal lens cannot show it" : doubt);
         plan_.effects.*effect.member = is_kept;
@@ -108,7 +99,7 @@ private:
     void decide_diffraction() {
         const double airy = airy_diameter_px(camera_, errors_.film_sine), star = starburst_codes(camera_, facts_);
         const double more = edge_of_obstruction(camera_.lens), spread = more * airy;
-        if (spread / request_.thresholds.pixels >= star / request_.thresholds.codes)
+        if (spread / settings_.thresholds.pixels >= star / settings_.thresholds.codes)
             decide("diffraction", spread, SizeUnit::pixels,
                    more == 1 ? "Airy's disc is " + px(airy) + " wide"
                              : "with the edge of what blocks the lens's middle, as much light is spread as by an "
@@ -125,7 +116,7 @@ private:
         const double of_glass = std::max(lateral, axial);
         const double of_coatings = plan_.effects.diffraction ? 0.0 : coating_colour_codes_;
         const double of_light = std::max(of_coatings, ghost_colour_codes_);
-        if (of_glass / request_.thresholds.pixels < of_light / request_.thresholds.codes)
+        if (of_glass / settings_.thresholds.pixels < of_light / settings_.thresholds.codes)
             decide("dispersion", of_light, SizeUnit::codes,
                    (of_coatings > ghost_colour_codes_ ? "what the coatings take has a colour of "
                                                       : "ghosts have a colour of ") +
@@ -148,9 +139,9 @@ private:
     }
 
     void decide_model() {
-        const PlanThresholds& thresholds = request_.thresholds;
+        const PlanThresholds& thresholds = settings_.thresholds;
         CameraModel model = CameraModel::full_lens;
-        if (!request_.may_choose_model)
+        if (!may_choose_model_)
             model = camera_.model;
         else if (!any_is(plan_.effects, &EffectInfo::needs_full_lens))
             model = errors_.pinhole.is_within(thresholds)  ? CameraModel::pinhole
@@ -161,7 +152,7 @@ private:
         plan_.model = model;
         const bool is_pinhole = model == CameraModel::pinhole, is_full = model == CameraModel::full_lens;
         const bool has_map = is_full || model == CameraModel::mapped_lens || model == CameraModel::thick_lens;
-        const DecidedBy by = request_.may_choose_model ? DecidedBy::planner : DecidedBy::user;
+        const DecidedBy by = may_choose_model_ ? DecidedBy::planner : DecidedBy::user;
         const auto add = [&](const char* name, double size, SizeUnit unit, bool is_kept, const std::string& reason) {
             const double threshold = unit == SizeUnit::pixels ? thresholds.pixels : thresholds.codes;
             const bool comes_along = is_kept && size < threshold && by == DecidedBy::planner;
@@ -181,7 +172,8 @@ private:
     const Camera& camera_;
     const LensErrors& errors_;
     const SceneFacts& facts_;
-    const PlanRequest& request_;
+    const RenderSettings& settings_;
+    const bool may_choose_model_ = camera_.model == CameraModel::full_lens;  ///< else the camera's stays
     Plan plan_;
     double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< of those that are kept
 };
@@ -195,10 +187,10 @@ inline void apply(const Plan& plan, Camera& camera, RenderSettings& settings) {
     if (!settings.effects.have_wavelengths()) settings.illuminant.reset();
 }
 
-/// What is worth simulating of a shot.
+/// What is worth simulating of a shot. Of the settings' effects those that were named stay as they are.
 inline Plan plan_shot(const Camera& camera, const LensErrors& errors, const SceneFacts& facts,
-                      const PlanRequest& request) {
-    return plan_shot_detail::Planner(camera, errors, facts, request).plan();
+                      const RenderSettings& settings) {
+    return plan_shot_detail::Planner(camera, errors, facts, settings).plan();
 }
 
 }  // namespace REALCAM_NAMESPACE

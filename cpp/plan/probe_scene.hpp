@@ -124,6 +124,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
     settings.spp = 8;
     settings.noise.reset();
     settings.effects = {};
+    settings.pupil_sampling = PupilSampling::outline;
     settings.illuminant.reset();
     settings.layers = {Layer::depth_middle};
     const bool moves = scene.moves() || camera.moves();

@@ -1,5 +1,7 @@
 #include "render_settings.hpp"
 
+#include <cmath>
+
 #include "effect_names.hpp"
 
 namespace realcam {
@@ -29,6 +31,9 @@ void validate(const RenderSettings& settings) {
     if (settings.threads < 0 || settings.threads > kMaxThreads)
         throw InputError("threads must be 0 (all) or a number up to " + std::to_string(kMaxThreads));
     if (const std::string why = illuminant_error(settings); !why.empty()) throw InputError(why);
+    for (const double threshold : {settings.thresholds.pixels, settings.thresholds.codes})
+        if (!(threshold > 0) || !std::isfinite(threshold))
+            throw InputError("thresholds of a plan must be above 0: pixels and 8-bit codes");
 }
 
 void validate_effects(const RenderSettings& settings, const Camera& camera) {

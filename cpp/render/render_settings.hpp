@@ -8,23 +8,34 @@
 #include "layers.hpp"
 #include "noise_goal.hpp"
 #include "path_settings.hpp"
+#include "plan_thresholds.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 inline constexpr int kMaxThreads = 4096;  ///< more than machines have cores; TBB falls over what is far beyond
 
+inline constexpr EffectChoice kAutomaticEffects = [] {
+    EffectChoice effects;
+    effects.is_automatic = true;
+    return effects;
+}();
+
+/// How a picture is taken: the same value for the command line, shot files, Python, and all kinds of sessions.
 struct RenderSettings {
     int spp = 64;  ///< samples per pixel
     std::uint32_t seed = 0;
-    int max_bounces = 0;  ///< 0: direct light only
+    int max_bounces = 1;  ///< 0: direct light only
     int threads = 0;      ///< of the CPU; 0: all
     LightTransport transport = LightTransport::paths;
-    float clamp = 0;  ///< see PathSettings
+    double clamp = 0;  ///< see PathSettings
     LayerSet layers = {};
-    EffectChoice effects = {};
+    EffectChoice effects = kAutomaticEffects;
+    PlanThresholds thresholds = {};  ///< for effects that are automatic
     std::optional<Illuminant> illuminant = {};  ///< of effects with wavelengths; none: D65, the white of RGB
     std::optional<NoiseGoal> noise = {};  ///< instead of spp
     PupilSampling pupil_sampling = PupilSampling::outline;  ///< of a full lens
+
+    bool operator==(const RenderSettings&) const = default;
 
     /// The light of a picture whose samples have wavelengths; nothing of others.
     std::optional<Illuminant> spectral_light() const {
@@ -32,7 +43,7 @@ struct RenderSettings {
     }
     LensEffects lens_effects() const;
     std::optional<GhostChoice> ghost_choice() const;
-    PathSettings path() const { return {max_bounces, transport, clamp}; }
+    PathSettings path() const { return {max_bounces, transport, static_cast<float>(clamp)}; }
 };
 
 /// Throws InputError where no picture has so many samples per pixel.

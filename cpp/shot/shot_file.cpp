@@ -179,7 +179,7 @@ private:
         read("seed", settings.seed);
         read("max_bounces", settings.max_bounces);
         settings.transport = table_.named("transport", transport_named, kTransportNames).value_or(settings.transport);
-        settings.clamp = static_cast<float>(table_.number("clamp_cd_m2").value_or(0));
+        settings.clamp = table_.number("clamp_cd_m2").value_or(0);
         if (table_.find("effects")) {
             const std::vector<std::string> effects = table_.texts("effects");
             table_.checked("effects", [&] { settings.effects = effects_named(effects); });

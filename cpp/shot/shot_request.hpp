@@ -8,7 +8,6 @@
 #include "../camera/develop.hpp"
 #include "../io/lens/lens_file.hpp"
 #include "../render/default_view.hpp"
-#include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "../scene/environment_change.hpp"
 #include "scene_request.hpp"
@@ -41,7 +40,7 @@ struct ShotRequest {
     std::optional<double> exposure_time_s;
     double iso = 100;
 
-    RenderSettings settings = {.max_bounces = 1, .effects = effects_named({"auto"})};
+    RenderSettings settings;
     bool has_noise_goal = false;  ///< spp is "auto", and as many samples are taken as the noise needs
     NoiseRequest noise;
     ToneCurve tone = ToneCurve::film;

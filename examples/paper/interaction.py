@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from frame_scene import frame_camera, frame_scene
-from realcam import Film, Lens, devices
+from realcam import Film, Lens, RenderSettings, devices
 from realcam.draw import draw_states
 from realcam.shot import Shot
 
@@ -31,7 +31,7 @@ def experiment(device: str) -> Experiment:
         return Experiment(title, (f"Left out: it needs {error.name}; pip install realcam[view] brings it.",))
     lens, scene = Lens.load("double-gauss-50mm"), frame_scene()
     camera = frame_camera().replace(lens=lens.focused(4.0), film=Film(24, 24, (SIDE, SIDE))).metered(scene)
-    bench = LensBench(Shot(scene, camera, effects=()), device=device)
+    bench = LensBench(Shot(scene, camera, RenderSettings(effects=())), device=device)
     try:
         steps = _Steps(bench)
         made = steps.take("The camera as it stands", bench.show)
@@ -43,7 +43,7 @@ def experiment(device: str) -> Experiment:
         bench.close()
     before, after = (f"{one.first_order().effective_focal_length_mm:.2f} mm" for one in (lens, edited))
     sketch = draw_states([("as it was made", lens), ("its first face bent", edited)], insets=False, width_px=900)
-    name = next((line for line in devices() if line.startswith(device)), devices()[0])
+    name = next((str(d) for d in devices() if d.name.startswith(device)), str(devices()[0]))
     return Experiment(
         title,
         (

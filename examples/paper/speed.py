@@ -17,7 +17,7 @@ def experiment(device: str) -> Experiment:
     image = render(scene, camera, spp=SAMPLES, device=device, effects=())
     stats = image.stats
     busy = stats.lens_seconds + stats.scene_seconds + stats.other_seconds
-    name = next((d for d in devices() if stats.device in d or d.startswith(device)), stats.device)
+    name = next((str(d) for d in devices() if stats.device in str(d) or d.name.startswith(device)), stats.device)
     live = LiveView(scene, device="cuda" if "GPU" in stats.device else "cpu")
     _ = live.shoot(camera, spp=SAMPLES).codes  # what is prepared once
     begin, frames = time.perf_counter(), 0

@@ -32,7 +32,6 @@ from ._core import (
     Lens,
     LensFileError,
     LiveFrame,
-    LiveView,
     Material,
     NothingToPlan,
     Plan,
@@ -42,6 +41,7 @@ from ._core import (
     RayChunks,
     RayStatus,
     RealcamError,
+    RenderSettings,
     RenderStats,
     Scene,
     SceneFileError,
@@ -52,17 +52,17 @@ from ._core import (
     TraceResult,
     Wavefront,
     __version__,
-    devices,
-    effects,
     glass_names,
     lens_names,
     sensor_names,
 )
 from .accuracy import AccuracyCost, accuracy_cost
+from .choices import Device, EffectInfo, devices, effects
 from .drawing import CrossSection, cross_section
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
+from .live_view import LiveView
 from .optimisation import Optimisation, Targets, Variable, optimised
 from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
 from .planning import plan
@@ -89,8 +89,10 @@ __all__ = [
     "CoatingResponse",
     "CrossSection",
     "DepthOfField",
+    "Device",
     "DeviceArray",
     "DeviceError",
+    "EffectInfo",
     "FieldOfView",
     "Film",
     "FirstOrder",
@@ -117,6 +119,7 @@ __all__ = [
     "RayStatus",
     "ReachedNoise",
     "RealcamError",
+    "RenderSettings",
     "RenderStats",
     "Scene",
     "SceneFileError",

@@ -1,13 +1,13 @@
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from enum import IntEnum
 from os import PathLike
 from types import EllipsisType
-from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeAlias, final, overload
+from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeAlias, TypedDict, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
-from typing_extensions import Self, TypeVar
+from typing_extensions import Self, TypeVar, Unpack
 
 from .image import Image
 from .raw_image import RawImage
@@ -23,10 +23,6 @@ _Table: TypeAlias = Sequence[Sequence[float]]
 _CoatingMaterial: TypeAlias = complex | tuple[float, float] | Sequence[tuple[float, float, float]] | str | Glass
 _Coating: TypeAlias = str | Coating
 _Progress: TypeAlias = Callable[[float], bool | None]
-_Layers: TypeAlias = dict[str, NDArray[np.float32] | NDArray[np.uint32]]
-_Picture: TypeAlias = tuple[
-    NDArray[np.float32], NDArray[np.float32], RenderStats, _Layers, tuple[str, ...], tuple[str, ...], int, str
-]
 
 # Arrays of numpy, but for rays in a GPU's memory.
 _Doubles = TypeVar("_Doubles", default=NDArray[np.float64])
@@ -1157,15 +1153,7 @@ class RenderStats(_Value):
     def device(self) -> str: ...
 
 def _metadata(
-    camera: Camera,
-    spp: int,
-    seed: int,
-    transport: str,
-    clamp_cd_m2: float,
-    effects: Sequence[str],
-    illuminant: str,
-    plan: str,
-    denoiser: str,
+    camera: Camera, settings: RenderSettings, spp: int, seed: int, plan: str, denoiser: str
 ) -> dict[str, str]: ...
 def _expose(
     sensor: Sensor,
@@ -1185,49 +1173,127 @@ def _sensor_gain(sensor: Sensor, pixel_pitch_um: float, iso: float) -> float: ..
 def _sensor_color(
     sensor: Sensor, illuminant: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
-def _read_shot(
-    path: str | os.PathLike[str], device: str, progress: _Progress | None
-) -> tuple[
-    Scene,
-    Camera,
-    int | Literal["auto"],
-    int,
-    int,
-    str,
-    tuple[str, ...],
-    str,
-    float,
-    tuple[str, ...],
-    str,
-    float | None,
-    float | None,
-    float | None,
-    int | None,
-]: ...
+def _read_shot(path: str | os.PathLike[str], device: str, progress: _Progress | None) -> _Shot: ...
 
-class _NoiseRequest:
+class _SettingWords(TypedDict, total=False):
+    spp: int | str
+    noise: float | None
+    noise_codes: float | None
+    seconds: float | None
+    max_spp: int | None
+    seed: int
+    max_bounces: int
+    transport: str
+    clamp_cd_m2: float
+    threads: int
+    layers: str | Iterable[str]
+    effects: str | Iterable[str]
+    quality: str
+    threshold_px: float | None
+    threshold_codes: float | None
+    illuminant: str | float | Sequence[tuple[float, float]] | None
+    pupil_sampling: str
+
+@final
+class RenderSettings(_Value):
     def __init__(
-        self, noise: float | None, noise_codes: float | None, seconds: float | None, max_spp: int | None
+        self,
+        *,
+        spp: int | str = 64,
+        noise: float | None = None,
+        noise_codes: float | None = None,
+        seconds: float | None = None,
+        max_spp: int | None = None,
+        seed: int = 0,
+        max_bounces: int = 1,
+        transport: str = "paths",
+        clamp_cd_m2: float = 0.0,
+        threads: int = 0,
+        layers: str | Iterable[str] = (),
+        effects: str | Iterable[str] = ("auto",),
+        quality: str = "photo",
+        threshold_px: float | None = None,
+        threshold_codes: float | None = None,
+        illuminant: str | float | Sequence[tuple[float, float]] | None = None,
+        pupil_sampling: str = "outline",
     ) -> None: ...
+    def with_(self, **changes: Unpack[_SettingWords]) -> RenderSettings: ...
+    @property
+    def spp(self) -> int | Literal["auto"]: ...
+    @property
+    def noise(self) -> float | None: ...
+    @property
+    def noise_codes(self) -> float | None: ...
+    @property
+    def seconds(self) -> float | None: ...
+    @property
+    def max_spp(self) -> int | None: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def max_bounces(self) -> int: ...
+    @property
+    def transport(self) -> str: ...
+    @property
+    def clamp_cd_m2(self) -> float: ...
+    @property
+    def threads(self) -> int: ...
+    @property
+    def layers(self) -> tuple[str, ...]: ...
+    @property
+    def effects(self) -> tuple[str, ...]: ...
+    @property
+    def threshold_px(self) -> float: ...
+    @property
+    def threshold_codes(self) -> float: ...
+    @property
+    def illuminant(self) -> str | None: ...
+    @property
+    def pupil_sampling(self) -> str: ...
+
+class _Picture(TypedDict):
+    pixels: NDArray[np.float32]
+    depth: NDArray[np.float32]
+    spp: int
+    stats: RenderStats
+    layers: dict[str, NDArray[np.float32] | NDArray[np.uint32]]
+    object_names: tuple[str, ...]
+    material_names: tuple[str, ...]
+    shortfall: str
+
+class _Shot(TypedDict):
+    scene: Scene
+    camera: Camera
+    settings: RenderSettings
+    tone: str
+
+class _Reached(TypedDict):
+    noise: float
+    is_reached: bool
+    spp_wanted: float
+
+class _EffectInfo(TypedDict):
+    name: str
+    what: str
+    needs: str
+    usage: str
+    is_on: bool
+    parameter: float | None
+    has_wavelengths: bool
+    needs_full_lens: bool
+    needs_coatings: bool
+    shows_in_previews: bool
+    cpu_time: float
+    gpu_time: float
+
+class _Device(TypedDict):
+    name: str
+    description: str
 
 def _render(
-    scene: Scene,
-    camera: Camera,
-    spp: int,
-    noise: _NoiseRequest | None,
-    device: str,
-    seed: int,
-    max_bounces: int,
-    transport: str,
-    clamp_cd_m2: float,
-    threads: int,
-    layers: Sequence[str],
-    effects: Sequence[str],
-    illuminant: str,
-    pupil_sampling: str,
-    progress: _Progress | None,
+    scene: Scene, camera: Camera, settings: RenderSettings, device: str, progress: _Progress | None
 ) -> _Picture: ...
-def _effect_notices(lens: Lens, effects: Sequence[str]) -> list[str]: ...
+def _effect_notices(lens: Lens, settings: RenderSettings) -> list[str]: ...
 
 @final
 class PlanDecision(_Value):
@@ -1259,19 +1325,7 @@ class Plan(_Value):
     @property
     def summary(self) -> str: ...
 
-def _plan(
-    scene: Scene,
-    camera: Camera,
-    device: str,
-    seed: int,
-    max_bounces: int,
-    threads: int,
-    effects: Sequence[str],
-    quality: str,
-    threshold_px: float | None,
-    threshold_codes: float | None,
-    times: bool,
-) -> Plan: ...
+def _plan(scene: Scene, camera: Camera, settings: RenderSettings, device: str, times: bool) -> Plan: ...
 
 @final
 class LiveFrame:
@@ -1283,43 +1337,20 @@ class LiveFrame:
     def samples(self) -> int: ...
 
 @final
-class LiveView:
-    def __init__(self, scene: Scene, *, device: str = "auto", seed: int = 0, max_bounces: int = 1) -> None: ...
-    def shoot(
-        self,
-        camera: Camera,
-        *,
-        spp: int = 1,
-        tone: str = "film",
-        effects: Sequence[str] = (),
-        illuminant: str = "",
-        transport: str = "paths",
-        clamp_cd_m2: float = 0.0,
-    ) -> LiveFrame: ...
+class _LiveView:
+    def __init__(self, scene: Scene, device: str) -> None: ...
+    def shoot(self, camera: Camera, settings: RenderSettings, tone: str) -> LiveFrame: ...
     def show(self, scene: Scene) -> None: ...
     def picture(self) -> tuple[DeviceArray | NDArray[np.float32], DeviceArray | NDArray[np.float32]]: ...
-    def _image(self) -> _Picture: ...
+    def image(self) -> _Picture: ...
     def cancel(self) -> None: ...
 
 @final
 class _Session:
-    def __init__(
-        self,
-        scene: Scene,
-        camera: Camera,
-        device: str,
-        seed: int,
-        max_bounces: int,
-        transport: str,
-        clamp_cd_m2: float,
-        threads: int,
-        layers: Sequence[str],
-        effects: Sequence[str],
-        illuminant: str,
-    ) -> None: ...
+    def __init__(self, scene: Scene, camera: Camera, settings: RenderSettings, device: str) -> None: ...
     def set(self, scene: Scene, camera: Camera) -> None: ...
     def add(self, spp: int) -> None: ...
-    def add_until(self, noise: _NoiseRequest | None) -> tuple[float, bool, float]: ...
+    def add_until(self, wanted: RenderSettings) -> _Reached: ...
     def picture(self) -> _Picture: ...
     def cancel(self) -> None: ...
     @property
@@ -1334,8 +1365,8 @@ def _gpu_lens_ray_rates(camera: Camera, device: str) -> dict[str, float]: ...
 def _lens_ray_rates(lens: Lens, seconds: float) -> dict[str, float]: ...
 def develop(exposure: ArrayLike, iso: float, tone: str = "film") -> NDArray[np.uint8]: ...
 def _metered_exposure(exposure: ArrayLike) -> float: ...
-def effects() -> list[str]: ...
-def devices() -> list[str]: ...
+def _effects() -> list[_EffectInfo]: ...
+def _devices() -> list[_Device]: ...
 def lens_names() -> list[str]: ...
 def glass_names() -> list[str]: ...
 def sensor_names() -> list[str]: ...

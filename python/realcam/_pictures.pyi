@@ -1,7 +1,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import Camera
+from ._core import Camera, RenderSettings
 
 def read_texture(
     path: bytes, encoded: bytes
@@ -12,19 +12,15 @@ def write_picture(
     exposure: NDArray[np.float32],
     depth: NDArray[np.float32],
     camera: Camera,
+    settings: RenderSettings,
     spp: int,
     seed: int,
     film_tone: bool,
     layers: dict[str, NDArray[np.float32] | NDArray[np.uint32]],
     object_names: list[str],
     material_names: list[str],
-    is_whitted: bool,
-    clamp_cd_m2: float,
-    denoiser: str,
-    effects: str,
-    illuminant: str,
-    coatings: str,
     plan: str,
+    denoiser: str,
 ) -> None: ...
 def write_codes(path: bytes, codes: NDArray[np.uint8], entries: list[tuple[str, str]]) -> None: ...
 def read_film(path: bytes) -> tuple[NDArray[np.float32], list[tuple[str, str]]]: ...

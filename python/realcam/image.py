@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from . import _core, denoiser, image_file
-from ._core import Camera, InputError, RenderStats
+from ._core import Camera, InputError, RenderSettings, RenderStats
 from .files import system_name
 from .pickling import set_checked_state
+from .settings import setting
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,9 +25,10 @@ class Image:
     samples that met something, by their weight in the exposure.
     layers: what was asked for by name (docs/layers.md), arrays of (H, W), (H, W, 2) or (H, W, 3), float32, and uint32
     for ids and sample counts. object_names, material_names: by the ids in the layers; empty where these were not asked
-    for. transport, clamp_cd_m2, effects, illuminant: as render had them. denoiser: what has changed the pixels since
-    they were taken; empty: nothing. plan: what the effect "auto" has decided (Plan.summary); empty: it was not asked.
-    spp: where render had "auto", the mean over the pixels. shortfall: a sentence where the noise is larger than wanted.
+    for. settings: with which it was taken; what the effect "auto" has decided is in their place, and plan tells of it
+    (Plan.summary; empty: it was not asked). denoiser: what has changed the pixels since they were taken; empty:
+    nothing. spp: where the settings have "auto", the mean over the pixels. shortfall: a sentence where the noise is
+    larger than wanted.
     """
 
     pixels: np.ndarray
@@ -38,13 +40,13 @@ class Image:
     layers: Mapping[str, np.ndarray] = field(default_factory=dict)
     object_names: tuple[str, ...] = ()
     material_names: tuple[str, ...] = ()
-    transport: str = "paths"
-    clamp_cd_m2: float = 0.0
-    effects: tuple[str, ...] = ()
-    illuminant: str = ""
+    settings: RenderSettings = field(default_factory=lambda: RenderSettings(effects=()))
     denoiser: str = ""
     plan: str = ""
     shortfall: str = ""
+
+    transport, clamp_cd_m2 = setting("transport"), setting("clamp_cd_m2")
+    effects, illuminant = setting("effects"), setting("illuminant")
 
     def __post_init__(self) -> None:
         pixels, depth = self.pixels, self.depth
@@ -120,79 +122,30 @@ class Image:
         """
         if tone not in ("film", "linear"):
             raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
-        entries = self.metadata()
         try:
             image_file.pictures().write_picture(
                 system_name(path),
                 self.pixels,
                 self.depth,
                 self.camera,
+                self.settings,
                 self.spp,
                 self.seed,
                 tone == "film",
                 dict(self.layers),
                 list(self.object_names),
                 list(self.material_names),
-                self.transport == "whitted",
-                self.clamp_cd_m2,
+                self.plan,
                 self.denoiser,
-                entries.get("realcam:effects", ""),
-                entries.get("realcam:illuminant", ""),
-                entries.get("realcam:coatings", ""),
-                entries.get("realcam:plan", ""),
             )
         except TypeError:
             raise InputError(
-                "pixels, depth, camera, spp, seed, layers and names of the image must be such as rc.render gives"
+                "pixels, depth, camera, settings, spp, seed, layers and names of the image must be as rc.render gives them"
             ) from None
 
     def metadata(self) -> dict[str, str]:
         """Names ("realcam:...") and values of what is written into picture files."""
         entries: dict[str, str] = _core._metadata(
-            self.camera,
-            self.spp,
-            self.seed,
-            self.transport,
-            self.clamp_cd_m2,
-            list(self.effects),
-            self.illuminant,
-            self.plan,
-            self.denoiser,
+            self.camera, self.settings, self.spp, self.seed, self.plan, self.denoiser
         )
         return entries
-
-
-def layer_names(layers: str | Iterable[str]) -> list[str]:
-    """Names of layers as users give them: some, or one, or "all"."""
-    return [layers] if isinstance(layers, str) else list(layers)
-
-
-def image_of(
-    picture: tuple[Any, ...],
-    camera: Camera,
-    seed: int,
-    transport: str,
-    clamp_cd_m2: float,
-    effects: Iterable[str] = (),
-    illuminant: str = "",
-    plan: str = "",
-) -> Image:
-    """What the core gives as a picture."""
-    pixels, depth, stats, layers, object_names, material_names, spp, shortfall = picture
-    return Image(
-        pixels=pixels,
-        depth=depth,
-        camera=camera,
-        spp=spp,
-        seed=seed,
-        stats=stats,
-        layers=layers,
-        object_names=object_names,
-        material_names=material_names,
-        transport=transport,
-        clamp_cd_m2=clamp_cd_m2,
-        effects=tuple(effects),
-        illuminant=illuminant,
-        plan=plan,
-        shortfall=shortfall,
-    )

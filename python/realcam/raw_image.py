@@ -217,7 +217,7 @@ def exposed(
         camera.film,
         exposure_time_s=camera.exposure_time_s,
         iso=camera.iso if iso is None else iso,
-        illuminant=image.illuminant,
+        illuminant=image.illuminant or "",
         exit_pupil_distance_mm=_exit_pupil_distance_mm(image),
         temperature_c=temperature_c,
         seed=seed,

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._core import Camera, Scene
-from .effect_names import Illuminant, effect_list, illuminant_text
-from .image import Image, image_of, layer_names
-from .noise import noise_request
+from ._core import Camera, RenderSettings, Scene
+from .image import Image
 from .planning import Settled, settled
 from .render import warn_of_effects, warn_of_no_light
+from .settings import setting, settings_of
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._core import _SettingWords
 
 
 @dataclass(frozen=True)
@@ -36,10 +40,10 @@ class Session:
     while not good_enough(session.image()):
         session.add(16)
 
-    device, seed, max_bounces, transport, clamp_cd_m2, threads, layers, effects, quality, threshold_px, threshold_codes
-    and illuminant are those of render, and so are their defaults; add() after add() takes the samples that one render
-    of as many would take. Effects "auto" are planned for each new picture, anew where set() brings another scene or
-    another view, which takes some hundredths of a second: for pictures that change all the time, name them.
+    settings, also by their names, as in Session(scene, camera, max_bounces=4), and device are those of render; add()
+    after add() takes the samples that one render of as many would take. Effects "auto" are planned for each new
+    picture, anew where set() brings another scene or another view, which takes some hundredths of a second: for
+    pictures that change all the time, name them.
     Threads take turns, and cancel() ends the turn of another. Raises InputError, SceneFileError and DeviceError; after
     one of these the picture begins anew. Warns of a scene without light.
     """
@@ -48,59 +52,22 @@ class Session:
         self,
         scene: Scene,
         camera: Camera,
+        settings: RenderSettings | None = None,
         *,
         device: str = "auto",
-        seed: int = 0,
-        max_bounces: int = 1,
-        transport: str = "paths",
-        clamp_cd_m2: float = 0.0,
-        threads: int = 0,
-        layers: str | Iterable[str] = (),
-        effects: str | Iterable[str] = "auto",
-        quality: str = "photo",
-        threshold_px: float | None = None,
-        threshold_codes: float | None = None,
-        illuminant: Illuminant | None = None,
+        **changes: Unpack[_SettingWords],
     ) -> None:
-        self._seed, self._transport, self._clamp_cd_m2 = seed, transport, clamp_cd_m2
-        self._device, self._max_bounces, self._threads = device, max_bounces, threads
-        self._layers = layer_names(layers)
-        self._asked_effects, self._asked_illuminant = effect_list(effects), illuminant_text(illuminant)
-        self._thresholds = {"quality": quality, "threshold_px": threshold_px, "threshold_codes": threshold_codes}
-        self._asked_camera = camera
+        self._asked_settings, self._asked_camera, self._device = settings_of(settings, changes), camera, device
         self._settled = self._plan(scene, camera)  # raises for what is no scene or camera
         self._core = self._begin(scene, self._settled)
         warn_of_no_light(scene)
-        warn_of_effects(camera, self._settled.effects)
+        warn_of_effects(camera, self._settled.settings)
 
     def _plan(self, scene: Scene, camera: Camera) -> Settled:
-        return settled(
-            scene,
-            camera,
-            self._asked_effects,
-            self._asked_illuminant,
-            stacklevel=4,
-            device=self._device,
-            seed=self._seed,
-            max_bounces=self._max_bounces,
-            threads=self._threads,
-            **self._thresholds,
-        )
+        return settled(scene, camera, self._asked_settings, self._device, stacklevel=4)
 
     def _begin(self, scene: Scene, now: Settled) -> _core._Session:
-        return _core._Session(
-            scene,
-            now.camera,
-            self._device,
-            self._seed,
-            self._max_bounces,
-            self._transport,
-            self._clamp_cd_m2,
-            self._threads,
-            self._layers,
-            now.effects,
-            now.illuminant,
-        )
+        return _core._Session(scene, now.camera, now.settings, self._device)
 
     @property
     def scene(self) -> Scene:
@@ -113,9 +80,11 @@ class Session:
         return self._core.camera
 
     @property
-    def effects(self) -> tuple[str, ...]:
-        """Those that the picture has: named, or planned."""
-        return tuple(self._settled.effects)
+    def settings(self) -> RenderSettings:
+        """Those that the picture has: its effects are named, or planned."""
+        return self._settled.settings
+
+    effects = setting("effects")
 
     def set(self, *, scene: Scene | None = None, camera: Camera | None = None) -> None:
         """Another scene or camera; None keeps the one that was set last.
@@ -126,13 +95,13 @@ class Session:
         """
         new_scene = self.scene if scene is None else scene
         asked = self._asked_camera if camera is None else camera
-        if "auto" in self._asked_effects and isinstance(asked, Camera):
+        if "auto" in self._asked_settings.effects and isinstance(asked, Camera):
             if asked.model == self.camera.model:  # made of self.camera: the model of it was planned
                 asked = asked.replace(model=self._asked_camera.model)
             now = self._settled_for(new_scene, asked, is_other_scene=scene is not None)
         else:
             now = self._settled._replace(camera=asked)
-        if (now.effects, now.illuminant) == (self._settled.effects, self._settled.illuminant):
+        if now.settings == self.settings:
             self._core.set(new_scene, now.camera)
         else:
             self._core = self._begin(new_scene, now)
@@ -166,12 +135,13 @@ class Session:
         seconds: float | None = None,
         max_spp: int | None = None,
     ) -> ReachedNoise:
-        """Takes samples of the pixels that are noisier than wanted, until none is; the arguments are those of render.
+        """Takes samples of the pixels that are noisier than wanted, until none is; the arguments are settings.
 
-        Raises what add raises.
+        What is not said is as the session's settings have it. Raises what add raises.
         """
-        request = noise_request("auto", noise, noise_codes, seconds, max_spp)
-        return ReachedNoise(*self._core.add_until(request))
+        words = {"noise": noise, "noise_codes": noise_codes, "seconds": seconds, "max_spp": max_spp}
+        said: Any = {name: value for name, value in words.items() if value is not None}
+        return ReachedNoise(**self._core.add_until(self._asked_settings.with_(spp="auto", **said)))
 
     def image(self) -> Image:
         """What was collected, as render returns it; spp is the mean over the pixels, rounded.
@@ -179,18 +149,9 @@ class Session:
         Layers are those of all samples that were begun, also after a stop. A pixel without a sample is black, at
         depth inf. Raises InputError where there is no sample yet.
         """
-        picture = self._core.picture()
-        image = image_of(
-            picture,
-            self.camera,
-            self._seed,
-            self._transport,
-            self._clamp_cd_m2,
-            self._settled.effects,
-            self._settled.illuminant,
-            self._settled.summary,
-        )
-        return replace(image, spp=round(float(self.samples.mean())))
+        picture = self._core.picture() | {"spp": round(float(self.samples.mean()))}
+        settings = self.settings
+        return Image(**picture, camera=self.camera, seed=settings.seed, settings=settings, plan=self._settled.summary)
 
     @property
     def samples(self) -> NDArray[np.int64]:

@@ -3,38 +3,32 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
 
 from . import _core
-from ._core import Camera, Scene
+from ._core import Camera, RenderSettings, Scene
 from .image import Image
-from .noise import Samples
 from .render import ProgressCallback, render
+from .settings import setting
 
 
 @dataclass(frozen=True)
 class Shot:
     """What a shot file describes: `rc.Shot.load("demo.toml").render().save("demo.png")`.
 
-    tone: "film" or "linear", the tone curve for Image.save.
+    tone: "film" or "linear", the tone curve for Image.save. What the settings say can be asked of the shot, too:
+    shot.spp is shot.settings.spp.
     """
 
     scene: Scene
     camera: Camera
-    spp: Samples = 64
-    seed: int = 0
-    max_bounces: int = 1
+    settings: RenderSettings = field(default_factory=RenderSettings)
     tone: str = "film"
-    layers: tuple[str, ...] = ()
-    transport: str = "paths"
-    clamp_cd_m2: float = 0.0
-    effects: tuple[str, ...] = ("auto",)
-    illuminant: str = ""
-    noise: float | None = None
-    noise_codes: float | None = None
-    seconds: float | None = None
-    max_spp: int | None = None
+
+    spp, noise, noise_codes, seconds, max_spp = map(setting, ("spp", "noise", "noise_codes", "seconds", "max_spp"))
+    seed, max_bounces, transport = map(setting, ("seed", "max_bounces", "transport"))
+    clamp_cd_m2, layers, effects = map(setting, ("clamp_cd_m2", "layers", "effects"))
+    illuminant = setting("illuminant")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], *, device: str = "auto") -> Shot:
@@ -43,13 +37,8 @@ class Shot:
         What it leaves out is chosen as the command `realcam render` chooses it: `device` meters the light where the
         file gives no exposure time. Raises InputError naming file, line and key, and what scene and lens raise.
         """
-        return cls(*_core._read_shot(path, device, None))
+        return cls(**_core._read_shot(path, device, None))
 
     def render(self, *, device: str = "auto", threads: int = 0, progress: bool | ProgressCallback = False) -> Image:
         """Takes the photograph: realcam.render with the shot's own settings."""
-        settings: dict[str, Any] = {"spp": self.spp, "seed": self.seed, "max_bounces": self.max_bounces}
-        settings |= {"layers": self.layers, "transport": self.transport, "clamp_cd_m2": self.clamp_cd_m2}
-        settings |= {"effects": self.effects, "illuminant": self.illuminant or None}
-        settings |= {"noise": self.noise, "noise_codes": self.noise_codes}
-        settings |= {"seconds": self.seconds, "max_spp": self.max_spp}
-        return render(self.scene, self.camera, **settings, device=device, threads=threads, progress=progress)
+        return render(self.scene, self.camera, self.settings, device=device, threads=threads, progress=progress)

@@ -159,6 +159,7 @@ HOST_ONLY = {
     "render/metering.hpp",
     "render/motion_vectors.hpp",
     "render/noise_goal.hpp",
+    "render/plan_thresholds.hpp",
     "render/progress.hpp",
     "render/render_settings.hpp",
     "render/rings.hpp",

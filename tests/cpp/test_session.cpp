@@ -112,7 +112,7 @@ TEST_CASE("a session prepares what is another picture, and goes on with what is 
     Assembly scene(test::bare_scene());
     scene.instances.push_back({std::make_shared<const Scene>(test::bare_scene()), {}, "chair"});
     Camera camera = small_camera();
-    RenderSettings settings;
+    RenderSettings settings{.effects = {}};
     NotedSession session;
     CHECK_THROWS_WITH_AS(session.add(1), "nothing is set that could be photographed; set() prepares it", InputError);
     const auto next = [&] {
@@ -154,16 +154,16 @@ TEST_CASE("a session refuses what makes no picture, and keeps the one that it ha
     const Assembly scene(test::bare_scene());
     const Camera camera = small_camera();
     NotedSession session;
-    session.set(scene, camera, {});
+    session.set(scene, camera, {.effects = {}});
     session.add(3);
     Scene broken = test::bare_scene();
     broken.triangles[0].vertices[0] = 3;
-    CHECK_THROWS_WITH_AS(session.set(Assembly(broken), camera, {}),
+    CHECK_THROWS_WITH_AS(session.set(Assembly(broken), camera, {.effects = {}}),
                          "scene: triangle 0: vertex 3 does not exist; there are 3", InputError);
     Camera blind = camera;
     blind.film.width = 0;
-    CHECK_THROWS_AS(session.set(scene, blind, {}), InputError);
-    CHECK_THROWS_AS(session.set(scene, camera, {.max_bounces = -1}), InputError);
+    CHECK_THROWS_AS(session.set(scene, blind, {.effects = {}}), InputError);
+    CHECK_THROWS_AS(session.set(scene, camera, {.max_bounces = -1, .effects = {}}), InputError);
     CHECK_THROWS_AS(session.add(0), InputError);
     CHECK(session.picture().spp == 3);
 }
@@ -172,7 +172,7 @@ TEST_CASE("samples go on where the last ended, also after a stop; a failure begi
     const Assembly scene(test::bare_scene());
     const Camera camera = small_camera();
     NotedSession session;
-    session.set(scene, camera, {});
+    session.set(scene, camera, {.effects = {}});
     session.add(3);
     std::thread stop;
     session.while_taking = [&] {
@@ -198,7 +198,7 @@ TEST_CASE("samples go on where the last ended, also after a stop; a failure begi
     session.fails = false;
     CHECK_THROWS_AS(session.add(1), InputError);
     session.notes.clear();
-    session.set(scene, camera, {});
+    session.set(scene, camera, {.effects = {}});
     session.add(1);
     CHECK(session.notes == kAnew);
     CHECK(session.taken.back().first == 0);
@@ -209,12 +209,12 @@ TEST_CASE("a picture is taken from its first sample on") {
     const Camera camera = small_camera();
     NotedSession session;
     for (int i = 0; i < 2; ++i) {
-        const Image image = take_picture(session, scene, camera, {.spp = 20}, {});
+        const Image image = take_picture(session, scene, camera, {.spp = 20, .effects = {}}, {});
         CHECK(image.spp == 20);
         CHECK(image.stats.seconds >= image.stats.setup_seconds);
         CHECK(session.taken.back().first == 0);
     }
-    CHECK_THROWS_AS(take_picture(session, scene, camera, {.spp = 0}, {}), InputError);
+    CHECK_THROWS_AS(take_picture(session, scene, camera, {.spp = 0, .effects = {}}, {}), InputError);
 }
 
 TEST_CASE("as many frames are under way as the device takes") {
@@ -223,19 +223,20 @@ TEST_CASE("as many frames are under way as the device takes") {
     NotedSession& session = *owned;
     LiveView view(std::move(owned), test::bare_scene());
     CHECK_THROWS_AS(view.collected(), InputError);
-    CHECK(view.shoot(camera, {.spp = 2}, ToneCurve::film)->samples() == 2);
-    CHECK(view.shoot(camera, {.spp = 3}, ToneCurve::film)->samples() == 5);
+    CHECK(view.shoot(camera, {.spp = 2, .effects = {}}, ToneCurve::film)->samples() == 2);
+    CHECK(view.shoot(camera, {.spp = 3, .effects = {}}, ToneCurve::film)->samples() == 5);
     // The third has to wait for the first, here until nobody wants to.
     int asked = 0;
-    CHECK_THROWS_AS(view.shoot(camera, {.spp = 1}, ToneCurve::film, [&] { return ++asked < 3; }), Cancelled);
+    CHECK_THROWS_AS(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film, [&] { return ++asked < 3; }),
+                    Cancelled);
     CHECK(asked == 3);
     CHECK(session.frames.size() == 2);
     session.frames[0]->is_there = true;
-    CHECK(view.shoot(camera, {.spp = 1}, ToneCurve::film)->samples() == 6);
-    CHECK_THROWS_AS(view.shoot(camera, {.spp = 0}, ToneCurve::film), InputError);
+    CHECK(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film)->samples() == 6);
+    CHECK_THROWS_AS(view.shoot(camera, {.spp = 0, .effects = {}}, ToneCurve::film), InputError);
     view.cancel();
     CHECK_THROWS_AS(view.collected().picture(), InputError);
-    CHECK(view.shoot(camera, {.spp = 1}, ToneCurve::film)->samples() == 1);
+    CHECK(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film)->samples() == 1);
     view.show(test::bare_scene());
     CHECK_THROWS_AS(view.collected(), InputError);
     session.stop_flag = true;  // so that the frames under way end
@@ -260,7 +261,7 @@ TEST_CASE("each pixel is developed with its own number of samples") {
 TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
     const Assembly scene(test::bare_scene());
     Camera camera = small_camera();
-    RenderSettings settings;
+    RenderSettings settings{.effects = {}};
     NotedSession session;
     session.set(scene, camera, settings);
     session.add(3);

@@ -67,6 +67,7 @@ def use_surface(surface: rc.Surface) -> None:
 USES: dict[type, Callable[[Any], object]] = {
     rc.Lens: use_lens,
     rc.Camera: use_camera,
+    rc.RenderSettings: lambda settings: settings.with_(seed=3),
     rc.Film: lambda film: rc.Camera(LENS, film=film),
     rc.Glass: lambda glass: (glass.index(550), glass.index(100), glass.index(20000)),
     rc.Surface: use_surface,

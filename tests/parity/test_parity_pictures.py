@@ -15,8 +15,8 @@ from frame_scene import frame_scene
 
 pytestmark = pytest.mark.gpu
 
-GPUS = [line.split(":", 2)[1] for line in rc.devices() if line.startswith("cuda:")]
-needs_gpu = pytest.mark.skipif(not GPUS, reason="no GPU: " + rc.devices()[-1] + " is all there is")
+GPUS = [d.name.removeprefix("cuda:") for d in rc.devices() if d.name.startswith("cuda:")]
+needs_gpu = pytest.mark.skipif(not GPUS, reason=f"no GPU: {rc.devices()[-1]} is all there is")
 needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"{len(GPUS)} GPUs; two are wanted")
 
 # Where a sample goes astray, a pixel changes by the share of one sample, some percent; roundings alone leave 1e-5 of it

@@ -12,7 +12,8 @@ from ..measurement import Measurement, hold
 pytestmark = [
     pytest.mark.gpu,
     pytest.mark.skipif(
-        not any(line.startswith("cuda:") for line in rc.devices()), reason=f"no GPU: {rc.devices()} is all there is"
+        not any(device.name.startswith("cuda:") for device in rc.devices()),
+        reason=f"no GPU: {rc.devices()} is all there is",
     ),
 ]
 

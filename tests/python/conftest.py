@@ -18,7 +18,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-@pytest.fixture(params=sorted({line.split(":")[0] for line in rc.devices()}))
+@pytest.fixture(params=sorted({device.name.split(":")[0] for device in rc.devices()}))
 def device(request: pytest.FixtureRequest) -> str:
     """cpu, and cuda where this machine has a GPU, in turn: `device` of rc.render."""
     return str(request.param)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import realcam as rc
 
-GPUS = [line.split(" ")[0].rstrip(":") for line in rc.devices() if line.startswith("cuda:")]
+GPUS = [device.name for device in rc.devices() if device.name.startswith("cuda:")]
 needs_gpu = pytest.mark.skipif(not GPUS, reason=f"no GPU: {rc.devices()} is all there is")
 needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"two GPUs are wanted: {rc.devices()}")
 

@@ -67,6 +67,10 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     ],
     "Lens": [lens, lambda: lens().with_coating("bare"), lambda: lens().focused(2), lambda: lens().stopped_down(8)],
     "FirstOrder": [lambda: lens().first_order(), lambda: lens().stopped_down(8).first_order()],
+    "RenderSettings": [
+        lambda: rc.RenderSettings(spp="auto", effects="dispersion", illuminant="A", layers="all"),
+        lambda: rc.RenderSettings(),
+    ],
     "Film": [lambda: rc.Film(), lambda: rc.Film(resolution=(960, 641))],
     "Camera": [camera, lambda: rc.Camera(lens())],
     "Material": [lambda: rc.Material(), lambda: rc.Material(emission=(1, 0, 0))],

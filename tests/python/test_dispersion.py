@@ -230,7 +230,7 @@ def test_noise_where_colours_stay_in_a_pixel() -> None:
 
 
 def test_effects_are_listed() -> None:
-    assert [line.split(":")[0] for line in rc.effects()] == [
+    assert [effect.name for effect in rc.effects()] == [
         "dispersion",
         "coatings",
         "ghosts",

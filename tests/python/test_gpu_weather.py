@@ -15,7 +15,7 @@ import pytest
 import realcam as rc
 from frame_scene import frame_scene
 
-GPUS = [line.split(":")[1] for line in rc.devices() if line.startswith("cuda:")]
+GPUS = [d.name.removeprefix("cuda:") for d in rc.devices() if d.name.startswith("cuda:")]
 needs_gpu = pytest.mark.skipif(not GPUS, reason="no GPU on this machine")
 needs_two = pytest.mark.skipif(len(GPUS) < 2, reason=f"{len(GPUS)} GPUs on this machine; two are wanted")
 one_or_several = pytest.mark.parametrize("device", ["cuda:0", pytest.param("cuda:0,1", marks=needs_two)])
@@ -49,7 +49,7 @@ def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
 def test_where_no_gpu_is_to_be_seen_the_cpu_serves() -> None:
     done = run(
         """
-assert [line.split(":")[0] for line in rc.devices()] == ["cpu"], rc.devices()
+assert [device.name for device in rc.devices()] == ["cpu"], rc.devices()
 image = rc.render(scene, camera, spp=1, device="auto")
 assert image.stats.device.startswith("CPU"), image.stats.device
 try:

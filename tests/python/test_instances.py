@@ -9,7 +9,7 @@ import realcam as rc
 from .scenes import quad, scene_of
 
 DEVICES = ["cpu", pytest.param("cuda", marks=[pytest.mark.gpu])]
-HAS_GPU = any(line.startswith("cuda:") for line in rc.devices())
+HAS_GPU = any(device.name.startswith("cuda:") for device in rc.devices())
 
 LENS = rc.Lens.load("tessar-50mm").focused(4.0)
 LAMP = rc.Material(diffuse=(0.1, 0.1, 0.1), emission=(4000, 3500, 3000))
@@ -22,7 +22,7 @@ Mesh = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 @pytest.fixture(params=DEVICES)
 def device(request: pytest.FixtureRequest) -> str:
     if request.param == "cuda" and not HAS_GPU:
-        pytest.skip("no GPU: " + rc.devices()[-1] + " is all there is")
+        pytest.skip(f"no GPU: {rc.devices()[-1]} is all there is")
     return str(request.param)
 
 

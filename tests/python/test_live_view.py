@@ -10,7 +10,7 @@ import pytest
 import realcam as rc
 from frame_scene import frame_scene
 
-HAS_GPU = any(line.startswith("cuda:") for line in rc.devices())
+HAS_GPU = any(device.name.startswith("cuda:") for device in rc.devices())
 needs_gpu = pytest.mark.skipif(not HAS_GPU, reason="no GPU on this machine")
 
 on_each = pytest.mark.parametrize("on", ["cpu", pytest.param("cuda:0", marks=[needs_gpu, pytest.mark.gpu])])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import threading
 import time
 
@@ -38,15 +37,6 @@ def test_added_samples_are_those_of_one_render(device: str) -> None:
     assert image.stats.sampled_rays == whole.stats.sampled_rays
     assert image.stats.device == whole.stats.device
     assert image.stats.seconds >= image.stats.setup_seconds > 0
-
-
-def test_the_defaults_are_those_of_render() -> None:
-    """Of what both take; of a live view, which takes names of effects with each frame, the device."""
-    ours, theirs = (inspect.signature(function).parameters for function in (rc.Session, rc.render))
-    shared = set(ours) & set(theirs)
-    assert shared >= {"device", "seed", "max_bounces", "effects", "quality", "transport", "layers", "illuminant"}
-    assert {name: ours[name].default for name in shared} == {name: theirs[name].default for name in shared}
-    assert "device: str = 'auto'" in (rc.LiveView.__init__.__doc__ or "")
 
 
 def lamps() -> tuple[rc.Scene, rc.Camera]:

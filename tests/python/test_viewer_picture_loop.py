@@ -31,12 +31,12 @@ def camera(x: float = 0.0, **options: object) -> rc.Camera:
 class Watched:
     """A loop with what it has told."""
 
-    def __init__(self, scene: rc.Scene, **settings: object) -> None:
+    def __init__(self, scene: rc.Scene) -> None:
         self.scene = scene
         self.frames: list[Frame] = []
         self.errors: list[tuple[int, str]] = []
         self._news = threading.Condition()
-        self.loop = PictureLoop(scene, self._take, self._fail, device="cpu", **settings)
+        self.loop = PictureLoop(scene, self._take, self._fail, device="cpu")
 
     def _take(self, frame: Frame) -> None:
         with self._news:
@@ -112,9 +112,9 @@ def test_the_noise_that_is_told_is_the_error(scene: rc.Scene, asked: float) -> N
     truth = rc._core.develop(reference.pixels, 100).astype(float)
     told, true = [], []
     for seed in range(4):
-        watched = Watched(scene, seed=seed)
+        watched, settings = Watched(scene), rc.RenderSettings(seed=seed, effects=())
         try:
-            told.append(watched.photograph(PictureRequest(small, noise_codes=asked)).noise_codes)
+            told.append(watched.photograph(PictureRequest(small, settings, noise_codes=asked)).noise_codes)
             image = watched.loop.image().result(60)
         finally:
             watched.loop.close()
@@ -294,10 +294,10 @@ def test_the_light_of_a_point_does_not_depend_on_the_exposure(watched: Watched) 
 
 
 def test_an_error_is_told_and_the_next_request_is_photographed(watched: Watched) -> None:
-    serial = watched.loop.submit(PictureRequest(camera(), effects=("no such effect",)))
+    serial = watched.loop.submit(PictureRequest(camera(), rc.RenderSettings(effects="auto")))
     watched.until(lambda: watched.errors)
     assert watched.errors[0][0] == serial
-    assert "no such effect" in watched.errors[0][1]
+    assert "planned first" in watched.errors[0][1]
     assert watched.photograph(PictureRequest(camera(), noise_codes=8.0)).samples > 0
     assert len(watched.errors) == 1
 

@@ -9,7 +9,7 @@ from .prescription import Prescription, Rays, Row, Traced
 
 # What may trace, and what Lens.trace needs to be told so.
 BACKENDS: dict[str, dict] = {"Embree": {"device": "cpu"}}
-if any(line.startswith("cuda:") for line in rc.devices()):
+if any(device.name.startswith("cuda:") for device in rc.devices()):
     BACKENDS["CUDA"] = {"device": "cuda"}
 
 FATES = {

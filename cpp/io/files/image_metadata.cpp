@@ -69,7 +69,7 @@ ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) 
     metadata.seed = settings.seed;
     metadata.spp = settings.spp;
     metadata.transport = settings.transport;
-    metadata.clamp_cd_m2 = static_cast<double>(settings.clamp);
+    metadata.clamp_cd_m2 = settings.clamp;
     for (const std::string& name : names_of(settings.effects))
         metadata.effects += (metadata.effects.empty() ? "" : ",") + name;
     if (const auto light = settings.spectral_light()) metadata.illuminant = light->text();

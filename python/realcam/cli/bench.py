@@ -10,7 +10,8 @@ from typing import Annotated, Optional
 import typer
 from rich.console import Console
 
-from .._core import InputError, devices
+from .._core import InputError
+from ..choices import devices
 from .options import check_known
 
 
@@ -37,7 +38,7 @@ def bench(
     from machine import machine
 
     benchmarks = CPU_BENCHMARKS | GPU_BENCHMARKS
-    has_gpu = any(line.startswith("cuda") for line in devices())
+    has_gpu = any(device.name.startswith("cuda") for device in devices())
     wanted = names or list(benchmarks if has_gpu else CPU_BENCHMARKS)
     for name in wanted:
         check_known(name, benchmarks, "benchmark")

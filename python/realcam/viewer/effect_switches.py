@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from .._core import Plan, effects
+from .._core import Plan
+from ..choices import effects
 
-EFFECTS = tuple(line.partition(":")[0] for line in effects() if "on unless left out" not in line)
-_WITHOUT_SURFACES = ("diffraction",)  # which every camera model has
+EFFECTS = tuple(effect.name for effect in effects() if not effect.is_on)
+_WITHOUT_SURFACES = {effect.name for effect in effects() if not effect.needs_full_lens}
 
 
 @dataclass

@@ -9,7 +9,8 @@ from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
-from .._core import effects, glass_names
+from .._core import glass_names
+from ..choices import effects
 from .effect_switches import EFFECTS
 
 
@@ -74,5 +75,4 @@ class CostPanel(Element, component="static/cost_panel.js"):
 
 
 def _switchable() -> list[dict[str, Any]]:
-    helps = dict(line.split(": ", 1) for line in effects())
-    return [{"name": name, "help": helps[name]} for name in EFFECTS]
+    return [{"name": effect.name, "help": effect.description} for effect in effects() if effect.name in EFFECTS]

@@ -77,9 +77,8 @@ class FollowUps:
                 found = planning.plan(
                     self._shot.scene,
                     camera.replace(model="full"),
+                    self._shot.settings,
                     device=self._device,
-                    seed=self._shot.seed,
-                    max_bounces=self._shot.max_bounces,
                     effects=effects,
                 )
             except RealcamError as error:

@@ -10,10 +10,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import Camera
+from .._core import Camera, RenderSettings
+from ..choices import effects
 from .noise_measurement import NoiseMeasurement
 from .pace import Size
 from .picture_request import Costs, Frame, PictureRequest
+
+_SMALL = {effect.name for effect in effects() if not effect.shows_in_previews}
 
 Arrays = tuple[NDArray[np.float32], NDArray[np.float32]]  # exposure and depth
 
@@ -47,9 +50,12 @@ class GrowingPicture:
         """The resolution that is wanted in the end."""
         return self.request.camera.film.resolution
 
-    def effects(self) -> list[str]:
-        """Of fewer pixels diffraction is left out: it is smaller than they are, and its tables take 50 ms of a core."""
-        return [effect for effect in self.request.effects if self.size == self.whole or effect != "diffraction"]
+    def settings(self) -> RenderSettings:
+        """What is smaller than pixels is left out where these are fewer; diffraction's tables take 50 ms of a core."""
+        settings = self.request.settings
+        if self.size == self.whole:
+            return settings
+        return settings.with_(effects=[effect for effect in settings.effects if effect.partition("=")[0] not in _SMALL])
 
     def camera(self, metered_s: float) -> Camera:
         """With the pixels of now. metered_s: the exposure time where it follows the light."""

@@ -37,7 +37,7 @@ class LensBench:
         self.listeners = Listeners()
         self.controls = CameraControls.of(shot.camera)
         self.history = History(self.controls.mount)
-        self.switches = Switches.of_shot(shot.effects)
+        self.switches = Switches.of_shot(shot.settings.effects)
         self.plan: Plan | None = None
         self.problem: Problem | None = None
         self.noise_codes = 1.0
@@ -271,8 +271,6 @@ class LensBench:
             lambda frame: self._take_frame(slot, frame),
             self._take_failure,
             device=self._device,
-            max_bounces=self.shot.max_bounces,
-            seed=self.shot.seed,
         )
 
     def _take_failure(self, serial: int, message: str) -> None:
@@ -324,10 +322,7 @@ class LensBench:
     def _request(self, controls: CameraControls) -> PictureRequest:
         return PictureRequest(
             camera=controls.camera,
-            effects=self.switches.of_model(controls.model).named(self.plan),
-            illuminant=self.shot.illuminant,
-            transport=self.shot.transport,
-            clamp_cd_m2=self.shot.clamp_cd_m2,
+            settings=self.shot.settings.with_(effects=self.switches.of_model(controls.model).named(self.plan)),
             tone=self.shot.tone,
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,

@@ -14,8 +14,9 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import Cancelled, InputError, LiveFrame, LiveView, RealcamError, Scene
+from .._core import Cancelled, InputError, LiveFrame, RealcamError, Scene
 from ..image import Image
+from ..live_view import LiveView
 from .frame_encoder import FrameEncoder
 from .growing_picture import GrowingPicture
 from .light_meter import point_at
@@ -59,11 +60,9 @@ class PictureLoop:
         on_error: Callable[[int, str], None],
         *,
         device: str = "auto",
-        max_bounces: int = 1,
-        seed: int = 0,
     ) -> None:
-        self._live = LiveView(scene, device=device, seed=seed, max_bounces=max_bounces)
-        self._taker = PictureTaker(self._live, seed, self._wait_for)
+        self._live = LiveView(scene, device=device)
+        self._taker = PictureTaker(self._live, self._wait_for)
         self._on_error = on_error
         self._wake = threading.Condition()
         self._pending: _Pending | None = None

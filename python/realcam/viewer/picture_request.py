@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from .._core import Camera, RenderStats
+from .._core import Camera, RenderSettings, RenderStats
 
 MOST_SPP = 4096  # with which a picture is done, however noisy it still is
-
-
-def has_wavelengths(effects: Iterable[str]) -> bool:
-    """Whether effects, as shot files name them, are or may be such as an illuminant belongs to."""
-    return any(effect in ("auto", "dispersion", "diffraction") for effect in effects)
 
 
 @dataclass(frozen=True)
@@ -20,28 +14,19 @@ class PictureRequest:
     """camera: of the whole resolution. The others are as the user has set them."""
 
     camera: Camera
-    effects: tuple[str, ...] = ()
-    illuminant: str = ""
-    transport: str = "paths"
-    clamp_cd_m2: float = 0.0
+    settings: RenderSettings = field(default_factory=lambda: RenderSettings(effects=()))
     tone: str = "film"
     is_automatic: bool = False  #: the exposure time follows the light
     compensation_ev: float = 0.0
     noise_codes: float = 1.0  #: the picture is refined until its noise is as small
     max_spp: int = MOST_SPP
 
-    def illuminant_with(self, effects: Iterable[str]) -> str:
-        """The illuminant where one of the effects has wavelengths; elsewhere none may be named."""
-        return self.illuminant if has_wavelengths(effects) else ""
-
     def is_same_picture(self, other: PictureRequest) -> bool:
         """Whether the samples of one can be developed for the other."""
         mine, others = self.camera, other.camera
         return (
             mine.replace(exposure_time_s=1, iso=100) == others.replace(exposure_time_s=1, iso=100)
-            and self.effects == other.effects
-            and self.illuminant == other.illuminant
-            and (self.transport, self.clamp_cd_m2) == (other.transport, other.clamp_cd_m2)
+            and self.settings == other.settings
         )
 
 

@@ -10,8 +10,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import Camera, LiveFrame, LiveView, develop
-from ..image import Image, image_of
+from .._core import Camera, LiveFrame, develop
+from ..image import Image
+from ..live_view import LiveView
 from .growing_picture import Arrays, GrowingPicture
 from .light_meter import metered_exposure_lx_s, middle_grey_lx_s
 from .pace import Pace
@@ -26,9 +27,8 @@ class PictureTaker:
     wait_for: called with a frame that is under way while the one before is kept, and returns when it is ready.
     """
 
-    def __init__(self, live: LiveView, seed: int, wait_for: Callable[[LiveFrame, GrowingPicture], None]) -> None:
+    def __init__(self, live: LiveView, wait_for: Callable[[LiveFrame, GrowingPicture], None]) -> None:
         self._live = live
-        self._seed = seed
         self._wait_for = wait_for
         self._metered_s = 0.0
         self.pace = Pace()
@@ -43,17 +43,9 @@ class PictureTaker:
 
     def shoot(self, picture: GrowingPicture, spp: int) -> NDArray[np.uint8]:
         """Takes samples; all that are there, as they are wanted now."""
-        request, camera, effects = picture.request, self.camera(picture), picture.effects()
+        request, camera = picture.request, self.camera(picture)
         start = time.perf_counter()
-        frame = self._live.shoot(
-            camera,
-            spp=spp,
-            tone=request.tone,
-            effects=effects,
-            illuminant=request.illuminant_with(effects),
-            transport=request.transport,
-            clamp_cd_m2=request.clamp_cd_m2,
-        )
+        frame = self._live.shoot(camera, picture.settings(), spp=spp, tone=request.tone)
         if picture.kept:
             self._wait_for(frame, picture)
         codes = frame.codes
@@ -93,12 +85,12 @@ class PictureTaker:
             picture.noise.add(picture.samples, exposure / np.float32(picture.exposure_time_s))
             picture.tell_noise(self.camera(picture).exposure_time_s)
             if picture.noise_codes is not None:
-                picture.costs = Costs.of(self._collected(picture).stats, picture.spent_s)
+                picture.costs = Costs.of(self._live.image().stats, picture.spent_s)
         picture.is_final = picture.is_good_enough()
 
     def image(self, picture: GrowingPicture) -> Image:
         """All samples, with the exposure time that is wanted now."""
-        image = self._collected(picture)
+        image = self._live.image()
         time_s = self.camera(picture).exposure_time_s
         ratio = np.float32(time_s / image.camera.exposure_time_s)
         return replace(image, pixels=image.pixels * ratio, camera=image.camera.replace(exposure_time_s=time_s))
@@ -114,15 +106,3 @@ class PictureTaker:
     def _live_arrays(self) -> Arrays:
         exposure, depth = self._live.picture()
         return np.asarray(exposure), np.asarray(depth)
-
-    def _collected(self, picture: GrowingPicture) -> Image:
-        request = picture.request
-        return image_of(
-            self._live._image(),
-            self.camera(picture).replace(exposure_time_s=picture.exposure_time_s),
-            self._seed,
-            request.transport,
-            request.clamp_cd_m2,
-            request.effects,
-            request.illuminant_with(request.effects),
-        )

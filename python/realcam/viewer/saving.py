@@ -11,10 +11,9 @@ from typing import Any
 import simplejpeg
 import tomlkit
 
-from .._core import InputError, Lens, Sensor, lens_names
+from .._core import InputError, Lens, RenderSettings, Sensor, lens_names
 from ..image import Image
 from .camera_controls import CameraControls, opened
-from .picture_request import has_wavelengths
 from .shot_source import ShotSource
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
@@ -88,7 +87,7 @@ def shot_contents(source: ShotSource, controls: CameraControls, effects: list[st
     shot["exposure_time_s"] = controls.exposure_time_s
     shot["iso"] = controls.iso
     shot["effects"] = effects
-    if not has_wavelengths(effects):
+    if RenderSettings(illuminant="D65").with_(effects=effects).illuminant is None:
         shot.pop("illuminant", None)  # which belongs to effects that were switched off
     contents[path] = tomlkit.dumps(shot).encode()
     return contents

@@ -2,9 +2,17 @@
 #include <optional>
 #include <string>
 
-#include "plan.hpp"
+#include "../platform.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+/// From which size on something is simulated, where the planner decides (cpp/plan).
+struct PlanThresholds {
+    double pixels = 0.5;  ///< by which something moves or is blurred
+    double codes = 1;     ///< by which an 8-bit code of the developed picture changes
+
+    bool operator==(const PlanThresholds&) const = default;
+};
 
 inline constexpr const char* kQualityNames = "draft, photo or reference";
 
