@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "../image_io/image_file.hpp"
 #include "../math/append_cdf.hpp"
 #include "../optics/ghost/film_mirror.hpp"
 #include "../optics/ghost/ghost_coatings.hpp"

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "../optics/coating/coated_faces.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "lens_errors.hpp"
@@ -45,9 +46,7 @@ public:
 
 private:
     /// Whether the effect is one of surfaces, which an ideal lens has not.
-    bool is_impossible(const EffectInfo& effect) const {
-        return effect.needs_full_lens && !may_choose_model_;
-    }
+    bool is_impossible(const EffectInfo& effect) const { return effect.needs_full_lens && !may_choose_model_; }
 
     /// `reason`: what is so large. `doubt`: why it is left to the user; empty: it is not.
     void decide(const char* name, double size, SizeUnit unit, std::string reason, const std::string& doubt = "") {

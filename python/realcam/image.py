@@ -140,7 +140,7 @@ class Image:
             )
         except TypeError:
             raise InputError(
-                "pixels, depth, camera, settings, spp, seed, layers and names of the image must be as rc.render gives them"
+                "pixels, camera, settings, spp, seed, layers and names of the image must be such as rc.render gives"
             ) from None
 
     def metadata(self) -> dict[str, str]:
