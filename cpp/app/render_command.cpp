@@ -45,7 +45,7 @@ auto with_memory_for(const std::string& what, Work&& work) {
 }
 
 void check_memory(const Film& film, LayerSet layers) {
-    // Of the CPU's session while it turns its sums into a picture.
+    // The memory that the CPU's session needs while it turns its sums into a picture.
     std::size_t bytes_per_pixel = sizeof(PixelSum) + 16;
     if (layers.has_any(kSampledLayers)) bytes_per_pixel += sizeof(LayerSum);
     if (layers.has_any(kMiddleLayers)) bytes_per_pixel += sizeof(MiddleSurface);

@@ -58,7 +58,7 @@ void write_settings(JsonWriter& json, const shot::ShotRequest& request, const st
     json.key("illuminant").text(light ? light->text() : "").key("plan").text(plan);
 }
 
-/// Of --spp auto; null where the samples were counted out.
+/// The noise goal of --spp auto; null where the number of samples was given.
 void write_noise(JsonWriter& json, const std::optional<NoiseGoal>& goal, const Image& image) {
     if (!goal) {
         json.key("noise").null();

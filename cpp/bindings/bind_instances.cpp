@@ -14,7 +14,7 @@ using namespace py::literals;
 
 namespace {
 
-/// Of a (4, 4) or (3, 4) matrix.
+/// The affine map of a (4, 4) or (3, 4) matrix.
 Affine<double> affine_from(const double* m, bool has_last_row) {
     if (has_last_row && !(m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == 1))
         throw InputError("the last row of scene_from_object must be 0, 0, 0, 1");

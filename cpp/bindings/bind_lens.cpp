@@ -213,7 +213,7 @@ void warn(const std::string& message) {
     if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) < 0) throw py::error_already_set();
 }
 
-/// Of a file, and what of it was computed or assumed. Other threads run meanwhile, and Ctrl-C ends it.
+/// The lens of a file, and notes on what was computed or assumed. Other threads run meanwhile, and Ctrl-C ends it.
 std::pair<LensSystem, std::vector<std::string>> read_unlocked(const std::string& path, io::LensReadOptions options) {
     std::vector<std::string> notes;
     options.warn = [&](const std::string& note) { notes.push_back(note); };

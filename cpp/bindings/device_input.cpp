@@ -23,7 +23,7 @@ struct Layout {
     throw InputError(name + " lies on a GPU and holds numbers of type " + type + "; float64 or float32 is wanted");
 }
 
-/// Of shape (N, 3), in C order. Strides of an extent of 1 or 0 say nothing.
+/// The number N of rows of an array of shape (N, 3) in C order. Strides of an extent of 1 or 0 do not matter.
 std::int64_t count_of(const Layout& layout, const std::string& name) {
     if (layout.shape.size() != 2 || layout.shape[1] != 3 || layout.shape[0] < 0)
         throw InputError(name + " lies on a GPU, and must be of shape (N, 3)");

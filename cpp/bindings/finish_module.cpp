@@ -5,8 +5,8 @@
 
 #include "bindings.hpp"
 
-// What all functions and classes of the module have in common is done once, when they are there: their signatures are
-// written as Python's users write types, arguments of the wrong type are refused in a sentence, and no class makes an
+// What all functions and classes of the module have in common is done once, when they exist. Their signatures are
+// written as Python's users write types. Arguments of the wrong type are refused in a sentence, and no class makes an
 // object without a value. pybind11 has no hook for it; the definitions of its functions are where Python finds both.
 namespace realcam::bindings {
 namespace {

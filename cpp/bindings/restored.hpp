@@ -45,8 +45,8 @@ constexpr bool is_enumerator(Number number) {
     return number >= 0 && number <= static_cast<Plain>(LastEnumerator<E>::value);
 }
 
-/// Of an item that was copied as bytes. A truth value or an enumerator among them may not even be looked at before its
-/// bytes are known to be those of one.
+/// Checks an item that was copied as bytes. A truth value or an enumerator among them may not even be looked at before
+/// its bytes are known to be those of one.
 template <class T>
 void check_copied(const T& value) {
     using namespace value_compare_detail;

@@ -25,7 +25,7 @@ inline void check_restored_array(const pybind11::object& array, const WantedArra
     for (std::size_t i = 0; i < shape.size(); ++i) require_restored(shape[i].cast<py::ssize_t>() == wanted.shape[i]);
 }
 
-/// Of the first dimension. Throws InputError where it is no array, or has none.
+/// The length of the first dimension. Throws InputError where it is no array, or has none.
 inline pybind11::ssize_t restored_length(const pybind11::object& array) {
     namespace py = pybind11;
     require_restored(py::isinstance<py::array>(array) || py::isinstance<SharedDeviceArray>(array));

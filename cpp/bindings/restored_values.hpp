@@ -68,7 +68,8 @@ struct RestoredCheck<CoatingLayer> {
 template <>
 struct RestoredCheck<Coating> {
     static void check(const Coating& coating) {
-        // Also where the kind does not use it: whoever asks for the index of a material relies on its points.
+        // The metal is checked even where the kind does not use it, because code that asks for the index of a material
+        // relies on its points.
         check_coating(metal_mirror(coating.metal));
         check_coating(coating);
     }

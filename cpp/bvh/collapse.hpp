@@ -3,8 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Which nodes of a binary tree become the children of a wide node, so that the surface area heuristic's cost of the
-// whole is the least: dynamic programming from the leaves up (Ylitie, Karras and Laine 2017, section 3.1).
+// Chooses which nodes of a binary tree become the children of a wide node, so that the cost of the whole by the surface
+// area heuristic is least. It is dynamic programming from the leaves up (Ylitie, Karras and Laine 2017, section 3.1).
 
 /// Cost of testing a triangle, where that of a node with its eight boxes is 1.
 inline constexpr float kTriangleCost = 0.5f;

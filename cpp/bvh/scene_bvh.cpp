@@ -18,8 +18,8 @@ Box box_of(const RenderSpaceMesh& mesh) {
     return box;
 }
 
-/// Of a box's corners where an instance puts them. The ray is taken into the object's frame by some roundings of the
-/// coordinates; what it meets on the very surface of the box is not to be lost by them.
+/// The box of a box's corners where an instance puts them. It is widened, because transforming a ray into the object's
+/// frame rounds its coordinates: hits on the very surface of the box must not be lost.
 Box placed_box(const Box& box, const Affine<float>& render_from_object) {
     constexpr float kRoundings = 0x1p-20f, kInfinity = std::numeric_limits<float>::infinity();
     Box placed = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};

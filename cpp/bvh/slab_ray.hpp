@@ -7,8 +7,8 @@ namespace REALCAM_NAMESPACE {
 /// A ray as the boxes of a node are tested with, all eight at once.
 ///
 /// The test must find the box of every triangle that meets_triangle would accept, or light leaks through edges. It sees
-/// corners displaced by up to 6 roundings of their distance from the ray's origin (measured along the largest axis),
-/// and the parameter of a plane, taken back to a place on the axis, is off by up to 7. All boxes of a node are
+/// corners displaced by up to 6 roundings of their distance from the ray's origin (measured along the largest axis).
+/// The parameter of a plane, converted back to a place on the axis, is off by up to 7. All boxes of a node are
 /// therefore made larger by 16 roundings of the distance of its farthest corner, and no other tolerance is needed.
 struct SlabRay {
     Vec3f origin, per_axis;  ///< ray parameter for each unit along the axis

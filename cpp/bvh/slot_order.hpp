@@ -4,8 +4,8 @@
 namespace REALCAM_NAMESPACE {
 
 /// Puts children into slots so that the slot's number says where in the node a child lies (see WideNode), and a ray
-/// finds the near ones first: of all pairs the one that fits best, then the best of those left. `slot_of` gets a slot
-/// for each child.
+/// finds the near ones first. It takes the pair that fits best, then the best of those left. `slot_of` gets a slot for
+/// each child.
 inline void order_slots(const Box* boxes, unsigned count, unsigned (&slot_of)[kSlots]) {
     Vec3d centre[kSlots], middle = {0, 0, 0};
     for (unsigned c = 0; c < count; ++c) {

@@ -5,8 +5,8 @@
 namespace REALCAM_NAMESPACE {
 
 // Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013: corners are moved and sheared so that the
-// ray is the z axis, and the signs of three edge functions say on which side of an edge it passes. A corner's sheared
-// place depends on the corner and the ray alone, so the triangles at an edge agree, if the signs are right.
+// ray is the z axis. The signs of three edge functions say on which side of an edge it passes. A corner's sheared place
+// depends on the corner and the ray alone, so the triangles at an edge agree, if the signs are right.
 
 /// a b - c d with the right sign, and 0 only if it is 0, as long as nothing underflows (Jeannerod, Louvet and Muller,
 /// "Further analysis of Kahan's algorithm for the accurate computation of 2x2 determinants", 2013: the error is at most

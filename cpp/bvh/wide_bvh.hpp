@@ -6,9 +6,9 @@
 namespace REALCAM_NAMESPACE {
 
 // A hierarchy of boxes with up to eight children to a node, and boxes of one byte to a plane (Ylitie, Karras and Laine,
-// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017). Different from the paper: steps
-// are bfloat16 numbers instead of powers of two, which makes them three tenths smaller on average; and every slot has
-// three bits for its triangles, so that the mask of the slots that a ray meets is all that the box test has to find.
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017). Two things differ from the
+// paper. Steps are bfloat16 numbers instead of powers of two, which makes them three tenths smaller on average. Every
+// slot has three bits for its triangles, so the box test has to find only the mask of the slots that a ray meets.
 
 inline constexpr unsigned kSlots = 8;
 inline constexpr unsigned kTrianglesPerSlot = 3;

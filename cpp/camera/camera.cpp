@@ -185,7 +185,7 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     const double distance = lens.film_position() - data.exit_pupil_position;
     const bool far = !(std::fabs(distance) < kFar);
     const double tangent = data.exit_pupil_diameter / (2 * std::fabs(distance));
-    // Of a pupil at infinity, where the quotient has no value: the slope of light from the stop's rim.
+    // With a pupil at infinity the quotient has no value. The slope of light from the stop's rim takes its place.
     const double rim = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
     const double marginal =
         std::fabs(trace_paraxial(lens, lens.wavelength_nm, {rim, 0}, lens.stop_index(), count).slope);
@@ -201,10 +201,10 @@ namespace camera_detail {
 
 namespace {
 
-/// Of the ideal lens in the entrance pupil, for which what is in focus is sharp: with R its pupil's radius, b and s_f
-/// the distances from it to the film and to the plane in focus, a point at s has rays all over the pupil, which meet
-/// the plane in focus over 2 R |s_f - s| / s, and the film over b / s_f times that. Where the entrance pupil is at
-/// infinity, of the matrix of the real lens.
+/// The circle of confusion of the ideal lens in the entrance pupil. Let R be the radius of its pupil, and b and s_f the
+/// distances from it to the film and to the plane in focus. The rays of a point at s fill the pupil. They meet the
+/// plane in focus over 2 R |s_f - s| / s, and the film over b / s_f times that. Where the entrance pupil is at
+/// infinity, the matrix of the real lens is used.
 CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens thin, ThickLens thick,
                                       double film_distance) {
     const double radius = static_cast<double>(thin.pupil_radius), image = static_cast<double>(thin.image_distance),

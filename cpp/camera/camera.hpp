@@ -26,11 +26,11 @@ struct Film {
 
     bool operator==(const Film&) const = default;
 
-    /// Of the place farthest from the axis, mm.
+    /// Distance of the film's farthest point from the axis, mm.
     double radius_mm() const {
         return std::hypot(0.5 * width_mm + std::fabs(shift_mm.x), 0.5 * height_mm + std::fabs(shift_mm.y));
     }
-    /// From column and row, counted from the picture's upper left corner, to mm from the axis, right and up as the
+    /// Converts column and row, counted from the picture's upper left corner, to mm from the axis, right and up as the
     /// picture shows it; and back.
     Vec2<double> place_of(Vec2<double> pixel) const {
         return {(pixel.x / width - 0.5) * width_mm + shift_mm.x, (0.5 - pixel.y / height) * height_mm + shift_mm.y};
@@ -59,7 +59,7 @@ struct PoseKey {
 
 /// When the film is exposed: every row of pixels for the same time, the top one first.
 struct Shutter {
-    double opens_s = 0;         ///< time in the scene at which the exposure of the top row begins
+    double opens_s = 0;  ///< time in the scene at which the exposure of the top row begins
     double readout_time_s = 0;  ///< from then to where that of a row below the last would begin; 0: all rows together
     bool blurs = true;  ///< false: what a row sees is the scene in the middle of its exposure
 
@@ -78,9 +78,9 @@ struct Camera {
     std::vector<PoseKey> motion;  ///< in rising order of time; empty: it stays where it is
 
     bool moves() const { return !motion.empty(); }
-    /// For which a row of pixels sees the scene, s.
+    /// Time for which a row of pixels sees the scene, s.
     double seen_time() const { return shutter.blurs ? exposure_time_s : 0.0; }
-    /// From when the first row sees the scene to when the last one does no more.
+    /// The interval from the first moment of the first row to the last moment of the last one.
     TimeInterval exposure() const;
 };
 
@@ -147,7 +147,7 @@ inline Vec3d position_when_open(const Camera& camera) {
 void set_motion(Camera& camera, std::vector<PoseKey> keys);
 
 /// Whether a scene that was placed about this origin serves the camera. It is moved to the camera, and stays where it
-/// is while the camera moves by little: at ten focus distances (or 10 m) float32 still resolves a hundredth of a
+/// is while the camera moves by little. At ten focus distances (or 10 m) float32 still resolves a hundredth of a
 /// pixel's width at the plane in focus.
 bool lies_near(const Camera& camera, Vec3d origin_m);
 
@@ -167,7 +167,7 @@ public:
     CameraView view(Vec3d origin_m, bool scene_moves = false) const;
 
     const Camera& camera() const { return camera_; }
-    /// Of a camera with the model polynomial_lens; else null.
+    /// The polynomials of a camera with the model polynomial_lens; else null.
     const LensPolynomial* polynomial() const { return polynomial_ ? &*polynomial_ : nullptr; }
     const EffectTables& effects() const { return tables_; }
 

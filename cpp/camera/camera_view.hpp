@@ -68,7 +68,7 @@ struct CameraView : CameraPlacement, EffectViews {
     LensView<float> lens;
     const LensView<double>* lens_in_double;  ///< of the model full_lens_double; else null
     LensPolynomialView polynomial;           ///< of the model polynomial_lens; else without coefficients
-    // Of an exposure during which something moves; else 0. Times are shares of it:
+    // For an exposure during which something moves; else 0. Times are shares of the exposure:
     float row_time;      ///< by which each row of pixels begins later than the one above
     float exposed_time;  ///< for which each is exposed
     const CameraPlacement* keys;  ///< of a camera that moves, at even times; positions relative to its own
@@ -86,7 +86,7 @@ REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {
     return {camera.position + mix(a.position, b.position, at.share), across, cross(backward, across), backward};
 }
 
-/// Of a point along the camera's axis from the film, metres.
+/// Depth of a point: its distance from the film along the camera's axis, metres.
 REALCAM_INLINE float depth_from(const CameraPlacement& camera, Vec3f point) {
     return dot(camera.position - point, camera.backward);
 }

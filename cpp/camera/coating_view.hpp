@@ -3,8 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What the lens's surfaces pass on, in the order in which light meets them. Of a picture with coatings, either at its
-/// one wavelength, on the way to the scene, or of a spectrum, on both ways; the others are null.
+/// What the lens's surfaces pass on, in the order in which light meets them. A picture with coatings has either
+/// polynomials for its one wavelength, on the way to the scene, or for a spectrum, on both ways. The others are null.
 struct CoatingView {
     const CoatingPolynomials<kOneWavelengthTerms>* one_wavelength;
     const CoatingPolynomials<kSpectrumTerms>*to_scene, *to_film;

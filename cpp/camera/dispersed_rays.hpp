@@ -3,11 +3,11 @@
 
 namespace REALCAM_NAMESPACE {
 
-// One wavelength a sample would be noisy: a film has three channels, and each would see a third of the samples. But a
-// ray that has left the lens would often have come from the same pixel, if from another point of it, at another
-// wavelength too. So it is taken back to the film at two more, a third of the cells apart each. Where it ends in its
-// pixel, that wavelength could have drawn it, with the same density, because film and scene measure rays alike (the
-// optical invariant): the sample counts for all that could, in equal parts (the balance heuristic of Veach and Guibas
+// One wavelength a sample would be noisy: a film has three channels, and each would see a third of the samples. But the
+// same ray outside the lens, at another wavelength, often belongs to another point of the same pixel. So it is traced
+// back to the film at two more wavelengths, one third and two thirds of the list of cells further on. Where it ends in
+// its pixel, that wavelength could have drawn it with the same density, because film and scene measure rays alike (the
+// optical invariant). The sample counts for all that could, in equal parts (the balance heuristic of Veach and Guibas
 // 1995). The three are the same whichever of them comes first, so that nothing is counted twice or left out.
 
 /// Whether a film point lies in the pixel of a sample.

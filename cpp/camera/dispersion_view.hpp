@@ -11,10 +11,10 @@ namespace REALCAM_NAMESPACE {
 /// How many wavelengths a ray through the scene may count for: its own, and others at even steps through the cells.
 inline constexpr int kSharedWavelengths = 3;
 
-/// Wavelengths from one to another, of which all such cells are drawn alike.
+/// A range of wavelengths. All cells are drawn with the same probability.
 struct WavelengthCell {
     float first_nm, last_nm;
-    float film[9];  ///< from a scene's colour to the film's, 3 x 3, row by row: its mean over the cells is the identity
+    float film[9];  ///< scene colour to film colour, 3 x 3, row by row; the mean over all cells is the identity
 };
 
 /// The wavelengths of a picture. Without dispersion there are no cells.
@@ -49,8 +49,8 @@ REALCAM_INLINE float shared_place(const DispersionView& view, float place, int s
     return at < cells ? at : at - cells;
 }
 
-/// What light of a scene's colour is on the film where it has the wavelengths of the place's cell, or, in equal parts,
-/// of those steps from it of which `shares` has the bit; `passed`: the share that the lens passes on at each step.
+/// The film's colour for light of a scene's colour. The light has the wavelengths of the place's cell and, in equal
+/// parts, of the further steps whose bit `shares` has. `passed`: the share that the lens transmits at each step.
 REALCAM_INLINE Color film_color(const DispersionView& view, float place, std::int32_t shares,
                                 const float (&passed)[kSharedWavelengths], Color scene) {
     Color sum = {0, 0, 0};

@@ -88,7 +88,7 @@ private:
         return found;
     }
 
-    /// From the middle of a ring of film along the middle of one of the squares of a rectangle.
+    /// Starts a ray at the middle of a ring of film, along the middle of one of the squares of a rectangle.
     void start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays, FoundRay& ray) const;
 
     static void set_front(Vec3f o, Vec3f d, FoundRay& ray);
@@ -96,7 +96,7 @@ private:
     /// What holds the squares of all rays that were found in a ring or beside it; where there are none, as before.
     static Directions around(const std::vector<FoundRay>& rays, const Directions& before);
 
-    /// Whose stop is the circle around what its blades leave open.
+    /// The lens with a round stop: the circle around what its blades leave open.
     static LensSystem with_round_stop(LensSystem lens);
 
     double film_radius, film_distance;  ///< mm
@@ -105,7 +105,7 @@ private:
     const PupilTracer& tracer;
 };
 
-/// Of which all angles of these rays are less.
+/// An upper bound of the tangents of half the angles of these rays.
 float largest_half_tangent_of(const std::vector<FoundRay>& rays);
 
 using GhostEntries = std::array<GhostEntry, kGhostBins>;

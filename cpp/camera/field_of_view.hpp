@@ -5,8 +5,8 @@
 namespace REALCAM_NAMESPACE {
 
 /// Angle to the axis, in front of the lens, of the light that lands `image_height_mm` from the middle of the film,
-/// radians: the mean direction of the real rays in the meridional plane, or, where the stop lets few of those tried
-/// pass, that of the ray through its middle. NaN where no ray from there passes the lens.
+/// radians. It is the mean direction of the real rays in the meridional plane. Where few of those tried pass the stop,
+/// it is that of the ray through its middle. NaN where no ray from there passes the lens.
 double field_angle(const LensSystem& lens, double image_height_mm);
 
 /// The same at the height nearest below it that gets light: a film may be larger than the lens's image.

@@ -9,9 +9,9 @@
 namespace REALCAM_NAMESPACE {
 
 // Scenes are RGB. A surface's or a light's colour stands for the spectrum that Mallett and Yuksel's basis (2019) makes
-// of it, times that of the illuminant. What film and sRGB make of each wavelength of that is a 3 x 3 matrix from the
-// scene's colour to the picture's; its integral over the visible wavelengths is the identity for D65, sRGB's white.
-// For any illuminant the film is balanced to it: each channel is scaled so that white stays white.
+// of it, times that of the illuminant. For each wavelength, film and sRGB are a 3 x 3 matrix from the scene's colour to
+// the picture's. Its integral over the visible wavelengths is the identity for D65, sRGB's white. For any illuminant
+// the film is balanced to it: each channel is scaled so that white stays white.
 
 namespace film_spectrum_detail {
 

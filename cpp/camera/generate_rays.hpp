@@ -36,7 +36,7 @@ REALCAM_INLINE std::uint32_t pixel_stream(std::int32_t pixel, std::uint32_t seed
 /// sequence together.
 namespace dimension {
 inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
-/// Of the time, for which most samples have no use; its second number is the wavelength's.
+/// The dimension pair of the time, which most samples do not use. Its second number is the wavelength's.
 inline constexpr std::uint32_t time = 4;
 inline constexpr std::uint32_t second_bounce = kJointPairs;
 /// For the end of long paths, far behind those of the last bounce.
@@ -107,7 +107,7 @@ REALCAM_INLINE LensFrameRay thick_lens_ray(const CameraView& camera, Vec2f film,
         {front.x, front.y, 0.0f}, normalized(Vec3f{-out.x, -out.y, -1.0f}), camera.axis_irradiance * cosine2 * cosine2};
 }
 
-/// From the lens frame to the scene. Lanes without light get a ray that is valid but has no weight.
+/// Transforms a ray from the lens frame to the scene. Lanes without light get a ray that is valid but has no weight.
 template <int N>
 REALCAM_INLINE void place_ray(const CameraView& camera, CameraRays<N>& rays, int lane, LensFrameRay ray, bool lit) {
     const Vec3f o = select(lit, ray.origin_mm, Vec3f{0, 0, 0});

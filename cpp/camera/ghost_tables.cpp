@@ -36,7 +36,7 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
     const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
     std::vector<GhostPair> pairs;
     std::vector<double> axial;
-    // Of a spectrum the mean: what a coating stops at the design wavelength it reflects at another.
+    // For a spectrum the mean is taken: light that a coating stops at the design wavelength it reflects at another.
     std::vector<AxialShares> of_wavelengths;
     for (const double wavelength : spectrum ? spectrum->even_wavelengths() : std::vector{lens.wavelength_nm})
         of_wavelengths.emplace_back(lens, wavelength);

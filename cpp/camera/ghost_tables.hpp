@@ -33,7 +33,7 @@ public:
     GhostView view_of_objects() const;
 
     const std::vector<GhostPair>& pairs() const { return pairs_; }
-    /// Of the light that the lens itself brings to the film, from all sides alike: what each pair brings.
+    /// What each pair brings, as a share of the light that the lens itself brings to the film from a uniform surround.
     const std::vector<double>& shares() const { return shares_; }
 
 private:

@@ -35,7 +35,7 @@ public:
     bool is_line() const { return points_.size() == 1; }
     const std::vector<SpectrumPoint>& points() const { return points_; }
 
-    /// Of a wavelength from 380 to 780 nm; relative. Of a line, nothing.
+    /// Relative power at a wavelength from 380 to 780 nm. A line has none.
     double power(double wavelength_nm) const;
 
     /// What parse reads.
@@ -43,7 +43,7 @@ public:
 
     bool operator==(const Illuminant&) const = default;
 
-    /// Of a table of this library, at a wavelength from 380 to 780 nm.
+    /// Value of a table of this library, at a wavelength from 380 to 780 nm.
     static double at(const VisibleSpectrum& spectrum, double wavelength_nm);
 
 private:

@@ -38,7 +38,8 @@ private:
 
     std::vector<Part> parts_at(double film_radius) const;
 
-    /// Of the point in focus on the ray; its light enters about where that of the film point left.
+    /// The middle of the light of the point in focus on the ray. Its light enters about where that of the film point
+    /// left.
     double middle_of_light(const SceneRay& ray, const std::vector<Part>& parts) const;
 
     LensPath<double> to_scene_, to_film_;

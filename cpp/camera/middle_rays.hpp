@@ -26,7 +26,7 @@ REALCAM_INLINE Vec3f direction_to(const PupilView& pupil, const PupilRowPosition
     return {l * row.cos - m * row.sin, l * row.sin + m * row.cos, -sqrt_or_zero(rest)};
 }
 
-/// From `first` on, the next place that lies in the pupil by its table; kMiddlePlaces where there is none.
+/// The next place, from `first` on, that lies in the pupil by its table; kMiddlePlaces where there is none.
 REALCAM_INLINE int next_place(const PupilView& pupil, const PupilRowPosition& row, Vec2f film, int first) {
     for (int k = first; k < kMiddlePlaces; ++k) {
         const Vec3f direction = direction_to(pupil, row, spiral(k));
@@ -95,9 +95,10 @@ REALCAM_HD inline void still_rays(const CameraView& camera, const SampleBlock<N>
 
 }  // namespace middle_rays_detail
 
-/// The ray from the middle of each pixel through the middle of the pupil as it is seen from there; where that one does
-/// not pass (mirror lenses have a hole there), the nearest to it in the pupil that does. Weights are 1, and 0 where
-/// none passes. `times`: in the middle of the exposure of each pixel. Of the block, streams and samples do not count.
+/// The ray from the middle of each pixel through the middle of the pupil as it is seen from there. Where that ray is
+/// blocked (mirror lenses have a hole there), it is the nearest to it in the pupil that passes. Weights are 1, and 0
+/// where none passes. `times`: in the middle of the exposure of each pixel. The streams and samples of the block are
+/// not used.
 template <int N>
 REALCAM_HD inline void middle_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                    float (&times)[N]) {

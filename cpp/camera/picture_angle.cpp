@@ -22,7 +22,7 @@ double picture_angle(const Camera& camera, double image_height_mm) {
 FieldOfView field_of_view(const Camera& camera) {
     const double x = 0.5 * camera.film.width_mm, y = 0.5 * camera.film.height_mm;
     const double right = std::fabs(camera.film.shift_mm.x), up = std::fabs(camera.film.shift_mm.y);
-    // From the place farthest from the axis to the one opposite, which may lie on the same side.
+    // Angle from the place farthest from the axis to the one opposite, which may lie on the same side.
     const auto between = [&](double far, double opposite) {
         const double angle = picture_angle(camera, far);
         return opposite == far ? 2 * angle

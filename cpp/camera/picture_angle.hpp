@@ -10,8 +10,8 @@ namespace REALCAM_NAMESPACE {
 /// radians. Where the film is larger than the image of a full lens: that of the image's edge.
 double picture_angle(const Camera& camera, double image_height_mm);
 
-/// From edge to edge of the picture, and from corner to corner, radians. Of a film that is shifted: in the planes of
-/// the axis, and the two corners farthest from each other on both sides of it.
+/// Angles from edge to edge of the picture, and from corner to corner, radians. On a shifted film they are in the
+/// planes of the axis, and between the two corners farthest from each other on both sides of it.
 struct FieldOfView {
     double horizontal, vertical, diagonal;
 };

@@ -6,15 +6,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Where points of a scene appear in a camera's picture, by its middle rays: the rays from the film through the middle
-/// of the pupil, of which those along one radius of the film stand for all, because lenses are round.
+/// Where points of a scene appear in a camera's picture, by its middle rays. These go from the film through the middle
+/// of the pupil. Those along one radius of the film stand for all, because lenses are round.
 class PictureMap {
 public:
     /// `camera` points to memory of the host.
     explicit PictureMap(const CameraView& camera);
 
-    /// Column and row, counted from the upper left corner of the picture, of a point in the axes of the camera (x
-    /// right, y up, z backward from the middle of the film), metres; of a direction, for what is infinitely far away.
+    /// Column and row, counted from the upper left corner of the picture, of a point in metres, or of a direction for a
+    /// point at infinity. Both are in the axes of the camera: x right, y up, z backward from the middle of the film.
     /// Nothing where no middle ray goes there.
     std::optional<Vec2<double>> pixel_of(Vec3d point, bool is_direction) const;
 

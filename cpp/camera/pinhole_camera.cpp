@@ -6,8 +6,8 @@ namespace realcam {
 
 namespace {
 
-/// Of an ideal lens its own image distance. The film of a real one lies where its picture is sharpest, which is not
-/// quite the paraxial focus: where the paraxial ray through the middle of the pupil meets it.
+/// An ideal lens has its own image distance. The film of a real lens lies where its picture is sharpest, which is not
+/// quite the paraxial focus. Its image distance follows from the paraxial ray through the middle of the pupil.
 CentralLens central_lens(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     if (model == CameraModel::pinhole || model == CameraModel::thin_lens)

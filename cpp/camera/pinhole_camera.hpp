@@ -22,7 +22,8 @@ struct PinholeCamera {
     Vec3d centre_m;                               ///< of projection, in the scene
 };
 
-/// Of a camera with this pose. None for a lens whose entrance pupil lies at infinity: it has no centre of projection.
+/// The pinhole of a camera with this pose. There is none for a lens whose entrance pupil lies at infinity: it has no
+/// centre of projection.
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose);
 
 /// Where the camera is in the middle of its exposure.

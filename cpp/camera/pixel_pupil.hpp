@@ -6,8 +6,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// What a pixel has learnt of where light passes the lens: a bit for each cell of the unit square from which the pupil
-/// is sampled (after B. Steinert et al., "General Spectral Camera Lens Simulation", Computer Graphics Forum 30, 2011).
+/// What a pixel has learnt about where light passes the lens. It has a bit for each cell of the unit square from which
+/// the pupil is sampled (after B. Steinert et al., "General Spectral Camera Lens Simulation", Computer Graphics Forum
+/// 30, 2011).
 struct PixelPupil {
     std::uint32_t tried;   ///< to which rays were sent
     std::uint32_t passed;  ///< and through which some came
@@ -15,7 +16,7 @@ struct PixelPupil {
     REALCAM_INLINE std::uint32_t promising() const { return passed | ~tried; }
 };
 
-/// Of all pixels, row by row. Of a camera that does not learn, null.
+/// The pupils of all pixels, row by row; null for a camera that does not learn.
 struct PixelPupils {
     const PixelPupil* known;  ///< from earlier passes
     PixelPupil* found;        ///< the same, and of this pass
@@ -24,8 +25,8 @@ struct PixelPupils {
 namespace pixel_pupil {
 
 inline constexpr int kColumns = 8, kRows = 4;
-/// Of the samples, that go anywhere: cells that look dark may still let some light pass, whose few samples then have
-/// weights of up to one over this.
+/// The share of samples that are drawn from all cells. Cells that look dark may still let some light pass. Their few
+/// samples then have weights of up to one over this share.
 inline constexpr float kAnywhere = 0.25f;
 
 REALCAM_INLINE int cell_of(Vec2f u) {

@@ -28,8 +28,8 @@ struct PixelRay {
     double light = 0;           ///< the pixel's irradiance for an even field, over that in the middle of the film
 };
 
-/// Takes points of the scene to a camera's picture, and pixels to lines in the scene. Of a camera that moves each row
-/// of pixels is where the camera is in the middle of the row's exposure.
+/// Takes points of the scene to a camera's picture, and pixels to lines in the scene. If the camera moves, each row of
+/// pixels is seen from the camera's place in the middle of the row's exposure.
 class Projection {
 public:
     Projection(const Camera& camera, std::shared_ptr<const SightLines> lines);

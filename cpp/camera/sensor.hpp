@@ -29,7 +29,7 @@ struct SensorPoint {
     bool operator==(const SensorPoint&) const = default;
 };
 
-/// From electrons to digital numbers (DN).
+/// The conversion from electrons to digital numbers (DN).
 struct SensorConversion {
     double gain_dn_per_e = 0;    ///< overall system gain K at the lowest ISO; 0: whatever the ISO asks for
     double largest_gain_db = 0;  ///< that can be added to it

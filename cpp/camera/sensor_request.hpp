@@ -8,8 +8,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// What a sensor makes of the film's exposure, after the linear model of EMVA standard 1288 (release 4.0 linear):
-// photons become electrons, which the well limits; the gain makes digital numbers of them, to which the black level is
+// What a sensor makes of the film's exposure, after the linear model of EMVA standard 1288 (release 4.0 linear).
+// Photons become electrons, which the well limits. The gain makes digital numbers of them, to which the black level is
 // added.
 
 /// How much of light that comes under an angle a pixel sees, relative to light along the axis. Evenly over the square
@@ -26,7 +26,7 @@ struct SensorRequest {
     const float* exposure;  ///< rows * width * 3, lux seconds, linear Rec. 709
     std::uint16_t* raw;     ///< rows * width
     std::int32_t width, first_row, row_count;  ///< the pointers are to the first of these rows
-    /// Of one lux second of each channel, at the places (row % 2) * 2 + column % 2 of the mosaic.
+    /// Electrons of one lux second of each channel, at the places (row % 2) * 2 + column % 2 of the mosaic.
     float electrons[4][3];
     AngularResponse angular_response;
     float response_deviation;  ///< photo-response non-uniformity, a fraction
@@ -167,7 +167,8 @@ void invert_small_means(SensorLanes<N>& lanes) {
     }
 }
 
-/// Of larger means most numbers come of the first attempt, all lanes together; the others one by one.
+/// Draws numbers of larger means. Most come from the first attempt, which all lanes make together; the others are drawn
+/// one by one.
 template <int N>
 void draw_large_means(SensorLanes<N>& lanes) {
     std::int32_t left = 0;

@@ -9,10 +9,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// From lux seconds to electrons. The film's colours stand for the spectra that Mallett and Yuksel's basis makes of
-// them, times the illuminant (film_spectrum.hpp). So what a filter sees of one is linear in its three channels, and a
-// sensor is a 3 x 3 matrix. The film is balanced to its illuminant: (1, 1, 1) is the illuminant's own spectrum, of 1
-// lux second.
+// The conversion from lux seconds to electrons. The film's colours stand for the spectra that Mallett and Yuksel's
+// basis makes of them, times the illuminant (film_spectrum.hpp). So what a filter sees of one is linear in its three
+// channels, and a sensor is a 3 x 3 matrix. The film is balanced to its illuminant: (1, 1, 1) is the illuminant's own
+// spectrum, of 1 lux second.
 
 /// Rows: red, green and blue filter; columns: red, green and blue of the film.
 using SensorMatrix = std::array<double, 9>;
@@ -42,9 +42,9 @@ SensorMatrix electrons_per_um2(const Sensor& sensor, const Illuminant& illuminan
 std::array<double, 3> white_of(const SensorMatrix& matrix);
 
 /// The number of electrons at which a well is full. EMVA 1288 measures the saturation capacity where the temporal
-/// variance, averaged over the pixels, is largest. Of a Poisson number of mean m that is cut at C it is m v(z), with
-/// z = (C - m) / sqrt(m) and v the variance of a standard normal number cut at z; its derivative by m is
-/// v(z) - v'(z) (C + m) / (2 sqrt(m)). Pixels have the means m (1 + PRNU). So C lies some three deviations above.
+/// variance, averaged over the pixels, is largest. For a Poisson number of mean m that is cut at C it is m v(z). Here z
+/// = (C - m) / sqrt(m), and v is the variance of a standard normal number cut at z. Its derivative by m is v(z) - v'(z)
+/// (C + m) / (2 sqrt(m)). Pixels have the means m (1 + PRNU). So C lies some three deviations above.
 double full_well_e(double saturation_capacity_e, double prnu_percent);
 
 /// That of a sensor.

@@ -134,7 +134,8 @@ void SightLines::follow_chief_rays(const LensSystem& lens, const PupilView& pupi
     const FilmChiefRay chief(lens);
     double cosine = 0, change = 0;
     for (int k = 0; k <= kSteps; ++k) {
-        // From where the last two point to; on the axis and after a gap from the middle of the light.
+        // The search starts from the place to which the last two point. On the axis and after a gap, it starts from the
+        // middle of the light.
         const PupilRowPosition row = pupil_row_position(pupil, static_cast<float>(radius_of(k)), 0);
         const double guesses[2] = {cosine + change, static_cast<double>(row.centre)};
         const double light = lines_[static_cast<std::size_t>(k)].light;

@@ -24,8 +24,8 @@ struct SightLine {
     double light;  ///< irradiance for an even field, over that in the middle of the film
 };
 
-/// Of each radius of the film, in front of the camera's lens or of the model that stands for it. Lenses are round, and
-/// blades are taken for the circle of their area, so that one radius stands for all.
+/// The line of sight of each radius of the film, in front of the camera's lens or of the model that stands for it.
+/// Lenses are round, and blades are replaced by the circle of their area, so one radius stands for all.
 class SightLines {
 public:
     /// A place in the plane of the axis: away from it, and towards the scene from the reference point, mm.
@@ -57,7 +57,7 @@ private:
     static constexpr int kSteps = 256;
     static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-    /// From the front vertex, and from the film, mm.
+    /// Distances from the front vertex and from the film, mm.
     struct ThinLensPlace {
         double position, image_distance;
     };
@@ -77,7 +77,7 @@ private:
 
     void follow_chief_rays(const LensSystem& lens, const PupilView& pupil);
 
-    /// Of the camera's models that have no surfaces: through the middle of the pupil.
+    /// The line of a camera model that has no surfaces goes through the middle of the pupil.
     void set_ideal(int k, const CameraView& view, ThinLensPlace thin);
 
     /// At the edge of the image, where rims leave little of the light, its mean may come from farther inwards again:

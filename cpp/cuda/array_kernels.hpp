@@ -10,9 +10,9 @@ namespace realcam {
 /// float32 as float64. Arrays here lie on the current device; all throw DeviceError where they cannot be started.
 void launch_widen(const float* from, std::int64_t count, double* to, cudaStream_t stream);
 
-/// Of rays with origins relative to the camera, spp for each pixel, from the ray `first` on: origins in the scene, and
-/// pixels. The camera's place is added in double, as on the CPU: far from the scene's origin float would lose the
-/// pupil.
+/// Converts rays with origins relative to the camera, spp for each pixel, from the ray `first` on. It writes their
+/// origins in the scene, and their pixels. The camera's place is added in double, as on the CPU: far from the scene's
+/// origin float would lose the pupil.
 struct PlaceRays {
     const float* relative;  ///< range.count x 3, m
     Vec3d place;

@@ -191,7 +191,7 @@ private:
     int height() const { return camera().film.height; }
     bool fits() const { return rows_ == height(); }
 
-    /// Of samples, whose seed changes where a random sequence ends.
+    /// The settings of a range of samples. The seed changes where a random sequence ends.
     RenderSettings settings_of(const SampleRange& range) const {
         RenderSettings result = settings();
         result.seed = range.seed;

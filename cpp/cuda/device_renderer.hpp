@@ -28,15 +28,15 @@ public:
     explicit DeviceRenderer(int ordinal);
 
     int ordinal() const { return ordinal_; }
-    /// Which any thread may raise: what exposes ends within the time of a sample, and the pixels may then differ in
-    /// their number of samples.
+    /// The stop flag, which any thread may raise. Exposing kernels then end within the time of a sample, and the pixels
+    /// may differ in their number of samples.
     StopFlag& stop_flag() { return stop_; }
 
     /// Copies a scene, what changes in it as objects move, or a camera. The host's copies may go afterwards.
     void set_scene(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_instances(const RenderSpaceScene& scene, const SceneBvh& bvh);
     void set_camera(const CameraView& camera);
-    /// Of a new picture, whose pixels learn where light passes, or not.
+    /// Begins a new picture, whose pixels learn where light passes, or not.
     void forget_pupils(bool learns);
     /// Later samples know what those until now have found.
     void learn_pupils();
@@ -74,7 +74,7 @@ public:
     /// Starts to develop the film as 8-bit sRGB, 3 per pixel, into memory of the host that it can write to.
     void develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes);
 
-    /// In which all of this runs.
+    /// The stream in which all of this runs.
     cudaStream_t stream() const { return stream_; }
 
     /// Adds what another GPU has collected of the same pixels.

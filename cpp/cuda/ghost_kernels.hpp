@@ -22,7 +22,7 @@ struct GhostJob {
     double units_per_lux;
 };
 
-/// From the lights on, or from the film on, as the job's GhostView says. Both throw DeviceError.
+/// The samples start at the lights, or at the film, as the job's GhostView says. Both throw DeviceError.
 void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream);
 void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream);
 

@@ -61,7 +61,7 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     const auto [column, row] = tiles.pixel_of(thread_index(), job.camera.width);
     const bool inside = column < job.camera.width && row < job.row_count;
 
-    // Not in registers, of which there are none to spare for what is seldom wanted.
+    // These are not in registers, because none are free and they are seldom wanted.
     __shared__ double squares[3][kBlockSize];
     for (auto& channel : squares) channel[threadIdx.x] = 0;
     PixelSum sum{};

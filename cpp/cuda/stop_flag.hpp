@@ -19,8 +19,8 @@ public:
         write(false);
     }
 
-    /// From any thread. The flag stands until it was lowered as often as it was raised. A GPU that cannot be reached
-    /// runs no kernel that could be stopped; whoever waits for its work is told.
+    /// May be called from any thread. The flag stands until it was lowered as often as it was raised. A GPU that cannot
+    /// be reached runs no kernel that could be stopped; a thread that waits for its work gets the error.
     void raise() noexcept {
         const std::lock_guard lock(mutex_);
         if (raised_++ > 0) return;

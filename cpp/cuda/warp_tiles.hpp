@@ -5,8 +5,8 @@ namespace realcam {
 
 inline constexpr int kWarpSize = 32;
 
-/// Where the threads of a launch stand in the picture: warps side by side, each over a small rectangle of pixels, so
-/// that its rays meet the same part of the scene; `lanes` threads share a pixel's samples.
+/// Where the threads of a launch stand in the picture. Warps are side by side, each over a small rectangle of pixels,
+/// so its rays meet the same part of the scene. `lanes` threads share a pixel's samples.
 struct WarpTiles {
     int lanes, width, height;  ///< threads of a pixel; pixels of a warp
 
@@ -19,7 +19,7 @@ struct WarpTiles {
     struct Pixel {
         int column, row;
     };
-    /// Of a thread, by its number in the launch, over a part of the picture with so many columns.
+    /// The pixel of a thread, by its number in the launch, over a part of the picture with so many columns.
     __device__ Pixel pixel_of(std::int64_t thread, int columns) const {
         const std::int64_t warp = thread / kWarpSize, tiles = across(columns);
         const int place = static_cast<int>(thread % kWarpSize) / lanes;

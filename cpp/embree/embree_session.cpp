@@ -207,7 +207,7 @@ private:
         });
     }
 
-    /// Of a tile's pixels, for a part of a range; nothing where all take all samples.
+    /// The sample counts of a tile's pixels, for a part of a range; nothing where all take all samples.
     std::vector<std::uint32_t> counts_of(const realcam_tile& tile, const PixelCounts& counts, const SampleRange& visit,
                                          const SampleRange& range) const {
         if (!counts.counts) return {};

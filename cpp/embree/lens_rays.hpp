@@ -11,11 +11,11 @@
 
 namespace realcam {
 
-/// Traces rays through a lens on all cores. Origins in mm and directions (of any length) in the lens frame,
-/// count x 3. Rays with a component that is not finite, a direction of length zero or an origin beyond kFarthestOrigin
-/// end as bad_input with zeros; a ray from far away that meets no surface ends where it is nearest to the first vertex.
-/// Only the first `surface_count` surfaces that the light meets are crossed (all where it is negative). `on`: kernels
-/// of one instruction set; nullptr: the machine's best. Throws Cancelled.
+/// Traces rays through a lens on all cores. Origins in mm and directions (of any length) in the lens frame, count x 3.
+/// Rays with a component that is not finite, a direction of length zero or an origin beyond kFarthestOrigin end as
+/// bad_input with zeros. A ray from far away that meets no surface ends where it is nearest to the first vertex. Only
+/// the first `surface_count` surfaces that the light meets are crossed (all where it is negative). `on`: kernels of one
+/// instruction set; nullptr: the machine's best. Throws Cancelled.
 void trace_rays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
                 int surface_count, std::int64_t count, const double* origins, const double* directions,
                 const TracedRays& out, const realcam_kernels* on = nullptr, const KeepGoing& keep_going = {});

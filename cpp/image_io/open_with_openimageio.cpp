@@ -142,8 +142,8 @@ private:
         }
     }
 
-    /// Reading goes on behind the end of a TIFF's or JPEG's data, with rows of grey or nothing, and only says so. Of a
-    /// JPEG it says as well what does no harm, such as a few bytes too many.
+    /// Reading continues behind the end of a TIFF's or JPEG's data, with rows of grey or nothing, and only reports it.
+    /// For a JPEG it also reports harmless things, such as a few bytes too many.
     bool tells_of_a_cut(const std::string& said) const {
         if (std::strcmp(input_->format_name(), "jpeg") != 0) return !said.empty();
         return said.find("Premature end") != std::string::npos;

@@ -29,8 +29,8 @@ struct SceneFileOptions {
 /// triangles or more. Nodes of an OBJ are what follows a line "o" or "g". Coordinates in a mesh of a glTF are floats:
 /// put far-away objects under a translated node. Skins and morph targets have the pose and weights of the file.
 /// Polygons of an OBJ may be concave. Triangles without area are dropped. glTF meshes without normals are flat, as that
-/// format demands; an OBJ that has smoothing groups is smooth within them and flat elsewhere; others and PLY say
-/// nothing, and get smooth normals where faces share positions and meet at less than 45 degrees.
+/// format demands. An OBJ that has smoothing groups is smooth within them and flat elsewhere. Others and PLY get smooth
+/// normals where faces share positions and meet at less than 45 degrees.
 ///
 /// Materials are taken as they are: an MTL's of all its models of illumination, and glTF's metallic-roughness model
 /// with the extensions in io/scene/gltf_material.hpp. MTL's Ke, and emissiveFactor times

@@ -37,8 +37,9 @@ struct Affine {
         return x.x > 0 && x == Vec3<T>{x.x, 0, 0} && y == Vec3<T>{0, x.x, 0} && z == Vec3<T>{0, 0, x.x};
     }
 
-    /// Of a plane's normal; on the same side of the surface also where the map mirrors it. Not unit. The cofactors are
-    /// the inverse transpose times the determinant, and exist where that one does not.
+    /// Maps the normal of a plane. It stays on the same side of the surface also where the map mirrors it, and is not
+    /// of unit length. The cofactors are the inverse transpose times the determinant, and exist where the inverse does
+    /// not.
     REALCAM_INLINE Vec3<T> normal(Vec3<T> n) const {
         const Vec3<T> m = n.x * cross(y, z) + n.y * cross(z, x) + n.z * cross(x, y);
         return determinant() < 0 ? -m : m;

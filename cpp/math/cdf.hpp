@@ -5,8 +5,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Tables of count + 1 cumulative probabilities, from 0 to 1, in steps of 2^-24 (append_cdf): these are the steps of the
-// random numbers, so that an entry is chosen exactly as often as its probability says.
+// Tables of count + 1 cumulative probabilities, from 0 to 1, in steps of 2^-24 (append_cdf). These are the steps of the
+// random numbers, so an entry is chosen exactly as often as its probability says.
 
 /// First index whose cumulative probability exceeds u.
 REALCAM_INLINE int find_in_cdf(const float* cdf, int count, float u) {
@@ -40,7 +40,7 @@ struct CdfChoices {
 /// The entry between two cumulative probabilities, with u between them.
 REALCAM_INLINE CdfChoice cdf_choice(int index, float below, float above, float u) {
     const float probability = above - below;
-    // From the middle of the random number's step: an entry of one step would give 0 for ever.
+    // Starts from the middle of the random number's step, because an entry of one step would always give 0.
     const float fresh = (u - below + 0x1p-25f) / probability;
     return {index, probability, select(fresh < 1.0f, fresh, 0x1.fffffep-1f)};
 }

@@ -47,7 +47,7 @@ REALCAM_INLINE constexpr float largest(Color c) {
 REALCAM_INLINE constexpr bool is_black(Color c) {
     return !(c.r + c.g + c.b > 0.0f);
 }
-/// Of linear Rec. 709 (ITU-R BT.709).
+/// Luminance of a linear Rec. 709 colour (ITU-R BT.709).
 REALCAM_INLINE constexpr float luminance(Color c) {
     return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
 }

@@ -9,7 +9,7 @@ struct PolarDecomposition {
     Affine<double> stretch;
 };
 
-/// Of a map whose determinant is not 0, by Newton's iteration with scaling (Higham 1986).
+/// The polar decomposition of a map whose determinant is not 0, by Newton's iteration with scaling (Higham 1986).
 inline PolarDecomposition polar_decomposition(const Affine<double>& map) {
     Affine<double> r = {map.x, map.y, map.z, {0, 0, 0}};
     if (map.determinant() < 0) r = {-map.x, -map.y, -map.z, {0, 0, 0}};

@@ -5,7 +5,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Of keys at even times from 0 to 1: two of them, and a share of the way from the first to the second.
+/// Two successive keys at even times from 0 to 1, and a share of the way from the first to the second.
 struct KeyInterval {
     std::int32_t first;
     float share;

@@ -39,7 +39,7 @@ struct Vec3Lanes {
     }
 };
 
-/// Likewise of pairs.
+/// The same for pairs.
 template <class T, int N>
 struct Vec2Lanes {
     Lanes<T, N> x, y;

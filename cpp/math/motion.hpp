@@ -10,7 +10,7 @@ namespace REALCAM_NAMESPACE {
 /// Times beyond are refused: a double tells a tenth of a microsecond from the next up to here.
 inline constexpr double kMostSeconds = 1e9;
 
-/// From when to when something is looked at, in seconds of the scene.
+/// The interval in which something is looked at, in seconds of the scene.
 struct TimeInterval {
     double begin_s = 0, end_s = 0;
 

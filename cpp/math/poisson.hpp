@@ -46,7 +46,7 @@ struct PoissonHat {
         return {count, accepted, possible};
     }
 
-    /// Of an attempt that is possible and not accepted at once.
+    /// Decides on an attempt that is possible and not accepted at once.
     REALCAM_HD bool is_accepted_slowly(double count, double u, double v) const {
         const double to_edge = 0.5 - std::fabs(u - 0.5);
         const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);

@@ -33,7 +33,8 @@ inline Affine<double> rotation(Quaternion q) {
             {0, 0, 0}};
 }
 
-/// Of the linear part of a rotation: from the largest of the four components, which loses no digits (Shepperd 1978).
+/// The quaternion of the linear part of a rotation. It starts from the largest of the four components, which loses no
+/// digits (Shepperd 1978).
 inline Quaternion quaternion_of(const Affine<double>& r) {
     const double trace = r.x.x + r.y.y + r.z.z;
     const double most = std::max({trace, r.x.x, r.y.y, r.z.z});

@@ -89,7 +89,7 @@ struct SobolMatrix {
     }
 };
 
-/// Of the pairs after the first.
+/// The matrices of the pairs after the first.
 inline constexpr SobolMatrix kSobol[kJointPairs - 1][2] = {
     {{2, 1, {1, 3}}, {3, 1, {1, 3, 1}}},
     {{3, 2, {1, 1, 1}}, {4, 1, {1, 1, 3, 3}}},

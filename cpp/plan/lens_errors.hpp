@@ -16,8 +16,8 @@ namespace REALCAM_NAMESPACE {
 inline constexpr double kWideDisc = 10;
 
 /// By how much one disc blurs more than another, px: the diameter of a disc that makes the sharper one's picture as
-/// soft as the other's. A picture has as much detail at every scale (its spectrum falls with the frequency), so that of
-/// wide discs the share counts by which they differ: kShare of the diameter as much as half a pixel where all is sharp.
+/// soft as the other's. A picture has as much detail at every scale (its spectrum falls with the frequency). So for
+/// wide discs the relative difference counts: kShare of the diameter as much as half a pixel where all is sharp.
 inline double blur_between(double a, double b) {
     constexpr double kShare = 0.05;
     const double smaller = std::min(a, b), visible = 1 + 8 * kShare * smaller * smaller;
@@ -60,7 +60,7 @@ inline void compare(const BundleSpot& full, const BundleSpot& other, double px_p
     raise(error.blur_px, blur_between(px_per_mm * full.diameter, px_per_mm * other.diameter));
 }
 
-/// Codes of a tile that is so dark that nothing in it is seen to be blurred: it may be black and twice as bright, and
+/// Codes of a tile that is so dark that no blur in it is visible. It may be half black and half twice as bright, and
 /// half a pixel of blur takes an eighth of that.
 inline constexpr double kDarkCodes = 4;
 

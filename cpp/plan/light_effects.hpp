@@ -22,7 +22,7 @@ namespace light_effects_detail {
 
 inline constexpr double kGreen_mm = 550e-6;
 
-/// Of an irradiance on the film, lux.
+/// The sensor value of an irradiance on the film, lux.
 inline double value_of(const Camera& camera, double lux) {
     return sensor_value(lux * camera.exposure_time_s, camera.iso);
 }
@@ -91,8 +91,8 @@ public:
           of_height_(on_film(path_.of_height)),
           of_slope_(on_film(path_.of_slope)) {}
 
-    /// Of a parallel bundle: the middle of its place on the film and its radius there, mm, and its radius in front of
-    /// the lens. Nothing where the rims leave none of it.
+    /// The spot of a parallel bundle: its middle and its radius on the film, mm, and its radius in front of the lens.
+    /// Nothing where the rims block all of it.
     struct Spot {
         double middle, radius, radius_in_front;
     };
@@ -209,8 +209,8 @@ inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFact
     return GhostDisc{spot->middle, radius, value_of(camera, share * lux), *dark};
 }
 
-/// By how many codes a disc in one colour differs from that at the lens's own wavelength: by its light, and in the
-/// crescent that one of them reaches and the other does not, of which a pixel may see a share only.
+/// By how many codes a disc in one colour differs from that at the lens's own wavelength. It differs by its light, and
+/// in the crescent that only one of the two reaches. A pixel may see a part of the crescent only.
 inline double colour_between(const GhostDisc& disc, double veil, const GhostDisc& of_one, double veil_of_one,
                              double pixel) {
     const double light = std::fabs(codes_between(disc.darkest, disc.value + veil) -
@@ -222,8 +222,8 @@ inline double colour_between(const GhostDisc& disc, double veil, const GhostDisc
 }  // namespace light_effects_detail
 
 /// By first order, in the colour that shows it most. The light of a lamp fills a disc; where the picture is darkest in
-/// it, it shows most. The veil that all ghosts make of what the lens sees shows most where the picture is darkest:
-/// light that comes together on the film with the sine s makes pi L s^2 of the radiance L.
+/// it, it shows most. The veil that all ghosts make of what the lens sees shows most where the picture is darkest.
+/// Light of the radiance L that converges on the film with the sine s has the irradiance pi L s^2.
 inline GhostChange ghost_codes(const Camera& camera, const SceneFacts& facts) {
     using namespace light_effects_detail;
     const LensSystem& lens = camera.lens;

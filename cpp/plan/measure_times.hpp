@@ -17,7 +17,7 @@ namespace measure_times_detail {
 /// Long enough that a clock and a device's start do not count.
 inline constexpr double kLeast_s = 0.02;
 
-/// Of taking so many samples: the least of three times, because other programs can only slow one down.
+/// Seconds for so many samples: the least of three times, because other programs can only slow one down.
 inline double seconds_of(Session& session, int spp, const Progress& progress) {
     double least = kInfinity;
     for (int i = 0; i < 3; ++i) {

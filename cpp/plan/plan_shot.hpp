@@ -108,8 +108,8 @@ private:
             decide("diffraction", star, SizeUnit::codes, "two pixels beside lamps stars bring " + codes(star));
     }
 
-    /// Of glass; of coatings, which are of one wavelength where neither dispersion nor diffraction brings others; and
-    /// of ghosts, to which dispersion alone does.
+    /// Decides on the colour of glass, coatings and ghosts. Coatings are of one wavelength where neither dispersion nor
+    /// diffraction brings others. Ghosts have others by dispersion alone.
     void decide_colour() {
         const double lateral = errors_.lateral_colour_px, axial = errors_.axial_colour_px;
         const double of_glass = std::max(lateral, axial);

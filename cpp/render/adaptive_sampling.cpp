@@ -87,7 +87,7 @@ double AdaptiveSampling::left() const {
 }
 
 void AdaptiveSampling::Half::add(double change, double taken) {
-    // Of fewer samples than there are the difference says little.
+    // The difference says little where fewer samples are added than there are.
     const bool is_doubling = taken >= samples;
     samples += taken;
     if (!is_doubling) return;
@@ -103,7 +103,7 @@ std::size_t AdaptiveSampling::half_at(int row, int column, std::size_t half) con
 }
 
 std::size_t AdaptiveSampling::other(std::size_t half) const {
-    // Of a picture of one pixel, say, there is no other half.
+    // A picture of one pixel, for example, has no other half.
     return halves_[half ^ 1].pixels > 0 ? half ^ 1 : half;
 }
 

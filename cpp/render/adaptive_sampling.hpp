@@ -10,16 +10,16 @@ namespace REALCAM_NAMESPACE {
 
 /// Where a picture needs more samples, and how many.
 ///
-/// The film is divided into tiles, and each tile into two halves like the squares of a chessboard. How many samples
-/// the pixels of one half get is decided by what those of the other half have shown: a number of samples that depends
-/// on the samples themselves would bias their mean, because pixels that happen to miss bright things look finished. For
-/// the same reason a half that is finished stays so, whatever the other one finds later. It may have gone on looking
-/// because this half had bright samples; more samples would level these out, and never dark ones.
+/// The film is divided into tiles, and each tile into two halves like the squares of a chessboard. How many samples the
+/// pixels of one half get is decided by those of the other half. A number of samples that depends on the samples
+/// themselves would bias their mean, because pixels that happen to miss bright things look finished. For the same
+/// reason a half that is finished stays so, whatever the other one finds later. It may have gone on looking because
+/// this half had bright samples; more samples would level these out, and never dark ones.
 ///
 /// Noise is measured by doubling: a picture of n samples and the same with n more differ by as much as n samples err.
-/// The samples of a pixel are stratified, so that where it is smooth its variance falls faster than with 1 / n, like
-/// n^-p; the variance of the mean of all samples is then that of the last difference over 2^p - 1. p is what the last
-/// two doublings of a tile and of those about it show with some certainty, and else 1.
+/// The samples of a pixel are stratified, so where it is smooth its variance falls faster than 1 / n, like n^-p. The
+/// variance of the mean of all samples is then that of the last difference over 2^p - 1. p is estimated from the last
+/// two doublings of a tile and its neighbours where these show it with some certainty; else it is 1.
 class AdaptiveSampling {
 public:
     static constexpr int kTileSide = 16;

@@ -12,7 +12,7 @@ enum class RenderStage { lens, scene, other };
 
 namespace advance_path_detail {
 
-/// From this bounce on, dim paths are ended by chance, and those that are kept count more.
+/// Russian roulette begins at this bounce: dim paths are ended at random, and those that are kept count more.
 inline constexpr int kFirstRoulette = 3;
 
 /// Ends a path with the probability that its throughput has lost.
@@ -80,7 +80,7 @@ REALCAM_HD inline bool advance_paths(const SceneView& view, const CameraView& ca
     scene.intersect(path.rays, hits);
     probe.enter(RenderStage::other);
     meet_surfaces<scene_kind>(view, camera, settings, block, bounce, hits, path, results, surfaces);
-    if (path.count == 0) return false;  // on a GPU, lest what only paths that go on need is kept in registers
+    if (path.count == 0) return false;  // on a GPU, so that registers do not keep what only continuing paths need
     const int places = path.places();
     if constexpr (N > 1) {  // also of the places that are not in use
         REALCAM_LANES

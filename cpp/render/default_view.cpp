@@ -41,7 +41,7 @@ double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d targ
     const double tan_x = tangent(half(film.width_mm, film.shift_mm.x)),
                  tan_y = tangent(half(film.height_mm, film.shift_mm.y));
     const auto axes = axes_of(camera.pose);
-    // Also keeps a scene without breadth, such as a plane seen edge on, in front of the camera.
+    // This also keeps a scene without breadth, such as a plane seen edge on, in front of the camera.
     const double pupil = first_order(camera.lens, camera.lens.wavelength_nm).entrance_pupil_position;
     const double least = std::max(0.1 * box.diagonal(), std::isfinite(pupil) ? 0.0012 * pupil : 0.0);
     double distance = 0;
@@ -110,7 +110,7 @@ Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
     return {position, position - backward, normalized(scene_from_camera.y)};
 }
 
-/// Of a camera of the scene: its place, its direction and how it moves.
+/// Takes the place, the direction and the motion of a camera of the scene.
 void take_view(Camera& camera, const Assembly& assembly, const SceneCamera& from,
                const std::optional<double>& focus_distance_m) {
     const LensSystem lens = camera.lens;

@@ -13,15 +13,15 @@ struct ViewRequest {
     std::optional<Vec3d> position_m, look_at_m;
     Vec3d up = {0, 1, 0};
     std::optional<double> focus_distance_m;  ///< object plane to film; infinity allowed
-    /// Of the scene (SceneCamera), by its name. Empty: where position_m and look_at_m say nothing the first that there
-    /// is; kNoCamera: none.
+    /// The name of a camera of the scene (SceneCamera). Empty: the first that exists, if position_m and look_at_m are
+    /// not given. kNoCamera: none.
     std::string camera;
 
     static constexpr const char* kNoCamera = "none";
 };
 
-/// Sets camera.pose, where the camera stays, and focuses camera.lens, on the scene as it stands when the shutter opens:
-/// as asked for; where the scene brings a camera along, in its place, with its direction and motion; and otherwise so.
+/// Sets camera.pose and focuses camera.lens, for the scene when the shutter opens. What the request gives is taken.
+/// Else, where the scene has a camera, its place, direction and motion are taken. Else the view is chosen so.
 /// - subject: the scene without its surroundings (Surroundings): not the wide floor, the sky or what is far away.
 /// - look_at: the middle of the subject's bounding box.
 /// - position: in front of look_at along +z (along -y where up is the z axis), so far away that the subject's box fills

@@ -81,7 +81,7 @@ bool GapFinder::is_background(const ChosenPieces& among, const ChosenPieces& ins
     std::bitset<kDirections> seen;
     pieces_.for_chosen(among, [&](std::size_t i, const Piece& piece) {
         const Vec3d s = piece.box.size();
-        // Of an instance half of its box's surface, as of a solid thing seen from one side.
+        // An instance counts with half of its box's surface, like a solid thing seen from one side.
         const double own = piece.area == Vec3d{} ? s.x * s.y + s.y * s.z + s.z * s.x : length(piece.area);
         const double count = piece.area == Vec3d{} ? kLeastSubject : 1;
         all += count;

@@ -7,8 +7,9 @@
 namespace REALCAM_NAMESPACE {
 
 /// Finds a gap about the middle of what a picture is of: a shell that no piece touches, whose outer radius is eight
-/// times the inner. What lies beyond is no part of the subject if it surrounds what lies within, as a sky does (it is
-/// seen in 40% or more of the directions), or is far away and little: at most a tenth of the pieces and of their area.
+/// times the inner. What lies beyond is no part of the subject in two cases. It may surround what lies within, as a sky
+/// does: it is seen in 40% or more of the directions. Or it is far away and little: at most a tenth of the pieces and
+/// of their area.
 class GapFinder {
 public:
     GapFinder(const ScenePieces& pieces, const BoundingBox& box) : pieces_(pieces), box_(box) {}
@@ -27,9 +28,9 @@ private:
     /// is all alike; 4 lets even a box of 12 triangles count more than a sky of thousands of large ones.
     Vec3d median(const std::vector<Piece>& among, int power) const;
 
-    /// What could be the middle of the subject: the median of all pieces; that of the finest detail; and the pieces
-    /// nearest to the middle of the scene and of its lower side, whether y or z is up, where a small object under a sky
-    /// is.
+    /// What could be the middle of the subject. It is the median of all pieces, or that of the finest detail. For a
+    /// small object under a sky it is one of the pieces nearest to the middle of the scene and of its lower side,
+    /// whether y or z is up.
     std::vector<Vec3d> possible_middles(const ChosenPieces& among, const std::vector<Piece>& some) const;
 
     bool is_background(const ChosenPieces& among, const ChosenPieces& inside, Vec3d centre) const;

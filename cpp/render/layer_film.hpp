@@ -35,7 +35,7 @@ LayerImage numbered(Layer layer, const std::vector<MiddleSurface>& film, F&& f) 
 
 }  // namespace layer_film_detail
 
-/// Of kSampledLayers and kMiddleLayers, those that are wanted.
+/// The wanted layers among kSampledLayers and kMiddleLayers.
 std::vector<LayerImage> developed(const LayerFilm& film, LayerSet wanted, const SurfaceIds& ids);
 
 }  // namespace REALCAM_NAMESPACE

@@ -43,7 +43,7 @@ struct PickedLights {
     Lanes<float, N> probability;
     Vec2Lanes<float, N> u;  ///< what the choice has left of the random numbers
     LightSamples<N> others;
-    // Of area lights:
+    // For area lights:
     Vec3Lanes<float, N> corner, edge_u, edge_v, normal;
     ColorLanes<N> radiance;
     Lanes<float, N> area, margin;

@@ -12,7 +12,7 @@ struct Surfaces {
     REALCAM_INLINE void set(int place, const SurfacePoint& point) { points[place] = point; }
 };
 
-/// Likewise in a plain scene, for vector code.
+/// The same in a plain scene, for vector code.
 template <int N>
 struct PlainSurfaces {
     Vec3Lanes<float, N> position, geometric_normal, normal;
@@ -51,7 +51,7 @@ REALCAM_INLINE float depth_at(const CameraView& camera, Vec3f position, float ti
 /// Behind the dimensions of all random numbers.
 inline constexpr std::uint32_t kFootprintSalt = 0x40000;
 
-/// Of a ray from the film.
+/// The footprint of a ray from the film.
 template <int N>
 REALCAM_INLINE Footprint film_footprint(const CameraView& camera, const SampleBlock<N>& block, int lane) {
     const float pixel = 2.0f * camera.film_half_width / static_cast<float>(camera.width);

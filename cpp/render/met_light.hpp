@@ -5,8 +5,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// Light is looked for in two ways, by a direction that the lights suggest and by one that the BSDF suggests, and what
-// either finds is weighed by the densities with which both could have found it (Veach and Guibas 1995).
+// Light is looked for in two ways: in a direction that the lights suggest, and in one that the BSDF suggests. What
+// either finds is weighted by the densities with which both could have found it (Veach and Guibas 1995).
 
 /// Veach's power heuristic: what counts of light that was found with one density, where the other way had the other.
 /// With kDelta, all of it, because no other way finds it.
@@ -44,7 +44,7 @@ REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N
     return (weight * path.throughput[lane]) * environment_radiance(scene.environment, direction);
 }
 
-/// Likewise of an environment's image, in whose pixel the ray ends.
+/// The same for an environment's image, in whose pixel the ray ends.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathState<N>& path, int lane,
                                              EnvironmentPixel pixel) {

@@ -10,8 +10,8 @@
 namespace REALCAM_NAMESPACE {
 
 /// Mean luminance exposure of a picture, lux seconds. Pixels without any light (black background) do not count, and
-/// none counts for more than eight times the mean (three stops): an emitter or the sun's mirror image is left to burn
-/// out, as on a sensor. 0 where nothing has light.
+/// none counts for more than eight times the mean (three stops). So an emitter or the sun's mirror image may be
+/// overexposed, as on a sensor. 0 where nothing has light.
 double metered_exposure(const Image& image);
 
 /// Exposure time with which the camera's picture lands on middle grey on average (10 lx s / ISO), from a quick picture

@@ -71,7 +71,7 @@ struct PathState {
             if constexpr (scene_kind == SceneKind::any) {
                 rays.time[to] = rays.time[from];
                 rays.number[to] = rays.number[from];
-                // Of a ray that goes on through a surface that shows nothing but shadows:
+                // These are kept where a ray continues through a surface that shows nothing but shadows:
                 pdf[to] = pdf[from];
                 receiver_position.set(to, receiver_position[from]);
                 receiver_normal.set(to, receiver_normal[from]);

@@ -56,7 +56,7 @@ struct PixelSum {
         const double lux_s = static_cast<double>(exposure(channel, exposure_time_s, ghosts));
         return srgb_code(apply_tone_curve(curve, sensor_value(lux_s, iso)));
     }
-    /// Of the exposure, as the mean of samples that know nothing of each other, (lux seconds)^2; NaN of fewer than two.
+    /// Variance of the exposure, (lux seconds)^2, as the mean of independent samples; NaN for fewer than two.
     REALCAM_HD float variance(int channel, double exposure_time_s) const {
         if (samples < 2) return std::numeric_limits<float>::quiet_NaN();
         const double n = static_cast<double>(samples), sum = irradiance[channel];

@@ -17,7 +17,7 @@ struct PixelCounts {
     const std::uint32_t* counts = nullptr;  ///< of the film's pixels, row by row; none: all samples
     std::uint32_t taken = 0;                ///< of them, before the range
 
-    /// Of the rest of the range, behind so many of its samples.
+    /// The counts of the rest of the range, behind so many of its samples.
     PixelCounts behind(std::uint32_t samples) const { return {counts, taken + samples}; }
 
     std::uint32_t of(std::size_t pixel, const SampleRange& range) const {
@@ -26,8 +26,8 @@ struct PixelCounts {
     }
 };
 
-/// The next samples from `taken` to `wanted`, or those up to where a random sequence ends: it has 2^32 of them, and a
-/// picture that is never finished goes on with the sequence of the next seed.
+/// The next samples from `taken` to `wanted`, or those up to where a random sequence ends. A sequence has 2^32 samples,
+/// and a picture that is never finished continues with the sequence of the next seed.
 inline SampleRange next_samples(std::uint32_t seed, std::int64_t taken, std::int64_t wanted) {
     constexpr std::int64_t kSequence = std::int64_t{1} << 32;
     const std::int64_t first = taken % kSequence, count = std::min(wanted - taken, kSequence - first);

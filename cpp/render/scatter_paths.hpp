@@ -46,9 +46,9 @@ REALCAM_INLINE bool scatter_path(const PathSettings& settings, int bounce, int l
 
 namespace scatter_paths_detail {
 
-/// A sample of one of the lights, by the illuminance that each would bring if nothing stood in between: one of eight
-/// that sample_light draws, by its share of what they bring (resampling, Talbot et al. 2005), or of up to 64 where
-/// those were all behind the surface. Black: no light.
+/// A sample of one of the lights, by the illuminance that each would bring if nothing stood in between. It is one of
+/// eight that sample_light draws, chosen by its share of their illuminance (resampling, Talbot et al. 2005). Where all
+/// of those are behind the surface, up to 64 are drawn. Black: no light.
 template <SceneKind scene_kind>
 REALCAM_INLINE LightSample light_by_illuminance(const SceneView& scene, LightReceiver receiver, std::uint32_t seed) {
     LightSample chosen{{0, 1, 0}, kFarAway, 1.0f, {0, 0, 0}, kDelta};

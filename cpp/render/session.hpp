@@ -29,8 +29,8 @@ struct SampleCounts {
 /// What becomes of the samples that were taken before a stop.
 enum class Collected { keep, drop };
 
-/// One picture on a device, which collects samples for as long as scene, camera and settings stay the same. Of what
-/// changes from one `set` to the next, only that is prepared again.
+/// One picture on a device, which collects samples for as long as scene, camera and settings stay the same. From one
+/// `set` to the next, only what changed is prepared again.
 ///
 /// Threads take turns: a call waits for that of another thread, but for `cancel`, which ends it. All functions throw
 /// DeviceError; after one the next `set` prepares everything anew. `keep_going` and `progress` are asked some 20 times
@@ -48,10 +48,10 @@ public:
     /// Throws InputError and SceneFileError for a scene that makes no picture, and Cancelled.
     void check(const Assembly& scene, const KeepGoing& keep_going = {});
 
-    /// What is photographed from now on. A scene with other parts or transforms, a camera with another lens, film,
-    /// model or pose, another seed or number of bounces begin a new picture, and where something moves another time of
-    /// exposure, too; else exposure time and ISO only develop it anew. Throws InputError for what makes no picture, and
-    /// Cancelled.
+    /// What is photographed from now on. A new picture begins with other parts or transforms of the scene, another
+    /// lens, film, model or pose of the camera, or another seed or number of bounces. Where something moves, another
+    /// time of exposure begins one, too. Else exposure time and ISO only develop it anew. Throws InputError for what
+    /// makes no picture, and Cancelled.
     void set(const Assembly& scene, const Camera& camera, const RenderSettings& settings,
              const KeepGoing& keep_going = {});
 
@@ -78,7 +78,7 @@ public:
     /// meanwhile.
     Image picture(const KeepGoing& keep_going = {});
 
-    /// Of the film that is set; waits for frames under way.
+    /// The sample counts of the film that is set. Waits for frames under way.
     SampleCounts sample_counts(const KeepGoing& keep_going = {});
 
     /// Ends what is under way, from any thread: frames and other threads' calls throw Cancelled. No sample is begun any
@@ -138,7 +138,7 @@ protected:
     virtual PlacedCamera placed_camera() const = 0;
     virtual std::size_t frames_in_flight() const = 0;
 
-    /// From any thread. A stop stands until it was lowered as often as it was raised.
+    /// May be called from any thread. A stop stands until it was lowered as often as it was raised.
     virtual void raise_stop() noexcept = 0;
     virtual void lower_stop() noexcept = 0;
     virtual bool is_stopped() const = 0;

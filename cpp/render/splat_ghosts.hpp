@@ -23,7 +23,7 @@ struct LensFrame {
     REALCAM_INLINE Vec3f direction(Vec3f scene) const {
         return {dot(scene, camera.right), dot(scene, camera.up), dot(scene, camera.backward)};
     }
-    /// Of a place in mm, relative to the front vertex.
+    /// The scene's coordinates of a place in mm, relative to the front vertex.
     REALCAM_INLINE Vec3f place_in_scene(Vec3f lens_mm) const {
         return camera.position + (0.001f * lens_mm.x) * camera.right + (0.001f * lens_mm.y) * camera.up +
                (0.001f * lens_mm.z - front_vertex_m) * camera.backward;
@@ -45,7 +45,7 @@ REALCAM_INLINE std::int32_t pixel_at(const CameraView& camera, float x, float y)
     return inside ? static_cast<std::int32_t>(row) * camera.width + static_cast<std::int32_t>(column) : -1;
 }
 
-/// From the begin of the first row's exposure to the end of the last one's.
+/// The time from the begin of the first row's exposure to the end of the last one's.
 REALCAM_INLINE float all_times(const CameraView& camera) {
     return camera.exposed_time + camera.row_time * static_cast<float>(camera.height);
 }
@@ -93,7 +93,7 @@ REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camer
         if (light.probability > 0.0f) {
             const LightSample sample = sample_picked<scene_kind>(view, middle, light);
             from = frame.direction(sample.direction);
-            // Of area lights that are seen from the side, kDelta says that there is no light.
+            // For area lights that are seen from the side, kDelta says that there is no light.
             if (light.kind == LightKind::area || light.kind == LightKind::environment)
                 samples.light_density[i] = sample.pdf < kDelta ? light.probability * sample.pdf : 0.0f;
         }

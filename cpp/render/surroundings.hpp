@@ -10,14 +10,14 @@ namespace REALCAM_NAMESPACE {
 /// is the object.
 ///
 /// Surroundings are taken away, one after the other, as long as what is left is less than a third as large (diagonals
-/// of boxes), so that an object of one piece, a room and its furniture, or a table and what stands on it stay whole.
-/// They are floors and walls (SheetFinder), of which single long triangles, such as the sides of a slab, have to be
-/// more than three times as long as what is left; and what lies beyond a wide gap (GapFinder).
+/// of boxes). So an object of one piece, a room and its furniture, or a table and what stands on it stay whole. They
+/// are floors and walls (SheetFinder), and what lies beyond a wide gap (GapFinder). Single long triangles, such as the
+/// sides of a slab, have to be more than three times as long as what is left.
 class Surroundings {
 public:
     explicit Surroundings(const Assembly& assembly);
 
-    /// Of what is left.
+    /// The bounding box of what is left.
     const BoundingBox& box() const { return box_; }
     /// f(number, piece) for what is left.
     template <class F>

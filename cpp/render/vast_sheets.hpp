@@ -16,8 +16,8 @@ struct WithoutSheets {
     double shortest_left_out = std::numeric_limits<double>::infinity();  ///< of single long pieces, m
 };
 
-/// Leaves out planes across one axis that reach along at least half of the box in both other directions and are at
-/// least half covered, of however many pieces; and single pieces longer than a third of the box.
+/// Leaves out planes across one axis, of however many pieces, that reach along at least half of the box in both other
+/// directions and are at least half covered. It also leaves out single pieces longer than a third of the box.
 class SheetFinder {
 public:
     SheetFinder(const ScenePieces& pieces, const ChosenPieces& kept, const BoundingBox& box)
@@ -36,7 +36,7 @@ private:
     };
     using Sheets = std::map<std::int64_t, Sheet>;  ///< by their height, in units of what counts as flat
 
-    /// Of an instance, which has no area of its own, as much as its box shows.
+    /// An instance, which has no area of its own, has as much as its box shows.
     static double area_across(const Piece& piece, std::size_t axis);
 
     std::optional<std::int64_t> plane_of(const Piece& piece, std::size_t axis) const;

@@ -103,7 +103,7 @@ Assembly standing_at(Assembly assembly, double time_s) {
 
 namespace {
 
-/// Of a part in the frame of its whole.
+/// The transform of a part in the frame of its whole.
 Affine<double> whole_from_part(const Affine<double>& scene_from_whole, const Affine<double>& scene_from_part) {
     const InverseAffine<double> back = scene_from_whole.inverse();
     return {back.direction(scene_from_part.x), back.direction(scene_from_part.y), back.direction(scene_from_part.z),

@@ -30,7 +30,8 @@ REALCAM_INLINE TablePlace layer_of(float critical) {
 
 }  // namespace border_loss_detail
 
-/// Of light at this cosine. `found`: what facets that reflect all give back of it, ggx_albedo(cosine, alpha).all.
+/// The loss of light at this cosine. `found`: what facets that reflect all of it give back, ggx_albedo(cosine,
+/// alpha).all.
 REALCAM_HD inline float border_loss(BorderSide side, float cosine, float alpha, float critical, float found) {
     using namespace border_loss_detail;
     static constexpr float kLoss[] = {REALCAM_BORDER_LOSS};

@@ -27,7 +27,7 @@ struct BoundingBox {
     }
 };
 
-/// Of the triangles of a scene, metres, as a map takes them.
+/// Adds the triangles of a scene, metres, as a map transforms them.
 void add_triangles(BoundingBox& box, const Scene& scene, const Affine<double>& map);
 
 /// Boxes of objects in their own coordinates, each made once, however many instances an object has.
@@ -48,8 +48,8 @@ inline bool asks_every_triangle(const Assembly& assembly) {
     return assembly.triangle_count() - assembly.static_geometry->triangles.size() <= kMostTrianglesAsked;
 }
 
-/// Of a scene, metres. Of instances with many triangles in all (kMostTrianglesAsked), a box that holds those of their
-/// objects, which is larger where they are turned.
+/// The box of a scene, metres. For instances with many triangles in all (kMostTrianglesAsked) it holds the boxes of
+/// their objects, and is larger where these are turned.
 BoundingBox bounding_box(const Assembly& assembly);
 
 }  // namespace REALCAM_NAMESPACE

@@ -37,7 +37,7 @@ public:
         left_to_eye_ = grey(1.0f) - above_diffuse.albedo(specular.to_eye);
         diffuse_ = diffuse;
         if (is_layered_) diffuse_ = through_coat_ * diffuse * left_to_eye_ / mean_left();
-        // Of a coat with a normal of its own no table says what is lost.
+        // No table has the loss of a coat with a normal of its own.
         if (coat_weight > 0.0f && !specular.is_smooth() && coat_turn.is_none()) prepare_lost_under_coat();
         choose_lobes();
     }
@@ -150,7 +150,7 @@ private:
         return {std::sqrt(kSquares[i]), kWeights[i]};
     }
 
-    /// Of what a surface that reflects all loses at a cosine, what this one does.
+    /// The loss of this surface at a cosine, from that of a surface that reflects all.
     REALCAM_INLINE Color lost_under_coat(float cosine) const {
         return coat_loss(cosine, coat.alpha, specular.alpha) * specular.reflectance.albedo(specular.facets_at(cosine));
     }
@@ -172,7 +172,7 @@ private:
     REALCAM_INLINE float through_coat(GgxAlbedo facets) const {
         return coat_weight > 0.0f ? 1.0f - coat_weight * coat.reflectance.albedo(facets).r : 1.0f;
     }
-    /// Of light at a cosine, what the specular lobe leaves to the diffuse one.
+    /// The share of light at a cosine that the specular lobe leaves to the diffuse one.
     REALCAM_INLINE Color left_at(float cosine) const {
         return grey(1.0f) - above_diffuse.albedo(specular.facets_at(cosine));
     }

@@ -25,7 +25,7 @@ public:
     static void widen(LightLeaf& leaf, const LightLeaf& elsewhere);
 
     LightTree() = default;
-    /// Of the point lights, then the area lights, in the order of their numbers.
+    /// Builds a tree of the point lights, then the area lights, in the order of their numbers.
     LightTree(std::vector<LightLeaf> leaves, Checkpoint& checkpoint);
 
     const std::vector<LightNode>& nodes() const { return nodes_; }

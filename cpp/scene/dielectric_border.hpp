@@ -8,8 +8,8 @@ namespace REALCAM_NAMESPACE {
 /// A border that reflects one part of the light and lets the other through: smooth, or rough by GGX microfacets (Walter
 /// et al. 2007). In local coordinates, with `eye` above the surface. Radiance is that of the side on which it is: on
 /// entering a medium it grows by the index squared. What facets lose by a single reflection or passage comes back in a
-/// lobe on each side (after Kulla and Conty 2017): light that has met several facets has forgotten from where it came,
-/// so that it leaves to the two sides in one ratio, whatever the eye's. That makes the lobes reciprocal.
+/// lobe on each side (after Kulla and Conty 2017). Light that has met several facets has forgotten where it came from.
+/// So it leaves to the two sides in one ratio, whatever the eye's side. That makes the lobes reciprocal.
 struct DielectricBorder {
     float weight = 0;  ///< all that it does is multiplied by this; 0: there is none
     Color filter = {1, 1, 1};  ///< of what passes
@@ -126,8 +126,8 @@ private:
         return (1.0f - reflected) * facets * eta * eta * -d / (way * way);
     }
 
-    /// Likewise by several. Below, the index squared by which more light goes there is that by which radiance shrinks
-    /// on its way to the eye.
+    /// The same by several facets. Below, more light goes there by the index squared, and radiance shrinks by the same
+    /// factor on its way to the eye.
     REALCAM_INLINE float several(float light_z) const {
         if (!(lost > 1e-6f)) return 0.0f;
         const float cosine = std::fabs(light_z);

@@ -11,7 +11,7 @@ namespace realcam {
 
 namespace {
 
-/// Of all texels, linear.
+/// The mean of all texels, linear.
 Color mean_of(const TextureView& texture) {
     const std::size_t texels = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
     const std::array<float, 256> light = light_of_codes(texture.encoding);

@@ -58,7 +58,7 @@ REALCAM_INLINE LightSample sample_in_pixel(const EnvironmentView& environment, C
                                            Color radiance) {
     const float across = (static_cast<float>(column.index) + column.fresh) / static_cast<float>(environment.width);
     const float down = (static_cast<float>(row.index) + row.fresh) / static_cast<float>(environment.height);
-    // From the map's left edge, half a turn behind the direction that its azimuth is counted from.
+    // Counted from the map's left edge, half a turn behind the direction of azimuth 0.
     const Vec2f azimuth = cos_sin_of_turn(across);
     // At one, down is rounded to where the sine is zero.
     const Vec2f polar = cos_sin_of_turn(0.5f * select(down < 0.99999994f, down, 0.99999994f));

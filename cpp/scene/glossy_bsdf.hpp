@@ -66,7 +66,7 @@ public:
     REALCAM_INLINE Value eval(Vec3f to_light) const {
         const Vec3f light = frame_.to_local(to_light);
         const bool is_possible = (light.z > 0.0f) & (dot(geometric_normal_, to_light) > 0.0f);
-        // Of a direction below, too, tables are read.
+        // Tables are also read for directions below the surface.
         const float cosine = select(is_possible, light.z, 1.0f), pdf = 0.3183098862f * cosine;
         const GgxAlbedo to_light_facets = inlined_ggx_albedo(cosine, alpha_);
         const Color diffuse = pdf * diffuse_ * (grey(1.0f) - above_diffuse_.albedo(to_light_facets));

@@ -105,7 +105,7 @@ REALCAM_INLINE LightSample sample_point_light(const PointLight& light, Vec3f pos
     return {direction, distance, reach, (share * share / squared) * light.intensity, kDelta};
 }
 
-/// Of which the probabilities of kinds of light are made: a share that each of them has, and one by its importance.
+/// The two parts of which the probability of a kind of light consists: an even share, and one by its importance.
 struct LightShares {
     float even, scale;
 
@@ -134,8 +134,9 @@ REALCAM_INLINE float sun_importance(const SunLight& sun, Vec3f normal) {
     return select(cosine > 0.0f, cosine * luminance(sun.illuminance), 0.0f);
 }
 
-/// What is known of the kinds of light at a receiver, to choose one of them: about the illuminance that each can bring
-/// there if nothing stands in between, and for one half alike, because much may stand in between.
+/// What is known of the kinds of light at a receiver, to choose one of them. Half of the probability goes by the
+/// estimated illuminance of each kind if nothing stands in between. The other half is even, because the brightest kind
+/// may be occluded.
 struct LightKinds {
     LightShares shares;
     float local_probability;  ///< of point and area lights, together
@@ -175,7 +176,7 @@ REALCAM_INLINE float environment_light_pdf(const SceneView& scene, LightReceiver
            environment_pdf(scene.environment, receiver.normal, direction);
 }
 
-/// Likewise in a direction in which an area light is met, at this distance and with this cosine at it.
+/// The same in a direction in which an area light is met, at this distance and with this cosine at it.
 template <SceneKind scene_kind>
 REALCAM_INLINE float emitter_light_pdf(const SceneView& scene, LightReceiver receiver, std::int32_t area_light,
                                        float distance, float cosine) {

@@ -6,8 +6,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-// By which probabilities the pixels of an environment are chosen. Most by their power; a share without regard to it,
-// because a light that is 1e8 times dimmer than another is all the light there is where the other does not reach.
+// The probabilities by which the pixels of an environment are chosen. Most of it goes by their power. A share is even,
+// because a light that is 1e8 times dimmer than another is all the light where the other does not reach.
 
 inline constexpr double kEvenShare = 0.125;  ///< its price: where power is the best choice, 1/7 more variance
 

@@ -19,7 +19,7 @@ REALCAM_INLINE float light_importance(const LightNode& node, LightReceiver recei
     const Vec3f middle = 0.5f * (node.low + node.high), half = node.high - middle;
     const Vec3f way = receiver.position - middle;
     const float squared = dot(way, way), radius2 = dot(half, half);
-    // Of the angle in which the bounds appear; from inside, lights are in all directions.
+    // Cosine of the angle in which the bounds appear. From inside, lights are in all directions.
     const float cos_bounds = select(squared > radius2, sqrt_or_zero(1.0f - radius2 / squared), -1.0f);
     const float inverse = 1.0f / std::sqrt(select(squared > 1e-30f, squared, 1e-30f));
     const float cos_axis = inverse * dot(node.axis, way);
@@ -36,7 +36,7 @@ REALCAM_INLINE float first_child_probability(const LightNode& first, const Light
     constexpr float kLeast = 0.01f;
     const float a = light_importance(first, receiver), b = light_importance(second, receiver);
     const float share = a / (a + b);
-    // Also where both are 0 or infinite.
+    // The half is also returned where both are 0 or infinite.
     if (!(share >= 0.0f)) return 0.5f;
     return share < kLeast ? kLeast : share > 1.0f - kLeast ? 1.0f - kLeast : share;
 }

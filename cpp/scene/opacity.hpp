@@ -29,8 +29,8 @@ REALCAM_INLINE std::uint32_t shadow_ray_number(std::uint32_t hash) {
     return hash | 1u;
 }
 
-/// Of a ray that stops at what is there by half or more, and passes what shows shadows alone: one ray that stands for a
-/// whole pixel must not depend on chance.
+/// The number of a ray that stops at surfaces with an opacity of half or more, and passes those that show shadows
+/// alone. One ray that stands for a whole pixel must not depend on chance.
 inline constexpr std::uint32_t kDecidedRay = 0;
 
 /// Whether a ray stops at a hit on a mesh.

@@ -80,7 +80,7 @@ void RenderSpaceMesh::add_planes(Checkpoint& checkpoint) {
     planes_.reserve(triangles().size());
     for (std::size_t i = 0; i < triangles().size(); ++i) {
         checkpoint.pass();
-        // Of the whole triangle, so that its pieces are one plane.
+        // The edges of the whole triangle, so that its pieces are one plane.
         const Edges whole = edges_of(scene_.triangles[split_.parent(i)],
                                      [&](std::uint32_t v) { return frame_.point(scene_.positions_m[v]); });
         const Vec3d area = cross(whole.u, whole.v);

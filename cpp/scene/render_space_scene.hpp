@@ -49,7 +49,7 @@ private:
 
     bool is_large_and_near(const BoundingBox& box, const Affine<double>& map) const;
 
-    /// Of a length by a map, as a power of two.
+    /// The scaling of a length by a map, as a power of two.
     static double doublings(const Affine<double>& map) {
         return std::round(std::log2(std::fabs(map.determinant())) / 3);
     }
@@ -63,7 +63,7 @@ private:
     void add_object(const Scene& object, const Affine<double>& frame, LargeTriangles large);
     bool is_static(std::size_t instance) const { return static_objects_[object_of_[instance]]; }
 
-    /// From the frame of an instance's object, whose own coordinates `map` takes into the scene.
+    /// The transform from the frame of an instance's object, whose own coordinates `map` takes into the scene.
     Affine<double> render_from_object(std::size_t i, const Affine<double>& map) const;
 
     void update_instances();

@@ -19,9 +19,9 @@ struct Texture {
 struct ScenePointLight {
     Vec3d position_m;
     Color intensity;  ///< cd; of a spot, on its axis
-    /// Of a spot: where it points to, a unit vector. (0, 0, 0): light leaves in all directions.
+    /// The direction of a spot, a unit vector. (0, 0, 0): light leaves in all directions.
     Vec3d axis = {0, 0, 0};
-    /// Of a spot, from the axis: where it begins to fade, and where it ends. 0 <= inner <= outer <= pi / 2.
+    /// Angles of a spot from its axis: where it begins to fade, and where it ends. 0 <= inner <= outer <= pi / 2.
     double inner_cone_rad = 0, outer_cone_rad = 0;
 };
 

@@ -11,7 +11,7 @@ struct SceneCamera {
     std::string name;
     /// It stands in the origin and looks along -z, y upwards; metres. Of one that moves, at time 0.
     Affine<double> scene_from_camera;
-    /// From the lower edge of its picture to the upper one, radians; 0: none, because its rays are parallel
+    /// The angle from the lower edge of its picture to the upper one, radians. It is 0 where rays are parallel
     /// (orthographic), which no lens's are.
     double vertical_field_rad = 0;
     std::shared_ptr<const Motion> motion = nullptr;  ///< null: it stays where it is

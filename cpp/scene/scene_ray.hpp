@@ -7,7 +7,7 @@ namespace REALCAM_NAMESPACE {
 // What traversal has to know of a ray besides its line: whether it stops at a triangle that it meets, and where
 // instances are at its time.
 
-/// Of a scene without holes and motion: it stops at everything.
+/// A ray in a scene without holes and motion: it stops at everything.
 struct PlainSceneRay {
     static constexpr bool is_plain = true;
 };

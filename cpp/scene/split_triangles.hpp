@@ -9,9 +9,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-// A triangle that is much larger than its distance from the camera has float corners whose roundings are larger than
-// what stands on it: a plain of 1e7 m would float half a metre off under the camera's feet. It is cut into pieces, each
-// of about the size of its own distance, whose corners are as exact as they need to be.
+// If a triangle is much larger than its distance from the camera, the rounding of its float corners is larger than what
+// stands on it. A plain of 1e7 m would be half a metre off under the camera's feet. It is cut into pieces, each of
+// about the size of its own distance, whose corners are as exact as they need to be.
 
 enum class LargeTriangles { cut, keep };
 

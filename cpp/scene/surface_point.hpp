@@ -93,16 +93,16 @@ REALCAM_INLINE Vec2f transformed(const TextureReference& reference, Vec2f uv) {
     return {dot(reference.to_u, place), dot(reference.to_v, place)};
 }
 
-/// How much of a surface one ray stands for, for textures of colours. Of the film that is a pixel over the samples up
-/// to this one, since all of them together are a pixel: so the first are without shimmer, and the mean of many is as
-/// sharp as the texture. Not the circle of a lens that is out of focus: its rays meet the surface in many places
-/// already, and a texture of their width would be blurred twice.
+/// How much of a surface one ray stands for, for textures of colours. On the film that is a pixel over the number of
+/// samples up to this one, because all of them together cover a pixel. So the first are without shimmer, and the mean
+/// of many is as sharp as the texture. Not the circle of a lens that is out of focus: its rays meet the surface in many
+/// places already, and a texture of their width would be blurred twice.
 struct Footprint {
-    float area = 0;    ///< across the ray, over the square of the distance; 0: a point
+    float area = 0;  ///< across the ray, over the square of the distance; 0: a point
     float chance = 0;  ///< 0..1, by which one of two levels is taken
 };
 
-/// Of a ray that stands for a point alone.
+/// The footprint of a ray that stands for a point alone.
 struct PointFootprint {
     REALCAM_INLINE Footprint operator()() const { return {}; }
 };
@@ -145,7 +145,7 @@ REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference&
     return sample_texture(mesh.textures[reference.texture], transformed(reference, uv), reference.sampler);
 }
 
-/// Likewise of a part of the surface.
+/// The same for a part of the surface.
 REALCAM_INLINE Color texture_color(const MeshView& mesh, const TextureReference& reference, Vec2f uv,
                                    UvFootprint footprint) {
     if (reference.texture < 0 || !mesh.uvs) return {1, 1, 1};
@@ -161,7 +161,7 @@ REALCAM_INLINE Color vertex_color(const MeshView& mesh, const Triangle& triangle
     return (1.0f - hit.u - hit.v) * a.color + hit.u * b.color + hit.v * c.color;
 }
 
-/// Likewise their alpha.
+/// The same for their alpha.
 REALCAM_INLINE float vertex_alpha(const MeshView& mesh, const Triangle& triangle, Hit hit) {
     if (!mesh.colors) return 1.0f;
     const std::uint32_t* corner = triangle.vertices;
@@ -278,8 +278,8 @@ REALCAM_INLINE float instance_margin(const InstanceView& instance, float plane_m
     return select(own < instance.reach_margin, own, instance.reach_margin) + stretch * off * coordinates;
 }
 
-/// Likewise on an instance of a mesh: the ray goes into the object's frame, with the same distances, and what it finds
-/// comes back.
+/// The same on an instance of a mesh. The ray is transformed into the object's frame, with the same distances, and the
+/// result is transformed back.
 template <SceneKind scene_kind, class FootprintOf>
 REALCAM_INLINE SurfacePoint point_on_instance(const MeshView& object, const InstanceView& instance, Hit hit,
                                               Vec3f ray_origin, Vec3f ray_direction, FootprintOf&& footprint_of) {

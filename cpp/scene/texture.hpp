@@ -9,8 +9,8 @@ REALCAM_INLINE float srgb_to_linear(std::uint8_t code) {
     return v <= 0.04045f ? v * (1.0f / 12.92f) : std::pow((v + 0.055f) * (1.0f / 1.055f), 2.4f);
 }
 
-/// Where a row or column of texels lies in the picture: one of the picture itself, or the next to it on either side,
-/// which is the picture's other end, or where it does not repeat its own.
+/// Where a row or column of texels lies in the picture. It is one of the picture itself, or the next to it on either
+/// side. That one is at the picture's other end, or its own end where the picture does not repeat.
 REALCAM_INLINE int wrapped_texel(int texel, int count, TextureWrap wrap) {
     const bool repeats = wrap == TextureWrap::repeat;
     if (texel < 0) return repeats ? texel + count : 0;
@@ -39,7 +39,7 @@ REALCAM_INLINE float texel_alpha(const TextureView& texture, int column, int row
     return texture.rgba ? static_cast<float>(texture.rgba[at]) * (1.0f / 255.0f) : texture.linear_rgba[at];
 }
 
-/// Of a width or height, that of the next coarser level.
+/// The width or height of the next coarser level.
 REALCAM_INLINE std::int32_t half_size(std::int32_t size) {
     return size > 1 ? size / 2 : 1;
 }
@@ -125,7 +125,7 @@ REALCAM_INLINE Color sample_texture(const TextureView& texture, Vec2f uv, Textur
                           [&](int column, int row) { return texel(texture, column, row); });
 }
 
-/// Likewise of the fourth channel.
+/// The same for the fourth channel.
 REALCAM_INLINE float sample_texture_alpha(const TextureView& texture, Vec2f uv, TextureSampler sampler = {}) {
     return between_texels(texture_spot(texture, uv, sampler),
                           [&](int column, int row) { return texel_alpha(texture, column, row); });

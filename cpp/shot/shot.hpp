@@ -30,7 +30,7 @@ Assembly scene_of(const ShotRequest& request, const PictureReaders& readers, con
 /// An environment that was asked for counts as light even where it is dark. Throws InputError.
 Shot set_up(const ShotRequest& request, Camera camera, Assembly scene);
 
-/// Whose view a shot has, and how its lens differs; empty: no camera's of the scene.
+/// The camera of the scene whose view a shot has, and how its lens differs; empty where it has none.
 std::string view_notice(const Shot& shot);
 
 /// Sets the exposure time, unless the request has one, from a quick picture with the settings of the request (see

@@ -39,7 +39,7 @@ class Variable:
 
     @staticmethod
     def thickness(surface: int, lower_mm: float = 0.1, upper_mm: float = math.inf) -> Variable:
-        """From this surface to the next."""
+        """The distance from this surface to the next."""
         return Variable("thickness", surface, lower=lower_mm, upper=upper_mm)
 
     @staticmethod

@@ -299,6 +299,6 @@ def exposed_film(
 
 
 def _exit_pupil_distance_mm(image: Image) -> float:
-    """From the exit pupil to the film, by first-order optics: chief rays come from there."""
+    """The distance from the exit pupil, where chief rays come from, to the film, by first-order optics."""
     lens: Any = image.camera.lens
     return abs(float(lens.film_position_mm - lens.first_order().exit_pupil_position_mm))

@@ -1,4 +1,4 @@
-"""A picture that collects samples while somebody looks at it."""
+"""A picture that collects samples while it is shown."""
 
 from __future__ import annotations
 

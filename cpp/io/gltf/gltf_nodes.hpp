@@ -22,7 +22,7 @@ struct GltfNodeNumbers {
 GltfNodeNumbers lay_out_nodes(FileScene& scene, const GltfDocument& document, GltfAccessors& accessors,
                               Checkpoint& checkpoint);
 
-/// Of nodes in depth-first order, relative to the scene.
+/// The transforms of nodes in depth-first order, relative to the scene.
 std::vector<Affine<double>> global_transforms(const std::vector<FileNode>& nodes);
 
 }  // namespace realcam::io

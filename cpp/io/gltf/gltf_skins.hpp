@@ -19,7 +19,7 @@ public:
     GltfSkins(const GltfDocument& document, GltfAccessors& accessors, const FileScene& scene,
               const std::vector<std::size_t>& numbers, Checkpoint& checkpoint);
 
-    /// Of a node with a skin; nothing where its transform has no inverse. Throws SceneFileError.
+    /// The joint maps of a node with a skin; nothing where its transform has no inverse. Throws SceneFileError.
     std::optional<JointMaps> joint_maps(std::size_t skin, std::size_t node) const;
 
 private:
@@ -37,7 +37,8 @@ struct JointWeights {
     std::vector<float> weights;
 };
 
-/// Of a primitive; per_vertex is 0 where it has none. Throws SceneFileError, which begins with `label`.
+/// The joint weights of a primitive; per_vertex is 0 where it has none. Throws SceneFileError, which begins with
+/// `label`.
 JointWeights read_joint_weights(const GltfDocument& document, GltfAccessors& accessors, const Json& attributes,
                                 std::size_t vertices, std::size_t joints, const std::string& label);
 

@@ -21,7 +21,7 @@ public:
 class LensReadError : public LensFileError {
 public:
     using LensFileError::LensFileError;
-    /// Of an error that knows no place.
+    /// Adds the place to an error that knows none.
     LensReadError(const InputError& cause, std::string file, int line = 0, int surface = 0)
         : LensFileError(cause.what(), std::move(file), line, surface) {
         if (const auto* unknown = dynamic_cast<const UnknownGlass*>(&cause))

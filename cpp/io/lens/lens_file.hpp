@@ -16,7 +16,7 @@ std::vector<std::string> lens_names();
 /// The text of a bundled lens file. Throws LensFileError, with the nearest names, where there is none.
 std::string_view bundled_lens_text(const std::string& name);
 
-/// In which row of a pbrt lens table a thickness stands: of the surface behind it, or in front of it.
+/// The row of a pbrt lens table in which a thickness stands: that of the surface behind it, or in front of it.
 enum class PbrtThickness { by_first_row, after, before };
 
 /// What a reader may be told of another program's file.
@@ -32,8 +32,8 @@ struct LensReadOptions {
     KeepGoing keep_going;
 };
 
-/// Whether `name` means a file: it is no bundled lens, and has a '/' or the suffix of a lens file, or there is a file
-/// at `path`, which is the name itself or where another file's folder leads.
+/// Whether `name` means a file. It does if it is no bundled lens, and has a '/' or the suffix of a lens file, or if a
+/// file exists at `path`. This is the name itself, or the name relative to another file's folder.
 bool is_lens_path(const std::string& name, const std::string& path);
 
 /// Reads a lens: a bundled one by name, or a file by its path (see is_lens_path). The suffix says how to read it: .zmx

@@ -54,7 +54,7 @@ private:
     }
     const PrescriptionSurface& row_of(std::size_t surface) const { return p_.surfaces[kept_[surface].row]; }
 
-    /// Of a plane that light passes everywhere beyond a disc.
+    /// Whether the surface is a plane that light passes everywhere beyond a disc.
     bool is_open_plane(std::size_t surface) const {
         return kept_[surface].type == SurfaceType::aperture && row_of(surface).is_open_outside;
     }
@@ -102,7 +102,7 @@ private:
             Surface surface;
             surface.type = kept.type;
             surface.clear_semi_diameter = row.clear_semi_diameter;
-            // Of a surface that is a stop too, the rim and the hole are the surface's.
+            // If a surface is also a stop, the rim and the hole are the surface's.
             const bool is_extra_plane = kept.type == SurfaceType::stop && bends_light(kept.row);
             surface.inner_semi_diameter = is_extra_plane ? 0 : row.inner_semi_diameter;
             if (surface.bends_light()) {

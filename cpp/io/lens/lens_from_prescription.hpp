@@ -5,9 +5,9 @@
 namespace realcam::io {
 
 /// The lens that a file of another program states. Dummy surfaces, with the same medium on both sides, are merged away
-/// with their thicknesses; a stop on a surface that bends light becomes a plane at its vertex; the stop's size follows
-/// from the file's aperture by first-order optics, the film's from its fields, and clear semi-diameters that it leaves
-/// out from real rays. Throws LensFileError for what cannot be built, or is foreign and not forced.
+/// with their thicknesses. A stop on a surface that bends light becomes a plane at its vertex. The stop's size follows
+/// from the file's aperture by first-order optics, and the film's from its fields. Clear semi-diameters that the file
+/// leaves out follow from real rays. Throws LensFileError for what cannot be built, or is foreign and not forced.
 LensSystem lens_from(const Prescription& prescription, const LensReadOptions& options);
 
 }  // namespace realcam::io

@@ -43,7 +43,7 @@ Glass catalogued(const CatalogueName& found) {
     return catalogue_glass(is_unique ? found.name : found.full());
 }
 
-/// Of the catalogues that a file lists.
+/// The names in the catalogues that a file lists.
 std::vector<CatalogueName> allowed(const std::vector<CatalogueName>& all, const std::vector<std::string>& catalogues) {
     if (catalogues.empty()) return all;
     std::vector<CatalogueName> found;

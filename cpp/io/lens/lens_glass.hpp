@@ -70,12 +70,12 @@ AbbePair abbe_pair(const Glass& glass);
 /// where the name is not six digits.
 std::optional<AbbePair> glass_of_number(std::string_view name);
 
-/// Of a formula for n, by wavelength in um: a table with steps of 10 nm, between which the index is off by less than
-/// 1e-7, over the wavelengths from 0.3 to 15 um at which the formula has an index from 1 to 10. Throws InputError where
-/// it has none in the visible.
+/// A glass as a table of a formula for n, by wavelength in um. The table has steps of 10 nm, between which the index is
+/// off by less than 1e-7. It covers the wavelengths from 0.3 to 15 um at which the formula has an index from 1 to 10.
+/// Throws InputError where it has none in the visible.
 Glass glass_of_formula(const std::function<double(double)>& index, std::string label);
 
-/// From n_d and V_d, of which 0 means no dispersion, with a label that says both. Throws InputError.
+/// A glass from n_d and V_d, with a label that says both. A V_d of 0 means no dispersion. Throws InputError.
 Glass glass_of_pair(double n_d, double v_d);
 
 }  // namespace realcam::io

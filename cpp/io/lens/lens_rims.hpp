@@ -12,13 +12,14 @@ struct RayRims {
     bool all_rays_pass = true;
 };
 
-/// Of the axial bundle and those of all fields, each by its chief ray and the rays at the edges of the stop, less what
-/// the fields' vignetting factors cut off. The lens's stop has its size; its other rims may be 0.
-/// `object_distance`: to the front vertex, mm.
+/// The rims that the axial bundle and those of all fields need. Each bundle has its chief ray and the rays at the edges
+/// of the stop, less what the field's vignetting factors cut off. The lens's stop must have its size; its other rims
+/// may be 0. `object_distance`: to the front vertex, mm.
 RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind kind,
                      const std::vector<PrescriptionField>& fields, Checkpoint& checkpoint);
 
-/// Of the fields, on the film, mm: by real chief rays, and where there is none by first-order optics.
+/// The largest image height of the fields, mm, by real chief rays. Where there is no such ray, first-order optics is
+/// used.
 double largest_image_height(const LensSystem& lens, double object_distance, FieldKind kind,
                             const std::vector<PrescriptionField>& fields);
 

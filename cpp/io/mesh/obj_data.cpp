@@ -114,7 +114,7 @@ private:
         Vec3d p = {n[0], n[1], n[2]};
         if (count == 4 && n[3] != 0) p = (1 / n[3]) * p;  // homogeneous
         if (!in_reach(scale_ * p)) fail(why_out_of_reach({n[0], n[1], n[2]}));
-        // Of vertices without a colour in a file that has some, white.
+        // Vertices without a colour are white in a file that has some.
         if (count >= 6 && out_.colours.empty()) out_.colours.resize(out_.positions.size());
         out_.positions.push_back(p);
         if (count < 6 && out_.colours.empty()) return;

@@ -20,7 +20,8 @@ struct ObjData {
     std::vector<VertexColor> colours;  ///< of the positions, as the file has them; empty: none
     bool has_smoothing = false;        ///< whether any line says which faces are smooth
 
-    // Of the corners of all faces, one after the other. Those of uvs and normals are empty where no face has any.
+    // Indices of the corners of all faces, one after the other. Those of uvs and normals are empty where no face has
+    // any.
     std::vector<std::uint32_t> corner_positions, corner_uvs, corner_normals;
     std::vector<std::uint32_t> face_ends;  ///< number of the corner after each face's last
 
@@ -35,9 +36,9 @@ struct ObjData {
     };
     std::vector<Run> runs;
     std::vector<std::string> materials;  ///< names after "usemtl"
-    std::vector<std::string> groups;     ///< names after "o" and "g"; the first is empty
+    std::vector<std::string> groups;  ///< names after "o" and "g"; the first is empty
     std::vector<std::string> libraries;  ///< texts after "mtllib"
-    std::size_t short_faces = 0;         ///< left out, because they have fewer than three corners
+    std::size_t short_faces = 0;  ///< left out, because they have fewer than three corners
 };
 
 /// `scale`: metres per unit, by which coordinates are found to be too large. Throws FileError, and SceneFileError with

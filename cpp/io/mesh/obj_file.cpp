@@ -227,7 +227,7 @@ private:
     std::vector<std::uint32_t> material_numbers_;  // of data_.materials in scene_.materials
     std::optional<std::uint32_t> default_material_;
     std::size_t tangled_ = 0;
-    // Of the face at work.
+    // Scratch memory for the current face.
     std::vector<std::uint32_t> numbers_;
     std::vector<PolygonTriangle> pieces_;
     std::vector<Vec3d> polygon_;

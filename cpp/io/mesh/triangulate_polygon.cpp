@@ -84,7 +84,8 @@ private:
         const double share = high > low ? (v - low) / (high - low) : 0;
         return std::min(static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(side_)), side_ - 1);
     }
-    /// Of a long triangle that lies across the grid, a row has few cells. A row more on both sides keeps roundings out.
+    /// The columns of a row that a triangle may touch. If a long triangle lies across the grid, a row has few of its
+    /// cells. One more row on both sides allows for rounding.
     std::pair<std::size_t, std::size_t> columns_in_row(const std::array<Point, 3>& triangle, std::size_t y) const {
         const double height = (high_.y - low_.y) / static_cast<double>(side_);
         const double bottom = low_.y + (static_cast<double>(y) - 1) * height, top = bottom + 3 * height;

@@ -24,8 +24,8 @@ struct FileMaterial {
         return gltf ? gltf->colour_texture() : FileTexture{};
     }
 
-    /// Of the texture coordinates of a glTF mesh the set that its vertices get: that of the first texture. Textures of
-    /// another set have none.
+    /// The set of a glTF mesh's texture coordinates that its vertices get: that of the first texture. Textures of
+    /// another set have no coordinates.
     std::uint32_t uv_set() const {
         const auto* gltf = std::get_if<GltfMaterial>(&content);
         const std::vector<FileTexture> textures = gltf ? gltf->textures() : std::vector<FileTexture>();

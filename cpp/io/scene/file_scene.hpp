@@ -26,7 +26,7 @@ struct FileMesh {
     std::string label;  ///< for messages
     std::uint32_t vertices = 0;  ///< number in FileScene::vertices
     std::vector<Triangle> triangles;  ///< indices in range; material: number in FileScene::materials
-    /// Of each triangle without normals the number of its smoothing group, 0: flat. Empty: FileScene::smooths says.
+    /// The smoothing group of each triangle without normals; 0 is flat. Where it is empty, FileScene::smooths decides.
     std::vector<std::uint32_t> smoothing;
 };
 
@@ -53,7 +53,8 @@ struct FilePicture {
 struct FileLight {
     std::string type;  ///< of KHR_lights_punctual: point, directional, spot, or what else the file says
     Vec3d strength;  ///< colour times intensity: cd, or lux for "directional"
-    /// Of a spot, in radians from its axis: where it begins to fade, and where it ends. 0 <= inner <= outer <= pi / 2.
+    /// Angles of a spot from its axis, in radians: where it begins to fade, and where it ends. 0 <= inner <= outer <=
+    /// pi / 2.
     double inner_cone_angle = 0, outer_cone_angle = 0.785398163397448;
 };
 

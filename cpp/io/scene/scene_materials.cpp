@@ -19,7 +19,7 @@ Color unit_range(Vec3f v) {
     return {std::clamp(v.x, 0.0f, 1.0f), std::clamp(v.y, 0.0f, 1.0f), std::clamp(v.z, 0.0f, 1.0f)};
 }
 
-/// Of the vertices that have a material.
+/// The colours of the vertices that have a material.
 struct VertexColours {
     bool exist = false, are_transparent = false;
 };

@@ -13,8 +13,8 @@ inline constexpr std::uint32_t kFlat = 0, kSmoothByAngle = 0xffffffffu;
 struct Smoothing {
     /// One for each triangle: kFlat, kSmoothByAngle, or the number of its smoothing group.
     std::vector<std::uint32_t> groups;
-    /// Of each vertex the number of its place, where faces of one group meet that name the same vertex in the file;
-    /// empty: they meet where positions are equal.
+    /// The number of each vertex's place. Faces of one group meet at a place if they name the same vertex in the file.
+    /// Where this is empty, they meet where positions are equal.
     std::vector<std::uint32_t> places;
 };
 

@@ -11,9 +11,9 @@
 
 namespace realcam::io {
 
-/// What of a file becomes instances instead of a part of static geometry: nodes that the caller names, and nodes that
-/// move, with all below them that does not move otherwise, and meshes with so many copies that their triangles are
-/// worth sharing.
+/// Which parts of a file become instances instead of static geometry. They are nodes that the caller names, and nodes
+/// that move, with all below them that does not move otherwise. So are meshes with so many copies that their triangles
+/// are worth sharing.
 class SceneObjects {
 public:
     /// All arguments have to outlive it. Throws SceneFileError for a name that no node has.
@@ -21,8 +21,8 @@ public:
 
     LeftOut left_out(std::uint32_t node, const Affine<double>& transform) const;
 
-    /// Of a node that is left out. Warnings go to `static_geometry`. Throws SceneFileError for one without triangles
-    /// and lights.
+    /// Adds the object of a node that static geometry leaves out. Warnings go to `static_geometry`. Throws
+    /// SceneFileError for one without triangles and lights.
     void add(std::uint32_t node, const Affine<double>& transform, Scene& static_geometry);
 
     /// Where a node is, or how it moves, in metres. `transform`: its own, in the scene.

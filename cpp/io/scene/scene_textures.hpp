@@ -27,9 +27,9 @@ public:
     /// free.
     Found find(const FileTexture& texture, TextureUse use);
 
-    /// Likewise of what made_textures.hpp makes of pictures: a map of heights times `scale` as one of normals, maps of
-    /// roughness and metallic as one (with the transform of the first that there is), a map of glossiness times
-    /// `factor` as one of roughness. Nothing where a picture cannot be had.
+    /// The same for textures that made_textures.hpp makes of pictures. A map of heights times `scale` becomes one of
+    /// normals. Maps of roughness and metallic become one, with the transform of the first that exists. A map of
+    /// glossiness times `factor` becomes one of roughness. Nothing where a picture cannot be read.
     std::optional<TextureReference> find_heights(const FileTexture& texture, float scale);
     std::optional<TextureReference> find_roughness_and_metallic(const FileTexture& roughness,
                                                                 const FileTexture& metallic);

@@ -7,7 +7,7 @@
 
 namespace realcam::io {
 
-/// From a vertex's texture coordinates to those in a picture. Identity by default.
+/// Maps a vertex's texture coordinates to those in a picture. Identity by default.
 class TextureTransform {
 public:
     TextureTransform() = default;

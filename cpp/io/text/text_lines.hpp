@@ -18,7 +18,7 @@ public:
     /// The next line, without its end, which lasts until the next call. False at the end of the file. Throws
     /// SceneFileError where the file is no text: it holds a null character, or a line has no end.
     bool next(std::string_view& line);
-    /// Of the line that next() gave, from 1; of its first where several are joined.
+    /// The number, from 1, of the line that next() gave; of its first line where several are joined.
     std::size_t number() const { return number_; }
 
 private:

@@ -16,8 +16,8 @@ struct AimedRay {
     double path;  ///< optical path up to there, mm, less that from the object to the middle of the entry plane
 };
 
-/// About where the rays of one object point cross the entry plane, by their places on the stop: for both coordinates a
-/// polynomial in x and y, shares of `reach`, whose terms x^i y^j are in the order of i, and of j.
+/// An approximation of where the rays of one object point cross the entry plane, by their places on the stop. Each
+/// coordinate is a polynomial in x and y, shares of `reach`. Its terms x^i y^j are in the order of i, and of j.
 struct StopMap {
     static constexpr int kDegree = 10, kTerms = (kDegree + 1) * (kDegree + 2) / 2;
     double reach;  ///< radius inside which the polynomials hold, mm
@@ -90,10 +90,10 @@ REALCAM_HD inline void start_rays(const AimRequest& request, const Vec2Lanes<dou
 
 }  // namespace aim_detail
 
-/// Aims the rays of a request, N at a time, and traces them through the lens. By how far the map's ray misses its
-/// place, the place at which the map is asked is moved; each such step leaves as much of the miss as the map's slopes
-/// are wrong, a millionth or so, and needs no derivatives. A ray that has not come near enough after a few steps, and
-/// one whose place lies beyond the map's, has the status no_convergence.
+/// Aims the rays of a request, N at a time, and traces them through the lens. The place at which the map is evaluated
+/// is moved by the distance by which the map's ray misses its place. Each such step leaves a share of the miss that is
+/// the error of the map's slopes, about a millionth. It needs no derivatives. A ray that has not come near enough after
+/// a few steps, and one whose place lies beyond the map's, has the status no_convergence.
 template <int N>
 REALCAM_HD inline void aim_rays(const AimRequest& request) {
     using namespace aim_detail;

@@ -116,8 +116,8 @@ void add_edges(const std::vector<Side>& sides, std::vector<ApertureDiffraction::
     }
 }
 
-/// Adds |F|^2 along one direction at the middles of the rings, F being the sum over the sides of
-/// i / (2 pi f) (u x e) sinc(f u.e) exp(-2 pi i f u.m): Gauss's theorem for exp(-2 pi i f u.x) over the aperture.
+/// Adds |F|^2 along one direction at the middles of the rings. By Gauss's theorem for exp(-2 pi i f u.x) over the
+/// aperture, F is the sum over the sides of i / (2 pi f) (u x e) sinc(f u.e) exp(-2 pi i f u.m).
 void add_power_along(const std::vector<Side>& sides, double angle, std::array<double, kDiffractionFineRings>& power) {
     constexpr double kPi = std::numbers::pi;
     const Point u = {std::cos(angle), std::sin(angle)};

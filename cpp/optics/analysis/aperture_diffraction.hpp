@@ -24,14 +24,14 @@ namespace aperture_diffraction_detail {
 
 using Point = Vec2<double>;
 
-/// Of the outward normal, in turns.
+/// Direction of the outward normal, in turns.
 double normal_angle(Point from, Point to);
 
 }  // namespace aperture_diffraction_detail
 
-/// Of an aperture that is evenly lit. Beyond the cells its light is that of its edges, which spread it along their
-/// normals as one over the square of the frequency: the method of stationary phase, whose error there is a tenth of
-/// what the rings vary by.
+/// The diffraction of an aperture that is evenly lit. Beyond the cells its light is that of its edges, which spread it
+/// along their normals as one over the square of the frequency. This is the method of stationary phase; its error there
+/// is a tenth of the rings' variation.
 ApertureDiffraction diffraction_of(const PupilEdges& edges);
 
 }  // namespace REALCAM_NAMESPACE

@@ -94,8 +94,8 @@ struct LitSpoke {
     }
 };
 
-/// Spokes at even angles over the light, in the order of their angles from -90 degrees on. Of a bundle that is its own
-/// mirror image only the half of x > 0 is taken; `count` is that of the whole.
+/// Spokes at even angles over the light, in the order of their angles from -90 degrees on. If a bundle is its own
+/// mirror image, only the half of x > 0 is taken; `count` is that of the whole.
 template <class Bundle>
 std::vector<LitSpoke> lit_spokes(const Bundle& bundle, int count, const RayLoop& loop = {}) {
     using namespace bundle_quadrature_detail;
@@ -117,8 +117,8 @@ struct EntryRectangle {
 };
 
 /// A rectangle that holds all light of a bundle: its own, and what stands out of that by the edges on spokes. Between
-/// two of 128 spokes a corner of the light stands out further, by 1.3% of its reach where two rims cut out a pointed
-/// oval, and by 1.8% where a stop is a pentagon; hence the margin.
+/// two of 128 spokes a corner of the light stands out further; hence the margin. It is 1.3% of the reach where two rims
+/// cut out a pointed oval, and 1.8% where a stop is a pentagon.
 template <class Bundle>
 EntryRectangle lit_rectangle(const Bundle& bundle, const RayLoop& loop = {}) {
     constexpr int kSpokes = 128;

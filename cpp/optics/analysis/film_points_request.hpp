@@ -10,7 +10,7 @@ enum class EntryPattern {
     grid,  ///< a square of points
 };
 
-/// Where the light of one object point lands on the film, by many rays that are not aimed at the stop: they fill a
+/// Where the light of one object point lands on the film, by many rays that are not aimed at the stop. They fill a
 /// rectangle of the entry plane (ObjectPoint) over which the light is even, and those that pass are kept.
 template <class T>
 struct FilmPointsRequest {

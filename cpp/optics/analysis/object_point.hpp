@@ -24,9 +24,9 @@ std::string degrees(double radians);
 /// mm from the object plane of a field point to the front vertex. Throws InputError for what is no place in the field.
 double object_distance_of(const LensSystem& lens, const FieldPoint& field);
 
-/// One point of the object, as its rays are near the lens. A point at infinity is no special case: lengths from the
-/// object are differences to that of the ray through the entry plane's centre, in a form in which the object's distance
-/// does not appear but as its inverse.
+/// One point of the object, as its rays are near the lens. A point at infinity is no special case. Lengths from the
+/// object are relative to that of the ray through the entry plane's centre, in a form that contains only the inverse of
+/// the object's distance.
 class ObjectPoint {
 public:
     /// Where a ray crosses the entry plane, the plane through `centre` across `towards`: mm along x, and along the

@@ -18,8 +18,8 @@ struct FilmGrid {
 /// The sum of plane waves on a grid of points, the phases in double.
 ///
 /// On a grid each wave is a product of a function of x and one of y, so the sum is a product of matrices. Points at x
-/// and -x share the cosine and the sine of x: a point takes two multiplications and additions a wave, and of light that
-/// is its own mirror image, which has no sines, one.
+/// and -x share the cosine and the sine of x. So a point takes two multiplications and additions for each wave. Light
+/// that is its own mirror image has no sines, and takes one.
 class PlaneWaveSum {
 public:
     PlaneWaveSum(FilmGrid grid, double wave_number);

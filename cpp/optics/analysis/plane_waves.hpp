@@ -27,9 +27,9 @@ PlaneWaves with_mirror_images(const PlaneWaves& light);
 /// chief ray.
 double largest_phase(const PointBundle& bundle, Vec2<double> centre, double half_window);
 
-/// Enough for a phase of z: on a spoke Gauss's rule needs z / 4 nodes, about the spokes the trapezoid rule z of them;
-/// the errors fall off within some cube roots of z beyond (as Bessel functions of an order beyond their argument do).
-/// The least number is for edges with corners, at which the trapezoid rule has an error of second order.
+/// Enough rays for a phase of z. On a spoke Gauss's rule needs z / 4 nodes, and the trapezoid rule needs z spokes. The
+/// errors fall off within some cube roots of z beyond, as Bessel functions of an order beyond their argument do. The
+/// least number is for edges with corners, at which the trapezoid rule has an error of second order.
 BundleSampling sampling_for(double phase);
 
 /// The plane wave of the light about a place of the entry plane, and how its slope depends on the place.
@@ -52,8 +52,8 @@ struct LocalWave {
 std::optional<LocalWave> local_wave(const PointBundle& bundle, PointBundle::Entry entry);
 
 /// The bundle's light as plane waves. The amplitude of each is the root of its energy times the range of slopes that it
-/// stands for: by Parseval's theorem the sum of the waves then has the energy of the rays, and where the wavefront is
-/// steep it is the rays' density on the film.
+/// stands for. By Parseval's theorem the sum of the waves then has the energy of the rays. Where the wavefront is steep
+/// it is the rays' density on the film.
 PlaneWaves plane_waves(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -58,7 +58,7 @@ FieldRays PointBundle::look_for(const LensSystem& lens, double wavelength_nm, co
         for (std::size_t i = 0; i < rays.rays.size(); ++i) passing += rays.passes(i);
         if (passing >= few(look)) return rays;
     } catch (const InputError&) {
-            // Also thrown where it makes no sense to look closer; then it is thrown again.
+            // The same error is thrown where it makes no sense to look closer; then it is thrown again.
     }
     return field_rays(lens, wavelength_nm, field, square_grid(kCloseLook, loop), loop);
 }

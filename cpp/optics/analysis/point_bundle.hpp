@@ -66,9 +66,9 @@ public:
                                   record.optical_path[i] + path_.entry_index * object.path_difference(entries[i]));
     }
 
-    /// The plane wave that has the ray's path and direction where the ray lands. There the sphere's own path is taken
-    /// off: its curvature on the film changes no intensity, and taken off it leaves the rays' differences, which are
-    /// small, and of which the curvature of each is negligible as long as the film is far from the exit pupil.
+    /// The plane wave that has the ray's path and direction where the ray lands. There the path of the sphere is
+    /// subtracted. Its curvature on the film is the same for all rays and changes no intensity. The differences that
+    /// remain are small. Their curvature is negligible as long as the film is far from the exit pupil.
     WaveRay as_wave(const FilmRay& ray) const;
 
     /// Energy of the light for each area of the entry plane, over that in its middle: even in solid angle.

@@ -68,9 +68,9 @@ Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& lo
 
 }  // namespace psf_detail
 
-/// The PSF by the direct sum, or of the rays alone. Throws InputError for a request that makes no sense, for a
-/// wavelength that a glass is not known at, where no light passes, and where a sum would take too many rays; and what
-/// `loop` throws to stop it.
+/// The PSF by the direct sum, or of the rays alone. Throws InputError for an impossible request, for a wavelength at
+/// which a glass is not known, where no light passes, and where a sum would take too many rays. Also throws what `loop`
+/// throws to stop it.
 Psf psf_of(const LensSystem& lens, const PsfRequest& request, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

@@ -63,8 +63,9 @@ struct Light {
     const LocalWave* near = nullptr;
 };
 
-/// A power of two: for a pupil of 256 cells, and for so many that the wavefront is even over a piece of a cell on the
-/// edge of the light, of which only the size and the middle are known. Throws InputError where that is too many.
+/// A power of two, for a pupil of at least 256 cells. There are enough that the wavefront is even over a piece of a
+/// cell on the edge of the light, because only the size and the middle of a piece are known. Throws InputError where
+/// that is too many.
 int transform_size(const psf_detail::Part& part, const Psf& psf) {
     const PointBundle& bundle = part.bundle;
     const double across = std::max(bundle.slope_high.x - bundle.slope_low.x, bundle.slope_high.y - bundle.slope_low.y);
@@ -128,8 +129,8 @@ PsfPupil psf_pupil(const psf_detail::Part& part, const Psf& psf, const RayLoop& 
         for (std::size_t i = first; i < last; ++i) {
             const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
             int passing = 0;
-            // The middle of a cell on the edge may be one that no ray reaches, or one beyond the rim of an asphere,
-            // where that goes on in another way; then a cell beside it tells where its rays are.
+            // It may be that no ray reaches the middle of a cell on the edge, or that it lies beyond the rim of an
+            // asphere, where the surface has another shape. Then a cell beside it tells where its rays are.
             const LocalWave* near = passes(column, row) ? &*cells[i] : nullptr;
             for (int k = 0; k < 9; ++k) {
                 if (!passes(column + k % 3 - 1, row + k / 3 - 1)) continue;

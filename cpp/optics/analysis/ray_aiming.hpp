@@ -26,12 +26,12 @@ private:
 /// Finds the rays of one object point that meet given places on the real aperture stop.
 ///
 /// Newton's method in the two coordinates of the entry plane, with the Jacobian by differences; a step that does not
-/// come nearer is halved. The chief ray is followed from the axis out to its field angle in steps of at most 5 degrees,
-/// so that of several rays through the middle of the stop the one is found that belongs to the lens's image; the
-/// others start from the chief ray, and where that fails go out to their place in 4, then in 16 steps. Each search has
-/// at most 40 Newton steps of at most 24 halvings; a ray that is not within 2.5e-11 of the stop's radius then is no
-/// ray. Places on the very edge of the stop's opening are aimed at 5e-11 further in, so that no rounding blocks the
-/// ray, here or where it is traced again.
+/// come nearer is halved. The chief ray is followed from the axis out to its field angle in steps of at most 5 degrees.
+/// So of several rays through the middle of the stop, the one that belongs to the lens's image is found. The other rays
+/// start from the chief ray. Where that fails they go out to their place in 4, then in 16 steps. Each search has at
+/// most 40 Newton steps of at most 24 halvings; a ray that is not within 2.5e-11 of the stop's radius then is no ray.
+/// Places on the very edge of the stop's opening are aimed at 5e-11 further in, so that no rounding blocks the ray,
+/// here or where it is traced again.
 class RayAimer {
 public:
     using Entry = ObjectPoint::Entry;
@@ -72,7 +72,7 @@ private:
 
     std::optional<Entry> aimed(const ObjectPoint& from, Vec2<double> place, Entry entry) const;
 
-    /// From the chief ray at once; where that fails, outwards to the place in shorter and shorter steps.
+    /// Starts from the chief ray at once. Where that fails, it goes outwards to the place in shorter and shorter steps.
     std::optional<Entry> aimed_from_chief(Vec2<double> place) const;
 
     void follow_chief_ray(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);

@@ -3,8 +3,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// All light of a scene point in the plane of the axis (x and z) that reaches the film, by where it crosses the plane
-/// across a ray of it: there it is even, but for the slant of rays that go beside that ray.
+/// All light of a scene point in the plane of the axis (x and z) that reaches the film. It is described by where it
+/// crosses a plane perpendicular to one of its rays. There it is even, except for the obliquity of the other rays.
 class SceneBundle {
 public:
     /// x: across the plane of the axis; y: in it. mm from where the ray leaves the lens.

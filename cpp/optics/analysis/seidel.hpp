@@ -39,8 +39,8 @@ struct TransverseAberrations {
     double lateral_colour;  ///< LAT
 };
 
-/// Coefficients of W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, r and h being
-/// shares of the pupil's radius and of the field; and of colour, W020 r^2 + W111 h r cos. In waves.
+/// Coefficients of W = W040 r^4 + W131 h r^3 cos + W222 h^2 r^2 cos^2 + W220 h^2 r^2 + W311 h^3 r cos, and of colour,
+/// W020 r^2 + W111 h r cos. r and h are shares of the pupil's radius and of the field. In waves.
 struct WaveCoefficients {
     double w040, w131, w222, w220, w311;
     double w020_colour, w111_colour;

@@ -30,8 +30,8 @@ struct TracedBundle {
     double tangential_focus, sagittal_focus;  ///< of close rays, mm behind the film plane along the axis
 };
 
-/// Rays at Gauss's nodes on spokes over what passes. Of a bundle that is its own mirror image the second half of the
-/// rays are the mirror images of the first.
+/// Rays at Gauss's nodes on spokes over what passes. If a bundle is its own mirror image, the second half of the rays
+/// are the mirror images of the first.
 TracedBundle traced_bundle(const PointBundle& bundle, BundleSampling sampling, const RayLoop& loop = {});
 
 }  // namespace REALCAM_NAMESPACE

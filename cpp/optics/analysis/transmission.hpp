@@ -17,19 +17,19 @@ struct BundleTransmission {
 BundleTransmission bundle_transmission(const LensSystem& lens, double wavelength_nm, const FieldPoint& field,
                                        std::vector<PupilPoint> pattern, const RayLoop& loop = {});
 
-/// Of the ray along the axis: the product of the surfaces' transmittances, and of the mirrors' reflectances, at normal
-/// incidence. An obstruction on the axis counts for nothing here.
+/// Transmittance of the ray along the axis: the product of the surfaces' transmittances, and of the mirrors'
+/// reflectances, at normal incidence. An obstruction on the axis is ignored here.
 double axial_transmittance(const LensSystem& lens, double wavelength_nm);
 
-/// Share of the stop's area through which light from the axis at infinity passes: less than 1 where a central
-/// obstruction takes some of it, or a rim that is smaller than the beam, neither of which the f-number knows. By real
-/// rays along a radius, with the edges of shadows halved down to 1e-9 of the area. Where the stop lies in a focal
-/// plane, so that light from the axis meets one point of it, 1.
+/// Share of the stop's area through which light from the axis at infinity passes. It is less than 1 where a central
+/// obstruction, or a rim that is smaller than the beam, blocks some. The f-number includes neither. By real rays along
+/// a radius, with the edges of shadows halved down to 1e-9 of the area. Where the stop lies in a focal plane, so that
+/// light from the axis meets one point of it, 1.
 double unobstructed_share(LensSystem lens, double wavelength_nm);
 
-/// The f-number of a lens without losses that gives as bright a picture on the axis: f-number / sqrt(transmittance),
-/// the transmittance being that of the axial ray, and the share of the pupil that rims and obstructions take a loss
-/// too. Infinite where no light passes, and where the lens has no f-number.
+/// The f-number of a lens without losses that gives as bright a picture on the axis: f-number / sqrt(transmittance).
+/// The transmittance is that of the axial ray. The share of the pupil that rims and obstructions block counts as a
+/// loss, too. Infinite where no light passes, and where the lens has no f-number.
 double t_stop(const LensSystem& lens, double wavelength_nm);
 
 }  // namespace REALCAM_NAMESPACE

@@ -36,7 +36,7 @@ namespace {
 
 /// Optical path of a ray to the reference sphere, mm, less a length that all rays share. With b from the centre to the
 /// ray, p their distance and 1/R the sphere's curvature, the ray meets the sphere at -b.d - sqrt(R^2 - p^2) along
-/// itself; R is taken off in the form in which nothing cancels, and which holds for a plane too.
+/// itself. R is subtracted in a form without cancellation, which also holds for a plane.
 double path_to_sphere(const AimedRay& ray, Vec3d centre, double curvature, double index) {
     const Vec3d d = normalized(ray.direction), b = ray.origin - centre, off = cross(b, d);
     const double square = dot(off, off) * curvature;

@@ -28,8 +28,8 @@ enum class Removed {
 /// The wavefront of one object point, by real rays that fill the real stop.
 ///
 /// W = (optical path of the chief ray - optical path of the ray) / wavelength, both from the object to the reference
-/// sphere: positive where the wavefront is ahead of the sphere, so that an undercorrected lens has a positive W040. The
-/// sphere's radius is the distance from the chief ray's film point to the exit pupil on that ray (ExitPupil). The
+/// sphere. It is positive where the wavefront is ahead of the sphere, so an undercorrected lens has a positive W040.
+/// The sphere's radius is the distance from the chief ray's film point to the exit pupil on that ray (ExitPupil). The
 /// radius R is in W by p^2 / 2R, p the ray's distance from the centre: another radius changes little, another centre
 /// much.
 struct Wavefront {
@@ -72,9 +72,9 @@ std::array<double, N> solve_normal(std::array<std::array<double, N>, N> a, std::
 }  // namespace wavefront_detail
 
 /// The wavefront of the rays of one object point, with its reference sphere centred on the plane `film_distance` mm
-/// behind the last vertex. Throws InputError where no reference sphere can be laid: the exit pupil lies in that plane,
-/// or a ray passes the centre at more than the sphere's radius; and where a fit has too few rays. Throws what `loop`
-/// throws to stop it.
+/// behind the last vertex. Throws InputError where there is no reference sphere: the exit pupil lies in that plane, or
+/// a ray passes the centre at more than the sphere's radius. Also throws where a fit has too few rays. Throws what
+/// `loop` throws to stop it.
 Wavefront wavefront_of(const LensSystem& lens, double wavelength_nm, FieldRays rays, double film_distance,
                        SphereCentre centre, Removed removed, ExitPupil exit_pupil = ExitPupil::real,
                        const RayLoop& loop = {});

@@ -7,8 +7,8 @@
 namespace REALCAM_NAMESPACE {
 
 inline constexpr int kCosineTerms = 8;
-/// Of one wavelength, and of a spectrum: of ghosts more, because what is reflected is so little that an error of a
-/// thousandth of the light that passes may be half of it.
+/// Numbers of terms for one wavelength and for a spectrum. Ghosts have more, because so little is reflected that an
+/// error of a thousandth of the transmitted light may be half of it.
 inline constexpr int kOneWavelengthTerms = 1, kSpectrumTerms = 5, kGhostSpectrumTerms = 7;
 
 /// Shares of the power that a surface without a coating lets through, for polarisation across (s) and in (p) the plane
@@ -28,7 +28,7 @@ REALCAM_INLINE FresnelTransmittance fresnel_transmittance(float before, float be
 
 /// What a coating makes of Fresnel's transmittances, by which factor it changes them: a smooth function of the angle up
 /// to grazing light, where transmittances themselves fall steeply. Polynomials of the cosine in the medium of the lower
-/// index, and of the WavelengthVariable. Of a mirror: its reflectances.
+/// index, and of the WavelengthVariable. For a mirror they hold its reflectances.
 template <int kWavelengthTerms>
 struct alignas(16) CoatingPolynomials {
     static constexpr int kTerms = kWavelengthTerms;

@@ -15,7 +15,7 @@ PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double befo
     std::vector<double> x, s, p;
     for (std::size_t j = 0; j < kNodes; ++j) {
         const double cosine = 0.5 + 0.5 * std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / kNodes);
-        // Of two nearly equal indices the other may be the lower one at this wavelength.
+        // If two indices are nearly equal, the other may be the lower one at this wavelength.
         const double lowest = std::min(before, beyond);
         const auto component_in = [&](double index) {
             return std::sqrt(lowest * lowest * cosine * cosine + (index - lowest) * (index + lowest));

@@ -16,17 +16,17 @@ struct PolarisedFit {
     CosineFit s{}, p{};
 };
 
-/// Of one wavelength. `before`, `beyond`, `lower`: indices of the media on both sides, and of that in which the cosine
-/// is meant. `scale`: as in CoatingPolynomials.
+/// The fit for one wavelength. `before`, `beyond`, `lower`: indices of the media on both sides, and of the one in which
+/// the cosine is measured. `scale`: as in CoatingPolynomials.
 PolarisedFit fit_of(const CoatedSurface& surface, bool is_reflected, double before, double beyond, double lower,
                     double scale);
 
 }  // namespace fit_coatings_detail
 
-/// Of the surfaces on a way through the lens, in the order in which the light meets them; a stop changes nothing. Of
-/// those that reflect it where they could let it pass: see GhostCoating. `wavelengths_nm`: to be fitted with equal
-/// weights; one where kWavelengthTerms is 1. `variable`: of the spectrum. An unknown coating counts as CoatedSurface
-/// has it. Throws InputError where an index is not known.
+/// The polynomials of the surfaces on a way through the lens, in the order in which the light meets them; a stop
+/// changes nothing. For surfaces that reflect light which they could transmit, see GhostCoating. `wavelengths_nm`: to
+/// be fitted with equal weights; one where kWavelengthTerms is 1. `variable`: of the spectrum. An unknown coating
+/// counts as CoatedSurface has it. Throws InputError where an index is not known.
 template <int kWavelengthTerms>
 std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens, const std::vector<Crossing>& way,
                                                                const std::vector<double>& wavelengths_nm,
@@ -74,7 +74,7 @@ std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem&
     return fitted;
 }
 
-/// Of light on its way through the whole lens.
+/// The polynomials for light on its way through the whole lens.
 template <int kWavelengthTerms>
 std::vector<CoatingPolynomials<kWavelengthTerms>> fit_coatings(const LensSystem& lens, LightDirection direction,
                                                                const std::vector<double>& wavelengths_nm,

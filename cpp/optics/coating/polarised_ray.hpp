@@ -25,7 +25,7 @@ public:
     /// index is not known at that wavelength.
     PolarisedTrace(const LensSystem& lens, LightDirection direction, double wavelength_nm, int surface_count = -1);
 
-    /// Of a ray in the lens frame, mm, its direction of any length. Bad input ends as bad_input.
+    /// Transmittance of a ray in the lens frame, mm, with a direction of any length. Bad input ends as bad_input.
     RayTransmittance operator()(Vec3d origin, Vec3d direction) const;
 
 private:

@@ -18,8 +18,8 @@ Complex expm1(Complex z) {
             std::exp(z.real()) * std::sin(z.imag())};
 }
 
-/// n cos(angle) in a medium of that index: the component of the wave vector along the normal, over that of vacuum.
-/// Of a medium that absorbs, or in which light does not propagate, the wave that fades.
+/// n cos(angle) in a medium of that index: the component of the wave vector along the normal, over that of vacuum. In a
+/// medium that absorbs, or in which light does not propagate, it is that of the wave that fades.
 Complex normal_component(Complex index, double index_before, double cosine) {
     // n'^2 - n^2 sin^2 in a form that keeps its digits at grazing incidence.
     const Complex square =

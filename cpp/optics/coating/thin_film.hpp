@@ -22,8 +22,9 @@ struct FilmStack {
 
 /// What one polarisation does at a coated surface.
 struct SurfaceResponse {
-    /// Of the electric field (Fresnel's coefficients). For p its direction is s x k on every wave, s being the field's
-    /// direction in the other polarisation and k the wave's; so at normal incidence r has opposite signs for s and p.
+    /// Coefficients of the electric field (Fresnel's). For p its direction is s x k on every wave, where s is the
+    /// field's direction in the other polarisation and k the wave's. So at normal incidence r has opposite signs for s
+    /// and p.
     std::complex<double> r, t;
     double reflectance, transmittance, absorptance;  ///< shares of the power through the surface
 };
@@ -31,7 +32,7 @@ struct SurfaceResponse {
 struct PolarisedResponse {
     SurfaceResponse s, p;
 
-    /// Of unpolarised light.
+    /// Values for unpolarised light.
     double mean_reflectance() const { return (s.reflectance + p.reflectance) / 2; }
     double mean_transmittance() const { return (s.transmittance + p.transmittance) / 2; }
 };

@@ -7,8 +7,8 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Of the crossings of a way, or of several. `coatings`: their fit_coatings; `range`: of wavelengths, a single one if
-/// kWavelengthTerms is 1. Throws InputError where a glass has no index.
+/// The coatings of the crossings of a way, or of several. `coatings`: their fit_coatings; `range`: of wavelengths, a
+/// single one if kWavelengthTerms is 1. Throws InputError where a glass has no index.
 template <int kWavelengthTerms>
 std::vector<GhostCoating<kWavelengthTerms>> ghost_coatings(
     const LensSystem& lens, const std::vector<Crossing>& way,

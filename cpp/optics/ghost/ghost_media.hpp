@@ -8,7 +8,7 @@ namespace REALCAM_NAMESPACE {
 /// transmittance.
 template <int kWavelengthTerms>
 struct alignas(16) GhostCoating : CoatingPolynomials<kWavelengthTerms> {
-    // Of the medium behind, into which a reflected ray does not go:
+    // For the medium behind, into which a reflected ray does not go:
     IndexCubic other_change;      ///< n'^2 / n^2 - 1
     IndexCubic other_difference;  ///< n'^2 - n^2
     std::int32_t is_reflected;

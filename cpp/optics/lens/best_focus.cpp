@@ -71,8 +71,9 @@ std::vector<std::pair<double, double>> passing_intervals(const AxialRays& rays, 
         shut[edges] = (i + (here ? -0.5 : 0.5)) * cell;
         ++edges;
     }
-    // Where edges are few, the other lanes take what the next halvings may ask for: of each edge a binary tree of
-    // middles, below each those of its two halves: of the one behind it first, which follows if it passes.
+    // Where edges are few, the other lanes take what the next halvings may need. Each edge has a binary tree of
+    // middles; below each are those of its two halves. The half behind it comes first, because it follows if the middle
+    // passes.
     const int depth = edges == 1 ? 3 : edges == 2 ? 2 : 1, nodes = (1 << depth) - 1;
     for (int k = 0; k < kHalvings && edges > 0; k += depth) {
         struct Node {

@@ -36,7 +36,7 @@ LensSystem with_group_moved(LensSystem lens, double shift) {
     return lens;
 }
 
-/// By which share of the focus distance the object plane of a focused lens may lie elsewhere than asked.
+/// Tolerance of the object plane of a focused lens, as a share of the focus distance.
 constexpr double kFocusTolerance = 1e-9;
 
 [[noreturn]] void fail(const LensSystem& lens, double focus_distance, const std::string& reason) {
@@ -58,7 +58,7 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     double near = std::max(0.0, std::fabs(data.effective_focal_length) - data.front_focal_distance);
     double far = focus_distance - length;  // there object to film is longer by the image distance
     double excess_near = excess(near);
-    // From very near no ray may pass the lens: a little further away some do.
+    // If an object is very near, it may be that no ray passes the lens. A little further away some do.
     for (int i = 30; i > 0 && std::isnan(excess_near) && near < far; --i) {
         const double further = near + std::ldexp(far - near, -i);
         excess_near = excess(further);
@@ -95,8 +95,8 @@ LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
     const double start = error(0), tolerance = kFocusTolerance * std::fabs(lens.film_position());
     if (start == 0) return lens;
     std::optional<FaceCrossing> crossing;
-    // From the resting place outwards, to the first change of sign on either side that is a root: where the image goes
-    // through infinity, or the last ray ends, there is none.
+    // The search goes from the resting place outwards, to the first change of sign on either side that is a root. A
+    // change where the image goes through infinity, or where the last ray ends, is none.
     constexpr int kSteps = 200;
     double inner[2] = {start, start};
     for (int i = 1; i <= kSteps; ++i)

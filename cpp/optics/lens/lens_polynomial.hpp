@@ -57,7 +57,7 @@ private:
     /// Takes out one coefficient after the other without which the error on other rays stays as it is, to 1%.
     void drop_idle_terms(const std::vector<TracedRay>& others);
 
-    /// Of position and place in the stop, each as a share of its rim.
+    /// Root mean square error of the position and the place in the stop, each as a share of its rim.
     double stop_rms(const std::vector<float>& coefficients, const std::vector<TracedRay>& rays) const;
 
     double plane_, focal_length_, film_radius_, last_radius_, front_radius_, last_rim_, front_rim_;

@@ -27,9 +27,9 @@ enum class CoatingKind {
 struct Coating {
     CoatingKind kind = CoatingKind::unknown;
     std::string name;  ///< as its author calls it; may be empty
-    /// From the air inwards: the first film touches the medium of the lower index at the d line (of two equal ones, the
-    /// one on the scene's side), the last touches the glass, or a mirror's metal. So one coating fits both faces of an
-    /// element. The first film of a mirror touches the medium that the light comes through.
+    /// Layers from the air inwards. The first film touches the medium of the lower index at the d line (of two equal
+    /// ones, the one on the scene's side). The last touches the glass, or a mirror's metal. So one coating fits both
+    /// faces of an element. The first film of a mirror touches the medium that the light comes through.
     std::vector<CoatingLayer> layers;
     CoatingMaterial metal;  ///< of the kind `metal`
     double reflectance = 1;  ///< of the kind `reflectance`, a share of the power

@@ -13,11 +13,11 @@ struct Crossing {
     bool is_reflected;  ///< by a surface that otherwise lets light pass: a ghost's
 
     // Indices of refraction; `indices`: those of LensSystem::indices.
-    /// Of the medium from which the light comes.
+    /// Index of the medium from which the light comes.
     double index_before(const std::vector<double>& indices) const { return index(indices, in_order); }
-    /// Of the one on the other side of the surface.
+    /// Index of the medium on the other side of the surface.
     double index_beyond(const std::vector<double>& indices) const { return index(indices, !in_order); }
-    /// Of the one into which the light goes.
+    /// Index of the medium into which the light goes.
     double index_behind(const std::vector<double>& indices) const {
         return is_reflected ? index_before(indices) : index_beyond(indices);
     }
@@ -41,13 +41,14 @@ inline bool is_film(const LensSystem& lens, int surface) {
     return surface == static_cast<int>(lens.surfaces.size());
 }
 
-/// Of light on its way to the film, which every surface lets pass or sends on as a mirror.
+/// The crossings of light on its way to the film, which every surface transmits or, as a mirror, reflects.
 std::vector<Crossing> crossings_of(const LensSystem& lens);
 
-/// Of light on its way to the film that the two reflect. The film is a mirror (with_film_mirror).
+/// The crossings of light on its way to the film that the two surfaces reflect. The film is a mirror
+/// (with_film_mirror).
 std::vector<Crossing> crossings_of(const LensSystem& lens, GhostPair pair);
 
-/// Of light that goes the same way back.
+/// The crossings of light that goes the same way back.
 std::vector<Crossing> reversed(std::vector<Crossing> way);
 
 /// All pairs whose first surface has one of these numbers and refracts, or is the film.

@@ -18,7 +18,8 @@ inline constexpr int kMaxSurfaces = 256;
 inline constexpr double kLongest = 1e9;         ///< any length, mm
 inline constexpr double kShortestRadius = 1e-6;  ///< of curvature, and clear semi-diameter, mm
 inline constexpr double kLargestConic = 1e6;
-/// Of an asphere, whatever its unit. Float32 rays need no such limit, but some pictures through lenses past it are NaN.
+/// The largest coefficient of an asphere, whatever its unit. Float32 rays need no such limit, but some pictures through
+/// lenses past it are NaN.
 inline constexpr double kLargestCoefficient = 1e37;
 
 /// How the focusing ring moves the glass.

@@ -3,9 +3,9 @@
 
 namespace REALCAM_NAMESPACE {
 
-// How the light that an aperture diffracts is kept: near the middle by cells of frequency, rings cut into sectors over
-// half a turn (the other half is the same); beyond that by the aperture's edges. Frequencies are in periods over the
-// width of the aperture.
+// How the light that an aperture diffracts is stored. Near the middle there are cells of frequency: rings cut into
+// sectors over half a turn (the other half is the same). Beyond, there are the aperture's edges. Frequencies are in
+// periods over the width of the aperture.
 
 inline constexpr int kDiffractionAzimuths = 48;
 inline constexpr int kDiffractionFineRings = 144;

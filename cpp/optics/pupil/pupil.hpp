@@ -13,9 +13,9 @@ class Pupil {
 public:
     static constexpr int kRows = PupilRowSearch::kRows;
     static constexpr int kSectors = PupilRow::kSectors;  ///< for m >= 0
-    /// No search traces more, whatever the lens: 270 looks at a film radius (two tables of nodes, both looked for ahead
-    /// too, the edge of the image, half-way between rows), outlines at both ends and seven places of each row, and 256
-    /// rounds for it. Lenses that can be made take a hundredth of it.
+    /// No search traces more, whatever the lens. There are 270 looks at a film radius: two tables of nodes, both also
+    /// looked for ahead, the edge of the image, and half-way between rows. Each row has outlines at both ends and seven
+    /// places, and 256 rounds. Lenses that can be made take a hundredth of it.
     static constexpr int kMostBlocks = 270 * PupilSearch::kMostBlocks + OutlineSearch::most_blocks(2 * kRows + 1) +
                                        OutlineSearch::most_blocks(6 * kRows) + 256 * kRows;
 
@@ -53,9 +53,9 @@ private:
     void find_outlines();
 
     /// Adds a row. Sends rays all over its surroundings first, and widens the sectors beside which some pass, until so
-    /// many rounds in a row find none: the corners of slivers lie between spokes, and the ends of crescents between the
-    /// points of a grid. Sectors that few rays pass do not tell where the light is, which may lie in several rings: the
-    /// whole box takes their place.
+    /// many rounds in a row find none. The reason is that corners of slivers lie between spokes, and ends of crescents
+    /// between the points of a grid. Sectors that few rays pass do not tell where the light is, which may lie in
+    /// several rings: the whole box takes their place.
     void add_row(int row, PupilRow sectors, double reach, int clean_rounds);
 
     PupilSearch search_;

@@ -21,8 +21,9 @@ public:
 
     PupilEdgeSearch(const LensSystem& lens, const PupilTracer& tracer);
 
-    /// Of the film point at this radius (mm) and azimuth (rad). `box`: what holds the light for azimuth 0, from whose
-    /// middle the spokes go. Nothing where some spoke meets no light: a crescent at the edge of the image.
+    /// The edges for the film point at this radius (mm) and azimuth (rad). `box`: what holds the light for azimuth 0,
+    /// from whose middle the spokes go. Nothing where some spoke meets no light, as in a crescent at the edge of the
+    /// image.
     std::optional<PupilEdges> at(double radius, double azimuth, const PupilBox& box) const;
 
 private:

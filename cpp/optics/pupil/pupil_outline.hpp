@@ -16,7 +16,7 @@ struct PupilOutline {
     static PupilDirection direction(int spoke) { return fine_direction(spoke * kFine); }
 
     static constexpr int kFine = 16;  ///< finer ones in each interval
-    /// Of unit length.
+    /// A direction of unit length.
     static PupilDirection fine_direction(int i);
 };
 

@@ -59,7 +59,7 @@ void PupilRowSearch::look_outwards(PupilRowBoxes& boxes, int dark) const {
     while (static_cast<int>(boxes.size()) <= kRows) {
         boxes.push_back(look(static_cast<int>(boxes.size()), track));
         if (boxes.back() || looked_ahead) continue;
-        // From the first dark row on all is dark, most often. Then what a row sees depends on no row before.
+        // Beyond the first dark row nearly always all is dark. Then no row depends on one before it.
         looked_ahead = true;
         const int next = static_cast<int>(boxes.size());
         PupilRowBoxes ahead(static_cast<std::size_t>(kRows + 1 - next));

@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Of each row of a pupil's table, from the axis outwards; nothing where it is dark.
+/// The box of each row of a pupil's table, from the axis outwards; nothing where it is dark.
 using PupilRowBoxes = std::vector<std::optional<PupilBox>>;
 
 /// Looks for the boxes at the rows of a pupil's table, which lie closer and closer towards the edge of the image.

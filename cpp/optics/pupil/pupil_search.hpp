@@ -11,7 +11,7 @@ namespace REALCAM_NAMESPACE {
 class PupilSearch {
 public:
     static constexpr int kBlock = PupilTracer::kBlock;
-    /// Of one look: two searches of six levels, 11 blocks each, of 5 more, and of 17 growths.
+    /// The most blocks of one look: two searches of six levels, 11 blocks each, of 5 more, and of 17 growths.
     static constexpr int kMostBlocks = 2 * (6 * 11 + 5 + 17 * 6);
 
     PupilSearch(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm = {})

@@ -5,10 +5,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-// The pupil as a film point sees it is a region of directions. It is kept in optical direction cosines (l, m), because
-// there the exposure integral (source paper, equations 6 and 7) has no factors left: n^2 cos(theta') dω = dl dm, so
-// that the irradiance of a field of radiance L is L times the region's area (also on a film that glass covers), and
-// uniform samples all have the same weight.
+// The pupil as a film point sees it is a region of directions. It is stored in optical direction cosines (l, m),
+// because there the exposure integral (source paper, equations 6 and 7) has no factors: n^2 cos(theta') dω = dl dm. So
+// the irradiance of a field of radiance L is L times the region's area, also on a film that glass covers. Uniform
+// samples all have the same weight.
 
 /// Where the region lies for film points at one radius, the film point lying on the +x axis.
 struct PupilNode {

@@ -45,8 +45,8 @@ struct AsphereSearch {
     Lanes<T, N> residual, tolerance;  ///< |f|, and what rounding alone can leave of it
 };
 
-/// Newton's steps alone for as long as they do on a lens that can be made; then every other step halves the bracket,
-/// which bounds their number whatever the surface: 2^-digits of a bracket that is at most 2^8 times the scale.
+/// Newton's steps are taken alone for as long as they suffice on a lens that can be made. Then every other step halves
+/// the bracket, which bounds their number for any surface: 2^-digits of a bracket that is at most 2^8 times the scale.
 inline constexpr int kNewtonSteps = 6;
 template <class T>
 inline constexpr int kMaxAsphereSteps = kNewtonSteps + 2 * (std::numeric_limits<T>::digits + 8);
@@ -60,7 +60,7 @@ template <class T>
 inline constexpr T kSideways = std::numeric_limits<T>::max() / 4;
 
 /// For a ray that goes through the surface: the sag's bounds are planes on either side of it. Returns how far from the
-/// axis (squared, less the square of the search radius) the ray meets the plane of the surface's edge: where that is
+/// axis (squared, less the square of the search radius) the ray meets the plane of the surface's edge. Where that is
 /// positive, the only crossing in this bracket may be one with the plane outside.
 template <class T>
 REALCAM_INLINE T begin_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {

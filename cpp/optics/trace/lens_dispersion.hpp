@@ -65,7 +65,7 @@ std::vector<IndexCubic> cubics_over(const LensSystem& lens, const std::vector<Cr
 /// What surfaces do to light on a way through the lens.
 std::vector<IndexCubic> index_cubics(const LensSystem& lens, const std::vector<Crossing>& way, WavelengthRange range);
 
-/// Of light on its way through the whole lens.
+/// The cubics for light on its way through the whole lens.
 std::vector<IndexCubic> index_cubics(const LensSystem& lens, LightDirection direction, WavelengthRange range);
 
 }  // namespace REALCAM_NAMESPACE

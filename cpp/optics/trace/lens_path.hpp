@@ -19,7 +19,7 @@ public:
     LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm)
         : LensPath(lens, crossings_of(lens), direction, wavelength_nm) {}
 
-    /// Of light that takes this way to the film, or the same way back to the scene.
+    /// The path of light that takes this way to the film, or the same way back to the scene.
     LensPath(const LensSystem& lens, const std::vector<Crossing>& way, LightDirection direction, double wavelength_nm)
         : iris_(iris_of(lens)) {
         const std::vector<double> n = lens.indices(wavelength_nm);
@@ -80,8 +80,8 @@ private:
         return view;
     }
 
-    /// The search goes 2% past the rim, so that a ray that just misses it is seen to miss it; the sag's bounds there
-    /// are sampled, and widened by more than it can change between two samples of a surface that can be made.
+    /// The search goes 2% past the rim, so a ray that just misses it is seen to miss it. The sag's bounds there are
+    /// sampled. They are widened by more than the sag can change between two samples of a surface that can be made.
     static void set_search_region(SurfaceView<T>& view, const Surface& surface) {
         double reach = 1.02 * surface.clear_semi_diameter;
         if (!std::isfinite(surface.sag(reach))) reach = surface.clear_semi_diameter;

@@ -11,9 +11,10 @@ namespace REALCAM_NAMESPACE {
 struct LensPolynomialView {
     static constexpr int kVectors = 3;
 
-    /// Of each product of powers, x^2's the slowest to change and x p's the fastest, two for each vector.
+    /// Two coefficients for each product of powers and each vector. The power of x^2 changes slowest and that of x p
+    /// fastest.
     const float* coefficients;
-    int terms;   ///< products of powers
+    int terms;  ///< products of powers
     int degree;  ///< of the highest products
     float inverse_film_radius, inverse_last_radius;  ///< by which x and p become numbers up to 1
     float plane;  ///< where positions are, mm from the front vertex

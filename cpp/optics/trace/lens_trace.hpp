@@ -232,9 +232,9 @@ REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Bounda
     }
 }
 
-/// Blocks rays that lie on an iris blade. The opening is what n equal arcs leave open: with the blade's edge of
-/// curvature q at distance h from the axis, a point is open where q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, a being
-/// its largest extent towards any blade.
+/// Blocks rays that lie on an iris blade. The opening is what n equal arcs leave open. The blade's edge has curvature q
+/// and distance h from the axis. A point is open where q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, where a is its largest
+/// extent towards any blade.
 template <class T, int N>
 REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
     Lanes<T, N> extent;
@@ -260,10 +260,9 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
 /// Traces N rays through a lens, surface by surface.
 ///
 /// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
-/// vertex of the last one; directions are optical ones in the lens frame, before and after (LensPath::entry_index).
+/// vertex of the last one. Directions are optical ones in the lens frame, before and after (LensPath::entry_index).
 /// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
-/// loops into vector code. `lens_kind`: any, or the lens's own. `media`: OneWavelength, ManyWavelengths or
-/// CoatedMedia.
+/// loops into vector code. `lens_kind`: any, or the lens's own. `media`: OneWavelength, ManyWavelengths or CoatedMedia.
 template <LensKind lens_kind = LensKind::any, class T, int N, class Record = NoRecord, class Media = OneWavelength>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
                                   const Media& media = {}) {

@@ -30,13 +30,14 @@ struct alignas(16) SurfaceView {
     T sag_edge;  ///< aspheres: the sag at the search radius
     T search_squared;  ///< aspheres: the sag is continued as constant outside this squared radius
     T inverse_search_squared;
-    /// Of u^2 times the powers of u - 1/2, u = r^2 / search_squared, mm; zeros after the last. The polynomial's own
-    /// coefficients leave the range of float32 where surfaces are large or small; and powers of u, where they cancel
-    /// towards the rim, would be a hundred times as large as these.
+    /// Coefficients of u^2 times the powers of u - 1/2, with u = r^2 / search_squared, mm; zeros after the last. The
+    /// polynomial's own coefficients leave the range of float32 where surfaces are large or small. Powers of u, where
+    /// they cancel towards the rim, would be a hundred times as large as these.
     T aspheric[kMaxAsphericTerms];
     T inner_share;  ///< aspheres: a part of search_squared, out to which the surface may be less steep than beyond
     /// Aspheres: a ray crosses the surface once where the squared tangent of its angle with the axis, over
-    /// search_squared, is less than this; for rays that stay in the inner part, and for all. 0: not known of any.
+    /// search_squared, is less than this. One bound is for rays that stay in the inner part, the other for all. 0: not
+    /// known of any.
     T crossed_once_inside, crossed_once;
     T start_parabola;  ///< aspheres: the sag is about this times u, mm
     T start[kStartTerms];  ///< and nearly these times u, u^2, ..., with the conic's part

@@ -13,8 +13,8 @@ double opening_radius(double apothem, double curvature, double cosine) {
 }
 
 double iris_area(const IrisShape& shape, double apothem, double rim) {
-    // The opening has 2n equal parts; one is integrated in polar form by the midpoint rule, whose error for this
-    // smooth function (one kink at the rim) is below 1e-6 of the area at 2048 points.
+    // The opening has 2n equal parts. One is integrated in polar form by the midpoint rule. Its error for this smooth
+    // function (one kink at the rim) is below 1e-6 of the area at 2048 points.
     constexpr int kPoints = 2048;
     const double q = shape.rounding / apothem;
     const double width = std::numbers::pi / shape.blades;

@@ -5,7 +5,7 @@
 namespace REALCAM_NAMESPACE {
 
 /// Distance from the axis to a blade's edge in the direction that makes an angle of this cosine with the blade's
-/// middle, mm: of q r^2 + 2 (1 - q h) cos r - (2 h - q h^2) = 0, in the form that holds for q = 0 too.
+/// middle, mm. It is the root of q r^2 + 2 (1 - q h) cos r - (2 h - q h^2) = 0, in the form that also holds for q = 0.
 double opening_radius(double apothem, double curvature, double cosine);
 
 /// Area that n blades at a distance `apothem` from the axis leave open inside a round rim, mm^2.

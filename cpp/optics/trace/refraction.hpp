@@ -30,12 +30,12 @@ struct SurfaceHit {
 /// Intersection with a conic of revolution (1 + k = conic_factor) around the z axis, vertex in the origin, for a ray
 /// o + t p.
 ///
-/// Curvature form: F = c (o.o + k oz^2) - 2 oz, G = pz - c (o.p + k oz pz), A = c (p.p + k pz^2), and the roots of
-/// A t^2 - 2 G t + F = 0. At a root the gradient of the surface is (-cx, -cy, 1 - c(1+k)z), and its product with p is
-/// G - A t = +-sqrt(G^2 - A F). So the direction sign with which the ray must cross the surface picks the root; this
-/// holds for planes, past 90 degrees, and for light that goes back. The two forms of the root, F / (G + s) and (G - s)
-/// / A, are chosen such that nothing cancels. And p . normal is G - A t of the t that was found: the discriminant's own
-/// root is off by the square root of a rounding near a tangent, and would not fit the point and its normal.
+/// Curvature form: F = c (o.o + k oz^2) - 2 oz, G = pz - c (o.p + k oz pz), A = c (p.p + k pz^2), and the roots of A
+/// t^2 - 2 G t + F = 0. At a root the gradient of the surface is (-cx, -cy, 1 - c(1+k)z), and its product with p is G -
+/// A t = +-sqrt(G^2 - A F). So the direction sign with which the ray must cross the surface picks the root; this holds
+/// for planes, past 90 degrees, and for light that goes back. The two forms of the root, F / (G + s) and (G - s) / A,
+/// are chosen such that nothing cancels. p . normal is G - A t of the t that was found. Near a tangent the
+/// discriminant's own root is off by the square root of a rounding, and would not fit the point and its normal.
 template <class T>
 REALCAM_INLINE SurfaceHit<T> intersect_conic(Vec3<T> o, Vec3<T> p, T curvature, T conic_factor, T direction_sign) {
     const T k = conic_factor - T(1);

@@ -97,8 +97,8 @@ def accuracy_cost(
             try:
                 rung = _climb(level, scene, camera, against, most_spp, seed, settings)
             except InputError:
-                # The reference was taken, so that it is this level that cannot: an ideal lens sees nothing at 90
-                # degrees to the side, a GPU has no double precision, and an exit pupil may lie behind the film.
+                # The reference was taken, so only this level is impossible. An ideal lens sees nothing at 90 degrees to
+                # the side, a GPU has no double precision, and an exit pupil may lie behind the film.
                 impossible.append(level.name)
             else:
                 done.append((number < rung_count, rung))

@@ -91,7 +91,7 @@ def ways_to_sample() -> list[Level]:
 
 
 def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings: object) -> list[Level]:
-    """From the crudest to the best; the last with `effects`, which are those of the reference."""
+    """The levels from the crudest to the best; the last has `effects`, which are those of the reference."""
     levels = [
         Level("pinhole, gather filter", "pinhole", blur=_gather),
         Level("pinhole, heat diffusion", "pinhole", blur=_diffuse),

@@ -7,9 +7,9 @@ lens = rc.Lens.load("double-gauss-50mm").stopped_down(4)
 fans = rc.analysis.ray_fan(lens)  # arrays, of the axis, 0.7 and all of the image height
 rc.analysis.plot_ray_fan(fans, Figure().add_subplot(), field=1)
 
-Of each subject there is a function that computes and one that plots on axes of matplotlib. Where the caller names none,
-fields go from the axis to the corner of the film, colours are the F line, the design wavelength and the C line, and the
-object is in the plane in focus of the lens as it stands.
+Of each subject there is a function that computes and one that plots on axes of matplotlib. By default fields go from
+the axis to the corner of the film. Colours are the F line, the design wavelength and the C line. The object is in the
+plane in focus of the lens as it stands.
 """
 
 from ..figure_files import save_figure

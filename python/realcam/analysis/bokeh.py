@@ -36,7 +36,7 @@ def bokeh(
     size: int = 96,
     rays: int = 200000,
 ) -> Bokeh:
-    """Of rays alone, with the brightness that they bring.
+    """The picture of a point out of focus by rays alone, with the brightness that they bring.
 
     object_distance_m: None is infinity for a lens that is focused nearer, and thirty focal lengths for one that is
     focused on infinity. fields_deg: None is the axis, 0.7 and all of the image

@@ -52,7 +52,7 @@ def distortion(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Distortion:
-    """Of real chief rays against paraxial chief rays at the same plane: the film as it stands, or another one.
+    """Compares real chief rays with paraxial ones at the same plane: the film as it stands, or another one.
 
     film_distance_mm: last vertex to that plane; first_order().back_focal_distance_mm is the paraxial focus of infinity.
     projection: None is "tangent" up to 60 degrees, and beyond "angle", because tangents end at 90. None of the others:
@@ -91,7 +91,7 @@ def _height_at(source: Bundles, field_deg: float, wavelength_nm: float, film_dis
 
 
 def paraxial_height_mm(source: Bundles, wavelength_nm: float, film_distance_mm: float) -> float:
-    """Of the paraxial chief ray in that plane, for a field of tangent 1."""
+    """Height of the paraxial chief ray in that plane, for a field of tangent 1."""
     lens = source.lens
     sums = lens.seidel(45.0, wavelength_nm=wavelength_nm, object_distance_m=source.object_distance_m)
     return float(sums.chief_height_mm[-1] + film_distance_mm * sums.chief_slope[-1])

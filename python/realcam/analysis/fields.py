@@ -107,8 +107,8 @@ def light_of(
 def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = None) -> Doubles:
     """(F,): angles at which the chief ray lands at shares of the largest image height.
 
-    That is half the diagonal of the film, or a hundredth of the angle short of where the lens's light ends, if that is
-    nearer to the axis: at the very end it is a sliver that few rays find.
+    That is half the diagonal of the film. If the lens's light ends nearer to the axis, it is a hundredth of the angle
+    short of the end, because at the very end the light is a sliver that few rays find.
     """
     source = bundles or Bundles(lens)
     largest = source.largest_field_deg
@@ -122,7 +122,7 @@ def field_angles_deg(lens: Lens, shares: ArrayLike, bundles: Bundles | None = No
 
 
 def _height_mm(bundles: Bundles, field_deg: float) -> float:
-    """Of the chief ray on the film; nan where no light comes."""
+    """Height of the chief ray on the film; nan where no light comes."""
     try:
         # The one ray tells that there is light, unless something blocks it: then a bundle has to look for some.
         spot = bundles.lens.spot(field_deg, object_distance_m=bundles.object_distance_m, pupil=[[0.0, 0.0]])

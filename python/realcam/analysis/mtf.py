@@ -61,7 +61,7 @@ def mtf(
     object_distance_m: float | None = None,
     bundles: Bundles | None = None,
 ) -> Mtf:
-    """Of the light of all wavelengths together, by the autocorrelation of the pupil that real rays find, or by rays.
+    """MTF of all wavelengths together, by the autocorrelation of the pupil that real rays find, or by rays.
 
     fields_deg: None is the axis, 0.7 and all of the image height. frequencies_per_mm: None is 10, 20 and 40 on a film
     of 43 mm, and as fine in proportion on others. wavelengths_nm: None is F line, design wavelength, C line, in equal
@@ -122,7 +122,7 @@ def _by_waves(source: Bundles, field: float, colour: float, frequencies: Doubles
 
 
 _SPOKES, _NODES, _MOST_DOUBLINGS = 32, 6, 5
-# Of the contrast: what is wanted, and what is told at all where no more rays are taken.
+# Errors of the contrast: the goal, and the largest that is accepted where no more rays are taken.
 _WANTED_ERROR, _TOLD_ERROR = 1e-4, 1e-2
 
 

@@ -50,7 +50,7 @@ class PupilFunction:
 
 
 def pupil_function(bundles: Bundles, field_deg: float, wavelength_nm: float) -> PupilFunction:
-    """Of the degree that the wavefront wants. Raises InputError where no polynomial follows it."""
+    """Fits polynomials of the degree that the wavefront needs. Raises InputError where none follows it."""
     for degree, spokes, nodes in FITS:
         fitted = fit_pupil(bundles.at(field_deg, wavelength_nm, spokes, nodes), degree)
         if fitted.fit_error_waves < GOOD_FIT_WAVES:

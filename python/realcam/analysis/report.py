@@ -108,7 +108,7 @@ class _Report:
         if not math.isclose(self.scan[-1], top, rel_tol=1e-3):
             self.scan = np.linspace(0, top, 11)
         self.over_field: dict[str, Any] = {**self.common, "fields_deg": self.scan}
-        # Of chief rays alone, which cost little.
+        # These need chief rays alone, which cost little.
         fine = np.interp(np.linspace(0, 10, 25), np.arange(11), self.scan)
         self.chief_rays: dict[str, Any] = {**self.common, "fields_deg": fine}
 
@@ -230,7 +230,8 @@ class _Report:
         return seidel_bars(self.lens, min(float(np.abs(self.fields).max()), 60.0), **self.common)
 
     def _mtf(self, compute: Callable[..., Mtf], **given: Any) -> Mtf:
-        """Of rays alone, on all of the page, where the wavefront of a field is too uneven for a transfer function."""
+        """MTF, by rays alone on all of the page where the wavefront of a field is too uneven for a transfer
+        function."""
         try:
             return compute(self.lens, method=self.mtf_method, **given)
         except UnevenWavefrontError:
@@ -238,7 +239,7 @@ class _Report:
             return compute(self.lens, method=self.mtf_method, **given)
 
     def _psf(self, field: float) -> Any:
-        """Of rays alone where waves would take seconds: where the spot is many of their details wide."""
+        """The point spread function, by rays alone where waves would take seconds because the spot is wide."""
         bundle = self.source.at(field, self.lens.wavelength_nm)
         spot = float(np.ptp(bundle.points_mm, axis=0).max())
         detail = 1e-6 * bundle.wavelength_nm / float(np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0).max())

@@ -24,7 +24,7 @@ GREY = "#808080"
 
 
 def wavelength_colours(wavelengths_nm: NDArray[np.float64]) -> list[str]:
-    """From blue for the shortest to red for the longest; green between them, and for one alone."""
+    """Colours from blue for the shortest to red for the longest, with green between them and for one alone."""
     count = len(wavelengths_nm)
     order = np.argsort(np.argsort(wavelengths_nm))
     if count == 1:
@@ -76,7 +76,7 @@ def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
 
 
 def text_colour() -> str:
-    """Of the theme in force: for lines that are of no colour."""
+    """The text colour of the theme in force, for lines without a colour of their own."""
     return str(matplotlib.rcParams["text.color"])
 
 

@@ -134,7 +134,7 @@ def zernike_fit(
     samples: int = 48,
     object_distance_m: float | None = None,
 ) -> ZernikeFit:
-    """Of a lens's wavefront over its real stop, whose radius is 1."""
+    """The fit of a lens's wavefront over its real stop, whose radius is 1."""
     front = lens.wavefront(field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, samples=samples)
     fit = fit_zernike(front.pupil, front.opd_waves, weights=front.weights, order=order, terms=terms)
     return replace(fit, field_deg=field_deg)

@@ -10,7 +10,8 @@ from .examples import EXAMPLES
 
 
 def finish_help(command: Any, words: tuple[str, ...] = ()) -> None:
-    """Of a command as typer makes it, and of all below it. `words`: those that call it, without the program's name."""
+    """Finishes the help of a command as typer makes it, and of all below it. `words`: those that call it, without the
+    program's name."""
     for parameter in command.params:
         # What an option or argument does not name is called as it is itself, and not by the name of a type.
         if parameter.metavar is None and not getattr(parameter, "is_flag", False):

@@ -104,7 +104,7 @@ class _Layout:
         return left / self.width, bottom / self.height, width / self.width, height / self.height
 
     def inset_boxes(self, count: int, bottom: float, height: float) -> list[tuple[float, float, float, float]]:
-        """From the one of the highest field down to that of the axis, as their points lie on the film."""
+        """The boxes from that of the highest field down to that of the axis, as their points lie on the film."""
         if count == 0:
             return []
         cell = height / count

@@ -142,7 +142,7 @@ def _hole_between(front: Surface, back: Surface) -> float:
 
 
 def _holes(lens: Lens) -> list[float]:
-    """Of each face, the semi-diameter of the hole in it."""
+    """The semi-diameter of the hole in each face."""
     holes = [surface.inner_semi_diameter_mm if surface.type == "mirror" else 0.0 for surface in lens.surfaces]
     for i, j, _ in _glass(lens):
         hole = _hole_between(lens.surfaces[i], lens.surfaces[j])
@@ -151,7 +151,7 @@ def _holes(lens: Lens) -> list[float]:
 
 
 def _half(surface: Surface, z: float, hole: float) -> Points:
-    """From the hole, or the axis, to the upper rim."""
+    """The outline from the hole, or the axis, to the upper rim."""
     rim = surface.clear_semi_diameter_mm
     angle = np.linspace(math.asin(min(hole / rim, 1)), 0.5 * math.pi, _HALF_PROFILE + 1)
     y = rim * np.sin(angle)

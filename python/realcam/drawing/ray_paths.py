@@ -144,7 +144,7 @@ def _passing_angles(lens: Lens, height_mm: float, wavelength_nm: float, count: i
 
 
 def _beside_the_middle_of_the_stop(lens: Lens, height_mm: float, angle: Array, wavelength_nm: float) -> Array:
-    """Of rays that all miss the stop's opening: the two between which its middle lies. Empty where there are none."""
+    """If all rays miss the stop's opening, the two between which its middle lies. Empty where there are none."""
     behind = len(lens.surfaces) - lens.stop_index
     origins, directions = _film_rays(lens, height_mm, angle)
     out = lens.trace(origins, directions, start="film", surface_count=behind, wavelength_nm=wavelength_nm)

@@ -25,7 +25,7 @@ class Breathing:
 
     @property
     def change_percent(self) -> float:
-        """Of the diagonal angle, from infinity to the nearest focus; negative: the picture gets narrower."""
+        """Change of the diagonal angle from infinity to the nearest focus; negative: the picture gets narrower."""
         return 100 * (self.at_nearest_deg.diagonal / self.at_infinity_deg.diagonal - 1)
 
 

@@ -42,8 +42,8 @@ class Gate:
     """ASGI middleware in front of all pages, files and sockets. Its answers forbid other sites to show them.
 
     token: wanted as ?token= or as the cookie that this sets; None where every program of this machine may come. Then
-    pages of other sites that the user's browser shows are kept out by the Host and Origin headers: a site can point a
-    name of its own at 127.0.0.1, but it cannot change what the browser says that it asked for.
+    the Host and Origin headers keep out pages of other sites that the user's browser shows. A site can point a name of
+    its own at 127.0.0.1, but it cannot change which name the browser sends.
     """
 
     def __init__(self, app: ASGIApp, token: str | None = None) -> None:
@@ -139,7 +139,7 @@ class Folders:
         return self._folders[0]
 
     def files(self, suffixes: Sequence[str]) -> list[Path]:
-        """Of all the folders, not of folders in them."""
+        """The files of all the folders, without their subfolders."""
         return sorted(
             path
             for folder in self._folders

@@ -92,7 +92,7 @@ class _Gap:
 
     @cached_property
     def _ends(self) -> list[tuple[float, float]]:
-        """Of the gap, at distances from the axis."""
+        """The ends of the gap, at distances from the axis."""
         if self.length_mm == 0:
             return [(0.0, 0.0)]
         heights = (self.rim_mm * k / 16 for k in range(17))
@@ -116,7 +116,7 @@ class _Gap:
         )
 
     def flat_plate(self) -> tuple[float, float, Callable[[float, float, Glass | None], Surface]] | None:
-        """From where to where, where flat faces have room for one."""
+        """The range in which flat faces have room for a plate."""
         start, end = max(start for start, _ in self._ends), min(end for _, end in self._ends)
         rim = self.rim_mm / abs(self.length_mm)
         thickness = min(0.2 * rim, 0.5 * (end - start))

@@ -36,7 +36,7 @@ def height_of(u: float, v: float, film: Film) -> float:
 
 
 def drawn_heights_mm(film: Film, place: tuple[float, float] | None) -> tuple[float, ...]:
-    """From the lens's axis, of the axis and of that place of the picture (u and v, 0 to 1)."""
+    """Heights above the lens's axis: that of the axis, and that of a place of the picture (u and v, 0 to 1)."""
     height = height_of(*(place or (0.5 + 0.35, 0.5 + 0.35)), film)
     return (0.0, height) if height > 5e-4 * math.hypot(film.width_mm, film.height_mm) else (0.0,)
 

@@ -20,7 +20,7 @@ def middle_grey_lx_s(iso: float, compensation_ev: float) -> float:
 
 
 def metered_exposure_lx_s(exposure_lx_s: NDArray[np.float32]) -> float:
-    """Of a picture (height, width, 3); not above 0, or not finite, where there is nothing to meter."""
+    """The exposure of a picture (height, width, 3); not above 0, or not finite, where there is nothing to meter."""
     step = max(1, exposure_lx_s.shape[1] // _METERED_PIXELS)
     return float(_core._metered_exposure(exposure_lx_s[::step, ::step]))
 

@@ -128,7 +128,7 @@ def _swap(message: Message, bench: LensBench) -> None:
 
 
 def _known(action: Callable[[Message, LensBench], Any]) -> Callable[[Message, LensBench], Any]:
-    """Of an action whose InputErrors tell what no page of ours asks for."""
+    """An action whose InputErrors report requests that none of our pages sends."""
 
     @wraps(action)
     def checked(message: Message, bench: LensBench) -> Any:

@@ -42,7 +42,8 @@ class Pace:
         return self._affordable_spp(_QUICK_S * statistics.median(self._first_rates), size)
 
     def next_size(self, size: Size, whole: Size) -> Size:
-        """Of a picture that has begun with fewer pixels: as few steps as the whole resolution takes."""
+        """The next size of a picture that has begun with fewer pixels, in as few steps as the whole resolution
+        takes."""
         coarse = (min(2 * size[0], whole[0]), min(2 * size[1], whole[1]))
         is_nearly_whole = coarse[0] > 0.7 * whole[0]
         return whole if is_nearly_whole or self._seconds(1, whole) < 8 * _PREVIEW_S else coarse

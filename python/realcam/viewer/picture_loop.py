@@ -48,8 +48,8 @@ class _Question:
 class PictureLoop:
     """Photographs a scene for one window.
 
-    on_frame and on_error (with the request's serial and a message) are called on threads of the loop. submit() may come
-    as often as a mouse moves: every request that is begun gets its first frame, and of those that come meanwhile the
+    on_frame and on_error (with the request's serial and a message) are called on threads of the loop. submit() may be
+    called as often as a mouse moves. Every request that is begun gets its first frame. Of those that come meanwhile the
     newest is next.
     """
 
@@ -124,7 +124,7 @@ class PictureLoop:
                 self._wake.notify()
         return answer
 
-    # From here on: on the loop's thread.
+    # What follows runs on the loop's thread.
 
     def _run(self) -> None:
         while self._wait_for_work():

@@ -43,7 +43,7 @@ class Costs:
 
     @classmethod
     def of(cls, stats: RenderStats, seconds: float) -> Costs:
-        """Of samples that were taken in so many seconds."""
+        """The costs of samples that were taken in so many seconds."""
         stages = stats.lens_seconds, stats.scene_seconds, stats.other_seconds
         all_stages = sum(stages) or 1.0
         return cls(

@@ -103,7 +103,7 @@ class SavePanel:
         self._say("; ".join([f"Downloaded {path.name}", *(f"not in it: {part}" for part in left_out)]), False)
 
     def _contents(self, what: str, path: Path) -> tuple[dict[Path, bytes], list[str]]:
-        """Of a shot or a lens; and what such files cannot say."""
+        """The contents of a shot or a lens, and what such files cannot say."""
         bench = self._bench
         if what == "lens":
             content, left_out = lens_content(bench.controls.set_lens, path.name)

@@ -31,7 +31,8 @@ def check_suffix(what: str, name: str) -> None:
 
 
 def picture_content(image: Image, name: str, tone: str) -> bytes:
-    """Of a .png, .jpg, .exr, or a .dng as an ideal sensor records it. Raises InputError and ImageFileError."""
+    """The content of a .png, .jpg, .exr, or a .dng as an ideal sensor records it. Raises InputError and
+    ImageFileError."""
     check_suffix("picture", name)
     suffix = Path(name).suffix.lower()
     if suffix in (".jpg", ".jpeg"):
@@ -47,13 +48,13 @@ def picture_content(image: Image, name: str, tone: str) -> bytes:
 
 
 def lens_content(lens: Lens, name: str) -> tuple[bytes, list[str]]:
-    """Of a .toml, .zmx or .seq; and what such a file cannot say. Raises InputError."""
+    """The content of a .toml, .zmx or .seq, and what such a file cannot say. Raises InputError."""
     check_suffix("lens", name)
     return lens._file_content(name)
 
 
 def shot_contents(source: ShotSource, controls: CameraControls, effects: list[str], path: Path) -> dict[Path, bytes]:
-    """Of the shot as it stands, and of its lens where that is none of the bundled ones: by the files to be written.
+    """Contents by the files to be written: the shot as it stands, and its lens where that is not a bundled one.
 
     What the bench does not change stays as the source has it. Raises InputError.
     """

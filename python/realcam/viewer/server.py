@@ -105,7 +105,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
             threading.Thread(target=process.warm_up, args=(module,), daemon=True).start()
 
     tell_in_one_line()
-    # Of connections that are cut at the end because nobody closes them.
+    # Some connections are cut at the end because no client closes them.
     logging.getLogger("uvicorn.error").addFilter(lambda record: "timeout graceful shutdown" not in record.getMessage())
     status = 128 + signal.SIGINT
 

@@ -9,6 +9,6 @@ from typing import Any
 
 
 def call_on_loop(loop: asyncio.AbstractEventLoop, function: Callable[..., Any], *arguments: Any) -> None:
-    """From any thread, also while the server is going down: then nobody listens any more."""
+    """May be called from any thread. While the server is going down, the call is dropped."""
     with suppress(RuntimeError):
         loop.call_soon_threadsafe(function, *arguments)

@@ -6,7 +6,7 @@ import logging
 import traceback
 from pathlib import Path
 
-# Which log what is raised about what came over the network.
+# These loggers report errors about what came over the network.
 _LOGGERS = ("asyncio", "nicegui", "uvicorn.error", "engineio.server", "socketio.server")
 _PACKAGE = Path(__file__).parents[1]
 _MIDDLEWARE = ("access.py", "left_requests.py")  # stand around all code that answers requests
@@ -33,6 +33,6 @@ def _is_ours(error: BaseException) -> bool:
 
 
 def tell_in_one_line() -> None:
-    """From now on, of all loggers of the server's libraries."""
+    """From now on all loggers of the server's libraries write an error in one line."""
     for name in _LOGGERS:
         logging.getLogger(name).addFilter(OneLine())

@@ -25,7 +25,7 @@ class Window:
 
     @property
     def path(self) -> str:
-        """Of its WebSocket."""
+        """The path of its WebSocket."""
         return f"/realcam/stream/{self.key}"
 
     async def do(self, action: Callable[..., T], *arguments: Any, **named: Any) -> T:

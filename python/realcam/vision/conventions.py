@@ -1,8 +1,8 @@
 """Where the conventions of other programs differ from realcam's.
 
 realcam and COLMAP count pixels from the corner of the picture: the middle of the first is (0.5, 0.5). In OpenCV it is
-(0, 0). All three have columns to the right and rows down; cameras of OpenCV and COLMAP, and Camera.world_to_camera,
-have x right, y down and z forward, those of OpenGL, Blender and NeRF x right, y up and z backward.
+(0, 0). All three have columns to the right and rows down. Cameras of OpenCV and COLMAP, and Camera.world_to_camera,
+have x right, y down and z forward. Those of OpenGL, Blender and NeRF have x right, y up and z backward.
 """
 
 from __future__ import annotations

@@ -107,8 +107,8 @@ void CodeVReader::remark(const std::string& what) {
 }
 
 bool CodeVReader::changes_lens(const std::string& command, const Words& words) {
-    // Of CODE V's commands those that make another lens of the one so far. Each is refused by its name: without what it
-    // does, the file is read as a lens that nobody means.
+    // The commands of CODE V that make another lens of the one so far. Each is refused by its name: without its effect,
+    // the file would be read as a wrong lens.
     static const std::set<std::string> changes{"DEL", "INS", "SCA", "FLY", "REV", "COP", "CPY", "MOV",
                                                "MER", "REP", "EXC", "SWA", "INV", "FLI", "MIR", "AUT",
                                                "RES", "RUN", "SPL", "ADD", "DZO", "DEZ"};

@@ -38,7 +38,7 @@ private:
     void select(int surface);
     /// Radius or curvature, thickness, glass.
     void read_row(const Words& words);
-    /// From the value behind the command.
+    /// Sets the curvature from the value behind the command.
     void set_curvature(PrescriptionSurface& row, const Words& words, bool is_radius) const;
     /// The surface that a qualifier names, S3, SS (stop) or SI; takes it from the words. Others: the current one.
     PrescriptionSurface& row_of(Words& words);

@@ -18,7 +18,7 @@ struct OsloSurface {
     std::map<int, double> plain_terms;  ///< by power: AD is that of r^4
     int aspheric_step = 0;  ///< AS1 is the term of r^2 (2) or of r (1); 0: none is stated
     bool is_mirror = false, is_stop = false, is_checked = false;
-    /// Of the medium: nothing is air; a name, or indices at the file's wavelengths, or n_d and V_d.
+    /// The medium: a name, or indices at the file's wavelengths, or n_d and V_d. Nothing is air.
     std::string glass;
     std::vector<double> indices;
     std::optional<AbbePair> pair;

@@ -9,7 +9,7 @@
 namespace realcam::io {
 
 void OsloReader::resolve_pickups() {
-    // From surfaces in front, whose own are done by then.
+    // Pickups refer to surfaces in front, whose own pickups are done by then.
     for (OsloSurface& s : rows_)
         for (const OsloSurface::Pickup& pickup : s.pickups) pick_up(s, pickup);
 }
