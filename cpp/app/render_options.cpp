@@ -222,7 +222,8 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
     option("--threshold-codes", "In 8-bit codes, in place of that of the quality", "CODES",
            [](Request& r, Text o, Text w) { r.settings.thresholds.codes = parse_number(o, w); });
     option("--illuminant",
-           "Of " + effects_that(&EffectInfo::has_wavelengths) + ", the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]",
+           "Of " + effects_that(&EffectInfo::has_wavelengths) +
+               ", the spectrum of all light: " + std::string(Illuminant::kWanted) + " [D65]",
            "SPECTRUM", [](Request& r, Text, Text w) { r.settings.illuminant = Illuminant::parse(w); });
     option("--threads", "0: all [0]", "N", [](Request& r, Text o, Text w) { r.settings.threads = whole<int>(o, w); });
     command.add_option("--device", words.device, "auto (a GPU if there is one), cpu, cuda, or cuda:1 [auto]")

@@ -175,7 +175,7 @@ private:
     /// Before anything is made from it: a camera without a lens has no surface to begin with.
     static const Camera& validated(const Camera& camera);
 
-    /// Of the film point furthest from the axis, mm.
+    /// Distance of the film point furthest from the axis, mm.
     double film_radius() const { return camera_.film.radius_mm(); }
 
     void set_map(const PupilTracer& tracer, const CameraSetup* last);

@@ -8,7 +8,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Of EffectChoice::named.
+/// The bit of an effect in EffectChoice::named.
 inline std::uint32_t bit_of(const EffectInfo& effect) {
     return 1u << (&effect - kEffects);
 }

@@ -31,7 +31,7 @@ def warn_of_no_light(scene: Scene) -> None:
 
 
 def warn_of_effects(camera: Camera, settings: RenderSettings) -> None:
-    """Of what the lens cannot give of them; where the caller's caller stands."""
+    """Warns of effects that the lens cannot give. The warning names the line of the caller's caller."""
     if isinstance(camera, Camera):
         for notice in _core._effect_notices(camera.lens, settings):
             warnings.warn(notice, stacklevel=3)

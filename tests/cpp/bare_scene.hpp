@@ -1,5 +1,5 @@
 #pragma once
-#include "../../cpp/scene/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace realcam::test {
 

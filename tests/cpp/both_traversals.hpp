@@ -3,11 +3,11 @@
 
 #include <atomic>
 
-#include "../../cpp/bvh/scene_bvh.hpp"
-#include "../../cpp/bvh/traverse_scene.hpp"
-#include "../../cpp/embree/embree_scene.hpp"
-#include "../../cpp/embree/packet_scene.hpp"
+#include "bvh/scene_bvh.hpp"
+#include "bvh/traverse_scene.hpp"
 #include "bvh_rays.hpp"
+#include "embree/embree_scene.hpp"
+#include "embree/packet_scene.hpp"
 
 namespace realcam::test {
 

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "../../cpp/bvh/build_wide_bvh.hpp"
-#include "../../cpp/bvh/traverse_wide_bvh.hpp"
-#include "../../cpp/scene/light_sample.hpp"
+#include "bvh/build_wide_bvh.hpp"
+#include "bvh/traverse_wide_bvh.hpp"
+#include "scene/light_sample.hpp"
 
 namespace realcam::test {
 

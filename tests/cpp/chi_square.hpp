@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/math/vec3.hpp"
+#include "math/vec3.hpp"
 #include "measurement.hpp"
 
 namespace realcam::test {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/embree/fast_pupil_tracer.hpp"
-#include "../../cpp/embree/lens_rays.hpp"
+#include "embree/fast_pupil_tracer.hpp"
+#include "embree/lens_rays.hpp"
 #include "pixel_rays.hpp"
 #include "refusal.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "../../cpp/render/advance_path.hpp"
 #include "both_traversals.hpp"
 #include "doctest/doctest.h"
+#include "render/advance_path.hpp"
 
 namespace realcam::test {
 

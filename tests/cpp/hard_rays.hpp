@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/embree/fast_pupil_tracer.hpp"
-#include "../../cpp/optics/pupil/pupil.hpp"
+#include "embree/fast_pupil_tracer.hpp"
 #include "hard_lenses.hpp"
+#include "optics/pupil/pupil.hpp"
 #include "oracle.hpp"
 #include "pupil_region.hpp"
 #include "trace_backends.hpp"

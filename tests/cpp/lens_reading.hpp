@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens/lens_error.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/prescription/lens_checks.hpp"
-#include "../../cpp/optics/lens/paraxial.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_error.hpp"
+#include "io/lens/lens_file.hpp"
+#include "optics/lens/paraxial.hpp"
+#include "optics/prescription/lens_checks.hpp"
 
 namespace realcam::test {
 

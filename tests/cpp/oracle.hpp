@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "../../cpp/optics/trace/lens_path.hpp"
-#include "../../cpp/optics/prescription/lens_system.hpp"
+#include "optics/prescription/lens_system.hpp"
+#include "optics/trace/lens_path.hpp"
 
 namespace realcam::test {
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "../../cpp/camera/camera.hpp"
-#include "../../cpp/camera/generate_rays.hpp"
+#include "camera/camera.hpp"
+#include "camera/generate_rays.hpp"
 
 namespace realcam::test {
 

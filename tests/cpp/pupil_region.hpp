@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/optics/pupil/pupil.hpp"
 #include "optics/lens/paraxial.hpp"
+#include "optics/pupil/pupil.hpp"
 #include "traced_ray.hpp"
 
 namespace realcam::test {

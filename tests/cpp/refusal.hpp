@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "../../cpp/error.hpp"
+#include "error.hpp"
 
 namespace realcam::test {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/error.hpp"
-#include "../../cpp/io/scene_file.hpp"
 #include "doctest/doctest.h"
+#include "error.hpp"
+#include "io/scene_file.hpp"
 
 namespace scene_files {
 

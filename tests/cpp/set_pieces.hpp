@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "../../cpp/scene/scene.hpp"
+#include "scene/scene.hpp"
 
 namespace realcam::test {
 

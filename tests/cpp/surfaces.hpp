@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/scene/make_bsdf.hpp"
+#include "scene/make_bsdf.hpp"
 
 namespace realcam::test {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/camera/field_of_view.hpp"
-#include "../../cpp/embree/fast_pupil_tracer.hpp"
-#include "../../cpp/optics/analysis/field_rays.hpp"
+#include "camera/field_of_view.hpp"
+#include "embree/fast_pupil_tracer.hpp"
 #include "measurement.hpp"
+#include "optics/analysis/field_rays.hpp"
 #include "optics/analysis/ray_aiming.hpp"
 #include "optics/lens/exposure.hpp"
 #include "pixel_rays.hpp"

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "../../cpp/render/adaptive_sampling.hpp"
 #include "doctest/doctest.h"
+#include "render/adaptive_sampling.hpp"
 
 using namespace realcam;
 

@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
-#include "../../cpp/embree/kernels.hpp"
-#include "../../cpp/optics/trace/trace_request.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "embree/kernels.hpp"
+#include "optics/trace/trace_request.hpp"
 #include "trace_backends.hpp"
 #include "traced_ray.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/scene/plain_bsdf.hpp"
 #include "chi_square.hpp"
 #include "estimator_mean.hpp"
+#include "scene/plain_bsdf.hpp"
 #include "surfaces.hpp"
 
 using namespace realcam;

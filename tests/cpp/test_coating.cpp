@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/analysis/transmission.hpp"
-#include "../../cpp/optics/lens/focus.hpp"
-#include "../../cpp/optics/lens/lens_changes.hpp"
-#include "../../cpp/optics/prescription/named_coatings.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
 #include "optics/analysis/ray_aiming.hpp"
+#include "optics/analysis/transmission.hpp"
 #include "optics/coating/coated_faces.hpp"
 #include "optics/coating/coated_surface.hpp"
 #include "optics/coating/thin_film.hpp"
+#include "optics/lens/focus.hpp"
+#include "optics/lens/lens_changes.hpp"
+#include "optics/prescription/named_coatings.hpp"
 #include "optics/trace/lens_path.hpp"
 
 using namespace realcam;

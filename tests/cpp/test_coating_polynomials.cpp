@@ -4,15 +4,15 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/camera/film_spectrum.hpp"
-#include "../../cpp/io/lens/bundled_lenses.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/coating/fit_coatings.hpp"
-#include "../../cpp/optics/lens/lens_changes.hpp"
-#include "../../cpp/optics/prescription/named_coatings.hpp"
+#include "camera/film_spectrum.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/bundled_lenses.hpp"
+#include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
 #include "optics/coating/coated_faces.hpp"
+#include "optics/coating/fit_coatings.hpp"
+#include "optics/lens/lens_changes.hpp"
+#include "optics/prescription/named_coatings.hpp"
 #include "optics/trace/lens_dispersion.hpp"
 #include "three_layers.hpp"
 

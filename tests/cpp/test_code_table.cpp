@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "../../cpp/camera/code_table.hpp"
+#include "camera/code_table.hpp"
 #include "doctest/doctest.h"
 
 using namespace realcam;

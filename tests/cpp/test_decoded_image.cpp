@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "../../cpp/io/scene/decoded_image.hpp"
 #include "doctest/doctest.h"
+#include "io/scene/decoded_image.hpp"
 
 using namespace realcam;
 using namespace realcam::io;

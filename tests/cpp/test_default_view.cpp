@@ -1,11 +1,11 @@
 #include <numbers>
 
-#include "../../cpp/camera/default_film.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/render/daylight.hpp"
-#include "../../cpp/render/default_view.hpp"
-#include "../../cpp/render/metering.hpp"
+#include "camera/default_film.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
+#include "render/daylight.hpp"
+#include "render/default_view.hpp"
+#include "render/metering.hpp"
 
 namespace {
 

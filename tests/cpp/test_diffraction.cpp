@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/camera/diffraction_tables.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/math/random.hpp"
+#include "camera/diffraction_tables.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
+#include "math/random.hpp"
 #include "measurement.hpp"
 #include "traced_ray.hpp"
 

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/camera/dispersed_rays.hpp"
-#include "../../cpp/camera/film_spectrum.hpp"
-#include "../../cpp/io/lens/bundled_lenses.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/pupil/pupil.hpp"
+#include "camera/dispersed_rays.hpp"
+#include "camera/film_spectrum.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/bundled_lenses.hpp"
+#include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
+#include "optics/pupil/pupil.hpp"
 #include "optics/trace/lens_dispersion.hpp"
 
 namespace {

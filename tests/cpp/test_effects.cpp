@@ -5,8 +5,8 @@
 #include <iterator>
 #include <vector>
 
-#include "../../cpp/render/effect_names.hpp"
 #include "doctest/doctest.h"
+#include "render/effect_names.hpp"
 
 namespace {
 

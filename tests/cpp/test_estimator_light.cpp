@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/scene/light.hpp"
-#include "../../cpp/scene/plain_bsdf.hpp"
-#include "../../cpp/scene/render_space_scene.hpp"
 #include "chi_square.hpp"
 #include "estimator_mean.hpp"
+#include "scene/light.hpp"
+#include "scene/plain_bsdf.hpp"
+#include "scene/render_space_scene.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/math/random.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "math/random.hpp"
 #include "pupil_region.hpp"
 
 namespace {

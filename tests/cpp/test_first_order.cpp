@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/optics/lens/paraxial.hpp"
 #include "about.hpp"
 #include "code_v_aberrations.hpp"
 #include "doctest/doctest.h"
+#include "optics/lens/paraxial.hpp"
 #include "traced_ray.hpp"
 
 namespace {

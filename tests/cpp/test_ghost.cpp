@@ -1,6 +1,6 @@
 // Ghosts: against published figures and closed forms.
 
-#include "../../cpp/optics/ghost/ghost.hpp"
+#include "optics/ghost/ghost.hpp"
 
 #include <algorithm>
 #include <cmath>

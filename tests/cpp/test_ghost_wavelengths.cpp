@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/camera/ghost_tables.hpp"
-#include "../../cpp/io/lens/bundled_lenses.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/coating/coated_faces.hpp"
-#include "../../cpp/optics/prescription/named_coatings.hpp"
+#include "camera/ghost_tables.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/bundled_lenses.hpp"
+#include "io/lens/lens_file.hpp"
 #include "measurement.hpp"
+#include "optics/coating/coated_faces.hpp"
 #include "optics/ghost/ghost_coatings.hpp"
+#include "optics/prescription/named_coatings.hpp"
 #include "three_layers.hpp"
 
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens/bundled_lenses.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/io/lens/lens_glass.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/bundled_lenses.hpp"
+#include "io/lens/lens_file.hpp"
+#include "io/lens/lens_glass.hpp"
 #include "refusal.hpp"
 
 namespace {

@@ -4,11 +4,11 @@
 #include <cstring>
 #include <string>
 
-#include "../../cpp/camera/default_film.hpp"
-#include "../../cpp/camera/picture_angle.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/render/default_view.hpp"
+#include "camera/default_film.hpp"
+#include "camera/picture_angle.hpp"
 #include "gltf_files.hpp"
+#include "io/lens/lens_file.hpp"
+#include "render/default_view.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/scene/scene_materials.hpp"
 #include "gltf_files.hpp"
+#include "io/scene/scene_materials.hpp"
 
 using namespace scene_files;
 

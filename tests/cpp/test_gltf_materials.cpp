@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "../../cpp/io/gltf/gltf_file.hpp"
 #include "gltf_files.hpp"
+#include "io/gltf/gltf_file.hpp"
 
 using namespace scene_files;
 using io::AlphaMode;

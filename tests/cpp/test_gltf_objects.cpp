@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/scene/bounding_box.hpp"
 #include "gltf_files.hpp"
+#include "scene/bounding_box.hpp"
 
 using namespace scene_files;
 

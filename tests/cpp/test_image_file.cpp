@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/image_io/image_file.hpp"
 #include "doctest/doctest.h"
+#include "image_io/image_file.hpp"
 #include "refusal.hpp"
 
 namespace {

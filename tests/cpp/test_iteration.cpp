@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/math/root.hpp"
-#include "../../cpp/optics/lens/best_focus.hpp"
-#include "../../cpp/optics/pupil/pupil.hpp"
+#include "math/root.hpp"
 #include "measurement.hpp"
+#include "optics/lens/best_focus.hpp"
+#include "optics/pupil/pupil.hpp"
 #include "pupil_region.hpp"
 #include "traced_ray.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "../../cpp/cuda/lanes_per_pixel.hpp"
+#include "cuda/lanes_per_pixel.hpp"
 #include "doctest/doctest.h"
 
 using namespace realcam;

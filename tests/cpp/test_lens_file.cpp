@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens/bundled_lenses.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/bundled_lenses.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/analysis/spot.hpp"
-#include "../../cpp/optics/lens/lens_changes.hpp"
-#include "../../cpp/optics/lens/zoom.hpp"
-#include "../../cpp/optics/prescription/named_coatings.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
 #include "lens_reading.hpp"
+#include "optics/analysis/spot.hpp"
+#include "optics/lens/lens_changes.hpp"
+#include "optics/lens/zoom.hpp"
+#include "optics/prescription/named_coatings.hpp"
 #include "optics/trace/lens_path.hpp"
 
 namespace {

@@ -1,13 +1,13 @@
 // Polynomials in place of a lens.
 
-#include "../../cpp/optics/lens/lens_polynomial.hpp"
+#include "optics/lens/lens_polynomial.hpp"
 
 #include <cmath>
 
-#include "../../cpp/optics/pupil/pupil.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/pupil/pupil.hpp"
 #include "traced_ray.hpp"
 
 using namespace realcam;

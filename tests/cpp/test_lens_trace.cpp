@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/optics/trace/lens_trace.hpp"
 #include "code_v_rays.hpp"
 #include "doctest/doctest.h"
+#include "optics/trace/lens_trace.hpp"
 #include "traced_ray.hpp"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/scene/made_textures.hpp"
 #include "gltf_files.hpp"
+#include "io/scene/made_textures.hpp"
 
 using namespace scene_files;
 

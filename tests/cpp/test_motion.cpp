@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "../../cpp/camera/camera.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
 #include "both_traversals.hpp"
 #include "bvh_rays.hpp"
+#include "camera/camera.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
 #include "math/uniform_keys.hpp"
 
 using namespace realcam;

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "../../cpp/io/mesh/mtl_file.hpp"
-#include "../../cpp/io/scene/mtl_picture.hpp"
+#include "io/mesh/mtl_file.hpp"
+#include "io/scene/mtl_picture.hpp"
 #include "scene_files.hpp"
 
 using namespace scene_files;

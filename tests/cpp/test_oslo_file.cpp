@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/optics/lens/focus.hpp"
 #include "about.hpp"
 #include "lens_reading.hpp"
+#include "optics/lens/focus.hpp"
 
 namespace {
 

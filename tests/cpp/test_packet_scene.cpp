@@ -1,8 +1,8 @@
 // Rays in packets for Embree: what is left out is not read, and has an answer all the same.
 #if defined(REALCAM_HAS_BVH)
 
-#include "../../cpp/embree/packet_scene.hpp"
 #include "doctest/doctest.h"
+#include "embree/packet_scene.hpp"
 
 using namespace realcam;
 

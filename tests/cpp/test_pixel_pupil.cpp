@@ -1,13 +1,13 @@
 // Pixels that learn where light passes the lens.
 
-#include "../../cpp/camera/pixel_pupil.hpp"
+#include "camera/pixel_pupil.hpp"
 
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/math/random.hpp"
-#include "../../cpp/render/learning_passes.hpp"
 #include "doctest/doctest.h"
+#include "math/random.hpp"
+#include "render/learning_passes.hpp"
 
 using namespace realcam;
 

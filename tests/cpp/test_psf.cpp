@@ -1,15 +1,15 @@
 // Point spread functions: closed forms of perfect and defocused pupils, and what has to be the same whichever way it is
 // reckoned. tests/python/test_psf.py compares real lenses with another program's propagation.
 
-#include "../../cpp/optics/analysis/psf.hpp"
+#include "optics/analysis/psf.hpp"
 
 #include <cmath>
 
-#include "../../cpp/optics/analysis/psf_measures.hpp"
-#include "../../cpp/optics/analysis/psf_pupil.hpp"
 #include "about.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/analysis/psf_measures.hpp"
+#include "optics/analysis/psf_pupil.hpp"
 #include "refusal.hpp"
 #include "traced_ray.hpp"
 

@@ -7,10 +7,10 @@
 #include <thread>
 #include <vector>
 
-#include "../../cpp/camera/last_setup.hpp"
-#include "../../cpp/embree/fast_pupil_tracer.hpp"
 #include "about.hpp"
+#include "camera/last_setup.hpp"
 #include "doctest/doctest.h"
+#include "embree/fast_pupil_tracer.hpp"
 #include "pixel_rays.hpp"
 #include "pupil_region.hpp"
 

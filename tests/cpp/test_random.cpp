@@ -5,8 +5,8 @@
 #include <set>
 #include <vector>
 
-#include "../../cpp/camera/generate_rays.hpp"
 #include "about.hpp"
+#include "camera/generate_rays.hpp"
 #include "doctest/doctest.h"
 
 namespace {

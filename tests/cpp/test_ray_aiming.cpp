@@ -1,17 +1,17 @@
 // Rays through given places of the real stop: they meet them, none is missed that the lens lets pass, and what cannot
 // be reached is said to be so.
 
-#include "../../cpp/optics/analysis/ray_aiming.hpp"
 #include "optics/analysis/aim_all.hpp"
+#include "optics/analysis/ray_aiming.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "../../cpp/embree/kernels.hpp"
-#include "../../cpp/optics/analysis/field_rays.hpp"
 #include "doctest/doctest.h"
+#include "embree/kernels.hpp"
 #include "measurement.hpp"
+#include "optics/analysis/field_rays.hpp"
 #include "traced_ray.hpp"
 
 namespace {

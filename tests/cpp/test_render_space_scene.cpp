@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/scene/render_space_scene.hpp"
-#include "../../cpp/scene/surface_point.hpp"
 #include "measurement.hpp"
+#include "scene/render_space_scene.hpp"
+#include "scene/surface_point.hpp"
 #include "traced_ray.hpp"
 
 using namespace realcam;

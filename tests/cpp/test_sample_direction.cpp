@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/math/sampling.hpp"
 #include "chi_square.hpp"
+#include "math/sampling.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -5,12 +5,12 @@
 #include <random>
 #include <vector>
 
-#include "../../cpp/render/environment_samples.hpp"
-#include "../../cpp/scene/light.hpp"
-#include "../../cpp/scene/render_space_scene.hpp"
 #include "bare_scene.hpp"
 #include "chi_square.hpp"
 #include "math/append_cdf.hpp"
+#include "render/environment_samples.hpp"
+#include "scene/light.hpp"
+#include "scene/render_space_scene.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/scene/light.hpp"
-#include "../../cpp/scene/render_space_scene.hpp"
 #include "bare_scene.hpp"
 #include "chi_square.hpp"
+#include "scene/light.hpp"
+#include "scene/render_space_scene.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "../../cpp/render/sample_range.hpp"
 #include "doctest/doctest.h"
+#include "render/sample_range.hpp"
 
 using namespace realcam;
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/camera/generate_rays.hpp"
+#include "camera/generate_rays.hpp"
 #include "chi_square.hpp"
 
 using namespace realcam;

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/camera/field_of_view.hpp"
-#include "../../cpp/optics/lens/exposure.hpp"
+#include "camera/field_of_view.hpp"
 #include "hard_lens_list.hpp"
 #include "hard_rays.hpp"
 #include "measurement.hpp"
+#include "optics/lens/exposure.hpp"
 #include "pixel_rays.hpp"
 
 using namespace realcam;

@@ -2,10 +2,10 @@
 #include <memory>
 #include <string>
 
-#include "../../cpp/error.hpp"
-#include "../../cpp/scene/scene_checks.hpp"
 #include "bare_scene.hpp"
 #include "doctest/doctest.h"
+#include "error.hpp"
+#include "scene/scene_checks.hpp"
 
 using namespace realcam;
 

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <thread>
 
-#include "../../cpp/bvh/build_wide_bvh.hpp"
-#include "../../cpp/scene/render_space_scene.hpp"
-#include "../../cpp/scene/scene_checks.hpp"
+#include "bvh/build_wide_bvh.hpp"
+#include "scene/render_space_scene.hpp"
+#include "scene/scene_checks.hpp"
 
 using namespace realcam;
 

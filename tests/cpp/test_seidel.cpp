@@ -1,16 +1,16 @@
 // Third-order sums: against another program's listing surface by surface, against closed forms, and against real rays
 // of small apertures and fields.
 
-#include "../../cpp/optics/analysis/seidel.hpp"
+#include "optics/analysis/seidel.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "../../cpp/optics/analysis/wavefront.hpp"
 #include "about.hpp"
 #include "code_v_aberrations.hpp"
 #include "doctest/doctest.h"
 #include "measurement.hpp"
+#include "optics/analysis/wavefront.hpp"
 #include "traced_ray.hpp"
 
 namespace {

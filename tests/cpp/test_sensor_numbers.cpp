@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/camera/sensor_request.hpp"
-#include "../../cpp/camera/sensor_response.hpp"
 #include "about.hpp"
+#include "camera/sensor_request.hpp"
+#include "camera/sensor_response.hpp"
 #include "chi_square.hpp"
 
 using namespace realcam;

@@ -10,12 +10,12 @@
 #include <thread>
 #include <vector>
 
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/render/film_sums.hpp"
-#include "../../cpp/render/live_view.hpp"
-#include "../../cpp/render/take_picture.hpp"
 #include "bare_scene.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
+#include "render/film_sums.hpp"
+#include "render/live_view.hpp"
+#include "render/take_picture.hpp"
 
 using namespace realcam;
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/camera/field_of_view.hpp"
 #include "about.hpp"
+#include "camera/field_of_view.hpp"
 #include "field_picture.hpp"
 #include "measurement.hpp"
 #include "optics/lens/exposure.hpp"

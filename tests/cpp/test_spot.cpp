@@ -1,6 +1,6 @@
 // Spots: against another program's published run, and against closed forms.
 
-#include "../../cpp/optics/analysis/spot.hpp"
+#include "optics/analysis/spot.hpp"
 
 #include <algorithm>
 #include <cmath>

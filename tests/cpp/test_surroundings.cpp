@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/camera/default_film.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/render/default_view.hpp"
+#include "camera/default_film.hpp"
 #include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
 #include "render/axis_crossings.hpp"
+#include "render/default_view.hpp"
 #include "render/surroundings.hpp"
 #include "set_pieces.hpp"
 

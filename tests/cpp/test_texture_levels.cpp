@@ -3,10 +3,10 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/scene/surface_point.hpp"
-#include "../../cpp/scene/texture_levels.hpp"
 #include "chi_square.hpp"
 #include "doctest/doctest.h"
+#include "scene/surface_point.hpp"
+#include "scene/texture_levels.hpp"
 
 using namespace realcam;
 

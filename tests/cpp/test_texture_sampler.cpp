@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/scene/texture.hpp"
 #include "gltf_files.hpp"
+#include "scene/texture.hpp"
 
 namespace {
 

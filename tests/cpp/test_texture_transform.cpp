@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "../../cpp/io/gltf/gltf_file.hpp"
-#include "../../cpp/io/scene/texture_transform.hpp"
 #include "gltf_files.hpp"
+#include "io/gltf/gltf_file.hpp"
+#include "io/scene/texture_transform.hpp"
 
 using namespace scene_files;
 using io::TextureTransform;

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/sensor/sensor_file.hpp"
-#include "../../cpp/shot/shot_file.hpp"
 #include "about.hpp"
+#include "io/sensor/sensor_file.hpp"
 #include "lens_reading.hpp"
 #include "refusal.hpp"
+#include "shot/shot_file.hpp"
 
 namespace {
 

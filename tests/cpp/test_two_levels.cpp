@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "../../cpp/bvh/scene_bvh.hpp"
-#include "../../cpp/bvh/traverse_scene.hpp"
+#include "bvh/scene_bvh.hpp"
+#include "bvh/traverse_scene.hpp"
 #include "bvh_rays.hpp"
 #include "doctest/doctest.h"
 #include "refusal.hpp"

@@ -1,7 +1,7 @@
 #include <string>
 
-#include "../../cpp/io/text/utf8.hpp"
 #include "doctest/doctest.h"
+#include "io/text/utf8.hpp"
 
 using namespace realcam::io;
 

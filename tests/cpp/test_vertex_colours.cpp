@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/scene/render_space_scene.hpp"
 #include "gltf_files.hpp"
 #include "scene/opacity.hpp"
+#include "scene/render_space_scene.hpp"
 #include "scene/surface_point.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // Optical path differences: against another program's listing, against perfect surfaces and closed forms, and against
 // the same rays in fifty digits.
 
-#include "../../cpp/optics/analysis/wavefront.hpp"
+#include "optics/analysis/wavefront.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../cpp/embree/embree_api.hpp"
 #include "bvh_rays.hpp"
 #include "doctest/doctest.h"
+#include "embree/embree_api.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

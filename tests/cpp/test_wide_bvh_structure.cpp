@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../cpp/bvh/collapse.hpp"
-#include "../../cpp/bvh/quantised_boxes.hpp"
-#include "../../cpp/bvh/reinsertion.hpp"
-#include "../../cpp/bvh/slot_order.hpp"
+#include "bvh/collapse.hpp"
+#include "bvh/quantised_boxes.hpp"
+#include "bvh/reinsertion.hpp"
+#include "bvh/slot_order.hpp"
 #include "bvh_rays.hpp"
 #include "doctest/doctest.h"
 

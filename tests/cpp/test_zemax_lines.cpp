@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include "../../cpp/io/lens/lens_glass.hpp"
-#include "../../cpp/optics/analysis/transmission.hpp"
 #include "about.hpp"
+#include "io/lens/lens_glass.hpp"
 #include "lens_reading.hpp"
+#include "optics/analysis/transmission.hpp"
 
 namespace {
 

@@ -2,8 +2,8 @@
 #include <utility>
 #include <vector>
 
-#include "../../cpp/optics/prescription/coating.hpp"
-#include "../../cpp/optics/prescription/named_coatings.hpp"
+#include "optics/prescription/coating.hpp"
+#include "optics/prescription/named_coatings.hpp"
 
 namespace realcam::test {
 

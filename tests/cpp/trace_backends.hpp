@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/embree/lens_rays.hpp"
+#include "embree/lens_rays.hpp"
 #if defined(REALCAM_HAS_CUDA)
-#include "../../cpp/cuda/cuda_devices.hpp"
-#include "../../cpp/cuda/cuda_rays.hpp"
+#include "cuda/cuda_devices.hpp"
+#include "cuda/cuda_rays.hpp"
 #endif
 
 namespace realcam::test {

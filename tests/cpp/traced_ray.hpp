@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/lens/focus.hpp"
-#include "../../cpp/optics/trace/lens_path.hpp"
+#include "io/lens/lens_file.hpp"
+#include "optics/lens/focus.hpp"
 #include "optics/lens/paraxial.hpp"
+#include "optics/trace/lens_path.hpp"
 
 namespace realcam::test {
 

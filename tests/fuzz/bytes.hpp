@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "../../cpp/math/random.hpp"
+#include "math/random.hpp"
 
 namespace realcam::fuzz {
 

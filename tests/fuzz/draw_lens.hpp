@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "../../cpp/optics/prescription/lens_checks.hpp"
 #include "bytes.hpp"
+#include "optics/prescription/lens_checks.hpp"
 #include "optics/prescription/lens_limits.hpp"
 
 namespace realcam::fuzz {

@@ -2,8 +2,8 @@
 // Rays for a lens from fuzz bytes: the ordinary ones, and those that a formula for intersections or refraction has to
 // fear at the first surface that the light meets.
 
-#include "../../cpp/optics/trace/lens_path.hpp"
 #include "bytes.hpp"
+#include "optics/trace/lens_path.hpp"
 
 namespace realcam::fuzz {
 

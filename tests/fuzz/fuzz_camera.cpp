@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "../../cpp/camera/camera.hpp"
-#include "../../cpp/camera/ray_request.hpp"
-#include "../../cpp/embree/kernels.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
+#include "camera/camera.hpp"
+#include "camera/ray_request.hpp"
 #include "draw_lens.hpp"
+#include "embree/kernels.hpp"
+#include "io/lens/lens_file.hpp"
 #include "target.hpp"
 
 namespace realcam::fuzz {

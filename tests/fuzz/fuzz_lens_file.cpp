@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/io/lens/bundled_lenses.hpp"
-#include "../../cpp/io/lens/lens_file.hpp"
-#include "../../cpp/optics/prescription/lens_checks.hpp"
 #include "bytes.hpp"
+#include "io/lens/bundled_lenses.hpp"
+#include "io/lens/lens_file.hpp"
 #include "mutate_text.hpp"
+#include "optics/prescription/lens_checks.hpp"
 #include "target.hpp"
 
 namespace realcam::fuzz {

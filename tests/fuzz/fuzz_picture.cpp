@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/error.hpp"
-#include "../../cpp/image_io/image_file.hpp"
+#include "error.hpp"
 #include "fuzz_folder.hpp"
+#include "image_io/image_file.hpp"
 #include "mutate_bytes.hpp"
 #include "target.hpp"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "../../cpp/error.hpp"
-#include "../../cpp/io/text/printable.hpp"
-#include "../../cpp/io/scene_file.hpp"
+#include "error.hpp"
 #include "fuzz_folder.hpp"
+#include "io/scene_file.hpp"
+#include "io/text/printable.hpp"
 #include "mutate_bytes.hpp"
 #include "mutate_text.hpp"
 #include "scene_seeds.hpp"

@@ -3,9 +3,9 @@
 #include <cstring>
 #include <string>
 
-#include "../../cpp/error.hpp"
-#include "../../cpp/shot/shot_file.hpp"
+#include "error.hpp"
 #include "mutate_text.hpp"
+#include "shot/shot_file.hpp"
 #include "target.hpp"
 
 namespace realcam::fuzz {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "../../cpp/math/random.hpp"
+#include "math/random.hpp"
 #include "target.hpp"
 
 namespace realcam::fuzz {

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "../../cpp/embree/embree_api.hpp"
+#include "embree/embree_api.hpp"
 
 #if REALCAM_EMBREE_MAJOR >= 4
 extern "C" void rtcIntersect16(const int*, RTCScene, RTCRayHit16*, RTCIntersectArguments*) {

@@ -8,8 +8,8 @@
 
 #include <algorithm>
 
-#include "../../cpp/optics/trace/lens_trace.hpp"
 #include "findings.hpp"
+#include "optics/trace/lens_trace.hpp"
 
 namespace realcam::fuzz {
 

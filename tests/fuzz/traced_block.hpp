@@ -1,9 +1,9 @@
 #pragma once
 // A block of fuzz rays through a lens, as the backends trace it, and surface by surface.
 
-#include "../../cpp/embree/kernels.hpp"
-#include "../../cpp/optics/trace/lens_path.hpp"
-#include "../../cpp/optics/trace/trace_request.hpp"
+#include "embree/kernels.hpp"
+#include "optics/trace/lens_path.hpp"
+#include "optics/trace/trace_request.hpp"
 #include "surface_laws.hpp"
 
 namespace realcam::fuzz {

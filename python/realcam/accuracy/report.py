@@ -21,7 +21,7 @@ def goals_of(rungs: tuple[Rung, ...]) -> list[float]:
 
 
 def tables_of(cost: Measurements) -> list[tuple[str, list[str], list[list[str]]]]:
-    """Of each table what it is of, heads and cells."""
+    """The title, the heads and the cells of each table."""
     return [
         (title, *_rows_of(rungs))
         for title, rungs in (("level", cost.rungs), ("every surface, sampled over", cost.samplings))
