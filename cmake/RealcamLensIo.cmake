@@ -11,7 +11,7 @@ target_include_directories(realcam_lens_io SYSTEM PRIVATE ${TOMLPLUSPLUS_INCLUDE
 install(TARGETS realcam_lens_io EXPORT realcamIoTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT io)
 install(EXPORT realcamIoTargets NAMESPACE realcam:: DESTINATION ${realcam_package_folder} COMPONENT io)
 install(FILES ${PROJECT_SOURCE_DIR}/cpp/io/lens/lens_file.hpp ${PROJECT_SOURCE_DIR}/cpp/io/lens/lens_error.hpp
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/realcam/io COMPONENT io)
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/realcam/io/lens COMPONENT io)
 # The library holds their text; these are for people, who start from one when they write another.
 install(FILES ${lens_files} ${PROJECT_SOURCE_DIR}/lenses/README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/realcam/lenses
         COMPONENT io)

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "../math/append_alias_table.hpp"
-#include "../scene/instance_names.hpp"
 
 namespace realcam {
 

@@ -6,7 +6,6 @@
 #include "../optics/ghost/film_mirror.hpp"
 #include "../optics/ghost/ghost_coatings.hpp"
 #include "../optics/lens/axial_share.hpp"
-#include "../scene/instance_names.hpp"
 
 namespace realcam {
 

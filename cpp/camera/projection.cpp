@@ -1,5 +1,4 @@
 #include "projection.hpp"
-#include "../scene/ggx_albedo.hpp"
 
 #include <cmath>
 #include <utility>

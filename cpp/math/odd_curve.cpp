@@ -1,6 +1,4 @@
 #include "odd_curve.hpp"
-#include "../optics/analysis/aperture_diffraction.hpp"
-#include "../scene/ggx_albedo.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,4 @@
 #include "surroundings.hpp"
-#include "../bvh/quantised_boxes.hpp"
 
 #include <algorithm>
 #include <utility>

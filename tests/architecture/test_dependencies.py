@@ -35,161 +35,14 @@ MAY_INCLUDE = {
 # What both extensions do when Python ends stays in one place.
 MAY_INCLUDE_TOO = {"picture_bindings/pictures_module.cpp": {"bindings/unlocked.hpp"}}
 
-# Headers of the core that own memory or raise errors, and so stay on the host. The others run on every
-# device, and include none of these.
-HOST_ONLY = {
-    "bvh/binary_tree.hpp",
-    "bvh/build_wide_bvh.hpp",
-    "bvh/collapse.hpp",
-    "bvh/reinsertion.hpp",
-    "bvh/scene_bvh.hpp",
-    "camera/camera.hpp",
-    "camera/default_film.hpp",
-    "camera/diffraction_tables.hpp",
-    "camera/effect_tables.hpp",
-    "camera/entry_search.hpp",
-    "camera/field_of_view.hpp",
-    "camera/film_spectrum.hpp",
-    "camera/ghost_tables.hpp",
-    "camera/illuminant.hpp",
-    "camera/last_setup.hpp",
-    "camera/lens_map.hpp",
-    "camera/mean_ray.hpp",
-    "camera/picture_angle.hpp",
-    "camera/picture_map.hpp",
-    "camera/pinhole_camera.hpp",
-    "camera/projection.hpp",
-    "camera/pupil_sampling.hpp",
-    "camera/sensor.hpp",
-    "camera/sensor_color.hpp",
-    "camera/sensor_response.hpp",
-    "camera/sight_lines.hpp",
-    "camera/spectra.hpp",
-    "camera/starburst_tables.hpp",
-    "checkpoint.hpp",
-    "error.hpp",
-    "keep_going.hpp",
-    "math/append_alias_table.hpp",
-    "math/append_cdf.hpp",
-    "math/fit_polynomial.hpp",
-    "math/least_squares.hpp",
-    "math/motion.hpp",
-    "math/odd_curve.hpp",
-    "math/uniform_keys.hpp",
-    "optics/analysis/aim_all.hpp",
-    "optics/analysis/aperture_diffraction.hpp",
-    "optics/trace/asphere_start.hpp",
-    "optics/lens/axial_share.hpp",
-    "optics/lens/best_focus.hpp",
-    "optics/analysis/bundle_quadrature.hpp",
-    "optics/prescription/clearance.hpp",
-    "optics/coating/coated_faces.hpp",
-    "optics/coating/coated_surface.hpp",
-    "optics/prescription/coating.hpp",
-    "optics/prescription/coating_checks.hpp",
-    "optics/prescription/coating_material.hpp",
-    "optics/prescription/crossing.hpp",
-    "optics/lens/exposure.hpp",
-    "optics/analysis/field_rays.hpp",
-    "optics/analysis/film_bundle.hpp",
-    "optics/analysis/film_chief_ray.hpp",
-    "optics/ghost/film_mirror.hpp",
-    "optics/coating/fit_coatings.hpp",
-    "optics/lens/focus.hpp",
-    "optics/ghost/ghost.hpp",
-    "optics/ghost/ghost_coatings.hpp",
-    "optics/prescription/glass.hpp",
-    "optics/prescription/glass_resonances.hpp",
-    "optics/trace/iris_shape.hpp",
-    "optics/prescription/known_wavelengths.hpp",
-    "optics/lens/lens_changes.hpp",
-    "optics/prescription/lens_checks.hpp",
-    "optics/trace/lens_dispersion.hpp",
-    "optics/lens/lens_edits.hpp",
-    "optics/trace/lens_path.hpp",
-    "optics/lens/lens_polynomial.hpp",
-    "optics/prescription/lens_system.hpp",
-    "optics/prescription/metals.hpp",
-    "optics/prescription/named_coatings.hpp",
-    "optics/analysis/object_point.hpp",
-    "optics/lens/paraxial.hpp",
-    "optics/analysis/plane_wave_sum.hpp",
-    "optics/analysis/plane_waves.hpp",
-    "optics/analysis/point_bundle.hpp",
-    "optics/coating/polarised_ray.hpp",
-    "optics/analysis/psf.hpp",
-    "optics/analysis/psf_measures.hpp",
-    "optics/analysis/psf_pupil.hpp",
-    "optics/pupil/pupil.hpp",
-    "optics/pupil/pupil_edges.hpp",
-    "optics/pupil/pupil_lens.hpp",
-    "optics/pupil/pupil_outline.hpp",
-    "optics/pupil/pupil_outline_search.hpp",
-    "optics/pupil/pupil_pattern.hpp",
-    "optics/pupil/pupil_row_search.hpp",
-    "optics/pupil/pupil_search.hpp",
-    "optics/pupil/pupil_tracer.hpp",
-    "optics/analysis/ray_aiming.hpp",
-    "optics/trace/ray_loop.hpp",
-    "optics/analysis/scene_bundle.hpp",
-    "optics/analysis/seidel.hpp",
-    "optics/analysis/spot.hpp",
-    "optics/analysis/traced_bundle.hpp",
-    "optics/prescription/surface.hpp",
-    "optics/coating/thin_film.hpp",
-    "optics/analysis/trace_path.hpp",
-    "optics/analysis/transmission.hpp",
-    "optics/analysis/wavefront.hpp",
-    "optics/lens/zoom.hpp",
-    "optics/lens/zoom_range.hpp",
-    "render/adaptive_sampling.hpp",
-    "render/axis_crossings.hpp",
-    "render/daylight.hpp",
-    "render/default_view.hpp",
-    "render/effect_names.hpp",
-    "render/film_sums.hpp",
-    "render/gap_finder.hpp",
-    "render/image.hpp",
-    "render/layer_film.hpp",
-    "render/layers.hpp",
-    "render/learning_passes.hpp",
-    "render/left_out_motion.hpp",
-    "render/live_frame.hpp",
-    "render/live_view.hpp",
-    "render/metering.hpp",
-    "render/motion_vectors.hpp",
-    "render/noise_goal.hpp",
-    "render/plan_thresholds.hpp",
-    "render/progress.hpp",
-    "render/render_settings.hpp",
-    "render/rings.hpp",
-    "render/room.hpp",
-    "render/run_with_progress.hpp",
-    "render/scene_change.hpp",
-    "render/scene_pieces.hpp",
-    "render/session.hpp",
-    "render/surface_ids.hpp",
-    "render/surroundings.hpp",
-    "render/take_picture.hpp",
-    "render/vast_sheets.hpp",
-    "scene/assembly.hpp",
-    "scene/bounding_box.hpp",
-    "scene/build_light_tree.hpp",
-    "scene/code_light.hpp",
-    "scene/environment_change.hpp",
-    "scene/emission_mean.hpp",
-    "scene/instance_names.hpp",
-    "scene/light_tables.hpp",
-    "scene/material_names.hpp",
-    "scene/render_space_mesh.hpp",
-    "scene/render_space_scene.hpp",
-    "scene/scene.hpp",
-    "scene/scene_arrays.hpp",
-    "scene/scene_camera.hpp",
-    "scene/scene_checks.hpp",
-    "scene/split_triangles.hpp",
-    "scene/texture_levels.hpp",
+# The folders within a folder, from the one that needs none of the others upwards.
+ORDER = {
+    "optics": ("prescription", "trace", "coating", "pupil", "lens", "ghost", "analysis"),
+    "io": ("files", "text", "lens", "lens/formats", "sensor", "scene", "mesh", "gltf", ""),
 }
+
+# A device runs these and what they include, so that they neither own memory nor raise errors.
+RUN_BY_DEVICES = ("embree/kernels.cpp", "bvh/traverse_scene.hpp")
 
 NOT_IN_CORE = {
     "the CUDA runtime": r"\bcuda[A-Z]\w*|#\s*include\s*[<\"]cuda|<<<",
@@ -281,21 +134,36 @@ def test_includes_follow_the_rules() -> None:
     fail_for(offenders)
 
 
+def test_folders_within_a_folder_include_those_below_them() -> None:
+    def place_of(path: Path) -> int:
+        top, _, rest = path.relative_to(CPP).parent.as_posix().partition("/")
+        return ORDER[top].index(rest)
+
+    fail_for(
+        [
+            f"{name_of(path)} includes {name_of(other)}, whose folder lies above its own"
+            for path in SOURCES
+            if folder_of(path) in ORDER
+            for other in included_by(path)
+            if folder_of(other) == folder_of(path) and place_of(other) > place_of(path)
+        ]
+    )
+
+
 def test_core_knows_no_platform() -> None:
     fail_for([line for what, pattern in NOT_IN_CORE.items() for line in uses(CORE_SOURCES, pattern, f"knows {what}")])
 
 
 def test_device_code_neither_allocates_nor_throws() -> None:
-    on_device = [path for path in CORE_SOURCES if name_of(path) not in HOST_ONLY]
-    fail_for(
-        uses(on_device, NOT_ON_DEVICE, "is not host-only, and uses")
-        + [
-            f"{name_of(path)} is not host-only, and includes {name_of(other)}, which is"
-            for path in on_device
-            for other in included_by(path)
-            if name_of(other) in HOST_ONLY
-        ]
-    )
+    on_device: set[Path] = set()
+    waiting = [CPP / name for name in RUN_BY_DEVICES]
+    while waiting:
+        path = waiting.pop()
+        on_device.add(path)
+        waiting += set(included_by(path)) - on_device
+    headers = sorted(path for path in on_device if path.suffix == ".hpp" and folder_of(path) not in BACKENDS)
+    assert CPP / "optics/trace/lens_trace.hpp" in headers
+    fail_for(uses(headers, NOT_ON_DEVICE, "runs on devices, and uses"))
 
 
 def test_one_folder_knows_embree() -> None:

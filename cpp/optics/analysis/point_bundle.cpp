@@ -1,5 +1,4 @@
 #include "point_bundle.hpp"
-#include "../../bvh/collapse.hpp"
 
 #include <algorithm>
 #include <cmath>

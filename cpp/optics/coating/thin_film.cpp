@@ -1,5 +1,4 @@
 #include "thin_film.hpp"
-#include "../../camera/camera.hpp"
 
 #include <algorithm>
 #include <cmath>

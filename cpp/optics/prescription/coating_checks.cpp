@@ -1,5 +1,4 @@
 #include "coating_checks.hpp"
-#include "../analysis/aperture_diffraction.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,4 @@
 #include "coating_material.hpp"
-#include "../analysis/aperture_diffraction.hpp"
 
 #include <algorithm>
 

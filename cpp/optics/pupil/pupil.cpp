@@ -1,5 +1,4 @@
 #include "pupil.hpp"
-#include "../../camera/diffraction_view.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,4 @@
 #include "pupil_outline.hpp"
-#include "../analysis/aperture_diffraction.hpp"
 
 #include <algorithm>
 #include <array>
