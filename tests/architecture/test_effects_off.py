@@ -67,7 +67,11 @@ def instructions(include: Path, folder: Path) -> list[str]:
     body = out.read_text().split(".visible .entry", 1)[1]
     # An argument's place, and its size; names that the compiler has made of a file's name.
     body = re.sub(r"(_param_\d+)(\[\d+\]|\+\d+)", r"\1", body)
-    return re.sub(r"(ld\.param.*)\+\d+\]", r"\1]", body).splitlines()[2:]
+    body = re.sub(r"(ld\.param.*)\+-?\d+\]", r"\1]", body)
+    # Likewise of an argument that is read by its address.
+    for register in set(re.findall(r"mov\.b64 \t(%rd\d+), \S*_param_\d+;", body)):
+        body = re.sub(rf"(add\.s64 \t%rd\d+, {register}, )\d+;", r"\1;", body)
+    return body.splitlines()[2:]
 
 
 @pytest.mark.skipif(shutil.which("nvcc") is None, reason="nvcc is not on the path")

@@ -42,8 +42,7 @@ def film_of(
         pixels=np.asarray(pixels, np.float32),
         depth=np.full((height, width), np.inf, np.float32),
         camera=taken.camera.replace(film=film),
-        illuminant=illuminant,
-        effects=("dispersion",) if illuminant else (),
+        settings=rc.RenderSettings(effects=("dispersion",), illuminant=illuminant) if illuminant else taken.settings,
     )
 
 

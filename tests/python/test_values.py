@@ -85,8 +85,10 @@ def test_a_deep_copy_has_arrays_of_its_own(kind: str) -> None:
 def test_a_short_text_fits_a_line(kind: str) -> None:
     for make in MAKERS[kind]:
         text = repr(make())
-        assert text.startswith(f"<realcam.{kind}")
         assert "\n" not in text
+        if kind == "RenderSettings":  # can be evaluated, and so names everything that differs from the default
+            continue
+        assert text.startswith(f"<realcam.{kind}")
         assert len(text) <= 130, text
 
 
