@@ -109,10 +109,6 @@ Affine<double> scene_from_camera(const Pose& pose) {
     return {axes.right, axes.up, axes.backward, pose.position_m};
 }
 
-}  // namespace camera_detail
-
-namespace camera_detail {
-
 namespace {
 
 Motion motion_of(const std::vector<PoseKey>& keys) {
@@ -142,10 +138,6 @@ std::vector<Affine<double>> exposure_keys(const Camera& camera) {
 }
 
 }  // namespace
-
-}  // namespace camera_detail
-
-namespace camera_detail {
 
 IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data) {
     IdealLens ideal{std::fabs(data.effective_focal_length), 0, 0.5 * data.entrance_pupil_diameter};
@@ -195,10 +187,6 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     return thick;
 }
 
-}  // namespace camera_detail
-
-namespace camera_detail {
-
 namespace {
 
 /// The circle of confusion of the ideal lens in the entrance pupil. Let R be the radius of its pupil, and b and s_f the
@@ -232,10 +220,6 @@ CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens t
 }
 
 }  // namespace
-
-}  // namespace camera_detail
-
-namespace camera_detail {
 
 void validate_ideal(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);

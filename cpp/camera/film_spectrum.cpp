@@ -37,10 +37,6 @@ std::array<double, 3> basis_at(double wavelength_nm) {
     return {r / sum, g / sum, b / sum};
 }
 
-}  // namespace film_spectrum_detail
-
-namespace film_spectrum_detail {
-
 namespace {
 
 /// The film's matrix per nm under a spectrum, not yet balanced.

@@ -8,10 +8,6 @@ void fail(const std::string& key, const std::string& wanted) {
     throw InputError(key + " must be " + wanted);
 }
 
-}  // namespace sensor_detail
-
-namespace sensor_detail {
-
 namespace {
 
 void require_at_least_0(const std::string& key, double value) {

@@ -14,10 +14,6 @@ std::array<double, 3> applied(const SensorMatrix& m, const std::array<double, 3>
     return result;
 }
 
-}  // namespace sensor_detail
-
-namespace sensor_detail {
-
 namespace {
 
 /// XYZ of an illuminant's own light, Y = 1.
@@ -37,20 +33,12 @@ std::array<double, 3> white_xyz(const Illuminant& illuminant) {
 
 }  // namespace
 
-}  // namespace sensor_detail
-
-namespace sensor_detail {
-
 SensorMatrix adaptation(const std::array<double, 3>& from_white, const std::array<double, 3>& to_white) {
     constexpr SensorMatrix kBradford = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
     const auto from = applied(kBradford, from_white), to = applied(kBradford, to_white);
     return product(inverse(kBradford),
                    product(diagonal({to[0] / from[0], to[1] / from[1], to[2] / from[2]}), kBradford));
 }
-
-}  // namespace sensor_detail
-
-namespace sensor_detail {
 
 namespace {
 

@@ -17,10 +17,6 @@ double table_at(const std::vector<SensorPoint>& table, double x) {
         table, x, 0, [](const SensorPoint& p) { return p.at; }, [](const SensorPoint& p) { return p.value; });
 }
 
-}  // namespace sensor_detail
-
-namespace sensor_detail {
-
 namespace {
 
 /// Photons of one joule, by wavelength in nm.

@@ -9,7 +9,6 @@
 #include "lens_format.hpp"
 #include "lens_from_prescription.hpp"
 #include "lens_material.hpp"
-#include "lens_readers.hpp"
 #include "lens_text.hpp"
 #include "lens_zoom.hpp"
 
@@ -263,24 +262,6 @@ std::string text_of_file(const std::string& path) {
     }
 }
 
-/// In capital letters, with its point; empty where there is none.
-std::string suffix_of(std::string_view path) {
-    const std::string_view name = path.substr(path.find_last_of('/') == path.npos ? 0 : path.find_last_of('/') + 1);
-    const std::size_t point = name.find_last_of('.');
-    return upper_case(point == name.npos ? std::string_view() : name.substr(point));
-}
-
-/// TOML for all that is no other program's.
-LensFormat format_of_suffix(const std::string& suffix) {
-    if (suffix == ".ZMX") return LensFormat::zemax;
-    if (suffix == ".SEQ") return LensFormat::code_v;
-    if (suffix == ".LEN") return LensFormat::oslo;
-    if (suffix == ".DAT") return LensFormat::pbrt;
-    if (suffix == ".JSON") return LensFormat::optiland;
-    if (suffix == ".ROA") return LensFormat::ray_optics;
-    return LensFormat::toml;
-}
-
 }  // namespace
 
 std::vector<std::string> lens_names() {
@@ -302,7 +283,7 @@ bool is_lens_path(const std::string& name, const std::string& path) {
         if (file.name == name) return false;
     const std::string suffix = suffix_of(name);
     std::error_code nothing;  // what cannot be looked at is no file of that name
-    return name.find('/') != name.npos || suffix == ".TOML" || format_of_suffix(suffix) != LensFormat::toml ||
+    return name.find('/') != name.npos || suffix == ".TOML" || foreign_format_of(name) ||
            std::filesystem::is_regular_file(path, nothing);
 }
 
@@ -310,14 +291,10 @@ LensSystem parse_lens(std::string_view text, const std::string& file, const Keep
     return lens_from_table(parse_toml(text, file, raise_lens_file_error, keep_going), file, keep_going);
 }
 
-LensFormat lens_format_of(std::string_view path) {
-    return format_of_suffix(suffix_of(path));
-}
-
 LensSystem parse_lens_file(std::string_view bytes, const std::string& file, const LensReadOptions& options) {
-    const LensFormat format = lens_format_of(file);
+    const LensFormat* format = foreign_format_of(file);
     LensGlasses glasses(options);
-    if (format == LensFormat::toml) {
+    if (!format) {
         toml::table table;
         try {
             table = parse_toml(bytes, file, raise_lens_file_error, options.keep_going);
@@ -327,21 +304,16 @@ LensSystem parse_lens_file(std::string_view bytes, const std::string& file, cons
             const std::string why = suffix.empty()
                                         ? "it has no ending"
                                         : "its ending is " + in_quotes(file.substr(file.size() - suffix.size()));
-            throw LensFileError(
-                "is no lens file that is read: " + why + ", and its text is no TOML; " + kLensSuffixes + " is wanted",
-                file);
+            throw LensFileError("is no lens file that is read: " + why + ", and its text is no TOML; " +
+                                    lens_suffixes(false) + " is wanted",
+                                file);
         }
         LensSystem lens = lens_from_table(table, file, options.keep_going);
         glasses.check_all_used();  // which says that this file names its glasses itself
         return lens;
     }
     const std::string text = decoded_lens_text(bytes, file);
-    const Prescription prescription = format == LensFormat::zemax      ? read_zemax(text, file, glasses)
-                                      : format == LensFormat::code_v   ? read_code_v(text, file, glasses)
-                                      : format == LensFormat::oslo     ? read_oslo(text, file, glasses)
-                                      : format == LensFormat::pbrt     ? read_pbrt(text, file, options)
-                                      : format == LensFormat::optiland ? read_optiland(text, file, glasses)
-                                                                       : read_ray_optics(text, file, glasses);
+    const Prescription prescription = format->read(text, file, glasses, options);
     glasses.check_all_used();
     return lens_from(prescription, options);
 }

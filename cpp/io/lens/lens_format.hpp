@@ -3,17 +3,27 @@
 #include <string_view>
 
 #include "lens_file.hpp"
+#include "lens_glass.hpp"
+#include "lens_prescription.hpp"
 
 namespace realcam::io {
 
-/// Formats of lens files.
-enum class LensFormat { toml, zemax, code_v, oslo, pbrt, optiland, ray_optics };
+/// A format of another program's lens files.
+struct LensFormat {
+    std::string_view suffix;  ///< ".zmx"
+    Prescription (*read)(std::string_view text, const std::string& file, LensGlasses& glasses,
+                         const LensReadOptions& options);
+    LensText (*write)(const LensSystem& lens);  ///< null: it is only read
+};
 
-/// By the suffix of a file's name, in any case. What is no other program's is realcam's own, TOML.
-LensFormat lens_format_of(std::string_view path);
+/// By the suffix of a file's name, in any case. Null: realcam's own, TOML.
+const LensFormat* foreign_format_of(std::string_view path);
 
-/// All suffixes that are read, in a sentence.
-inline constexpr const char* kLensSuffixes = ".toml, .zmx, .seq, .len, .dat, .json or .roa";
+/// The suffixes that are read, or those that are written, in a sentence: ".toml, .zmx or .seq".
+std::string lens_suffixes(bool written);
+
+/// The suffix of a file's name in capital letters, with its point; empty where there is none.
+std::string suffix_of(std::string_view path);
 
 /// "after" or "before". Throws InputError.
 PbrtThickness pbrt_thickness_named(const std::string& name);

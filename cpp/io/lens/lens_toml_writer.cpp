@@ -277,15 +277,11 @@ std::string lens_as_toml(const LensSystem& lens) {
 
 LensText lens_text_for(const LensSystem& lens, const std::string& path) {
     validate(lens);
-    switch (lens_format_of(path)) {
-        case LensFormat::zemax: return lens_as_zemax(lens);
-        case LensFormat::code_v: return lens_as_code_v(lens);
-        case LensFormat::toml:
-            // Without the suffix nobody could read it again by its name.
-            if (upper_case(path).ends_with(".TOML")) return {lens_as_toml(lens), {}};
-            [[fallthrough]];
-        default: throw InputError(path + ": the suffix .toml, .zmx or .seq is wanted");
-    }
+    const LensFormat* format = foreign_format_of(path);
+    if (format && format->write) return format->write(lens);
+    // Without the suffix nobody could read it again by its name.
+    if (suffix_of(path) == ".TOML") return {lens_as_toml(lens), {}};
+    throw InputError(path + ": the suffix " + lens_suffixes(true) + " is wanted");
 }
 
 }  // namespace realcam::io

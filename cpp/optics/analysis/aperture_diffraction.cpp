@@ -25,17 +25,9 @@ constexpr double kFineStep = static_cast<double>(kDiffractionReach) / kDiffracti
 
 }  // namespace
 
-}  // namespace aperture_diffraction_detail
-
-namespace aperture_diffraction_detail {
-
 double normal_angle(Point from, Point to) {
     return std::atan2(from.x - to.x, to.y - from.y) / (2 * std::numbers::pi);
 }
-
-}  // namespace aperture_diffraction_detail
-
-namespace aperture_diffraction_detail {
 
 namespace {
 

@@ -29,10 +29,6 @@ constexpr double kMostWaves = 1 << 24;
 
 }  // namespace
 
-}  // namespace psf_detail
-
-namespace psf_detail {
-
 BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t rays) {
     const double half = 0.5e-3 * psf.size * psf.pitch_um, phase = largest_phase(part.bundle, part.centre, half);
     const auto count = [](BundleSampling s) { return static_cast<double>(s.spokes) * s.nodes; };
@@ -52,10 +48,6 @@ BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t r
     return {static_cast<int>(std::ceil(more * sampling.spokes)), static_cast<int>(std::ceil(more * sampling.nodes))};
 }
 
-}  // namespace psf_detail
-
-namespace psf_detail {
-
 namespace {
 
 /// Irradiance per um^2 of a sum of 1.
@@ -65,10 +57,6 @@ double scale_of(const Part& part) {
 }
 
 }  // namespace
-
-}  // namespace psf_detail
-
-namespace psf_detail {
 
 void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values, const RayLoop& loop) {
     values.assign(static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size), 0);
@@ -86,10 +74,6 @@ void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double
                 values[static_cast<std::size_t>(y * grid.size + x)] += scale * std::norm(sum(x, y));
     }
 }
-
-}  // namespace psf_detail
-
-namespace psf_detail {
 
 namespace {
 
@@ -150,10 +134,6 @@ void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop
 
 }  // namespace
 
-}  // namespace psf_detail
-
-namespace psf_detail {
-
 Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& loop) {
     if (request.colours.empty()) throw InputError("psf: no wavelength is given");
     if (!(request.size >= 2 && request.size <= 4096)) throw InputError("psf: size must lie between 2 and 4096");
@@ -189,10 +169,6 @@ Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& lo
     psf.values.assign(static_cast<std::size_t>(psf.size) * static_cast<std::size_t>(psf.size), 0);
     return made;
 }
-
-}  // namespace psf_detail
-
-namespace psf_detail {
 
 namespace {
 

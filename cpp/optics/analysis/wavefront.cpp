@@ -28,10 +28,6 @@ double reference_curvature(const LensSystem& lens, double wavelength_nm, const F
     return direction.y / image.y;
 }
 
-}  // namespace wavefront_detail
-
-namespace wavefront_detail {
-
 namespace {
 
 /// Optical path of a ray to the reference sphere, mm, less a length that all rays share. With b from the centre to the

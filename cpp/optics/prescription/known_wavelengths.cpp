@@ -18,10 +18,6 @@ std::string glass_text(const LensSystem& lens, std::size_t surface) {
            lens.name;
 }
 
-}  // namespace known_wavelengths_detail
-
-namespace known_wavelengths_detail {
-
 namespace {
 
 std::string range_text(WavelengthRange range) {

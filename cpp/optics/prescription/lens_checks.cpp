@@ -16,10 +16,6 @@ std::string mm(double v) {
     return text;
 }
 
-}  // namespace lens_checks_detail
-
-namespace lens_checks_detail {
-
 namespace {
 
 void check_figure(const Surface& s, std::size_t i) {
@@ -91,10 +87,6 @@ void check_stop(const LensSystem& lens) {
 }
 
 }  // namespace
-
-}  // namespace lens_checks_detail
-
-namespace lens_checks_detail {
 
 std::string short_mm(double v) {
     char text[32];

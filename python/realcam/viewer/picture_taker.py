@@ -90,10 +90,9 @@ class PictureTaker:
 
     def image(self, picture: GrowingPicture) -> Image:
         """All samples, with the exposure time that is wanted now."""
-        image = self._live.image()
-        time_s = self.camera(picture).exposure_time_s
-        ratio = np.float32(time_s / image.camera.exposure_time_s)
-        return replace(image, pixels=image.pixels * ratio, camera=image.camera.replace(exposure_time_s=time_s))
+        image, camera = self._live.image(), self.camera(picture)
+        ratio = np.float32(camera.exposure_time_s / image.camera.exposure_time_s)
+        return replace(image, pixels=image.pixels * ratio, camera=camera)
 
     def arrays(self, picture: GrowingPicture) -> Arrays:
         return picture.kept or self._live_arrays()

@@ -1,0 +1,55 @@
+#include "../lens_format.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "../lens_readers.hpp"
+#include "../lens_text.hpp"
+#include "../lens_writers.hpp"
+
+namespace realcam::io {
+namespace {
+
+template <Prescription (*reader)(std::string_view, const std::string&, LensGlasses&)>
+Prescription read(std::string_view text, const std::string& file, LensGlasses& glasses, const LensReadOptions&) {
+    return reader(text, file, glasses);
+}
+
+// It has no names of glasses.
+Prescription read_pbrt_lens(std::string_view text, const std::string& file, LensGlasses&,
+                            const LensReadOptions& options) {
+    return read_pbrt(text, file, options);
+}
+
+constexpr LensFormat kFormats[] = {
+    {".zmx", read<read_zemax>, lens_as_zemax}, {".seq", read<read_code_v>, lens_as_code_v},
+    {".len", read<read_oslo>, nullptr},        {".dat", read_pbrt_lens, nullptr},
+    {".json", read<read_optiland>, nullptr},   {".roa", read<read_ray_optics>, nullptr},
+};
+
+}  // namespace
+
+std::string suffix_of(std::string_view path) {
+    const std::string_view name = path.substr(path.find_last_of('/') == path.npos ? 0 : path.find_last_of('/') + 1);
+    const std::size_t point = name.find_last_of('.');
+    return upper_case(point == name.npos ? std::string_view() : name.substr(point));
+}
+
+const LensFormat* foreign_format_of(std::string_view path) {
+    const std::string suffix = suffix_of(path);
+    const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                    [&](const LensFormat& format) { return upper_case(format.suffix) == suffix; });
+    return found == std::end(kFormats) ? nullptr : found;
+}
+
+std::string lens_suffixes(bool written) {
+    std::vector<std::string_view> suffixes{".toml"};
+    for (const LensFormat& format : kFormats)
+        if (!written || format.write) suffixes.push_back(format.suffix);
+    std::string text(suffixes.front());
+    for (std::size_t i = 1; i < suffixes.size(); ++i)
+        text.append(i + 1 < suffixes.size() ? ", " : " or ").append(suffixes[i]);
+    return text;
+}
+
+}  // namespace realcam::io
