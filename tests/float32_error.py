@@ -22,7 +22,7 @@ IMAGE_RADIUS_MM = {"fisheye-6mm-220deg": 10.47}
 BEYOND_UM = 0.25
 
 FILM_RADII = 33
-RAYS_PER_RADIUS = 12_000
+RAYS_PER_RADIUS = 16_000
 
 
 def limit_um(lens: rc.Lens) -> float:
@@ -155,8 +155,8 @@ def _boxes(lens: rc.Lens, radii: np.ndarray) -> PupilBoxes:
     distance = lens.film_distance_mm - max(0.0, lens.surfaces[-1].sag_mm(rim))
     away = np.stack([np.stack([side * rim - radii, np.full_like(radii, side * rim)], axis=1) for side in (-1, 1)])
     low, high = away / np.hypot(away, distance)
-    for count in (120, 40):
-        radii, low, high = _closer(lens, radii, low, high, count)
+    for _ in range(2):
+        radii, low, high = _closer(lens, radii, low, high, 120)
     return PupilBoxes(radii, low, high)
 
 
