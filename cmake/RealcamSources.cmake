@@ -8,10 +8,11 @@ macro(realcam_sources variable)
   list(APPEND all_sources ${variable})
 endmacro()
 
+# Who uses lenses needs nothing that reads scenes, nor any of the other sources.
+realcam_sources(REALCAM_LENS_IO_SOURCES io/text io/files io/lens io/lens/formats)
+
 set(all_sources "")
 
-# Who uses lenses needs nothing that reads scenes.
-realcam_sources(REALCAM_LENS_IO_SOURCES io/text io/files io/lens io/lens/formats)
 realcam_sources(REALCAM_IO_SOURCES io io/scene io/mesh io/gltf io/sensor)
 realcam_sources(REALCAM_IMAGE_IO_SOURCES image_io)
 realcam_sources(REALCAM_EMBREE_SOURCES embree)
