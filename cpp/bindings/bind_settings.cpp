@@ -78,6 +78,15 @@ std::string name_of(PupilSampling sampling) {
     return "outline";
 }
 
+std::string name_of(LightTracing tracing) {
+    switch (tracing) {
+        case LightTracing::weighted: return "weighted";
+        case LightTracing::off: return "off";
+        case LightTracing::alone: break;
+    }
+    return "alone";
+}
+
 using S = const RenderSettings&;
 using Word = const py::object&;
 
@@ -190,6 +199,12 @@ const Setting kSettings[] = {
                                                     shot::kPupilSamplingNames);
      },
      [](S s) -> py::object { return py::cast(name_of(s.pupil_sampling)); }},
+    {"light_tracing", "str",
+     [](Draft& d, Word word) {
+         set_named<&RenderSettings::light_tracing>(d, word, "light_tracing", shot::light_tracing_named,
+                                                   shot::kLightTracingNames);
+     },
+     [](S s) -> py::object { return py::cast(name_of(s.light_tracing)); }},
 };
 
 /// The constructor, as pybind11 would write it.
@@ -271,7 +286,12 @@ constexpr const char* kDoc =
     "pupil_sampling: where a full lens's rays are sent: \"outline\", where real rays were found to pass; to compare\n"
     "with it (docs/accuracy.md), \"rear_element\", \"exit_pupil\", or \"pixel\", where the pixel's earlier samples "
     "have\n"
-    "passed.\n\n"
+    "passed.\n"
+    "light_tracing: how a full lens's images of lights are found that are small or out of focus: \"weighted\", by "
+    "samples\n"
+    "of pixels and by samples from the lights; to compare with it, \"alone\", from the lights, or \"off\", by samples "
+    "of\n"
+    "pixels, which never meet point lights and suns.\n\n"
     "Raises InputError.";
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "effect_views.hpp"
 #include "lens_map_view.hpp"
 #include "pixel_pupil.hpp"
+#include "traced_lights_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -64,6 +65,7 @@ struct CameraView : CameraPlacement, EffectViews {
     LensMapView map;  ///< of a mapped lens; else without nodes
     CircleOfConfusion circle;
     PupilView pupil;
+    TracedLightsView traced_lights;
     PixelPupils pixel_pupils;
     LensView<float> lens;
     const LensView<double>* lens_in_double;  ///< of the model full_lens_double; else null
@@ -107,6 +109,7 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     move(view.map.nodes, view.map.count);
     move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);
     view.move_arrays(view.lens.count, move);
+    view.traced_lights.move_arrays(move);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
     return view;

@@ -13,6 +13,7 @@ EffectTables::EffectTables(const LensSystem& lens, double film_radius, const Len
     const EffectTables* const same = has_lens && last->film_radius_ == film_radius ? last : nullptr;
     if (effects.illuminant) set_wavelengths(*effects.illuminant);
     if (effects.coatings) set_coatings(has_lens ? last : nullptr);
+    lens_way_ = has_lens ? last->lens_way_ : std::make_shared<LazyLensWay>();
     if (effects.ghosts)
         ghosts_ = same ? same->ghosts_
                        : std::make_shared<const GhostTables>(lens, film_radius, *effects.ghosts, tracer,
@@ -20,7 +21,7 @@ EffectTables::EffectTables(const LensSystem& lens, double film_radius, const Len
     if (!effects.diffraction) return;
     diffraction_ = same ? same->diffraction_ : std::make_shared<const DiffractionTables>(lens, film_radius, tracer);
     starbursts_ = same ? same->starbursts_
-                       : std::make_shared<const StarburstTables>(lens, film_radius, *spectrum_, effects, tracer);
+                       : std::make_shared<const StarburstTables>(lens, film_radius, shared_lens_way(), tracer);
 }
 
 EffectViews EffectTables::views(double film_angle) const {
@@ -79,6 +80,12 @@ void EffectTables::set_coatings(const EffectTables* same) {
     const WavelengthVariable variable = variable_over(spectrum_->range());
     coatings_to_scene_ = fit_coatings<kSpectrumTerms>(lens_, LightDirection::to_scene, wavelengths, variable);
     coatings_to_film_ = fit_coatings<kSpectrumTerms>(lens_, LightDirection::to_film, wavelengths, variable);
+}
+
+std::shared_ptr<const LensWay> EffectTables::shared_lens_way() const {
+    std::call_once(lens_way_->once,
+                   [&] { lens_way_->way = std::make_shared<const LensWay>(lens_, spectrum_, effects_); });
+    return lens_way_->way;
 }
 
 }  // namespace realcam

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "effect_views.hpp"
 #include "film_spectrum.hpp"
 #include "ghost_tables.hpp"
+#include "lens_way.hpp"
 #include "pupil_sampling.hpp"
 #include "starburst_tables.hpp"
 
@@ -36,6 +38,9 @@ public:
     /// Of all light of the picture that is traced apart from the samples of its pixels: at most kMostSplats.
     std::vector<GhostView> splats() const;
 
+    /// The way on which lights are seen themselves. Made when it is first wanted. Throws InputError as the constructor.
+    const LensWay& lens_way() const { return *shared_lens_way(); }
+
     /// At which light may pass that the picture has to find; none: the design wavelength alone.
     const std::vector<double>& pupil_wavelengths() const { return pupil_wavelengths_; }
 
@@ -44,6 +49,13 @@ private:
     void set_wavelengths(const Illuminant& illuminant);
 
     void set_coatings(const EffectTables* same);
+
+    std::shared_ptr<const LensWay> shared_lens_way() const;
+
+    struct LazyLensWay {
+        std::once_flag once;
+        std::shared_ptr<const LensWay> way;
+    };
 
     LensEffects effects_;
     LensSystem lens_;
@@ -55,6 +67,7 @@ private:
     std::vector<CoatingPolynomials<kOneWavelengthTerms>> coatings_;
     std::vector<CoatingPolynomials<kSpectrumTerms>> coatings_to_scene_, coatings_to_film_;
     std::shared_ptr<const GhostTables> ghosts_;
+    std::shared_ptr<LazyLensWay> lens_way_;
     std::shared_ptr<const DiffractionTables> diffraction_;
     std::shared_ptr<const StarburstTables> starbursts_;
 };

@@ -55,7 +55,7 @@ void EntrySearch::start(const Rectangle& in, int rows, int square, int lane, Pup
     ray.etendue = static_cast<float>(2 * 2 * std::numbers::pi * r * ring * column * row);
 }
 
-void EntrySearch::set_front(Vec3f o, Vec3f d, FoundRay& ray) {
+void set_front(Vec3f o, Vec3f d, FoundRay& ray) {
     const float sine = std::sqrt(d.x * d.x + d.y * d.y);
     const Vec2f away = sine > 0 ? Vec2f{d.x / sine, d.y / sine} : Vec2f{1, 0};
     ray.half_tangent = sine / (1 - d.z);

@@ -37,6 +37,9 @@ inline float entry_reach(const LensSystem& lens) {
     return static_cast<float>(entry_search_detail::reach_of(lens.surfaces.front()));
 }
 
+/// Sets what is known of a ray that has left the lens with origin o and unit direction d.
+void set_front(Vec3f o, Vec3f d, FoundRay& ray);
+
 /// Looks for where light has to enter: by rays back from the film, because there their bundles are wide, while those of
 /// a fisheye are a hundredth of its front. Lens and circle of film are round, so that one radius of the film is enough;
 /// blades are taken for the circle around their opening. A ghost's bundle may be narrow: it is looked for with the stop
@@ -90,8 +93,6 @@ private:
 
     /// Starts a ray at the middle of a ring of film, along the middle of one of the squares of a rectangle.
     void start(const Rectangle& in, int rows, int square, int lane, PupilTracer::Rays& rays, FoundRay& ray) const;
-
-    static void set_front(Vec3f o, Vec3f d, FoundRay& ray);
 
     /// What holds the squares of all rays that were found in a ring or beside it; where there are none, as before.
     static Directions around(const std::vector<FoundRay>& rays, const Directions& before);

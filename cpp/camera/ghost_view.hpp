@@ -29,10 +29,11 @@ enum class GhostLight : std::int32_t {
     of_lights,   ///< ghosts of the scene's lights, from these
     starbursts,  ///< the lights themselves, spread by the edges of the aperture, from the lights
     of_objects,  ///< ghosts of what objects reflect, from the film
+    direct,      ///< the lights themselves, from the lights (TracedLightsView)
 };
 
 /// Of one picture.
-inline constexpr int kMostSplats = 3;
+inline constexpr int kMostSplats = 4;
 
 /// The ghosts of a lens, or the lens's own way, for starbursts. Lengths in mm.
 struct GhostView {

@@ -12,6 +12,7 @@
 #include "../render/learning_passes.hpp"
 #include "../render/run_with_progress.hpp"
 #include "../render/seconds_since.hpp"
+#include "../render/traced_lights.hpp"
 #include "cuda_devices.hpp"
 #include "device_frame.hpp"
 #include "device_renderer.hpp"
@@ -58,14 +59,16 @@ private:
         } else {
             place();  // which takes less time than a thread to start
         }
-        const CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
+        CameraView view = setup_->view(scene_.placed().origin_m(), scene_.placed().moves());
+        traced_lights_ = traced_lights(scene_.placed().view(), view, *setup_, settings.light_tracing, tracer_);
+        view.traced_lights = traced_lights_.view();
         for (const auto& renderer : renderers_) renderer->set_camera(view);
         set_splats(view);
     }
 
     void set_splats(const CameraView& camera) {
         std::vector<SplatSource> sources;
-        for (const GhostView& light : setup_->effects().splats())
+        for (const GhostView& light : splatted_lights(*setup_, traced_lights_))
             sources.push_back({light, ghost_units_per_lux(scene_.placed().view(), camera, light)});
         front().set_splats(sources);
     }
@@ -315,6 +318,7 @@ private:
     FramePool pool_;
     LastSetup last_setup_;
     std::shared_ptr<const CameraSetup> setup_;
+    TracedLights traced_lights_;
     HostScene scene_;
     int rows_ = 0;  ///< of the film that a GPU holds at a time; 0: the film has no place yet
     FilmSums film_;  ///< where the GPU holds a part of it

@@ -46,7 +46,9 @@ public:
         if (sums_.size() == 0) return;
         constexpr std::uint64_t kLaunch = 1 << 14;
         const GhostBlocks blocks = ghost_blocks(camera, range, view_);
-        const auto launch = view_.light == GhostLight::of_objects ? launch_gather_ghosts : launch_splat_ghosts;
+        const auto launch = view_.light == GhostLight::of_objects ? launch_gather_ghosts
+                            : view_.light == GhostLight::direct   ? launch_trace_lights
+                                                                  : launch_splat_ghosts;
         for (std::uint64_t block = blocks.first; block < blocks.end; block += kLaunch)
             launch({scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), blocks_done_.data(), block,
                     static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, settings,

@@ -22,8 +22,10 @@ struct GhostJob {
     double units_per_lux;
 };
 
-/// The samples start at the lights, or at the film, as the job's GhostView says. Both throw DeviceError.
+/// The job's GhostView says which of them serves it: ghosts and starbursts of lights, ghosts of objects, or the lights
+/// themselves. All throw DeviceError.
 void launch_splat_ghosts(const GhostJob& job, cudaStream_t stream);
 void launch_gather_ghosts(const GhostJob& job, cudaStream_t stream);
+void launch_trace_lights(const GhostJob& job, cudaStream_t stream);
 
 }  // namespace realcam

@@ -16,6 +16,7 @@
 #include "../render/learning_passes.hpp"
 #include "../render/run_with_progress.hpp"
 #include "../render/scene_change.hpp"
+#include "../render/traced_lights.hpp"
 #include "embree_scene.hpp"
 #include "fast_pupil_tracer.hpp"
 #include "host_frame.hpp"
@@ -69,6 +70,9 @@ private:
                 setup_ = last_setup_.make(camera, fast_pupil_tracer(), settings.lens_effects());
                 place(scene, camera);
                 camera_view_ = setup_->view(scene_->placed().origin_m(), scene_->placed().moves());
+                traced_lights_ = traced_lights(scene_->placed().view(), camera_view_, *setup_, settings.light_tracing,
+                                               fast_pupil_tracer());
+                camera_view_.traced_lights = traced_lights_.view();
             });
         };
         run_heeding(work, keep_going, stop);
@@ -80,7 +84,7 @@ private:
         const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
         film_.assign(pixels, PixelSum{});
         splats_.clear();
-        for (const GhostView& light : setup_->effects().splats())
+        for (const GhostView& light : splatted_lights(*setup_, traced_lights_))
             splats_.push_back({light.light, std::vector<GhostSum>(pixels)});
         const bool learns = settings().pupil_sampling == PupilSampling::pixel;
         known_.assign(learns ? pixels : 0, PixelPupil{});
@@ -219,7 +223,7 @@ private:
 
     /// Adds what belongs to these samples of each pixel.
     void splat(const SampleRange& range, const RenderSettings& settings) {
-        const std::vector<GhostView> lights = setup_->effects().splats();
+        const std::vector<GhostView> lights = splatted_lights(*setup_, traced_lights_);
         for (std::size_t i = 0; i < lights.size(); ++i) splat_on(splats_[i], lights[i], range, settings);
     }
 
@@ -330,11 +334,12 @@ private:
     std::unique_ptr<EmbreeScene> scene_;
     LastSetup last_setup_;
     std::shared_ptr<const CameraSetup> setup_;  ///< owns what the view points to
+    TracedLights traced_lights_;
     CameraView camera_view_{};
     std::vector<PixelPupil> known_, found_;  ///< of each pixel: PixelPupils
     SceneView scene_view_{};  ///< while tiles are visited
     FilmSums film_;
-    std::vector<SplatFilm> splats_;  ///< as EffectTables::splats
+    std::vector<SplatFilm> splats_;  ///< as splatted_lights
     std::mutex stats_mutex_;
     RenderStats stats_;
 };

@@ -15,6 +15,7 @@
 #include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../render/see_layers.hpp"
+#include "../render/trace_lights.hpp"
 #include "packet_scene.hpp"
 
 // Built once for each instruction set, see cmake/RealcamInstructionSets.cmake.
@@ -218,8 +219,12 @@ void for_ghosts_of(realcam_ghosts* job, Take&& take) {
 
 template <SceneKind scene_kind, bool has_wavelengths>
 void splat_ghosts_with(realcam_ghosts* job) {
-    for_ghosts_of<scene_kind>(
-        job, [](auto&... with) { splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
+    if (static_cast<const GhostView*>(job->ghost_view)->light == GhostLight::direct)
+        for_ghosts_of<scene_kind>(
+            job, [](auto&... with) { trace_lights<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
+    else
+        for_ghosts_of<scene_kind>(
+            job, [](auto&... with) { splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
 }
 
 template <bool has_wavelengths>

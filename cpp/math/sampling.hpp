@@ -73,4 +73,11 @@ REALCAM_INLINE float phong_pdf(Vec3f axis, float exponent, Vec3f direction) {
     return (exponent + 1.0f) * 0.1591549431f * std::exp(exponent * std::log1p(-missing));
 }
 
+/// Veach's power heuristic: what counts of light that was found with one density, where the other way had the other.
+/// With an infinite one, all of it, because no other way finds it.
+REALCAM_INLINE float mis_weight(float pdf, float other_pdf) {
+    const float ratio = other_pdf / pdf;
+    return 1.0f / (1.0f + ratio * ratio);
+}
+
 }  // namespace REALCAM_NAMESPACE

@@ -53,7 +53,7 @@ REALCAM_HD inline void begin_paths(const CameraView& camera, const SampleBlock<N
         REALCAM_LANES
         for (int i = 0; i < N; ++i)
             set_first_density<scene_kind>(
-                camera, select(film.from_edge[i] != 0, camera.diffraction.splat_density, kDelta), i, path);
+                camera, select(film.from_edge[i] != 0, camera.diffraction.splat_density, kFromFilm), i, path);
     }
 }
 

@@ -44,7 +44,8 @@ struct GhostFilmView {
     /// and takes as much noise from them as thirteen times the samples would.
     REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
         if (!sums || *blocks == 0) return 0;
-        if (light == GhostLight::starbursts) return irradiance_of(static_cast<double>(sums[pixel].units[channel]));
+        if (light == GhostLight::starbursts || light == GhostLight::direct)
+            return irradiance_of(static_cast<double>(sums[pixel].units[channel]));
         constexpr double kWeights[] = {1, 4, 6, 4, 1}, kSum = 256;
         const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
         const auto inside = [](int place, int count) { return place < 0 ? 0 : place < count ? place : count - 1; };

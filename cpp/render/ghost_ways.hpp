@@ -84,10 +84,12 @@ REALCAM_INLINE void pass_ghost_way(const GhostView& ghosts, const GhostWay& way,
                                                    variable, passed});
         else
             trace_lens<lens_kind>(lens, rays, NoRecord{}, ManyWavelengths{ghosts.indices + way.first, variable});
-    } else {
+    } else if (ghosts.effects.coatings) {
         trace_lens<lens_kind>(
             lens, rays, NoRecord{},
             GhostMedia<kOneWavelengthTerms, N>{nullptr, ghosts.coatings + way.first, nullptr, passed});
+    } else {
+        trace_lens<lens_kind>(lens, rays, NoRecord{}, OneWavelength{});
     }
 }
 

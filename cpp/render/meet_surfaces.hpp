@@ -120,8 +120,9 @@ REALCAM_INLINE void meet_surfaces(const SceneView& view, const CameraView& camer
                 path.throughput.set(i, path.throughput[i] * absorbed(absorption, hit.distance * length(direction)));
         }
         if (!is_black(point.emission))
-            results.irradiance.set(
-                lane, results.irradiance[lane] + clamped(emitter_light<scene_kind>(view, path, i, hit, point), limit));
+            results.irradiance.set(lane,
+                                   results.irradiance[lane] +
+                                       clamped(emitter_light<scene_kind>(view, camera, path, i, hit, point), limit));
         if (bounce == 0) results.depth[lane] = depth_at<scene_kind>(camera, point.position, time);
         if (bounce <= settings.max_bounces) path.template move<scene_kind>(i, path.count++);
     }

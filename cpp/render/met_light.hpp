@@ -1,31 +1,17 @@
 #pragma once
 #include "../scene/light.hpp"
 #include "../scene/surface_point.hpp"
-#include "path_state.hpp"
+#include "traced_light_weight.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 // Light is looked for in two ways: in a direction that the lights suggest, and in one that the BSDF suggests. What
 // either finds is weighted by the densities with which both could have found it (Veach and Guibas 1995).
 
-/// Veach's power heuristic: what counts of light that was found with one density, where the other way had the other.
-/// With kDelta, all of it, because no other way finds it.
-REALCAM_INLINE float mis_weight(float pdf, float other_pdf) {
-    const float ratio = other_pdf / pdf;
-    return 1.0f / (1.0f + ratio * ratio);
-}
-
 /// `limit` > 0: of what a path may bring.
 REALCAM_INLINE Color clamped(Color c, float limit) {
     const float most = largest(c);
     return limit > 0.0f && most > limit ? (limit / most) * c : c;
-}
-
-/// When a path goes through the scene, as a share of the exposure.
-template <SceneKind scene_kind, int N>
-REALCAM_INLINE float time_of(const PathState<N>& path, int lane) {
-    if constexpr (scene_kind == SceneKind::any) return path.rays.time[lane];
-    return 0.0f;
 }
 
 template <SceneKind scene_kind, int N>
@@ -39,7 +25,7 @@ REALCAM_INLINE Color environment_light(const SceneView& scene, const PathState<N
     const Vec3f direction = path.rays.direction[lane];
     const float pdf = path.pdf[lane];
     float weight = 1.0f;
-    if (pdf < kDelta)
+    if (pdf >= 0.0f && pdf < kDelta)
         weight = mis_weight(pdf, environment_light_pdf(scene, receiver_of<scene_kind>(path, lane), direction));
     return (weight * path.throughput[lane]) * environment_radiance(scene.environment, direction);
 }
@@ -50,7 +36,7 @@ REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathS
                                              EnvironmentPixel pixel) {
     const float pdf = path.pdf[lane];
     float weight = 1.0f;
-    if (pdf < kDelta)
+    if (pdf >= 0.0f && pdf < kDelta)
         weight = mis_weight(pdf, light_kinds(scene, receiver_of<scene_kind>(path, lane)).environment_probability *
                                      environment_image_pdf(scene.environment, pixel, path.rays.direction[lane]));
     return (weight * path.throughput[lane]) * pixel_radiance(scene.environment, pixel);
@@ -58,11 +44,13 @@ REALCAM_INLINE Color environment_image_light(const SceneView& scene, const PathS
 
 /// Light that the emitter at a hit sends along the ray of a lane.
 template <SceneKind scene_kind, int N>
-REALCAM_INLINE Color emitter_light(const SceneView& scene, const PathState<N>& path, int lane, Hit hit,
-                                   const SurfacePoint& point) {
+REALCAM_INLINE Color emitter_light(const SceneView& scene, const CameraView& camera, const PathState<N>& path, int lane,
+                                   Hit hit, const SurfacePoint& point) {
     const float pdf = path.pdf[lane];
     float weight = 1.0f;
-    if (pdf < kDelta) {
+    if (pdf == kFromFilm) {
+        weight = seen_light_weight<scene_kind>(scene, camera, path, lane, hit, point);
+    } else if (pdf < kDelta) {
         const LightReceiver receiver = receiver_of<scene_kind>(path, lane);
         const float cosine = -dot(path.rays.direction[lane], point.geometric_normal);
         const Vec3f way = point.position - receiver.position;

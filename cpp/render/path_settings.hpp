@@ -11,6 +11,13 @@ enum class LightTransport : std::int32_t {
     whitted,  ///< direct light, and what mirrors and smooth glass show (Whitted 1980)
 };
 
+/// How the images of lights are found that are small, or out of focus (trace_lights.hpp).
+enum class LightTracing : std::int32_t {
+    weighted,  ///< by samples of pixels and by samples from the lights, each weighted by the densities of both
+    off,       ///< by samples of pixels alone, which never meet points and suns
+    alone,     ///< by samples from the lights alone, to compare
+};
+
 struct PathSettings {
     std::int32_t max_bounces = 0;  ///< after which a path ends; 0: direct light only
     LightTransport transport = LightTransport::paths;

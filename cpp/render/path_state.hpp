@@ -83,6 +83,13 @@ private:
     Lanes<std::int32_t, N> lane_;
 };
 
+/// When a path goes through the scene, as a share of the exposure.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE float time_of(const PathState<N>& path, int lane) {
+    if constexpr (scene_kind == SceneKind::any) return path.rays.time[lane];
+    return 0.0f;
+}
+
 /// What paths with these effects carry.
 template <int N, Effects effects>
 struct PathStateWith : PathState<N> {

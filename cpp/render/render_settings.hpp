@@ -34,6 +34,7 @@ struct RenderSettings {
     std::optional<Illuminant> illuminant = {};  ///< of effects with wavelengths; none: D65, the white of RGB
     std::optional<NoiseGoal> noise = {};  ///< instead of spp
     PupilSampling pupil_sampling = PupilSampling::outline;  ///< of a full lens
+    LightTracing light_tracing = LightTracing::weighted;    ///< the same
 
     bool operator==(const RenderSettings&) const = default;
 

@@ -150,24 +150,25 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
     }
 }
 
-/// Where light that geometrical optics brings to `film` goes by diffraction, and how much of it. Of lights that rays
-/// meet it is what the edges of the aperture diffract, and as much of that as samples of pixels leave to splats
-/// (set_first_density); of the others it is all.
+/// Where light that geometrical optics brings to `film` goes by diffraction, and how much of it. Starbursts are what
+/// the edges of the aperture diffract, and of lights that rays meet as much of that as samples of pixels leave to
+/// splats (set_first_density). The images of lights are the rest.
 template <int N>
-REALCAM_INLINE Vec2f diffracted(const CameraView& camera, Vec2f film, Vec2f u, Vec2f v, int lane,
+REALCAM_INLINE Vec2f diffracted(const CameraView& camera, GhostLight light, Vec2f film, Vec2f u, Vec2f v, int lane,
                                 GhostSamples<N>& samples) {
     const float nm = wavelength_at(camera.dispersion, samples.place[lane]);
-    const bool all = samples.light_density[lane] == kDelta;
     Vec2f kick;
-    float weight;
-    if (all & ((samples.number[lane] & 1u) != 0)) {
+    float weight = 1.0f;
+    if (light == GhostLight::direct) {
         const DiffractionKick drawn = draw_kick(camera.diffraction, film, u, v);
         kick = drawn.mm_per_nm;
-        weight = drawn.from_edge ? 0.0f : 2.0f;
+        weight = drawn.from_edge ? 0.0f : 1.0f;
     } else {
         const EdgeKick edge = draw_edge_kick(camera.diffraction, film, nm, u, v);
         kick = edge.mm_per_nm;
-        weight = edge.weight * (all ? 2.0f : mis_weight(samples.light_density[lane], camera.diffraction.splat_density));
+        weight = edge.weight;
+        if (samples.light_density[lane] < kDelta)
+            weight *= mis_weight(samples.light_density[lane], camera.diffraction.splat_density);
     }
     samples.color.set(lane, weight * samples.color[lane]);
     return {film.x + nm * kick.x, film.y + nm * kick.y};
@@ -186,9 +187,9 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         const float way = (camera.film_distance - o.z) / d.z;
         Vec2f film = {o.x + way * d.x, o.y + way * d.y};
         if constexpr (has_wavelengths) {
-            if (ghosts.light == GhostLight::starbursts) {
+            if (ghosts.light != GhostLight::of_lights && camera.effects.diffraction) {
                 const std::uint32_t sample = first + static_cast<std::uint32_t>(i);
-                film = diffracted(camera, film, sample_2d(stream, sample, ghost_dimension::diffraction),
+                film = diffracted(camera, ghosts.light, film, sample_2d(stream, sample, ghost_dimension::diffraction),
                                   sample_2d(stream, sample, ghost_dimension::diffraction + 1), i, samples);
             }
         }

@@ -27,7 +27,7 @@ REALCAM_INLINE void start_paths(const CameraRays<N>& camera_rays, PathState<N>& 
         path.rays.active[i] = camera_rays.passed[i];
         path.weight[i] = camera_rays.weight[i];
         path.throughput.set(i, grey(camera_rays.weight[i]));
-        path.pdf[i] = kDelta;
+        path.pdf[i] = kFromFilm;
         path.absorption.set(i, {0, 0, 0});
         results.irradiance.set(i, {0, 0, 0});
         results.depth[i] = kFarAway;

@@ -6,6 +6,8 @@ namespace REALCAM_NAMESPACE {
 
 /// Density of a direction that has no alternative: a mirror's, and that of a ray from the camera.
 inline constexpr float kDelta = __builtin_huge_valf();
+/// In place of the density of a ray that comes straight from the film.
+inline constexpr float kFromFilm = -1.0f;
 
 /// A direction drawn from a BSDF.
 struct BsdfSample {

@@ -9,13 +9,14 @@
 
 namespace realcam::shot {
 
-// The words for camera models, tone curves, light transport and pupil sampling, as command line and shot files have
-// them.
+// The words for camera models, tone curves, light transport, pupil sampling and light tracing, as command line and shot
+// files have them.
 
 inline constexpr const char* kModelNames = "full, full_double, polynomial, thick, mapped, thin or pinhole";
 inline constexpr const char* kToneNames = "film or linear";
 inline constexpr const char* kTransportNames = "paths or whitted";
 inline constexpr const char* kPupilSamplingNames = "outline, rear_element, exit_pupil or pixel";
+inline constexpr const char* kLightTracingNames = "weighted, off or alone";
 
 inline std::optional<CameraModel> model_named(std::string_view name) {
     if (name == "full") return CameraModel::full_lens;
@@ -33,6 +34,13 @@ inline std::optional<PupilSampling> pupil_sampling_named(std::string_view name) 
     if (name == "rear_element") return PupilSampling::rear_element;
     if (name == "exit_pupil") return PupilSampling::exit_pupil;
     if (name == "pixel") return PupilSampling::pixel;
+    return std::nullopt;
+}
+
+inline std::optional<LightTracing> light_tracing_named(std::string_view name) {
+    if (name == "weighted") return LightTracing::weighted;
+    if (name == "off") return LightTracing::off;
+    if (name == "alone") return LightTracing::alone;
     return std::nullopt;
 }
 

@@ -1193,6 +1193,7 @@ class _SettingWords(TypedDict, total=False):
     threshold_codes: float | None
     illuminant: str | float | Sequence[tuple[float, float]] | None
     pupil_sampling: str
+    light_tracing: str
 
 @final
 class RenderSettings(_Value):
@@ -1216,6 +1217,7 @@ class RenderSettings(_Value):
         threshold_codes: float | None = None,
         illuminant: str | float | Sequence[tuple[float, float]] | None = None,
         pupil_sampling: str = "outline",
+        light_tracing: str = "weighted",
     ) -> None: ...
     def with_(self, **changes: Unpack[_SettingWords]) -> RenderSettings: ...
     @property
@@ -1250,6 +1252,8 @@ class RenderSettings(_Value):
     def illuminant(self) -> str | None: ...
     @property
     def pupil_sampling(self) -> str: ...
+    @property
+    def light_tracing(self) -> str: ...
 
 class _Picture(TypedDict):
     pixels: NDArray[np.float32]

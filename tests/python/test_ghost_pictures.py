@@ -26,7 +26,8 @@ def far_lamp(tangent_x: float, tangent_y: float, distance_m: float = 1e4, bright
 def ghosts(
     scene: rc.Scene, camera: rc.Camera, spp: int = 64, device: str = "cpu", effect: str = "ghosts=0", **settings: object
 ) -> np.ndarray:
-    """(H, W, 3): what ghosts bring to the film. A point light is seen by no other sample."""
+    """(H, W, 3): what ghosts bring to the film. A point light is seen by no other sample, but for its image's own."""
+    settings = {"light_tracing": "off"} | settings
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         effects = {effect} | set(settings.pop("effects", ()))  # type: ignore[call-overload]
@@ -35,7 +36,7 @@ def ghosts(
 
 
 def lit_without_ghosts(scene: rc.Scene, camera: rc.Camera, **settings: object) -> np.ndarray:
-    image = rc.render(scene, camera, device="cpu", **{"effects": (), **settings})  # type: ignore[arg-type]
+    image = rc.render(scene, camera, device="cpu", **{"effects": (), "light_tracing": "off", **settings})  # type: ignore[arg-type]
     return image.pixels.astype(np.float64)
 
 

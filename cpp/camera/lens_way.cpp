@@ -1,0 +1,49 @@
+#include "lens_way.hpp"
+
+namespace realcam {
+
+LensWay::LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects)
+    : effects_(effects),
+      path_(lens, LightDirection::to_film, lens.wavelength_nm),
+      way_{0, path_.view().count, 1},
+      reach_(entry_reach(lens)) {
+    const double design = lens.wavelength_nm;
+    const std::vector<Crossing> way = crossings_of(lens);
+    const WavelengthRange one{design, design};
+    if (!spectrum) {
+        if (effects.coatings)
+            coatings_ = ghost_coatings(lens, way, fit_coatings<kOneWavelengthTerms>(lens, way, {design}), one);
+        return;
+    }
+    const WavelengthRange range = effects.dispersion ? spectrum->range() : one;
+    indices_ = index_cubics(lens, way, range);
+    if (effects.coatings)
+        spectral_coatings_ = ghost_coatings(lens, way,
+                                            fit_coatings<kGhostSpectrumTerms>(lens, way, spectrum->even_wavelengths(),
+                                                                              variable_over(spectrum->range())),
+                                            range);
+}
+
+GhostView LensWay::view(GhostLight light, std::int32_t pixel_samples) const {
+    const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+    const LensView<float> lens = path_.view();
+    GhostView view{};
+    view.light = light;
+    view.effects = effects_;
+    view.pixel_samples = pixel_samples;
+    view.ways = &way_;
+    view.way_count = 1;
+    view.cdf = kCdf.data();
+    view.crossing_count = lens.count;
+    view.surfaces = lens.surfaces;
+    view.coatings = data_of(coatings_);
+    view.indices = data_of(indices_);
+    view.spectral_coatings = data_of(spectral_coatings_);
+    view.film_index = 1;
+    view.reach = reach_;
+    view.iris = lens.iris;
+    view.kind = lens.kind;
+    return view;
+}
+
+}  // namespace realcam

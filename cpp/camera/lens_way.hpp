@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "../optics/ghost/ghost_coatings.hpp"
+#include "../optics/trace/lens_path.hpp"
+#include "entry_search.hpp"
+#include "film_spectrum.hpp"
+#include "ghost_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The way of light to the film that no surface reflects but mirrors. Owns the memory of its views.
+class LensWay {
+public:
+    /// `spectrum`: of a picture whose samples have wavelengths. Throws InputError where an index is not known.
+    LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects);
+
+    /// `pixel_samples`: as GhostView's.
+    GhostView view(GhostLight light, std::int32_t pixel_samples) const;
+
+    LensView<float> surfaces() const { return path_.view(); }
+
+private:
+    static constexpr std::array<float, 2> kCdf = {0, 1};
+
+    Effects effects_;
+    LensPath<float> path_;
+    GhostWay way_;
+    float reach_;
+    std::vector<IndexCubic> indices_;
+    std::vector<GhostCoating<kOneWavelengthTerms>> coatings_;
+    std::vector<GhostCoating<kGhostSpectrumTerms>> spectral_coatings_;
+};
+
+}  // namespace REALCAM_NAMESPACE

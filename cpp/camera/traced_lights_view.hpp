@@ -1,0 +1,57 @@
+#pragma once
+#include <cstdint>
+
+#include "../math/vec3.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+enum class TracedLightKind : std::int32_t { point, sun, triangles };
+
+/// A light whose image is found from its own side (trace_lights.hpp): a point light, a sun, or emitting triangles that
+/// lie near each other.
+struct TracedLight {
+    TracedLightKind kind;
+    std::int32_t first, count;  ///< of its triangles in the lists of TracedLightsView; else its number, and 1
+    Vec3f from;  ///< unit, towards its middle, in the lens's axes
+    /// Where its light enters the lens: a rectangle in the plane across `from` through the front vertex, mm.
+    /// Along the plane's line away from the lens's axis, and across it.
+    float low_along, high_along, low_across, high_across;
+    std::int32_t halvings;  ///< a sample takes it with the probability 2^-halvings
+    float probability;
+
+    REALCAM_INLINE float entry_area() const { return (high_along - low_along) * (high_across - low_across); }
+    REALCAM_INLINE bool is_entry(float along, float across) const {
+        return (along >= low_along) & (along <= high_along) & (across >= low_across) & (across <= high_across);
+    }
+};
+
+/// The lights of a scene whose images are found from their side, as one camera sees them. Others are found by samples
+/// of pixels alone.
+struct TracedLightsView {
+    const TracedLight* lights;
+    std::int32_t light_count;  ///< 0: there are none
+    const std::int32_t* turns;  ///< which light a sample takes, by the last bits of its number
+    std::int32_t turn_count;    ///< a power of two
+    const std::int32_t* triangles;  ///< area lights of the scene, light by light
+    const float* cdfs;  ///< of each light's triangles, one entry more than they are
+    std::int32_t triangle_count;
+    const std::int32_t* light_of_area;  ///< of each area light of the scene: one of `lights`, or -1
+    const float* share_of_area;  ///< probability with which a sample of its light takes it
+    std::int32_t area_count;
+    /// Samples from the lights, for one sample of each pixel, times what makes their density that of samples of pixels
+    /// (traced_light_weight), mm^2 sr.
+    float scale;
+
+    /// move(array, count) for every array.
+    template <class Move>
+    void move_arrays(Move&& move) {
+        move(lights, light_count);
+        move(turns, turn_count);
+        move(triangles, triangle_count);
+        move(cdfs, triangle_count + light_count);
+        move(light_of_area, area_count);
+        move(share_of_area, area_count);
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,33 @@
+#include "../render/kind_of.hpp"
+#include "../render/trace_lights.hpp"
+#include "bvh_scene.hpp"
+#include "cuda_error.hpp"
+#include "ghost_sums.hpp"
+
+namespace realcam {
+namespace {
+
+/// A kernel of its own, because it needs other registers than that of ghosts.
+template <SceneKind scene_kind, bool instanced, bool has_wavelengths>
+__global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_constant__ GhostJob job) {
+    if (is_stopped(job)) return;
+    BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
+    trace_lights<LensKind::any, scene_kind, has_wavelengths, 1>(job.scene, job.camera, job.ghosts, range_of(job),
+                                                                threadIdx.x, scene, GhostSplat{job});
+    count_block(job);
+}
+
+}  // namespace
+
+void launch_trace_lights(const GhostJob& job, cudaStream_t stream) {
+    const bool plain = kind_of(job.scene, job.camera) == SceneKind::plain && job.scene.instance_count == 0;
+    const bool has_wavelengths = job.ghosts.effects.have_wavelengths();
+    const auto kernel = plain ? (has_wavelengths ? trace_lights_of<SceneKind::plain, false, true>
+                                                 : trace_lights_of<SceneKind::plain, false, false>)
+                              : (has_wavelengths ? trace_lights_of<SceneKind::any, true, true>
+                                                 : trace_lights_of<SceneKind::any, true, false>);
+    kernel<<<job.block_count, kGhostBlock, 0, stream>>>(job);
+    check_cuda(cudaGetLastError(), "starting to trace lights");
+}
+
+}  // namespace realcam

@@ -1,0 +1,167 @@
+#include "light_entries.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../math/random.hpp"
+#include "splat_ghosts.hpp"
+#include "traced_light_weight.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr int kBlock = PupilTracer::kBlock;
+/// Fewer do not tell where all the others are.
+constexpr int kEnoughHits = 12;
+
+/// In the lens's own axes.
+EntryPlane plane_in_lens(Vec3f from) {
+    CameraPlacement lens{};
+    lens.right = {1, 0, 0};
+    lens.up = {0, 1, 0};
+    lens.backward = {0, 0, 1};
+    return entry_plane(lens, 0, from);
+}
+
+}  // namespace
+
+LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, const LensWay& way,
+                           const PupilTracer& tracer)
+    : scene_(scene), camera_(camera), to_film_(way.surfaces()), tracer_(tracer) {
+    find_pupil_rays();
+}
+
+void LightEntries::find_pupil_rays() {
+    constexpr int kSide = 8, kPerRing = kSide * kSide, kRings = kGhostBins;
+    static_assert(kRings * kPerRing % kBlock == 0);
+    const float half_width = std::fabs(camera_.film_middle.x) + camera_.film_half_width,
+                half_height = std::fabs(camera_.film_middle.y) + camera_.film_half_height;
+    const float film_radius = std::hypot(half_width, half_height);
+    std::vector<FoundRay> found;
+    for (int first = 0; first < kRings * kPerRing; first += kBlock) {
+        PupilTracer::Rays rays;
+        for (int k = 0; k < kBlock; ++k) {
+            const int ring = (first + k) / kPerRing, place = (first + k) % kPerRing;
+            const float radius = film_radius * (static_cast<float>(ring) + 0.5f) / kRings;
+            const PupilSample pupil =
+                sample_pupil(camera_.pupil, radius, 0, (static_cast<float>(place % kSide) + 0.5f) / kSide,
+                             (static_cast<float>(place / kSide) + 0.5f) / kSide);
+            rays.origin.set(k, {radius, 0, camera_.film_distance});
+            rays.direction.set(k, pupil.direction);
+            rays.status[k] = pupil.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        }
+        tracer_.trace(camera_.lens, rays);
+        for (int k = 0; k < kBlock; ++k) {
+            if (rays.status[k] != 0) continue;
+            FoundRay ray{};
+            set_front(rays.origin[k], normalized(rays.direction[k]), ray);
+            found.push_back(ray);
+        }
+    }
+    largest_half_tangent_ = largest_half_tangent_of(found);
+    entries_ = entries_of(found, largest_half_tangent_);
+}
+
+Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) const {
+    const Vec2f u = sample_joint_2d(0, number, 1), v = sample_joint_2d(0, number, 2);
+    const float time = v.x * splat_ghosts_detail::all_times(camera_);
+    const CameraPlacement placement = camera_at(camera_, time);
+    const auto in_lens = [&](Vec3f way) {
+        return Vec3f{dot(way, placement.right), dot(way, placement.up), dot(way, placement.backward)};
+    };
+    const std::int32_t light = group.lights[static_cast<std::size_t>(v.y * static_cast<float>(group.lights.size()))];
+    if (group.kind == TracedLightKind::sun) return in_lens(-scene_.suns[light].direction);
+    Vec3f place;
+    if (group.kind == TracedLightKind::point) {
+        place = point_light_at(scene_, scene_.points[light], time).position;
+    } else {
+        const AreaLight triangle = area_light_at(scene_, scene_.areas[light], time);
+        const Vec2f at = sample_triangle(u);
+        place = triangle.corner + at.x * triangle.edge_u + at.y * triangle.edge_v;
+    }
+    return 1000.0f * in_lens(place - front_vertex(placement, camera_.front_vertex_m));
+}
+
+LightEntries::Probe LightEntries::probe(const LightGroup& group, const TracedLight& light, const Rectangle& in,
+                                        int count) const {
+    const EntryPlane plane = plane_in_lens(light.from);
+    const float columns_per_mm = static_cast<float>(camera_.width) / (2 * camera_.film_half_width);
+    Probe probe;
+    const auto widen = [&](Rectangle& box, float along, float across) {
+        if (probe.hits == 0) box = {along, along, across, across};
+        box = {std::min(box.low_along, along), std::max(box.high_along, along), std::min(box.low_across, across),
+               std::max(box.high_across, across)};
+    };
+    for (int first = 0; first < count; first += kBlock) {
+        PupilTracer::Rays rays;
+        Vec2f at[kBlock];
+        for (int k = 0; k < kBlock; ++k) {
+            const auto number = static_cast<std::uint32_t>(first + k);
+            const Vec2f u = sample_joint_2d(0, number, 0);
+            at[k] = {in.low_along + u.x * (in.high_along - in.low_along),
+                     in.low_across + u.y * (in.high_across - in.low_across)};
+            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across, place = place_of(group, number);
+            const Vec3f way = group.kind == TracedLightKind::sun ? -place : entry - place;
+            rays.origin.set(k, entry);
+            rays.direction.set(k, normalized(way));
+            rays.status[k] = dot(way, plane.from) < 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        }
+        tracer_.trace(to_film_, rays);
+        for (int k = 0; k < kBlock; ++k) {
+            if (rays.status[k] != 0) continue;
+            const Vec3f o = rays.origin[k], d = rays.direction[k];
+            const float way = (camera_.film_distance - o.z) / d.z;
+            const Vec2f film = {o.x + way * d.x - camera_.film_middle.x, o.y + way * d.y - camera_.film_middle.y};
+            // A pixel more, for what other wavelengths and diffraction bring there.
+            if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
+                !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
+                continue;
+            widen(probe.entries, at[k].x, at[k].y);
+            widen(probe.film, columns_per_mm * film.x, columns_per_mm * film.y);
+            ++probe.hits;
+        }
+    }
+    return probe;
+}
+
+std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
+    TracedLight light{};
+    light.kind = group.kind;
+    Vec3f middle = {0, 0, 0};
+    for (std::uint32_t k = 0; k < 8; ++k) middle = middle + place_of(group, k);
+    if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
+    light.from = normalized(middle);
+    const float sine = std::hypot(light.from.x, light.from.y), half_tangent = sine / (1 - light.from.z);
+    if (!(half_tangent < 1.5f * largest_half_tangent_)) return std::nullopt;
+    const int bin = std::min(static_cast<int>(half_tangent / largest_half_tangent_ * kGhostBins), kGhostBins - 1);
+    const GhostEntry& entry = entries_[static_cast<std::size_t>(bin)];
+    const float reach = 2 * std::max(entry.high - entry.low, 2 * entry.half_width),
+                at = 0.5f * (entry.low + entry.high);
+    // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
+    Rectangle in = {at - reach, at + reach, -reach, reach};
+    Probe found;
+    for (const int rays : {kBlock, 4 * kBlock, 4 * kBlock}) {
+        found = probe(group, light, in, rays);
+        if (found.hits == 0 && rays == kBlock) continue;
+        if (found.hits == 0) return std::nullopt;
+        // A margin for what lies between the rays.
+        const auto widened = [&](float low, float high, float whole) {
+            const float margin = std::max(high - low, whole / std::sqrt(static_cast<float>(rays))) *
+                                 (found.hits < kEnoughHits ? 1.0f : 0.1f);
+            return std::pair(low - margin, high + margin);
+        };
+        const Rectangle& box = found.entries;
+        const auto [low, high] = widened(box.low_along, box.high_along, in.high_along - in.low_along);
+        const auto [left, right] = widened(box.low_across, box.high_across, in.high_across - in.low_across);
+        in = {low, high, left, right};
+    }
+    light.low_along = in.low_along;
+    light.high_along = in.high_along;
+    light.low_across = in.low_across;
+    light.high_across = in.high_across;
+    const double wide = static_cast<double>(found.film.high_along - found.film.low_along),
+                 high = static_cast<double>(found.film.high_across - found.film.low_across);
+    return FoundLight{light, (wide + 1) * (high + 1)};
+}
+
+}  // namespace realcam

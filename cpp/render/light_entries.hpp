@@ -1,0 +1,49 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "../camera/entry_search.hpp"
+#include "../camera/lens_way.hpp"
+#include "light_groups.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A light with its rectangle of entries.
+struct FoundLight {
+    TracedLight light;
+    double pixels;  ///< of the film, that its light covers
+};
+
+/// Looks for where the light of lamps enters the lens, by rays from them: first about where rays of the pupil leave the
+/// lens in their direction, then in the rectangle that holds what was found.
+class LightEntries {
+public:
+    LightEntries(const SceneView& scene, const CameraView& camera, const LensWay& way, const PupilTracer& tracer);
+
+    /// Nothing where no light of the group reaches the film.
+    std::optional<FoundLight> of(const LightGroup& group) const;
+
+private:
+    struct Rectangle {
+        float low_along, high_along, low_across, high_across;
+    };
+    /// What rays through a rectangle have found.
+    struct Probe {
+        int hits = 0;
+        Rectangle entries{}, film{};  ///< mm; pixels
+    };
+
+    void find_pupil_rays();
+    /// A place of the group in the lens's frame, mm; of a sun the direction towards it.
+    Vec3f place_of(const LightGroup& group, std::uint32_t number) const;
+    Probe probe(const LightGroup& group, const TracedLight& light, const Rectangle& in, int rays) const;
+
+    const SceneView& scene_;
+    const CameraView& camera_;
+    LensView<float> to_film_;
+    const PupilTracer& tracer_;
+    GhostEntries entries_{};
+    float largest_half_tangent_ = 0;
+};
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,95 @@
+#include "light_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "../scene/light.hpp"
+
+namespace realcam {
+namespace {
+
+/// Of the pupil's rays from one film point, spread over the distance of a lamp: the share that meet it. Where more do,
+/// samples of pixels have less noise than samples from the lamp would.
+constexpr double kLargestShare = 0.25;
+/// Size of a group over the circle that one film point sees at its distance.
+constexpr double kLargestSize = 0.7;
+
+class Grouping {
+public:
+    Grouping(const SceneView& scene, const CameraView& camera)
+        : scene_(scene), camera_(camera), front_(front_vertex(camera, camera.front_vertex_m)) {}
+
+    std::vector<LightGroup> all() && {
+        if (scene_.light_node_count > 0) look_at(0);
+        for (std::int32_t i = 0; i < scene_.sun_count; ++i) groups_.push_back({TracedLightKind::sun, {i}});
+        return std::move(groups_);
+    }
+
+private:
+    /// Radius of what a point in the middle of the film sees at the distance of a place, m.
+    double blur_m(Vec3f place) const {
+        const double distance = static_cast<double>(length(place - front_)), mm = 1000 * distance;
+        return 1e-3 *
+               std::fabs(static_cast<double>(camera_.circle.rim) + mm * static_cast<double>(camera_.circle.rim_slope));
+    }
+
+    /// Whether light leaves the triangle towards some place of the lens's front.
+    bool shines(const AreaLight& light) const {
+        if (light.is_two_sided || light.instance != kNoInstance || camera_.key_count > 0) return true;
+        const double reach_m = 2e-3 * std::fabs(static_cast<double>(camera_.circle.rim));
+        return static_cast<double>(dot(front_ - light.corner, light.normal)) > -reach_m;
+    }
+
+    void look_at(std::int32_t at) {
+        const LightNode& node = scene_.light_nodes[at];
+        const double size = static_cast<double>(length(node.high - node.low)),
+                     blur = blur_m(0.5f * (node.low + node.high));
+        const bool is_small = size < 2 * kLargestSize * blur;
+        if (!is_small && node.second_child > 0) {
+            look_at(at + 1);
+            look_at(node.second_child);
+            return;
+        }
+        LightGroup group{TracedLightKind::triangles, {}};
+        double area = 0;  // as the lens sees it, m^2
+        collect(at, group, area);
+        if (is_small && area < kLargestShare * std::numbers::pi * blur * blur && !group.lights.empty())
+            groups_.push_back(std::move(group));
+    }
+
+    void collect(std::int32_t at, LightGroup& group, double& area) {
+        const LightNode& node = scene_.light_nodes[at];
+        if (node.second_child > 0) {
+            collect(at + 1, group, area);
+            collect(node.second_child, group, area);
+            return;
+        }
+        for (const std::int32_t light : {-1 - node.second_child, node.partner}) {
+            if (light < 0) continue;
+            if (light < scene_.point_count) {
+                groups_.push_back({TracedLightKind::point, {light}});
+                continue;
+            }
+            const AreaLight& triangle = scene_.areas[light - scene_.point_count];
+            if (!shines(triangle)) continue;
+            group.lights.push_back(light - scene_.point_count);
+            const float cosine = dot(normalized(front_ - triangle.corner), triangle.normal);
+            area += static_cast<double>(triangle.area *
+                                        (triangle.is_two_sided ? std::fabs(cosine) : std::max(cosine, 0.0f)));
+        }
+    }
+
+    const SceneView& scene_;
+    const CameraView& camera_;
+    Vec3f front_;
+    std::vector<LightGroup> groups_;
+};
+
+}  // namespace
+
+std::vector<LightGroup> light_groups(const SceneView& scene, const CameraView& camera) {
+    return Grouping(scene, camera).all();
+}
+
+}  // namespace realcam

@@ -1,0 +1,20 @@
+#pragma once
+#include <vector>
+
+#include "../camera/camera_view.hpp"
+#include "../camera/traced_lights_view.hpp"
+#include "../scene/scene_view.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Lights that are traced together: one point or sun, or area lights of the scene.
+struct LightGroup {
+    TracedLightKind kind;
+    std::vector<std::int32_t> lights;  ///< numbers among those of their kind
+};
+
+/// All points and suns, and those emitters that are so small, or so far out of focus, that a ray from the film meets
+/// them seldom. Emitters near each other, as those of a lamp, are together.
+std::vector<LightGroup> light_groups(const SceneView& scene, const CameraView& camera);
+
+}  // namespace REALCAM_NAMESPACE

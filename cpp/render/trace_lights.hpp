@@ -1,0 +1,136 @@
+#pragma once
+#include "splat_ghosts.hpp"
+#include "traced_light_weight.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// Images of lights, from the lights on: from a place on a light through a place where its light enters the lens to
+// wherever on the film it ends (light tracing). A lamp out of focus covers a large disc of the film, of which each
+// point sees it in a small part of the pupil only: samples of pixels seldom meet it, samples from the lamp always light
+// the disc.
+
+namespace trace_lights_detail {
+
+using splat_ghosts_detail::GhostSamples;
+
+/// Pairs of the random sequence of a light.
+namespace traced_dimension {
+inline constexpr std::uint32_t entry = 0, place = 1, time = 2;
+}
+
+/// A place on a light, as one entry sees it.
+struct TracedPlace {
+    LightSample sample;  ///< irradiance over the density of the place
+    float traced = 0;  ///< traced_samples, without the entry's cosine; 0: nothing else finds it
+    bool is_met = false;  ///< by samples of pixels
+};
+
+template <SceneKind scene_kind>
+REALCAM_INLINE TracedPlace place_on(const SceneView& scene, const TracedLightsView& lights, std::int32_t number,
+                                    const TracedLight& light, Vec3f entry, float time, Vec2f u) {
+    if (light.kind == TracedLightKind::sun) {
+        const SunLight& sun = scene.suns[light.first];
+        return {{-sun.direction, kFarAway, 1.0f, sun.illuminance, kDelta}};
+    }
+    if (light.kind == TracedLightKind::point) {
+        if constexpr (scene_kind == SceneKind::any)
+            return {sample_point_light(point_light_at(scene, scene.points[light.first], time), entry)};
+        return {sample_point_light(scene.points[light.first], entry)};
+    }
+    const CdfChoice chosen = choose_from_cdf(lights.cdfs + light.first + number, light.count, u.x);
+    const std::int32_t area = lights.triangles[light.first + chosen.index];
+    AreaLight triangle = scene.areas[area];
+    if constexpr (scene_kind == SceneKind::any) triangle = area_light_at(scene, triangle, time);
+    const LightSample sample = sample_area_light<scene_kind>(scene, triangle, entry, {chosen.fresh, u.y});
+    TracedPlace place{sample, 0, true};
+    place.sample.irradiance = (1.0f / chosen.probability) * sample.irradiance;
+    // Its density per steradian has the cosine and the distance in it.
+    if (sample.pdf < kDelta)
+        place.traced = lights.scale * light.probability * chosen.probability * sample.pdf / light.entry_area();
+    return place;
+}
+
+/// Takes the light, its place and its entry for each sample, and sends the light there.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& camera, std::uint32_t round,
+                                      std::uint32_t first, float pixel_area, GhostSamples<N>& samples) {
+    const TracedLightsView& lights = camera.traced_lights;
+    for (int i = 0; i < N; ++i) {
+        const std::uint32_t number = first + static_cast<std::uint32_t>(i);
+        const std::int32_t at = lights.turns[number & static_cast<std::uint32_t>(lights.turn_count - 1)];
+        const TracedLight light = lights.lights[at];
+        const std::uint32_t stream = hash32(static_cast<std::uint32_t>(at), round), sample = number >> light.halvings;
+        const Vec2f u = sample_joint_2d(stream, sample, traced_dimension::entry);
+        CameraPlacement placement = camera;
+        if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, samples.time[i]);
+        const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light.from);
+        const float along = light.low_along + u.x * (light.high_along - light.low_along),
+                    across = light.low_across + u.y * (light.high_across - light.low_across);
+        const Vec3f entry = plane.middle + (0.001f * along) * plane.along + (0.001f * across) * plane.across;
+        const TracedPlace place = place_on<scene_kind>(view, lights, at, light, entry, samples.time[i],
+                                                       sample_joint_2d(stream, sample, traced_dimension::place));
+        const float cosine = dot(place.sample.direction, plane.from);
+        samples.rays.status[i] = static_cast<int>(RayStatus::vignetted);
+        if (is_black(place.sample.irradiance) || !(cosine > 0.0f)) continue;
+        samples.rays.status[i] = 0;
+        // Of 1 / (1 + 1 / r^2), for any r.
+        const float weight = place.is_met ? 1.0f - mis_weight(1.0f, quotient(place.traced, cosine)) : 1.0f;
+        const float scale = weight * cosine * light.entry_area() / (pixel_area * light.probability);
+        samples.color.set(i, bounded_light(scale * place.sample.irradiance));
+        const auto in_lens = [&](Vec3f scene) {
+            return Vec3f{dot(scene, placement.right), dot(scene, placement.up), dot(scene, placement.backward)};
+        };
+        samples.rays.origin.set(i, in_lens(along * plane.along + across * plane.across));
+        samples.rays.direction.set(i, -in_lens(place.sample.direction));
+        const bool is_near = place.sample.distance < kFarAway;
+        samples.shadow.origin.set(i, entry);
+        samples.shadow.direction.set(i,
+                                     is_near ? place.sample.distance * place.sample.direction : place.sample.direction);
+        samples.shadow.far[i] = is_near ? (place.sample.reach > 0.0f ? place.sample.reach : 0.0f) : kFarAway;
+    }
+}
+
+}  // namespace trace_lights_detail
+
+/// splat_ghosts for the images of lights. All lights take the same way through the lens, so that each sample of a block
+/// has a light of its own.
+template <LensKind lens_kind, SceneKind scene_kind, bool has_wavelengths, int N, class SceneT, class Splat>
+REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& camera, const GhostView& way,
+                                    GhostRange range, std::uint32_t first, SceneT&& scene, Splat&& splat) {
+    using namespace splat_ghosts_detail;
+    using namespace trace_lights_detail;
+    const auto block = static_cast<std::uint32_t>(range.first_block);
+    const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
+    const std::uint32_t first_sample = block * kGhostBlock + first;
+    const TracedLightsView& lights = camera.traced_lights;
+    GhostSamples<N> samples;
+    for (int i = 0; i < N; ++i) {
+        const std::uint32_t number = first_sample + static_cast<std::uint32_t>(i);
+        samples.number[i] = hash32(round, number);
+        samples.time[i] = samples.place[i] = samples.variable[i] = 0;
+        samples.light_density[i] = kDelta;
+        if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
+            const std::int32_t at = lights.turns[number & static_cast<std::uint32_t>(lights.turn_count - 1)];
+            const Vec2f u = sample_joint_2d(hash32(static_cast<std::uint32_t>(at), round),
+                                            number >> lights.lights[at].halvings, traced_dimension::time);
+            if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * all_times(camera);
+            if constexpr (has_wavelengths) {
+                samples.place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
+                samples.variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, samples.place[i]));
+            }
+        }
+    }
+    const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
+                             (static_cast<float>(camera.width) * static_cast<float>(camera.height));
+    send_traced_light<scene_kind>(view, camera, round, first_sample, pixel_area, samples);
+    PassedPower<N> passed;
+    pass_ghost_way<lens_kind, has_wavelengths>(way, way.ways[0], samples.rays, samples.variable, passed);
+    Lanes<std::int32_t, N> pixel, hidden;
+    reach_film<scene_kind, has_wavelengths>(camera, way, round, first_sample, passed, samples, pixel);
+    scene.occluded(samples.shadow, hidden);
+    for (int i = 0; i < N; ++i)
+        if (samples.shadow.active[i] && !hidden[i])
+            splat(pixel[i], samples.color[i], unit_float(hash32(samples.number[i])));
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,72 @@
+#pragma once
+#include "../camera/camera_view.hpp"
+#include "../math/sampling.hpp"
+#include "../scene/light.hpp"
+#include "../scene/surface_point.hpp"
+#include "path_state.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+// The image of a light is found by samples of pixels that meet the light, and by samples from the light on
+// (trace_lights.hpp). Both know a way of light by its place on the light and the place where it enters the lens. What
+// either finds is weighted by the densities of both there (Veach and Guibas 1995). For samples of pixels a mean density
+// serves: any weights are right that both compute alike.
+
+/// The plane in which a light's rectangle of entries lies. Axes in the scene, all unit.
+struct EntryPlane {
+    Vec3f from, along, across;
+    Vec3f middle;  ///< the lens's front vertex
+};
+
+REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front_vertex_m, Vec3f from) {
+    const float sine = sqrt_or_zero(from.x * from.x + from.y * from.y);
+    const bool is_oblique = sine > 0.0f;
+    const float inverse = quotient(1.0f, select(is_oblique, sine, 1.0f));
+    const Vec2f away = {select(is_oblique, from.x * inverse, 1.0f), from.y * inverse};
+    const auto in_scene = [&](Vec3f lens) {
+        return lens.x * camera.right + lens.y * camera.up + lens.z * camera.backward;
+    };
+    return {in_scene(from), in_scene({-from.z * away.x, -from.z * away.y, sine}), in_scene({-away.y, away.x, 0.0f}),
+            front_vertex(camera, front_vertex_m)};
+}
+
+/// How many samples from the light on, for one sample of each pixel that goes this way. `cosine`, `distance`: at the
+/// light's surface, of the way to the entry, m; `entry_cosine`: with the light's plane of entries; `pdf`: with which
+/// samples of the light take the place, per square metre.
+REALCAM_INLINE float traced_samples(const TracedLightsView& lights, const TracedLight& light, float pdf, float cosine,
+                                    float distance, float entry_cosine) {
+    return quotient(lights.scale * light.probability * pdf * distance * distance,
+                    light.entry_area() * cosine * entry_cosine);
+}
+
+/// What counts of an emitter's light that a ray meets straight from the film.
+template <SceneKind scene_kind, int N>
+REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView& camera, const PathState<N>& path,
+                                       int place, Hit hit, const SurfacePoint& point) {
+    const TracedLightsView& lights = camera.traced_lights;
+    if (lights.light_count == 0) return 1.0f;
+    const std::int32_t area = area_light_of(scene, hit), number = lights.light_of_area[area];
+    if (number < 0) return 1.0f;
+    const TracedLight light = lights.lights[number];
+    const float time = time_of<scene_kind>(path, place);
+    CameraPlacement placement = camera;
+    float area_m2 = scene.areas[area].area;
+    if constexpr (scene_kind == SceneKind::any) {
+        placement = camera_at(camera, time);
+        area_m2 = area_light_at(scene, scene.areas[area], time).area;
+    }
+    const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light.from);
+    const Vec3f direction = path.rays.direction[place];
+    const float entry_cosine = dot(direction, plane.from);
+    if (!(entry_cosine > 0.0f)) return 1.0f;
+    // From the light, because the ray may have begun anywhere on its way.
+    const float distance = dot(point.position - plane.middle, plane.from) / entry_cosine;
+    const Vec3f entry = point.position - distance * direction - plane.middle;
+    if (!(distance > 0.0f) || !light.is_entry(1000.0f * dot(entry, plane.along), 1000.0f * dot(entry, plane.across)))
+        return 1.0f;
+    const float cosine = std::fabs(dot(direction, point.geometric_normal));
+    return mis_weight(
+        1.0f, traced_samples(lights, light, lights.share_of_area[area] / area_m2, cosine, distance, entry_cosine));
+}
+
+}  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,161 @@
+#include "traced_lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "../math/append_cdf.hpp"
+#include "../math/color.hpp"
+#include "../math/random.hpp"
+#include "light_entries.hpp"
+
+namespace realcam {
+namespace {
+
+/// Samples of a light for each pixel that its light covers and each sample of that pixel.
+constexpr double kSamplesPerPixel = 1.5;
+constexpr std::int32_t kMostOften = 2, kLeastOften = 64;  ///< samples of pixels for one from the lights
+constexpr int kMostHalvings = 12;
+
+/// Powers of two whose sum is 1, near these weights.
+std::vector<int> halvings_of(const std::vector<double>& weights) {
+    double sum = 0;
+    for (const double weight : weights) sum += weight;
+    std::vector<int> halvings;
+    std::int64_t left = std::int64_t{1} << kMostHalvings;
+    for (const double weight : weights) {
+        const int count = static_cast<int>(std::ceil(std::log2(sum / weight)));
+        halvings.push_back(std::clamp(count, 0, kMostHalvings));
+        left -= std::int64_t{1} << (kMostHalvings - halvings.back());
+    }
+    const auto lacks = [&](std::size_t i) { return weights[i] * std::exp2(halvings[i]); };
+    // Too much, because those that would get less than the least get that: the largest give.
+    while (left < 0) {
+        std::size_t richest = halvings.size();
+        for (std::size_t i = 0; i < halvings.size(); ++i)
+            if (halvings[i] < kMostHalvings && (richest == halvings.size() || lacks(i) < lacks(richest))) richest = i;
+        left += std::int64_t{1} << (kMostHalvings - ++halvings[richest]);
+    }
+    while (left > 0) {
+        std::size_t poorest = halvings.size();
+        for (std::size_t i = 0; i < halvings.size(); ++i)
+            if (std::int64_t{1} << (kMostHalvings - halvings[i]) <= left &&
+                (poorest == halvings.size() || lacks(i) > lacks(poorest)))
+                poorest = i;
+        left -= std::int64_t{1} << (kMostHalvings - halvings[poorest]--);
+    }
+    return halvings;
+}
+
+}  // namespace
+
+TracedLights::TracedLights(const SceneView& scene, const CameraView& camera, const LensWay& way, LightTracing tracing,
+                           const PupilTracer& tracer) {
+    std::vector<LightGroup> groups = light_groups(scene, camera);
+    if (groups.empty()) return;
+    const LightEntries entries(scene, camera, way, tracer);
+    std::vector<std::optional<FoundLight>> found(groups.size());
+    tracer.for_each(static_cast<int>(groups.size()), [&](int i) {
+        const auto k = static_cast<std::size_t>(i);
+        found[k] = entries.of(groups[k]);
+    });
+    std::vector<std::size_t> seen;
+    for (std::size_t k = 0; k < groups.size(); ++k)
+        if (found[k]) seen.push_back(k);
+    // Those whose light covers most come first; a film has no more turns than there are of these.
+    std::stable_sort(seen.begin(), seen.end(),
+                     [&](std::size_t a, std::size_t b) { return found[a]->pixels > found[b]->pixels; });
+    seen.resize(std::min<std::size_t>(seen.size(), std::size_t{1} << kMostHalvings));
+    if (seen.empty()) return;
+
+    double covered = 0;
+    std::vector<double> weights;
+    for (const std::size_t k : seen) {
+        covered += found[k]->pixels;
+        weights.push_back(found[k]->pixels);
+    }
+    const double pixels = static_cast<double>(camera.width) * camera.height;
+    pixel_samples_ = static_cast<std::int32_t>(
+        std::clamp(std::round(pixels / (kSamplesPerPixel * covered)), double{kMostOften}, double{kLeastOften}));
+    const std::vector<int> halvings = halvings_of(weights);
+
+    const double radius = static_cast<double>(camera.thick.exit_pupil_radius),
+                 distance = static_cast<double>(camera.thick.exit_pupil_distance);
+    const double film_area =
+        4 * static_cast<double>(camera.film_half_width) * static_cast<double>(camera.film_half_height);
+    scale_ = static_cast<float>(film_area * std::numbers::pi * radius * radius /
+                                (radius * radius + distance * distance) / pixel_samples_);
+    if (tracing == LightTracing::alone) scale_ = std::numeric_limits<float>::infinity();
+    light_of_area_.assign(static_cast<std::size_t>(scene.area_count), -1);
+    share_of_area_.assign(light_of_area_.size(), 0);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        TracedLight light = found[seen[i]]->light;
+        light.halvings = halvings[i];
+        light.probability = std::exp2(static_cast<float>(-halvings[i]));
+        add(scene, groups[seen[i]], light);
+    }
+    set_turns();
+}
+
+void TracedLights::add(const SceneView& scene, const LightGroup& group, TracedLight light) {
+    light.first = group.lights.front();
+    light.count = 1;
+    if (group.kind == TracedLightKind::triangles) {
+        light.first = static_cast<std::int32_t>(triangles_.size());
+        light.count = static_cast<std::int32_t>(group.lights.size());
+        std::vector<double> powers;
+        for (const std::int32_t area : group.lights)
+            powers.push_back(static_cast<double>(scene.areas[area].area * luminance(scene.areas[area].radiance)));
+        const std::size_t begin = cdfs_.size();
+        append_cdf(powers, cdfs_);
+        for (std::size_t k = 0; k < group.lights.size(); ++k) {
+            const auto area = static_cast<std::size_t>(group.lights[k]);
+            light_of_area_[area] = static_cast<std::int32_t>(lights_.size());
+            share_of_area_[area] = cdfs_[begin + k + 1] - cdfs_[begin + k];
+        }
+        triangles_.insert(triangles_.end(), group.lights.begin(), group.lights.end());
+    } else {
+        cdfs_.push_back(0);  // so that a light's table begins behind its triangles' and its own number
+    }
+    lights_.push_back(light);
+}
+
+void TracedLights::set_turns() {
+    std::vector<std::int32_t> order(lights_.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto halvings = [&](std::int32_t light) { return lights_[static_cast<std::size_t>(light)].halvings; };
+    // So each light's interval begins at a multiple of its length, and the last bits of a sample's number tell it.
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::int32_t a, std::int32_t b) { return halvings(a) < halvings(b); });
+    const int bits = halvings(order.back());
+    turns_.resize(std::size_t{1} << bits);
+    std::uint32_t at = 0;
+    for (const std::int32_t light : order)
+        for (std::uint32_t end = at + (1u << (bits - halvings(light))); at < end; ++at)
+            turns_[bits > 0 ? reverse_bits(at) >> (32 - bits) : 0] = light;
+}
+
+TracedLightsView TracedLights::view() const {
+    const auto size = [](const auto& list) { return static_cast<std::int32_t>(list.size()); };
+    return {lights_.data(), size(lights_),    turns_.data(),         size(turns_),          triangles_.data(),
+            cdfs_.data(),   size(triangles_), light_of_area_.data(), share_of_area_.data(), size(light_of_area_),
+            scale_};
+}
+
+TracedLights traced_lights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
+                           LightTracing tracing, const PupilTracer& tracer) {
+    const bool has_way = camera.model == CameraModel::full_lens || camera.model == CameraModel::full_lens_double;
+    if (!has_way || tracing == LightTracing::off || (scene.light_node_count == 0 && scene.sun_count == 0)) return {};
+    return TracedLights(scene, camera, setup.effects().lens_way(), tracing, tracer);
+}
+
+std::vector<GhostView> splatted_lights(const CameraSetup& setup, const TracedLights& lights) {
+    std::vector<GhostView> views = setup.effects().splats();
+    if (!lights.empty()) views.push_back(setup.effects().lens_way().view(GhostLight::direct, lights.pixel_samples()));
+    return views;
+}
+
+}  // namespace realcam

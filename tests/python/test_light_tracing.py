@@ -1,0 +1,183 @@
+"""Images of lights that samples from the lights find: their energy, their discs, and the same picture as without.
+
+What is right is a closed form, rays in double precision, and samples of pixels alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import realcam as rc
+
+from ..measurement import Measurement, hold
+from . import scenes
+
+FILM = rc.Film(24, 16, (48, 32))
+
+
+def camera(lens: rc.Lens | None = None, film: rc.Film = FILM, **more: object) -> rc.Camera:
+    lens = lens or rc.Lens.load("double-gauss-50mm").focused(1.0).stopped_down(2.8)
+    return rc.Camera(lens, film=film, exposure_time_s=1, **more)
+
+
+def behind() -> rc.Scene:
+    """The one triangle that a scene must have, where nobody looks."""
+    return rc.Scene.from_arrays(np.array([[0.0, 0.0, 1e5], [1.0, 0.0, 1e5], [0.0, 1.0, 1e5]]), [[0, 1, 2]])
+
+
+def photograph(scene: rc.Scene, at: rc.Camera, tracing: str, device: str, **settings: object) -> np.ndarray:
+    """(H, W, 3)."""
+    settings = {"effects": (), "spp": 64, "max_bounces": 0} | settings
+    image = rc.render(scene, at, light_tracing=tracing, device=device, **settings)  # type: ignore[arg-type]
+    return image.pixels.astype(np.float64)
+
+
+def stop_in_front(radius_mm: float, film_shift_mm: float) -> rc.Lens:
+    """A singlet whose stop is its entrance pupil; the film is beside the focus."""
+    surfaces = [
+        rc.Stop(clear_semi_diameter_mm=radius_mm, thickness_mm=0),
+        rc.Surface(radius_of_curvature_mm=120, thickness_mm=4, material=1.6, clear_semi_diameter_mm=15),
+        rc.Surface(radius_of_curvature_mm=-120, clear_semi_diameter_mm=15),
+    ]
+    lens = rc.Lens(surfaces=surfaces, film_distance_mm=40.0)
+    focus = lens.first_order().back_focal_distance_mm
+    return rc.Lens(surfaces=surfaces, film_distance_mm=focus + film_shift_mm)
+
+
+def flux(picture: np.ndarray, film: rc.Film) -> float:
+    """Lumens on the film."""
+    width, height = film.resolution
+    return float(picture[..., 1].sum()) * film.width_mm * film.height_mm / (width * height) * 1e-6
+
+
+def test_all_light_of_a_point_in_the_stop_reaches_the_film(device: str, backend: str) -> None:
+    """Its luminous intensity times the solid angle of the stop, wherever it stands: closed form."""
+    worst = 0.0
+    for distance_m, tangent in ((0.3, 0.0), (2.0, 0.05), (1e3, -0.1)):
+        place = (tangent * distance_m, 0.5 * tangent * distance_m, -distance_m)
+        lens = stop_in_front(2.0, 5.0)
+        film = rc.Film(36, 24, (72, 48))
+        scene = behind().with_point_light(place, (1e6 * distance_m**2,) * 3)
+        at = camera(lens, film, position=(0, 0, 1e-3 * lens.film_position_mm))
+        got = flux(photograph(scene, at, "weighted", device, spp=256), film)
+        # The mean over the stop of 1 / r^2 times the cosine: a series in the stop's radius, whose next term is 1e-9.
+        r2 = float(np.dot(place, place))
+        cosine = distance_m / math.sqrt(r2)
+        want = 1e6 * distance_m**2 * cosine / r2 * math.pi * 2e-3**2
+        worst = max(worst, abs(got / want - 1))
+    # Quasi-random samples of a circle in a square: some 1e5, whose error is about 1e-3.
+    hold(Measurement("Effects", "light of a point through a stop in front", "closed form, 0.3 m to 1 km", backend,
+                     "float32", worst, 3e-3, "relative"))  # fmt: skip
+
+
+def test_a_point_out_of_focus_is_an_even_disc(device: str, backend: str) -> None:
+    """A slow lens has no aberrations to speak of: the flux over the area of the stop's shadow."""
+    lens, film = stop_in_front(1.0, 20.0), rc.Film(1.2, 0.8, (36, 24))
+    scene = behind().with_point_light((0, 0, -1e3), (1e12,) * 3)
+    at = camera(lens, film, position=(0, 0, 1e-3 * lens.film_position_mm))
+    picture = photograph(scene, at, "weighted", device, spp=4096)[..., 1]
+    columns, rows = np.meshgrid(np.arange(36) + 0.5 - 18, np.arange(24) + 0.5 - 12)
+    radius_mm = 20.0 / lens.first_order().effective_focal_length_mm
+    inside = np.hypot(columns, rows) * (1.2 / 36) < radius_mm - 0.05
+    want = 1e12 / 1e6 * math.pi * 1e-6 / (math.pi * (radius_mm * 1e-3) ** 2)
+    hold(Measurement("Effects", "disc of a point out of focus", "a stop of 1 mm, 20 mm beside the focus", backend,
+                     "float32", float(np.abs(picture[inside] / want - 1).max()), 5e-3, "relative"))  # fmt: skip
+
+
+def lamps(*places: tuple[float, float, float], radius: float = 0.004, radiance: float = 1e5) -> rc.Scene:
+    """Squares that face the camera at the origin, which looks to -z."""
+    return scenes.scene_of(*(scenes.quad(place, radius, emission=radiance) for place in places))
+
+
+def occluded() -> rc.Scene:
+    return scenes.scene_of(
+        scenes.quad((0, 0, -4), 0.006, emission=1e5),
+        scenes.quad((0.0155, 0, -2), 0.01),
+    )
+
+
+def veiled() -> rc.Scene:
+    veil = rc.Material(diffuse=(0, 0, 0), opacity=0.4)
+    corners, _ = scenes.quad((0, 0, -2), 0.2)
+    return scenes.scene_of(scenes.quad((0, 0, -4), 0.006, emission=1e5), (corners, veil))
+
+
+def moving() -> rc.Scene:
+    """A lamp that crosses a part of the picture while the shutter is open."""
+    begin, end = np.eye(4), np.eye(4)
+    end[:3, 3] = (0.4, 0.1, 0)
+    return behind().with_instance(lamps((0, 0, -4)), begin, name="lamp").moved("lamp", [begin, end], times_s=[0, 1])
+
+
+CASES: dict[str, tuple[Callable[[], rc.Scene], dict[str, object], dict[str, object]]] = {
+    "on the axis": (lambda: lamps((0, 0, -4)), {}, {}),
+    "at the frame's edge": (lambda: lamps((0.95, 0.6, -4), (-0.95, 0, -4)), {}, {}),
+    "in the near field": (lambda: lamps((0.01, 0.005, -0.3), radius=0.0006), {}, {}),
+    "in focus": (lambda: lamps((0.05, 0, -1), radius=0.002), {}, {}),
+    "a large one": (lambda: lamps((0.05, 0, -4), radius=0.3), {}, {}),
+    "1e8 brighter": (lambda: lamps((0, 0, -4), radiance=1e13), {}, {}),
+    "a hundred": (
+        lambda: lamps(*((0.1 * x, 0.1 * y, -4 - 0.1 * x) for x in range(-5, 5) for y in range(-5, 5))),
+        {},
+        {},
+    ),
+    "behind an edge": (occluded, {}, {}),
+    "behind a veil": (veiled, {}, {}),
+    "moving": (moving, {}, {}),
+    "from a moving camera": (
+        lambda: lamps((0.3, 0, -4)),
+        {
+            "position": (0, 0, 0),
+            "motion": [(0, (0, 0, 0), (0, 0, -1)), (1, (0.2, 0, 0), (0.1, 0, -1))],
+            "readout_time_s": 0.5,
+        },
+        {},
+    ),
+    "dispersion": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("dispersion",)}),
+    "coatings": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("coatings",)}),
+    "diffraction": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("diffraction",)}),
+    "all effects": (lambda: lamps((0.4, 0.2, -4)), {}, {"effects": ("dispersion", "coatings", "diffraction")}),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_all_techniques_see_the_same(case: str, device: str) -> None:
+    make, more, settings = CASES[case]
+    at, scene = camera(**({"position": (0, 0, 0)} | more)), make()
+    seeds = range(8)
+
+    def blocks(tracing: str, spp: int) -> np.ndarray:
+        """(seeds, 6 x 4 x 3): means over blocks of the film."""
+        pictures = [photograph(scene, at, tracing, device, seed=seed, spp=spp, **settings) for seed in seeds]
+        return np.stack([p.reshape(4, 8, 6, 8, 3).mean(axis=(1, 3)).ravel() for p in pictures])
+
+    alone = blocks("off", 256)
+    for tracing in ("weighted", "alone"):
+        other = blocks(tracing, 64)
+        error = np.sqrt((alone.var(axis=0) + other.var(axis=0)) / (len(seeds) - 1))
+        lit = alone.mean(axis=0) > 1e-6 * alone.mean()
+        difference = np.abs(alone.mean(axis=0) - other.mean(axis=0))
+        # Student's t with some seven degrees of freedom, in 72 blocks: above 7 once in a thousand tests. Float32 and
+        # the unit of the sums add what is left.
+        assert (difference <= 7 * error + 1e-5 * alone.mean(axis=0).max()).all(), (
+            case,
+            tracing,
+            difference[lit] / error[lit],
+        )
+
+
+@pytest.mark.parametrize(
+    ("case", "share"),
+    # Out of focus each film sample meets the lamp one time in some hundred, while each sample from the lamp counts.
+    [("on the axis", 0.05), ("a hundred", 0.1), ("behind an edge", 0.1), ("in focus", 1.05), ("a large one", 1.05)],
+)
+def test_noise_falls_where_lamps_are_out_of_focus_and_nowhere_rises(case: str, share: float, device: str) -> None:
+    scene, at = CASES[case][0](), camera(position=(0, 0, 0))
+
+    def variance(tracing: str) -> float:
+        return float(np.var([photograph(scene, at, tracing, device, spp=16, seed=s) for s in range(24)], axis=0).sum())
+
+    assert variance("weighted") <= share * variance("off")
