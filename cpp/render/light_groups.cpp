@@ -11,9 +11,9 @@ namespace {
 
 /// Of the pupil's rays from one film point, spread over the distance of a lamp: the share that meet it. Where more do,
 /// samples of pixels have less noise than samples from the lamp would.
-constexpr double kLargestShare = 0.25;
+constexpr double kLargestShare = 0.8;
 /// Size of a group over the circle that one film point sees at its distance.
-constexpr double kLargestSize = 0.7;
+constexpr double kLargestSize = 1.0;
 
 class Grouping {
 public:

@@ -16,7 +16,7 @@ namespace realcam {
 namespace {
 
 /// Samples of a light for each pixel that its light covers and each sample of that pixel.
-constexpr double kSamplesPerPixel = 1.5;
+constexpr double kSamplesPerPixel = 6;
 constexpr std::int32_t kMostOften = 2, kLeastOften = 64;  ///< samples of pixels for one from the lights
 constexpr int kMostHalvings = 12;
 
