@@ -13,8 +13,9 @@ struct TracedLight {
     TracedLightKind kind;
     std::int32_t first, count;  ///< of its triangles in the lists of TracedLightsView; else its number, and 1
     Vec3f from;  ///< unit, towards its middle, in the lens's axes
-    /// Where its light enters the lens: a rectangle in the plane across `from` through the front vertex, mm.
-    /// Along the plane's line away from the lens's axis, and across it.
+    Vec3f along;  ///< unit, at a right angle to it, away from the lens's axis
+    /// Where its light enters the lens: a rectangle in the plane across `from` through the front vertex, mm, in the
+    /// direction `along`, and across that.
     float low_along, high_along, low_across, high_across;
     std::int32_t halvings;  ///< a sample takes it with the probability 2^-halvings
     float probability;

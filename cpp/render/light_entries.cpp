@@ -15,12 +15,12 @@ constexpr int kBlock = PupilTracer::kBlock;
 constexpr int kEnoughHits = 12;
 
 /// In the lens's own axes.
-EntryPlane plane_in_lens(Vec3f from) {
+EntryPlane plane_in_lens(const TracedLight& light) {
     CameraPlacement lens{};
     lens.right = {1, 0, 0};
     lens.up = {0, 1, 0};
     lens.backward = {0, 0, 1};
-    return entry_plane(lens, 0, from);
+    return entry_plane(lens, 0, light);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) cons
 
 LightEntries::Probe LightEntries::probe(const LightGroup& group, const TracedLight& light, const Rectangle& in,
                                         int count) const {
-    const EntryPlane plane = plane_in_lens(light.from);
+    const EntryPlane plane = plane_in_lens(light);
     const float columns_per_mm = static_cast<float>(camera_.width) / (2 * camera_.film_half_width);
     Probe probe;
     const auto widen = [&](Rectangle& box, float along, float across) {
@@ -132,6 +132,8 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
     light.from = normalized(middle);
     const float sine = std::hypot(light.from.x, light.from.y), half_tangent = sine / (1 - light.from.z);
+    const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
+    light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
     if (!(half_tangent < 1.5f * largest_half_tangent_)) return std::nullopt;
     const int bin = std::min(static_cast<int>(half_tangent / largest_half_tangent_ * kGhostBins), kGhostBins - 1);
     const GhostEntry& entry = entries_[static_cast<std::size_t>(bin)];

@@ -63,7 +63,7 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         const Vec2f u = sample_joint_2d(stream, sample, traced_dimension::entry);
         CameraPlacement placement = camera;
         if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, samples.time[i]);
-        const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light.from);
+        const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
         const float along = light.low_along + u.x * (light.high_along - light.low_along),
                     across = light.low_across + u.y * (light.high_across - light.low_across);
         const Vec3f entry = plane.middle + (0.001f * along) * plane.along + (0.001f * across) * plane.across;
@@ -74,7 +74,7 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         if (is_black(place.sample.irradiance) || !(cosine > 0.0f)) continue;
         samples.rays.status[i] = 0;
         // Of 1 / (1 + 1 / r^2), for any r.
-        const float weight = place.is_met ? 1.0f - mis_weight(1.0f, quotient(place.traced, cosine)) : 1.0f;
+        const float weight = place.is_met ? 1.0f - mis_weight(1.0f, place.traced / cosine) : 1.0f;
         const float scale = weight * cosine * light.entry_area() / (pixel_area * light.probability);
         samples.color.set(i, bounded_light(scale * place.sample.irradiance));
         const auto in_lens = [&](Vec3f scene) {

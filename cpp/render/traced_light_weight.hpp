@@ -18,15 +18,11 @@ struct EntryPlane {
     Vec3f middle;  ///< the lens's front vertex
 };
 
-REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front_vertex_m, Vec3f from) {
-    const float sine = sqrt_or_zero(from.x * from.x + from.y * from.y);
-    const bool is_oblique = sine > 0.0f;
-    const float inverse = quotient(1.0f, select(is_oblique, sine, 1.0f));
-    const Vec2f away = {select(is_oblique, from.x * inverse, 1.0f), from.y * inverse};
+REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front_vertex_m, const TracedLight& light) {
     const auto in_scene = [&](Vec3f lens) {
         return lens.x * camera.right + lens.y * camera.up + lens.z * camera.backward;
     };
-    return {in_scene(from), in_scene({-from.z * away.x, -from.z * away.y, sine}), in_scene({-away.y, away.x, 0.0f}),
+    return {in_scene(light.from), in_scene(light.along), in_scene(cross(light.from, light.along)),
             front_vertex(camera, front_vertex_m)};
 }
 
@@ -35,8 +31,7 @@ REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front
 /// samples of the light take the place, per square metre.
 REALCAM_INLINE float traced_samples(const TracedLightsView& lights, const TracedLight& light, float pdf, float cosine,
                                     float distance, float entry_cosine) {
-    return quotient(lights.scale * light.probability * pdf * distance * distance,
-                    light.entry_area() * cosine * entry_cosine);
+    return lights.scale * light.probability * pdf * distance * distance / (light.entry_area() * cosine * entry_cosine);
 }
 
 /// What counts of an emitter's light that a ray meets straight from the film.
@@ -55,7 +50,7 @@ REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView&
         placement = camera_at(camera, time);
         area_m2 = area_light_at(scene, scene.areas[area], time).area;
     }
-    const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light.from);
+    const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
     const Vec3f direction = path.rays.direction[place];
     const float entry_cosine = dot(direction, plane.from);
     if (!(entry_cosine > 0.0f)) return 1.0f;
