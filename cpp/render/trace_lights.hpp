@@ -90,6 +90,17 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
     }
 }
 
+/// `first`: where a sample's first wavelength lies among the cells.
+template <int N>
+REALCAM_INLINE void set_wavelengths(const DispersionView& view, const float (&first)[N], int step,
+                                    GhostSamples<N>& samples) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        samples.place[i] = shared_place(view, first[i], step);
+        samples.variable[i] = view.variable.at(wavelength_at(view, samples.place[i]));
+    }
+}
+
 }  // namespace trace_lights_detail
 
 /// splat_ghosts for the images of lights. All lights take the same way through the lens, so that each sample of a block
@@ -104,6 +115,7 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
     const std::uint32_t first_sample = block * kGhostBlock + first;
     const TracedLightsView& lights = camera.traced_lights;
     GhostSamples<N> samples;
+    [[maybe_unused]] Lanes<float, N> place;
     for (int i = 0; i < N; ++i) {
         const std::uint32_t number = first_sample + static_cast<std::uint32_t>(i);
         samples.number[i] = hash32(round, number);
@@ -114,23 +126,42 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
             const Vec2f u = sample_joint_2d(hash32(static_cast<std::uint32_t>(at), round),
                                             number >> lights.lights[at].halvings, traced_dimension::time);
             if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * all_times(camera);
-            if constexpr (has_wavelengths) {
-                samples.place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
-                samples.variable[i] = camera.dispersion.variable.at(wavelength_at(camera.dispersion, samples.place[i]));
-            }
+            if constexpr (has_wavelengths) place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
         }
     }
     const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
                              (static_cast<float>(camera.width) * static_cast<float>(camera.height));
     send_traced_light<scene_kind>(view, camera, round, first_sample, pixel_area, samples);
-    PassedPower<N> passed;
-    pass_ghost_way<lens_kind, has_wavelengths>(way, way.ways[0], samples.rays, samples.variable, passed);
-    Lanes<std::int32_t, N> pixel, hidden;
-    reach_film<scene_kind, has_wavelengths>(camera, way, round, first_sample, passed, samples, pixel);
+    // Light of a sample enters at one place, and each of its wavelengths goes its own way from there.
+    constexpr int kMostSteps = has_wavelengths ? kSharedWavelengths : 1;
+    const int steps = has_wavelengths && camera.dispersion.cell_count > 1 ? kMostSteps : 1;
+    const float share = 1.0f / static_cast<float>(steps);
+    const LensRays<float, N> entering = samples.rays;
+    const ColorLanes<N> sent = samples.color;
+    Lanes<std::int32_t, N> pixels[kMostSteps], reached = {}, hidden{};
+    ColorLanes<N> colors[kMostSteps];
+    for (int step = 0; step < steps; ++step) {
+        if constexpr (has_wavelengths) set_wavelengths(camera.dispersion, place, step, samples);
+        samples.rays = entering;
+        samples.color = sent;
+        PassedPower<N> passed;
+        pass_ghost_way<lens_kind, has_wavelengths>(way, way.ways[0], samples.rays, samples.variable, passed);
+        reach_film<scene_kind, has_wavelengths>(camera, way, round, first_sample, passed, samples, pixels[step]);
+        for (int i = 0; i < N; ++i) {
+            if (!samples.shadow.active[i]) pixels[step][i] = -1;
+            colors[step].set(i, share * samples.color[i]);
+            reached[i] |= samples.shadow.active[i];
+        }
+    }
+    for (int i = 0; i < N; ++i) samples.shadow.active[i] = reached[i];
     scene.occluded(samples.shadow, hidden);
-    for (int i = 0; i < N; ++i)
-        if (samples.shadow.active[i] && !hidden[i])
-            splat(pixel[i], samples.color[i], unit_float(hash32(samples.number[i])));
+    for (int i = 0; i < N; ++i) {
+        if (!reached[i] || hidden[i]) continue;
+        for (int step = 0; step < steps; ++step)
+            if (pixels[step][i] >= 0)
+                splat(pixels[step][i], colors[step][i],
+                      unit_float(hash32(samples.number[i], static_cast<std::uint32_t>(step))));
+    }
 }
 
 }  // namespace REALCAM_NAMESPACE
