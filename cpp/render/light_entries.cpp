@@ -82,7 +82,7 @@ Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) cons
     return 1000.0f * in_lens(place - front_vertex(placement, camera_.front_vertex_m));
 }
 
-LightEntries::Probe LightEntries::probe(const LightGroup& group, const TracedLight& light, const Rectangle& in,
+LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight& light, const Rectangle& in,
                                         int count) const {
     const EntryPlane plane = plane_in_lens(light);
     const float columns_per_mm = static_cast<float>(camera_.width) / (2 * camera_.film_half_width);
@@ -100,8 +100,8 @@ LightEntries::Probe LightEntries::probe(const LightGroup& group, const TracedLig
             const Vec2f u = sample_joint_2d(0, number, 0);
             at[k] = {in.low_along + u.x * (in.high_along - in.low_along),
                      in.low_across + u.y * (in.high_across - in.low_across)};
-            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across, place = place_of(group, number);
-            const Vec3f way = group.kind == TracedLightKind::sun ? -place : entry - place;
+            const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across, place = places[number % places.size()];
+            const Vec3f way = light.kind == TracedLightKind::sun ? -place : entry - place;
             rays.origin.set(k, entry);
             rays.direction.set(k, normalized(way));
             rays.status[k] = dot(way, plane.from) < 0 ? 0 : static_cast<int>(RayStatus::vignetted);
@@ -127,8 +127,12 @@ LightEntries::Probe LightEntries::probe(const LightGroup& group, const TracedLig
 std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     TracedLight light{};
     light.kind = group.kind;
+    Places places;
     Vec3f middle = {0, 0, 0};
-    for (std::uint32_t k = 0; k < 8; ++k) middle = middle + place_of(group, k);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        places[k] = place_of(group, static_cast<std::uint32_t>(k));
+        middle = middle + places[k];
+    }
     if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
     light.from = normalized(middle);
     const float sine = std::hypot(light.from.x, light.from.y), half_tangent = sine / (1 - light.from.z);
@@ -142,9 +146,10 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
     Rectangle in = {at - reach, at + reach, -reach, reach};
     Probe found;
-    for (const int rays : {kBlock, 4 * kBlock, 4 * kBlock}) {
-        found = probe(group, light, in, rays);
-        if (found.hits == 0 && rays == kBlock) continue;
+    for (int round = 0; round < 2; ++round) {
+        int rays = kBlock;
+        found = probe(places, light, in, rays);
+        if (found.hits < kEnoughHits) found = probe(places, light, in, rays = 4 * kBlock);
         if (found.hits == 0) return std::nullopt;
         // A margin for what lies between the rays.
         const auto widened = [&](float low, float high, float whole) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -33,10 +34,12 @@ private:
         Rectangle entries{}, film{};  ///< mm; pixels
     };
 
+    using Places = std::array<Vec3f, 64>;
+
     void find_pupil_rays();
     /// A place of the group in the lens's frame, mm; of a sun the direction towards it.
     Vec3f place_of(const LightGroup& group, std::uint32_t number) const;
-    Probe probe(const LightGroup& group, const TracedLight& light, const Rectangle& in, int rays) const;
+    Probe probe(const Places& places, const TracedLight& light, const Rectangle& in, int rays) const;
 
     const SceneView& scene_;
     const CameraView& camera_;

@@ -105,6 +105,13 @@ def veiled() -> rc.Scene:
     return scenes.scene_of(scenes.quad((0, 0, -4), 0.006, emission=1e5), (corners, veil))
 
 
+def behind_glass() -> rc.Scene:
+    """Rays to a lamp behind a pane are not straight: only samples of pixels find it."""
+    glass = rc.Material(diffuse=(0, 0, 0), transmission=1, ior=1.5)
+    front, back = (scenes.quad((0, 0, z), 0.3, right=(side, 0, 0))[0] for z, side in ((-2, 1), (-2.01, -1)))
+    return scenes.scene_of(scenes.quad((0, 0, -4), 0.02, emission=1e4), (front, glass), (back, glass))
+
+
 def moving() -> rc.Scene:
     """A lamp that crosses a part of the picture while the shutter is open."""
     begin, end = np.eye(4), np.eye(4)
@@ -126,6 +133,7 @@ CASES: dict[str, tuple[Callable[[], rc.Scene], dict[str, object], dict[str, obje
     ),
     "behind an edge": (occluded, {}, {}),
     "behind a veil": (veiled, {}, {}),
+    "behind glass": (behind_glass, {}, {"max_bounces": 3}),
     "moving": (moving, {}, {}),
     "from a moving camera": (
         lambda: lamps((0.3, 0, -4)),
