@@ -1,0 +1,158 @@
+"""Lamps out of focus at night: realcam and Mitsuba 3 on the CPU, error over time through the same lens, in one run.
+
+    DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM-19.so python benchmarks/night_against_mitsuba.py [--threads 2]
+
+Both programs get the same triangles, lamps and sky from one generator, and direct light. Mitsuba takes its integrator
+"path" with the sampler "multijitter", and the double Gauss as a sensor in Python (mitsuba_lens.py). The reference is
+Mitsuba's and realcam's picture of many samples, half and half: what both converge to, whichever is right.
+
+Prints, for each scene, relative mean square errors over CPU seconds, and the seconds to an error of 0.01: measured at
+the sample counts around it, in between by the power law through both.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+import realcam as rc
+from against_mitsuba_cpu import Program, error_at, mitsuba_program
+from frame_scene import _quad, _sphere
+from machine import Result, machine
+from mitsuba_lens import load_lens_sensor
+from mitsuba_scene import mesh
+
+FILM = rc.Film(36, 24, (240, 160))
+WANTED = 0.01  # relative mean square error
+PATH = {"type": "path", "max_depth": 2}  # emitters that are seen, and direct light
+
+Mesh = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Night:
+    """Diffuse things and lamps of one radiance (cd/m^2) under a sky, and where the lens is focused (m)."""
+
+    things: list[Mesh]
+    lamps: list[Mesh]
+    radiance: float
+    sky: float
+    focus_m: float
+
+
+def _joined(meshes: list[Mesh]) -> Mesh:
+    firsts = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    return (
+        np.concatenate([points for points, _ in meshes]),
+        np.concatenate([faces + first for (_, faces), first in zip(meshes, firsts, strict=False)]),
+    )
+
+
+def _ground(height: float) -> Mesh:
+    return _quad([(-50, height, 20), (50, height, 20), (50, height, -80), (-50, height, -80)])
+
+
+def garlands() -> Night:
+    """Small lamps at 2.5 to 10 m behind a table at 1 m."""
+    random = np.random.default_rng(3)
+    table = _quad([(-0.6, -0.15, -0.7), (0.6, -0.15, -0.7), (0.6, -0.15, -1.4), (-0.6, -0.15, -1.4)])
+    balls = [_sphere((x, -0.1, -1.0), 0.05, 32, 16) for x in (-0.2, 0.0, 0.2)]
+    lamps = []
+    for _ in range(40):
+        z = random.uniform(-10, -2.5)
+        lamps.append(_sphere((random.uniform(-0.3, 0.3) * -z, random.uniform(-0.02, 0.2) * -z, z), 0.008, 8, 4))
+    return Night([table, *balls, _ground(-1)], lamps, 3e4, 1.0, 1.0)
+
+
+def street() -> Night:
+    """Lamps of a street at 8 to 60 m, seen past something at 1.5 m."""
+    lamps = [_sphere((side * 3.5, 2.5, -z), 0.08, 12, 6) for side in (-1, 1) for z in np.linspace(8, 60, 10)]
+    # Mitsuba's diffuse surfaces have one side: that to the street.
+    walls = [
+        _quad([(side * 5, bottom, 0), (side * 5, -bottom, 0), (side * 5, -bottom, -70), (side * 5, bottom, -70)])
+        for side, bottom in ((1, -6), (-1, 6))
+    ]
+    return Night([_ground(-1.5), _sphere((0.1, -0.1, -1.5), 0.15, 32, 16), *walls], lamps, 2e4, 0.2, 1.5)
+
+
+def before_the_focus() -> Night:
+    """Lamps at 0.5 to 0.8 m, where the lens is focused at 4 m."""
+    lamps = [_sphere((0.02 * x, 0.05 * np.sin(x), -0.5 - 0.03 * abs(x)), 0.001, 8, 4) for x in range(-8, 9)]
+    return Night([_ground(-0.5), *(_sphere((x, 0, -4), 0.4, 32, 16) for x in (-1, 0, 1))], lamps, 1e5, 5.0, 4.0)
+
+
+SCENES: dict[str, Callable[[], Night]] = {"garlands": garlands, "street": street, "before the focus": before_the_focus}
+
+
+def programs_of(night: Night, threads: int) -> dict[str, Program]:
+    (thing_points, things), (lamp_points, lamps) = _joined(night.things), _joined(night.lamps)
+    scene = rc.Scene.from_arrays(
+        *_joined([(thing_points, things), (lamp_points, lamps)]),
+        triangle_materials=np.repeat([0, 1], [len(things), len(lamps)]),
+        materials=[rc.Material(), rc.Material(emission=3 * (night.radiance,))],
+    ).with_environment(night.sky)
+    peer = mi.load_dict(
+        {
+            "type": "scene",
+            "things": mesh("things", thing_points, things),
+            "lamps": mesh("lamps", lamp_points, lamps, night.radiance),
+            "sky": {"type": "constant", "radiance": {"type": "rgb", "value": night.sky}},
+        }
+    )
+    lens = rc.Lens.load("double-gauss-50mm").focused(night.focus_m)
+    camera = rc.Camera(lens, film=FILM, position=(0, 0, 0), look_at=(0, 0, -1), exposure_time_s=1)
+
+    def ours(tracing: str) -> Program:
+        def take(spp: int, seed: int) -> np.ndarray:
+            image = rc.render(scene, camera, effects=(), spp=spp, seed=seed, max_bounces=0, device="cpu",
+                              threads=threads, light_tracing=tracing)  # fmt: skip
+            return image.pixels.mean(axis=2)
+
+        return Program(take)
+
+    theirs = mitsuba_program(peer, lambda spp: load_lens_sensor(camera, "multijitter", spp), PATH, 1.0)
+    return {"realcam": ours("weighted"), "realcam, samples of pixels alone": ours("off"), "mitsuba": theirs}
+
+
+def seconds_to(wanted: float, rows: list[Result]) -> float:
+    """CPU seconds to a relative mean square error, by the power law through the two counts next to it."""
+    log = [(np.log(row["cpu_seconds"]), np.log(row["relative_mse"])) for row in rows]
+    for (t0, e0), (t1, e1) in itertools.pairwise(log):
+        if e1 <= np.log(wanted) or (t1, e1) == log[-1]:
+            return float(np.exp(t0 + (np.log(wanted) - e0) * (t1 - t0) / (e1 - e0)))
+    raise ValueError("one count of samples tells nothing")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--reference-spp", type=int, default=16384)
+    arguments = parser.parse_args()
+    dr.set_thread_count(arguments.threads)
+    record: Result = {"machine": machine(), "threads": arguments.threads, "mitsuba": mi.__version__, "scenes": {}}
+    for name, make in SCENES.items():
+        programs = programs_of(make(), arguments.threads)
+        ours = programs["realcam"].take(arguments.reference_spp, 1000)
+        theirs = np.mean([programs["mitsuba"].take(1024, 1000 + k) for k in range(arguments.reference_spp // 1024)], 0)
+        reference = 0.5 * (ours + theirs)
+        scale = reference**2 + (0.01 * reference.mean()) ** 2
+        counts = {"realcam": [4, 16, 64], "realcam, samples of pixels alone": [64, 256], "mitsuba": [64, 256, 1024]}
+        rows = {
+            of: [error_at(program, spp, reference, scale) for spp in counts[of]] for of, program in programs.items()
+        }
+        record["scenes"][name] = {
+            "difference_of_means": float(f"{ours.mean() / theirs.mean() - 1:.3g}"),
+            "cpu_seconds_to_0.01": {of: float(f"{seconds_to(WANTED, found):.3g}") for of, found in rows.items()},
+            "programs": rows,
+        }
+    print(json.dumps(record, indent=1))
+
+
+if __name__ == "__main__":
+    main()
