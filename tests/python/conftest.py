@@ -31,9 +31,10 @@ def backend(device: str) -> str:
 
 
 # What tests of the lens bench share; those that ask for it say where nicegui, playwright or chromium is missing.
+# Servers, browsers and their first pages take seconds to begin.
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     """`realcam view` on a shot of three panels."""
     from .bench_pages import served_panels
@@ -41,8 +42,9 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     yield from served_panels(tmp_path_factory.mktemp("bench"))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
+    """While it is there its loop counts as running on this thread: asyncio.run needs another (run_apart)."""
     from playwright.sync_api import sync_playwright
 
     from .bench_pages import launched
@@ -51,12 +53,22 @@ def browser() -> Iterator[Any]:
         yield from launched(driver)
 
 
-@pytest.fixture
-def bench(browser: Any, server: Server) -> Iterator[BenchPage]:
-    """A page of it."""
-    from .bench_pages import opened
+@pytest.fixture(scope="session")
+def kept_page(browser: Any, server: Server) -> Iterator[BenchPage]:
+    from .bench_pages import BenchPage
 
-    yield from opened(browser, server)
+    page = BenchPage(browser, server.url)
+    yield page
+    page.close()
+
+
+@pytest.fixture
+def bench(kept_page: BenchPage, server: Server) -> Iterator[BenchPage]:
+    """A page of it, with a window of its own on the server."""
+    kept_page.open_anew(server.url)
+    yield kept_page
+    kept_page.check()
+    assert server.complaints() == [], server.complaints()
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

@@ -102,12 +102,19 @@ def test_camera_models(bench: BenchPage) -> None:
     bench.until_picture(lambda p: sharp(p)[1] > 1.7 * sharp(p)[0], "a thin lens is not")
 
 
+def noise_of(status: str) -> float:
+    return float(re.search(r"noise ([\d.]+) grey levels", status).group(1))
+
+
 def test_resolution_and_noise(bench: BenchPage) -> None:
+    coarse = until(lambda: bench.status, lambda text: text.endswith("done"), "done")
+    bench.choose("refine to", "2 grey levels")
+    until(lambda: bench.status, lambda text: text.endswith("done") and text != coarse, "refined")
+    assert 2 < noise_of(coarse) <= 4
+    assert 0 < noise_of(bench.status) <= 2
     bench.choose("resolution", "320 pixels across")
     until(lambda: bench.picture().shape, lambda shape: shape[1] == 320, "the canvas's size")
     until(lambda: bench.status, lambda text: text.startswith("320 × 213"), "the refined size")
-    bench.choose("refine to", "4 grey levels (draft)")
-    until(lambda: bench.status, lambda text: text.endswith("done"), "done")
 
 
 def test_zoom_positions(bench: BenchPage) -> None:
@@ -119,7 +126,7 @@ def test_zoom_positions(bench: BenchPage) -> None:
     bench.choose("zoom", "49mm")
     until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - 49) < 1, "zoomed in")
     assert bench.page.locator("svg.rc-section").inner_html() != drawn  # the groups have moved
-    bench.until_picture(lambda p: np.abs(p - wide).mean() > 5, "zoomed in")
+    bench.until_picture(lambda p: np.abs(p - wide).mean() > 10, "zoomed in")
 
 
 def test_the_list_of_lenses(bench: BenchPage) -> None:
@@ -200,22 +207,20 @@ async ({noise, told, contrast}) => {
 """
 
 
-@pytest.mark.parametrize(
-    ("noise", "told", "contrast"),
-    [
+def test_peaking_marks_edges_and_no_noise(bench: BenchPage) -> None:
+    """Of normal noise, four deviations are exceeded by 6e-5 of the pixels, and that of neighbours by fewer."""
+    for noise, told, contrast in (
         (20, [[20]], 0),
         (20, None, 130),
         (8, [[8]], 0),
         (4, [[4]], 130),
         (4, [[4, 4], [4, 4], [4, 4]], 130),
         (0, [[0]], 60),
-    ],
-)
-def test_peaking_marks_edges_and_no_noise(bench: BenchPage, noise: float, told: list | None, contrast: float) -> None:
-    """Of normal noise, four deviations are exceeded by 6e-5 of the pixels, and that of neighbours by fewer."""
-    marked, wrong = bench.page.evaluate(SYNTHETIC, {"noise": noise, "told": told, "contrast": contrast})
-    assert wrong < 1e-4
-    assert marked > 0.9 if contrast and told else marked < 1e-4
+    ):
+        case = {"noise": noise, "told": told, "contrast": contrast}
+        marked, wrong = bench.page.evaluate(SYNTHETIC, case)
+        assert wrong < 1e-4, case
+        assert marked > 0.9 if contrast and told else marked < 1e-4, case
 
 
 # The lens.
@@ -329,8 +334,12 @@ def test_blades_and_film_are_chosen(bench: BenchPage) -> None:
     until(lambda: bench.picture().shape[:2], lambda shape: shape == (60, 120), "a wide film")
 
 
-@pytest.mark.parametrize("field", ["radius_mm", "thickness_mm", "semi_diameter_mm"])
-def test_dragging_in_the_drawing(bench: BenchPage, field: str) -> None:
+def test_dragging_in_the_drawing(bench: BenchPage) -> None:
+    for field in ("radius_mm", "thickness_mm", "semi_diameter_mm"):
+        drag(bench, field)
+
+
+def drag(bench: BenchPage, field: str) -> None:
     surface = 1 if field == "thickness_mm" else 0
     bench.cell(surface, "radius_mm").focus()
     handle = bench.page.locator(f'[data-handle="{field}"]')
@@ -375,6 +384,7 @@ def test_switching_an_effect_off_removes_it(bench: BenchPage) -> None:
         inner = p[8:-8, 8:-8].astype(float)
         return float(np.abs(inner[..., 0] - inner[..., 2]).mean())
 
+    bench.choose("refine to", "1 grey level")  # noise has colours, too
     grey = colour(bench.until_picture(lambda p: True, "without dispersion"))
     bench.page.locator('[data-effect="dispersion"]').select_option("on")
     bench.until_picture(lambda p: colour(p) > grey + 3, "colours")
@@ -466,14 +476,14 @@ def test_no_file_is_replaced_without_a_word(bench: BenchPage, server: Server) ->
 
 
 @pytest.mark.filterwarnings("ignore:not in the file")
-@pytest.mark.parametrize("suffix", [".zmx", ".seq", ".toml"])
-def test_a_lens_file_is_opened(bench: BenchPage, tmp_path: Path, suffix: str) -> None:
-    lens = rc.Lens.load("heliar-100mm")
-    lens.save(tmp_path / f"mine{suffix}")
-    bench.page.locator("[data-testid=upload] input[type=file]").set_input_files(tmp_path / f"mine{suffix}")
-    bench.until_text("said", lambda text: text == f"Opened mine{suffix}")
-    focal = lens.first_order().effective_focal_length_mm
-    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - focal) < 0.1, "the Heliar")
+def test_lens_files_are_opened(bench: BenchPage, tmp_path: Path) -> None:
+    for name, suffix in (("heliar-100mm", ".zmx"), ("tessar-50mm", ".seq"), ("singlet-100mm", ".toml")):
+        lens = rc.Lens.load(name)
+        lens.save(tmp_path / f"mine{suffix}")
+        bench.page.locator("[data-testid=upload] input[type=file]").set_input_files(tmp_path / f"mine{suffix}")
+        bench.until_text("said", lambda text, suffix=suffix: text == f"Opened mine{suffix}")
+        focal = lens.first_order().effective_focal_length_mm
+        until(lambda: bench.figure("effective_focal_length_mm"), lambda f, w=focal: abs(f - w) < 0.1, name)
 
 
 def test_the_button_asks_for_a_lens_file(bench: BenchPage, tmp_path: Path) -> None:
@@ -562,10 +572,10 @@ def test_the_keyboard_alone(bench: BenchPage) -> None:
     for key in ("ArrowLeft", "ArrowUp", "Shift+ArrowRight", "+", "-"):
         before = bench.picture().astype(int)
         page.keyboard.press(key)
-        until(lambda: bench.picture(), lambda p, b=before: np.abs(p - b).mean() > 3, key)
+        until(lambda: bench.picture(), lambda p, b=before: np.abs(p - b).mean() > 10, key)
     before = bench.picture().astype(int)
     page.keyboard.press("+")
-    bench.until_picture(lambda p: np.abs(p - before).mean() > 3, "nearer")
+    bench.until_picture(lambda p: np.abs(p - before).mean() > 10, "nearer")
     page.keyboard.press("f")
     bench.until_text("focus-text", lambda text: text != "Focus 1.2 m")
     for _ in range(9):
@@ -613,10 +623,10 @@ def test_the_mouse_moves_the_camera(bench: BenchPage) -> None:
     bench.page.mouse.down()
     bench.page.mouse.move(middle[0] + 60, middle[1] + 20, steps=5)
     bench.page.mouse.up()
-    moved = bench.until_picture(lambda p: np.abs(p - before).mean() > 5, "an orbit").astype(int)
+    moved = bench.until_picture(lambda p: np.abs(p - before).mean() > 10, "an orbit").astype(int)
     assert bench.text("focus-text") == focus  # no click
     bench.page.mouse.wheel(0, -300)
-    bench.until_picture(lambda p: np.abs(p - moved).mean() > 5, "nearer")
+    bench.until_picture(lambda p: np.abs(p - moved).mean() > 10, "nearer")
 
 
 def test_a_narrow_window_and_both_themes(bench: BenchPage) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Any
 
 import pytest
@@ -10,6 +9,8 @@ import pytest
 pytest.importorskip("starlette")
 
 from realcam.viewer.left_requests import LeftRequests
+
+from .event_loops import run_apart
 
 
 async def fails(scope: Any, receive: Any, send: Any) -> None:
@@ -24,7 +25,7 @@ def hear(message: str) -> None:
     async def send(message: dict[str, Any]) -> None:
         pass
 
-    asyncio.run(LeftRequests(fails)({"type": "http", "path": "/"}, receive, send))
+    run_apart(LeftRequests(fails)({"type": "http", "path": "/"}, receive, send))
 
 
 def test_a_request_that_is_left_may_fail() -> None:

@@ -97,16 +97,16 @@ def test_two_windows_that_save_one_new_name(browser: Any, server: Server, bench:
     assert (radius == 27.5) == (first is bench)
 
 
-@pytest.mark.parametrize("name", ["picture.png", "picture.jpg", "lens.toml"])
-def test_a_file_that_is_replaced_keeps_its_permissions(bench: BenchPage, folder: Path, name: str) -> None:
-    path = folder / name
-    path.write_text("private")
-    path.chmod(0o600)
-    ask_to_save(bench, "lens" if "lens" in name else "picture", f"{folder.name}/{name}")
-    answer(bench, "Replace it")
-    bench.until_text("said", lambda text: text == f"Wrote {name}")
-    assert path.read_bytes() != b"private"
-    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+def test_a_file_that_is_replaced_keeps_its_permissions(bench: BenchPage, folder: Path) -> None:
+    for name in ("picture.png", "picture.jpg", "lens.toml"):
+        path = folder / name
+        path.write_text("private")
+        path.chmod(0o600)
+        ask_to_save(bench, "lens" if "lens" in name else "picture", f"{folder.name}/{name}")
+        answer(bench, "Replace it")
+        bench.until_text("said", lambda text, name=name: text == f"Wrote {name}")
+        assert path.read_bytes() != b"private"
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
 
 
 def error_of(path: Path, reference: rc.Image) -> float:
@@ -115,20 +115,16 @@ def error_of(path: Path, reference: rc.Image) -> float:
     return float(np.sqrt(np.mean((codes - reference.developed()) ** 2)))
 
 
-def test_a_picture_is_saved_with_the_noise_that_is_asked_for(browser: Any, server: Server, folder: Path) -> None:
+def test_a_picture_is_saved_with_the_noise_that_is_asked_for(bench: BenchPage, server: Server, folder: Path) -> None:
     """Though it is saved as soon as the page is there, when it has one sample."""
     shot = rc.Shot.load(server.shot)
-    bench = BenchPage(browser, server.url)
-    try:
-        bench.choose("refine to", "2 grey levels")
-        ask_to_save(bench, "picture", f"{folder.name}/refined.png")
-        until(lambda: bench.text("said"), lambda text: text == "Wrote refined.png", "saved", 240)
-    finally:
-        bench.close()
-    reference = rc.render(shot.scene, shot.camera, effects=(), spp=2048, seed=9, device="cpu")
+    bench.choose("refine to", "2 grey levels")
+    ask_to_save(bench, "picture", f"{folder.name}/refined.png")
+    until(lambda: bench.text("said"), lambda text: text == "Wrote refined.png", "saved", 240)
+    reference = rc.render(shot.scene, shot.camera, effects=(), spp=512, seed=9, device="cpu")
     # The noise that is told is that of the error or more, to a fifth (test_viewer_picture_loop.py); 0.4 is that of the
-    # rounding of both, and 0.8 that of the reference. One sample has 36.
-    assert error_of(folder / "refined.png", reference) < 2.6
+    # rounding of both, and 1.6 that of the reference. One sample has 36, and the picture that was not asked for 3.3.
+    assert error_of(folder / "refined.png", reference) < 2.9
 
 
 def test_a_picture_that_is_being_refined_is_saved_as_it_is_or_not(bench: BenchPage, folder: Path) -> None:
@@ -148,7 +144,6 @@ def test_a_picture_that_is_being_refined_is_saved_as_it_is_or_not(bench: BenchPa
 
 def test_a_picture_is_downloaded(bench: BenchPage, server: Server, tmp_path: Path) -> None:
     oiio = pytest.importorskip("OpenImageIO")
-    bench.choose("refine to", "4 grey levels (draft)")
     bench.until_picture(lambda p: True, "the picture")
     for suffix in ("png", "jpg", "jpeg", "exr", "dng"):
         name = f"mine.{suffix}"

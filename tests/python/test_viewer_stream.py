@@ -21,6 +21,8 @@ from realcam.viewer.listeners import Listeners
 from realcam.viewer.picture_request import Frame
 from realcam.viewer.stream import PictureStream
 
+from .event_loops import run_apart
+
 WAIT_S = 30.0
 MOVES = [{"type": "turn", "ring": "iso", "steps": k % 5 - 2} for k in range(3000)]
 
@@ -73,18 +75,18 @@ class SlowBench:
         return True
 
 
-def frame(serial: int) -> Frame:
+def frame(serial: int, *, quality: int = 90, is_final: bool = False) -> Frame:
     return Frame(
         serial=serial,
         jpeg=b"a picture",
-        jpeg_quality=90,
+        jpeg_quality=quality,
         width=3,
         height=2,
         whole_width=3,
         whole_height=2,
         samples=1,
         is_preview=False,
-        is_final=False,
+        is_final=is_final,
         noise_codes=None,
         seconds=0.1,
         exposure_time_s=0.01,
@@ -118,7 +120,7 @@ def run(test: Callable[[SlowBench, PictureStream], Awaitable[None]]) -> None:
             finally:
                 slow.may.set()
 
-        asyncio.run(begun())
+        run_apart(begun())
 
 
 def test_everything_is_read_while_something_takes_long() -> None:
@@ -137,6 +139,32 @@ def test_everything_is_read_while_something_takes_long() -> None:
             slow.may.set()
             await until(lambda: len(slow.turned) == len(MOVES))
             assert slow.turned == [move["steps"] for move in MOVES]
+
+    run(test)
+
+
+@pytest.mark.parametrize("seconds", [0.0, 0.2])
+def test_the_last_frame_of_a_picture_comes_at_its_best(seconds: float) -> None:
+    """Also where the link or the page is somewhat slow, which makes all others coarser."""
+
+    async def test(slow: SlowBench, stream: PictureStream) -> None:
+        slow.may.set()
+        link = Link()
+        async with served(stream, link):
+            for serial, is_final in ((1, False), (2, True)):
+                slow.bench.listeners.frame("a", frame(serial, quality=60, is_final=is_final))
+                await asyncio.wait_for(link.frames.get(), WAIT_S)
+                assert not slow.bench.show_again.called
+                await asyncio.sleep(seconds)
+                link.says(f"ack a {serial}")
+                await until(lambda count=serial: slow.bench.set_jpeg_quality.call_count == count)
+            await until(lambda: slow.bench.show_again.called)
+            slow.bench.set_jpeg_quality.assert_called_with(90)
+            slow.bench.listeners.frame("a", frame(3, quality=90, is_final=True))
+            await asyncio.wait_for(link.frames.get(), WAIT_S)
+            link.says("ack a 3")
+            await until(lambda: slow.bench.set_jpeg_quality.call_count == 3)
+            assert slow.bench.show_again.call_count == 1
 
     run(test)
 

@@ -15,6 +15,8 @@ pytest.importorskip("nicegui")
 
 from realcam.viewer.windows import Windows
 
+from .event_loops import run_apart
+
 WAIT_S = 30.0
 
 
@@ -62,7 +64,7 @@ def test_of_sixty_that_come_at_once_as_many_are_made_as_may_be() -> None:
         windows = Windows(5)
         return await asyncio.gather(*(windows.open(Page(), benches.make) for _ in range(60)))  # type: ignore[arg-type]
 
-    made = asyncio.run(come())
+    made = run_apart(come())
     assert sum(window is not None for window in made) == 5
     assert benches.most == 5
 
@@ -85,7 +87,7 @@ def test_one_whose_page_has_gone_makes_room() -> None:
         await benches.until(1)
         assert await windows.open(Page(), benches.make) is not None  # type: ignore[arg-type]
 
-    asyncio.run(come())
+    run_apart(come())
 
 
 def test_one_that_nobody_waits_for_any_more_is_closed() -> None:
@@ -104,4 +106,4 @@ def test_one_that_nobody_waits_for_any_more_is_closed() -> None:
         assert await other is None
         await benches.until(0)
 
-    asyncio.run(come())
+    run_apart(come())

@@ -133,7 +133,8 @@ class CameraPanel:
         self._model.set_value(now.model)
         width = now.film.resolution[0]
         show_choice(self._width, {w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, width)
-        self._noise.set_value(self._bench.noise_codes)
+        noise = self._bench.noise_codes
+        show_choice(self._noise, NOISES if noise in NOISES else {**NOISES, noise: f"{noise:g} grey levels"}, noise)
         size = now.film.width_mm, now.film.height_mm
         texts = FILMS if size in FILMS else {**FILMS, size: f"{size[0]:g} × {size[1]:g} mm"}
         show_choice(self._film, dict(texts), size)

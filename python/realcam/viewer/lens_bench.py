@@ -32,7 +32,7 @@ class LensBench:
     A change that makes no camera leaves everything as it is, and is told as a Problem; the next that makes one ends it.
     """
 
-    def __init__(self, shot: Shot, *, device: str = "auto") -> None:
+    def __init__(self, shot: Shot, *, device: str = "auto", noise_codes: float = 1.0) -> None:
         self.shot, self._device = shot, device
         self.listeners = Listeners()
         self.controls = CameraControls.of(shot.camera)
@@ -40,7 +40,7 @@ class LensBench:
         self.switches = Switches.of_shot(shot.settings.effects)
         self.plan: Plan | None = None
         self.problem: Problem | None = None
-        self.noise_codes = 1.0
+        self.noise_codes = noise_codes
         self.hovered: tuple[float, float] | None = None
         self.comparison = Comparison()
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too

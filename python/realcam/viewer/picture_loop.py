@@ -259,9 +259,13 @@ class PictureLoop:
     def _develop_for(self, picture: GrowingPicture, pending: _Pending) -> None:
         """Shows for a new request the samples that are there."""
         request = pending.request
+        is_as_before = request == picture.request
         picture.request, picture.serial, picture.begun = request, pending.serial, pending.begun
         if request.is_automatic:
             self._taker.meter(picture)
+        if is_as_before:
+            self._show(picture, self._taker.developed(picture))
+            return
         # The picture first: its noise takes two pictures more to be developed.
         picture.noise_codes = picture.noise_tiles = None
         picture.is_final = picture.is_good_enough()

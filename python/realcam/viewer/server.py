@@ -34,7 +34,6 @@ from .windows import Windows
 _STATIC = Path(__file__).with_name("static")
 _MOST_MESSAGE = 1 << 20  # bytes, of the page's own socket, too
 _UNKNOWN_WINDOW = 4404  # see stream.js
-_MOST_WINDOWS = 16
 _GOODBYE_S = 1  # for so long the server waits at its end for browsers to close their connections
 
 
@@ -42,6 +41,8 @@ _GOODBYE_S = 1  # for so long the server waits at its end for browsers to close 
 class ServerSettings:
     """folders: the only ones that are read and written. token: "" makes one where it is wanted.
 
+    noise_codes: to which a new window refines its pictures, of 255 grey levels.
+    most_windows: of which each has threads, a scene on the device and a picture.
     reconnect_s: for so long a window whose connection is lost keeps what it has.
     """
 
@@ -51,6 +52,8 @@ class ServerSettings:
     device: str = "auto"
     token: str = ""
     shows_browser: bool = True
+    noise_codes: float = 1.0
+    most_windows: int = 16
     reconnect_s: float = 30.0
 
 
@@ -58,7 +61,7 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
     """Serves until Ctrl-C, which ends the program. Raises InputError for folders that are none."""
     folders = Folders(settings.folders)
     token = None if is_local(settings.host) and not settings.token else settings.token or secrets.token_urlsafe(24)
-    windows = Windows(_MOST_WINDOWS)
+    windows = Windows(settings.most_windows)
 
     app.add_middleware(BodyLimit, most=2 * MOST_UPLOADED)
     app.add_middleware(Gate, token=token)
@@ -71,7 +74,8 @@ def serve(shot: Shot, source: ShotSource, settings: ServerSettings) -> None:
     @ui.page("/", title=f"{source.name} - realcam", response_timeout=30)
     async def page(client: Client) -> None:
         try:
-            window = await windows.open(client, partial(LensBench, shot, device=settings.device))
+            make = partial(LensBench, shot, device=settings.device, noise_codes=settings.noise_codes)
+            window = await windows.open(client, make)
         except DeviceError as error:
             ui.label(str(error))
             return

@@ -29,6 +29,7 @@ _log = logging.getLogger(__name__)
 
 _QUALITIES = (40, 90)  # of JPEG
 _SLOW_S, _QUICK_S = 0.120, 0.050  # from sending a frame to its acknowledgement
+_LAST_S = 0.5  # of a last frame, which then comes once more at its best: some times as large, while nobody waits
 
 
 class PictureStream:
@@ -136,7 +137,7 @@ class PictureStream:
         frame = self._sent_frame
         # Nothing would come any more, and the last frame of a picture would stay as a slow moment has left it.
         is_sent_again = bool(frame and frame.is_final and frame.jpeg_quality < highest and not self._frames)
-        is_sent_again &= took <= _SLOW_S
+        is_sent_again &= took <= _LAST_S
         self._bench.set_jpeg_quality(highest if is_sent_again else self._quality)
         self._news.set()
         if is_sent_again:
