@@ -23,6 +23,7 @@ realcam_sources(REALCAM_PICTURE_BINDINGS_SOURCES picture_bindings)
 realcam_sources(REALCAM_BVH_SOURCES bvh)
 realcam_sources(REALCAM_CUDA_SOURCES cuda)
 realcam_sources(REALCAM_DEVICES_SOURCES devices)
+realcam_sources(REALCAM_DENOISE_SOURCES denoise)
 
 # Built once for each instruction set, see RealcamInstructionSets.cmake.
 list(FILTER REALCAM_EMBREE_SOURCES EXCLUDE REGEX "/kernels\\.cpp$")

@@ -14,6 +14,8 @@ public:
 
     /// `done`: 0 to 1. Draws at most ten times a second.
     void show(double done);
+    /// Makes way for a line of text.
+    void clear();
 
 private:
     using Clock = std::chrono::steady_clock;

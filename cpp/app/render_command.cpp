@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <limits>
 #include <memory>
+#include <optional>
 
+#include "../denoise/denoiser.hpp"
 #include "../devices/devices.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../image_io/image_file.hpp"
 #include "../io/files/free_memory.hpp"
-#include "../io/text/json_writer.hpp"
 #include "../io/text/one_line.hpp"
 #include "../plan/make_plan.hpp"
 #include "../plan/plan_text.hpp"
@@ -21,10 +21,12 @@
 #include "exposure_notice.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
+#include "plan_json.hpp"
 #include "progress_bar.hpp"
 #include "render_json.hpp"
 #include "render_options.hpp"
 #include "render_summary.hpp"
+#include "sampling_notice.hpp"
 #include "values.hpp"
 
 namespace realcam::app {
@@ -41,6 +43,20 @@ auto with_memory_for(const std::string& what, Work&& work) {
         return work();
     } catch (const std::bad_alloc&) {
         throw Error("out of memory: " + what);
+    }
+}
+
+bool is_wanted() {
+    return Interrupt::signal() == 0;
+}
+
+/// Work that a signal stops.
+template <class Work>
+auto until_interrupted(Work&& work) {
+    try {
+        return work();
+    } catch (const Cancelled&) {
+        throw Interrupted{Interrupt::signal(), ""};
     }
 }
 
@@ -71,22 +87,31 @@ public:
         check_apart(words_.outputs,
                     {words_.scene, request.scene, request.lens, request.texture, request.environment_file});
         Camera camera = camera_of(request);
+        const LayerSet written_layers = request.settings.layers;
+        if (request.denoises)
+            for (const Layer layer : {Layer::albedo, Layer::normal}) request.settings.layers.add(layer);
         check_memory(camera.film, request.settings.layers);
-        const auto session = make_session(words_.device);  // first, because reading a scene may take long
+        // First, because reading a scene may take long.
+        const auto session = make_session(words_.device);
+        std::optional<Denoiser> denoiser;
+        if (request.denoises) denoiser.emplace(words_.device, request.settings.threads);
+        const std::string denoiser_name = denoiser ? denoiser->name() : "";
         shot::Shot shot = set_up_shot(request, std::move(camera));
         std::string decisions;
         if (request.settings.effects.is_automatic) decisions = follow_plan(*session, shot, request);
         for (const std::string& notice : effect_notices(request.settings.effects, shot.camera.lens)) warn(notice);
         // Until here nothing is on disk, and a signal may simply end the program.
         const Interrupt interrupt;
-        const Image image = expose(*session, shot, request);
+        Image image = expose(*session, shot, request);
+        if (denoiser) until_interrupted([&] { denoise(image, written_layers, *denoiser, is_wanted); });
         if (!image.shortfall.empty()) warn(image.shortfall);
         if (const std::string notice = exposure_notice(image, shot.camera, request.tone); !notice.empty()) warn(notice);
-        write(image, shot, request, decisions);
+        write(image, shot, request, decisions, denoiser_name);
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         const std::string figures =
-            words_.as_json ? render_as_json(shot, request, image, words_.outputs, decisions, warnings_, seconds)
-                           : summary(shot, request.settings, image, words_.outputs, seconds, words_.verbose);
+            words_.as_json
+                ? render_as_json(shot, request, image, words_.outputs, decisions, denoiser_name, warnings_, seconds)
+                : summary(shot, request.settings, image, words_.outputs, denoiser_name, seconds, words_.verbose);
         std::fputs(figures.c_str(), stdout);
     }
 
@@ -136,34 +161,6 @@ private:
         return make_plan(session, shot.scene, shot.camera, request.settings, measures_times, fast_pupil_tracer());
     }
 
-    static std::string json_of(const Plan& plan) {
-        io::JsonWriter json;
-        json.begin_object().key("model").text(io::name_of(plan.model)).key("effects").begin_array();
-        for (const std::string& name : names_of(plan.effects)) json.text(name);
-        json.end().key("decisions").begin_array();
-        for (const PlanDecision& decision : plan.decisions) {
-            json.begin_object()
-                .key("effect")
-                .text(decision.name)
-                .key("size")
-                .number(decision.size)
-                .key("threshold")
-                .number(decision.threshold)
-                .key("unit")
-                .text(name_of(decision.unit))
-                .key("decision")
-                .text(decision.is_kept ? "kept" : "left out")
-                .key("by")
-                .text(decision.by == DecidedBy::user ? "user" : "planner")
-                .key("time_share")
-                .number(decision.time.value_or(std::numeric_limits<double>::quiet_NaN()))
-                .key("reason")
-                .text(decision.reason)
-                .end();
-        }
-        return json.end().end().finish() + '\n';
-    }
-
     Assembly read_scene(const shot::ShotRequest& request) {
         std::vector<std::string> pictures;
         const shot::PictureReaders readers = {[&](const std::string& path, std::span<const std::uint8_t> bytes) {
@@ -184,32 +181,39 @@ private:
     }
 
     static Image expose(Session& session, shot::Shot& shot, const shot::ShotRequest& request) {
-        // A progress callback that draws, and stops on a signal.
-        const auto drawing_on = [](ProgressBar& bar) {
-            return [&bar](double done) {
-                bar.show(done);
-                return Interrupt::signal() == 0;
-            };
-        };
         const Film& film = shot.camera.film;
-        try {
+        return until_interrupted([&] {
             ProgressBar metering("metering ");
-            if (!shot.is_metered) meter(shot, request, session, drawing_on(metering));
+            const auto show_metering = [&](double done) {
+                metering.show(done);
+                return is_wanted();
+            };
+            if (!shot.is_metered) meter(shot, request, session, show_metering);
             ProgressBar rendering("rendering");
+            std::optional<SamplingNotice> notice;
+            if (request.settings.noise) say(notice.emplace(*request.settings.noise, request.sampling).aim());
+            const auto show_rendering = [&](double done) {
+                if (notice) {
+                    done = notice->took(done);
+                    if (const std::string text = notice->expectation(); !text.empty()) {
+                        rendering.clear();
+                        say(text);
+                    }
+                }
+                rendering.show(done);
+                return is_wanted();
+            };
             return with_memory_for(
                 "for a picture of " + std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
-                [&] {
-                    return take_picture(session, shot.scene, shot.camera, request.settings, drawing_on(rendering));
-                });
-        } catch (const Cancelled&) {
-            throw Interrupted{Interrupt::signal(), ""};
-        }
+                [&] { return take_picture(session, shot.scene, shot.camera, request.settings, show_rendering); });
+        });
     }
 
     void write(const Image& image, const shot::Shot& shot, const shot::ShotRequest& request,
-               const std::string& decisions) const {
+               const std::string& decisions, const std::string& denoiser) const {
         io::ImageMetadata metadata = io::metadata_of(shot.camera, request.settings);
         metadata.plan = decisions;
+        metadata.denoiser = denoiser;
         metadata.spp = static_cast<int>(image.spp);
         std::string written;
         for (const std::string& path : words_.outputs) {
@@ -237,7 +241,8 @@ void add_render_command(CLI::App& app) {
         "Examples:\n  realcam render scene.glb -o picture.png\n"
         "  realcam render scene.glb -o picture.png -o film.exr --lens tessar-50mm --f-number 5.6 --focus 2.5\n"
         "  realcam render scene.obj -o picture.png --position 0,1.5,4 --look-at 0,1,0 --exposure-time 1/125 --iso 400\n"
-        "  realcam render shot.toml -o picture.png --spp auto --noise-codes 1 --json");
+        "  realcam render shot.toml -o picture.png --noise-codes 1 --seconds 300 --json\n"
+        "  realcam render shot.toml -o picture.png --spp 16 --denoise");
     command->callback([words] { Run{*words}.photograph(); });
 }
 

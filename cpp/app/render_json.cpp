@@ -58,7 +58,7 @@ void write_settings(JsonWriter& json, const shot::ShotRequest& request, const st
     json.key("illuminant").text(light ? light->text() : "").key("plan").text(plan);
 }
 
-/// The noise goal of --spp auto; null where the number of samples was given.
+/// The noise goal; null where the number of samples was given.
 void write_noise(JsonWriter& json, const std::optional<NoiseGoal>& goal, const Image& image) {
     if (!goal) {
         json.key("noise").null();
@@ -86,7 +86,7 @@ void write_cost(JsonWriter& json, const RenderStats& stats, double seconds) {
 
 std::string render_as_json(const shot::Shot& shot, const shot::ShotRequest& request, const Image& image,
                            const std::vector<std::string>& pictures, const std::string& plan,
-                           const std::vector<std::string>& warnings, double seconds) {
+                           const std::string& denoiser, const std::vector<std::string>& warnings, double seconds) {
     JsonWriter json;
     json.begin_object();
     write_texts(json, "pictures", pictures);
@@ -97,6 +97,7 @@ std::string render_as_json(const shot::Shot& shot, const shot::ShotRequest& requ
     write_exposure(json, shot, image);
     json.key("spp").number(static_cast<double>(image.spp));
     write_noise(json, request.settings.noise, image);
+    json.key("denoiser").text(denoiser);
     write_settings(json, request, plan);
     write_cost(json, image.stats, seconds);
     write_texts(json, "warnings", warnings);

@@ -67,8 +67,8 @@ void read_environment(shot::ShotRequest& request, const std::string& option, con
 
 /// In place of what a shot file says of the samples.
 void read_spp(shot::ShotRequest& request, const std::string& option, const std::string& word) {
-    request.has_noise_goal = word == "auto";
-    if (request.has_noise_goal) return;
+    request.sampling = word == "auto" ? shot::Sampling::by_noise : shot::Sampling::counted;
+    if (request.sampling == shot::Sampling::by_noise) return;
     request.noise = {};
     request.settings.spp = whole<int>(option, word);
 }
@@ -169,22 +169,26 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
            "Degrees by which the environment is turned about the vertical, counterclockwise from above [0]", "DEGREES",
            [](Request& r, Text o, Text w) { r.environment_change.rotation_deg = parse_number(o, w); });
     command.option_defaults()->group("Picture");
-    option("--spp", "Samples per pixel, or auto: as many as the noise needs, by tile of the film [64]", "N", read_spp);
-    option("--noise", "Of --spp auto: noise as a share of a tile's light, such as 0.01", "SHARE",
+    option(
+        "--spp",
+        "Samples per pixel, or auto: as many as the noise needs, by tile of the film, until it is 1 code [until it is "
+        "2 codes, for 60 seconds at most]",
+        "N", read_spp);
+    option("--noise", "Unless --spp is a number: noise as a share of a tile's light, such as 0.01", "SHARE",
            [](Request& r, Text o, Text w) {
                r.noise.noise = parse_number(o, w);
                r.noise.noise_codes.reset();
            });
-    option("--noise-codes", "The same in 8-bit codes of the developed picture [1]", "CODES",
+    option("--noise-codes", "The same in 8-bit codes of the developed picture", "CODES",
            [is_given](Request& r, Text o, Text w) {
                if (!is_given("--noise")) r.noise.noise.reset();
                r.noise.noise_codes = parse_number(o, w);
            });
-    option("--seconds", "After which --spp auto takes no more samples [any time]", "SECONDS",
+    option("--seconds", "After which no more samples are taken, unless --spp is a number", "SECONDS",
            [](Request& r, Text o, Text w) { r.noise.seconds = parse_number(o, w); });
-    option("--max-spp", "Samples of a pixel that --spp auto takes at most [4096]", "N", [](Request& r, Text o, Text w) {
-        r.noise.max_spp = static_cast<std::int64_t>(parse_whole(o, w, 1u << 31));
-    });
+    option(
+        "--max-spp", "Samples that a pixel gets at most, unless --spp is a number [4096]", "N",
+        [](Request& r, Text o, Text w) { r.noise.max_spp = static_cast<std::int64_t>(parse_whole(o, w, 1u << 31)); });
     option("--seed", "Of the random numbers [0]", "N",
            [](Request& r, Text o, Text w) { r.settings.seed = whole<std::uint32_t>(o, w); });
     option("--max-bounces", "Light that bounces this often is seen; 0: direct light only [1]", "N",
@@ -234,6 +238,10 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
 void add_render_options(CLI::App& command, RenderWords& w) {
     const std::string group = command.option_defaults()->get_group();
     add_shot_options(command, w);
+    const auto denoise = [&w] { w.changes.emplace_back([](shot::ShotRequest& r) { r.denoises = true; }); };
+    command.add_flag_callback(
+        "--denoise", denoise,
+        "Take the noise that is left from the picture, by Open Image Denoise (realcam[denoise]) [the noise stays]");
     command.add_flag("-v,--verbose", w.verbose, "Also print rays per second, and where the time went");
     command.add_flag("--explain", w.explains, "Also print what --effects auto has decided, and why");
     command.add_flag("--json", w.as_json, "Print the picture's figures and settings as JSON, in place of the text");
@@ -256,9 +264,10 @@ shot::ShotRequest understand(const RenderWords& w) {
     request.lens_options = lens_options_of(w.lens_file);
     check_environment_change(request);
     check_blades(request);
-    if (!request.has_noise_goal && !request.noise.says_nothing())
+    if (request.sampling == shot::Sampling::counted && !request.noise.says_nothing())
         throw InputError(
-            "--noise, --noise-codes, --seconds and --max-spp say how far --spp auto goes; it is not asked for");
+            "--noise, --noise-codes, --seconds and --max-spp say how far --spp auto goes; the number of samples is "
+            "given");
     settle_noise_goal(request);
     validate(request.settings);
     // Those of a shot file cost nothing where nobody would see them.

@@ -27,7 +27,8 @@ std::string million(double count, double seconds) {
 }  // namespace
 
 std::string summary(const shot::Shot& shot, const RenderSettings& settings, const Image& image,
-                    const std::vector<std::string>& pictures, double seconds, bool verbose) {
+                    const std::vector<std::string>& pictures, const std::string& denoiser, double seconds,
+                    bool verbose) {
     const Camera& camera = shot.camera;
     const LensSystem& lens = camera.lens;
     const Film& film = camera.film;
@@ -77,6 +78,7 @@ std::string summary(const shot::Shot& shot, const RenderSettings& settings, cons
                                     short_number(stats.setup_seconds, 2) + " s)"
                               : "") +
                      " on " + stats.device);
+    if (!denoiser.empty()) line("denoised", "by " + denoiser);
     for (const std::string& path : pictures) line("picture", path);
     return text;
 }

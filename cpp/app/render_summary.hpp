@@ -8,8 +8,9 @@
 namespace realcam::app {
 
 /// What was photographed, and how long it took, some lines. `seconds`: wall clock of everything. `verbose`: also rays
-/// per second, and where the time went.
+/// per second, and where the time went. `denoiser`: its name; empty: there was none.
 std::string summary(const shot::Shot& shot, const RenderSettings& settings, const Image& image,
-                    const std::vector<std::string>& pictures, double seconds, bool verbose);
+                    const std::vector<std::string>& pictures, const std::string& denoiser, double seconds,
+                    bool verbose);
 
 }  // namespace realcam::app

@@ -48,12 +48,13 @@ public:
         return view_->shoot(camera, settings, curve, heed_signals, std::make_shared<WorkUnderWay>());
     }
 
-    py::dict image() const {
+    /// Of the last frame's camera and settings, but with layers.
+    py::dict image(const Camera& camera, const RenderSettings& settings) const {
         const Image image = [&] {
             const Unlocked unlocked;
-            return view_->collected().picture(heed_signals);
+            return view_->picture(camera, settings, heed_signals);
         }();
-        return picture_from(image, {});
+        return picture_from(image, settings.layers);
     }
 
     py::tuple picture() const {
@@ -138,7 +139,7 @@ void bind_live(py::module_& m) {
             "camera"_a, "settings"_a, "tone"_a)
         .def("show", &PythonLiveView::show, "scene"_a, py::call_guard<Unlocked>())
         .def("picture", &PythonLiveView::picture)
-        .def("image", &PythonLiveView::image)
+        .def("image", &PythonLiveView::image, "camera"_a, "settings"_a)
         .def("cancel", &PythonLiveView::cancel, py::call_guard<Unlocked>());
 }
 

@@ -51,6 +51,7 @@ void bind_shot(py::module_& m);
 void bind_live(py::module_& m);
 void bind_session(py::module_& m);
 void bind_sensor(py::module_& m);
+void bind_denoiser(py::module_& m);
 void bind_bench(py::module_& m);
 
 /// What all functions and classes of the module have in common; the last of all.

@@ -31,6 +31,7 @@ PYBIND11_MODULE(_core, m) {
     bind_live(m);
     bind_session(m);
     bind_sensor(m);
+    bind_denoiser(m);
     bind_bench(m);
     finish_module(m);
     watch_exit_and_fork();

@@ -20,4 +20,10 @@ Session& LiveView::collected() const {
     return *session_;
 }
 
+Image LiveView::picture(const Camera& camera, const RenderSettings& settings, const KeepGoing& keep_going) const {
+    Session& session = collected();
+    session.set(scene_, camera, settings, keep_going);
+    return session.picture(keep_going);
+}
+
 }  // namespace realcam

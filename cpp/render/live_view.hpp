@@ -24,6 +24,10 @@ public:
     /// What holds all that the frames up to the last have collected. Throws InputError before the first of a scene.
     Session& collected() const;
 
+    /// All that they have collected, with the layers of the settings, which else are those of the last frame, as its
+    /// camera is. Throws as collected.
+    Image picture(const Camera& camera, const RenderSettings& settings, const KeepGoing& keep_going = {}) const;
+
     /// Gives up all frames under way, from any thread. The next frame begins a new picture.
     void cancel() { session_->cancel(Collected::drop); }
 

@@ -47,12 +47,18 @@ void check_blades(const ShotRequest& request) {
 }
 
 void settle_noise_goal(ShotRequest& request) {
-    if (request.has_noise_goal)
-        request.settings.noise = goal_of(request.noise);
-    else if (!request.noise.says_nothing())
-        throw InputError("noise, noise_codes, seconds and max_spp belong to spp \"auto\"");
-    else
+    if (request.sampling == Sampling::counted) {
+        if (!request.noise.says_nothing())
+            throw InputError("noise, noise_codes, seconds and max_spp belong to spp \"auto\"");
         request.settings.noise.reset();
+        return;
+    }
+    NoiseRequest wanted = request.noise;
+    if (request.sampling == Sampling::unsaid && !wanted.noise && !wanted.noise_codes) {
+        wanted.noise_codes = request.denoises ? kUnsaidNoiseToDenoise : kUnsaidGoal.noise;
+        if (!wanted.seconds) wanted.seconds = kUnsaidGoal.seconds;
+    }
+    request.settings.noise = goal_of(wanted);
 }
 
 Camera camera_of(const ShotRequest& request) {

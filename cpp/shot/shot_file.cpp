@@ -163,12 +163,21 @@ private:
     }
 
     void read_samples(ShotRequest& shot) const {
-        shot.has_noise_goal = table_.find("spp") && !table_.number_or_auto("spp", "a whole number or \"auto\"");
-        if (!shot.has_noise_goal)
-            if (const auto spp = table_.number("spp")) shot.settings.spp = table_.whole("spp", *spp);
-        shot.noise = {table_.number("noise"), table_.number("noise_codes"), table_.number("seconds"), {}};
-        if (const auto most = table_.number("max_spp")) shot.noise.max_spp = table_.whole("max_spp", *most);
-        table_.checked(nullptr, [&] { settle_noise_goal(shot); });
+        if (table_.find("spp")) {
+            const auto spp = table_.number_or_auto("spp", "a whole number or \"auto\"");
+            shot.sampling = spp ? Sampling::counted : Sampling::by_noise;
+            if (spp) shot.settings.spp = table_.whole("spp", *spp);
+        }
+        const auto read = [&](const char* key, auto& value, const auto& found) {
+            value = found;
+            table_.checked(key, [&] { goal_of(shot.noise); });
+        };
+        read("noise", shot.noise.noise, table_.number("noise"));
+        read("noise_codes", shot.noise.noise_codes, table_.number("noise_codes"));
+        read("seconds", shot.noise.seconds, table_.number("seconds"));
+        if (const auto most = table_.number("max_spp"))
+            read("max_spp", shot.noise.max_spp, table_.whole("max_spp", *most));
+        table_.checked("spp", [&] { settle_noise_goal(shot); });
     }
 
     void read_settings(RenderSettings& settings) const {

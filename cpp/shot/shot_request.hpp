@@ -14,6 +14,18 @@
 
 namespace realcam::shot {
 
+/// Who decides on the number of samples.
+enum class Sampling {
+    unsaid,    ///< nobody has said: kUnsaidGoal
+    counted,   ///< settings.spp
+    by_noise,  ///< spp is "auto"
+};
+
+/// The noise of a picture of which no number of samples is said, and the time after which it ends all the same.
+inline constexpr NoiseGoal kUnsaidGoal = {.noise = 2, .seconds = 60};
+/// The noise of such a picture that is to be denoised, which takes at least two thirds of it (docs/denoising.md).
+inline constexpr double kUnsaidNoiseToDenoise = 6;
+
 /// What a user says of a photograph, on the command line or in a shot file. What is left out is chosen (shot.hpp).
 struct ShotRequest {
     std::string scene;  ///< a file
@@ -41,14 +53,17 @@ struct ShotRequest {
     double iso = 100;
 
     RenderSettings settings;
-    bool has_noise_goal = false;  ///< spp is "auto", and as many samples are taken as the noise needs
+    Sampling sampling = Sampling::unsaid;
     NoiseRequest noise;
+    bool denoises = false;
     ToneCurve tone = ToneCurve::film;
 
     bool chooses_environment() const { return environment_cd_m2 || !environment_file.empty(); }
 };
 
-/// Brings the goal of the noise into the settings. Throws InputError where there is none, but something is said of it.
+/// Brings the goal of the noise into the settings. Throws InputError where samples are counted, but something is said
+/// of it. Who says nothing of the noise itself gets that of kUnsaidGoal, and who says nothing of the time either its
+/// time.
 void settle_noise_goal(ShotRequest& request);
 
 /// Throws InputError where the blades of a request are no diaphragm's.

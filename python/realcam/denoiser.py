@@ -5,26 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from realcam_command import denoiser_library
 
+from . import _core
 from ._core import InputError
 
+GUIDES = ("albedo", "normal")  #: the layers that it goes by
 
-def denoised(pixels: np.ndarray, layers: Mapping[str, np.ndarray]) -> tuple[np.ndarray, str]:
-    """(H, W, 3) float32 exposure without noise, and the denoiser's name and version. Raises InputError."""
-    missing = [name for name in ("albedo", "normal") if name not in layers]
-    if missing:
+
+def opened(device: str = "auto") -> _core._Denoiser:
+    """A denoiser, for one thread. device: as Image.denoised has it. Raises InputError, which says what to install."""
+    return _core._Denoiser(device, 0, denoiser_library())
+
+
+def denoised(pixels: np.ndarray, layers: Mapping[str, np.ndarray], device: str) -> tuple[np.ndarray, str]:
+    """(H, W, 3) float32 exposure without noise, and the denoiser's name and version. Raises InputError, DeviceError."""
+    if not all(name in layers for name in GUIDES):
         raise InputError(
-            f"the denoiser wants the layers albedo and normal; render(..., layers={['albedo', 'normal']}) brings them"
+            f"the denoiser wants the layers albedo and normal; render(..., layers={list(GUIDES)}) brings them"
         )
-    try:
-        import pyoidn
-    except ImportError as error:
-        raise InputError(f"Open Image Denoise is not here ({error}); pip install realcam[denoise] brings it") from None
-    # Both layers are means over the samples of the picture, with their noise in them: they are no clean guides.
-    result: np.ndarray = pyoidn.denoise(
-        np.asarray(pixels, np.float32),
-        albedo=np.asarray(layers["albedo"], np.float32),
-        normal=np.asarray(layers["normal"], np.float32),
-        hdr=True,
-    )
-    return np.maximum(result, 0), f"Open Image Denoise {pyoidn.version.oidn_version}"
+    denoiser = opened(device)
+    return denoiser.denoised(pixels, layers["albedo"], layers["normal"], False), denoiser.name

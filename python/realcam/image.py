@@ -103,13 +103,14 @@ class Image:
         """
         return _core.develop(self.pixels, self.camera.iso if iso is None else iso, tone)
 
-    def denoised(self) -> Image:
+    def denoised(self, *, device: str = "auto") -> Image:
         """Without noise, as Intel's Open Image Denoise guesses it: a picture to look at, not to measure.
 
-        Wants the layers albedo and normal, and the extra realcam[denoise]. All but the pixels stays as it is; the layer
-        variance, which describes the noise, goes. Raises InputError where one of these is missing.
+        Wants the layers albedo and normal, and the extra realcam[denoise] (docs/denoising.md). All but the pixels stays
+        as it is; the layer variance, which describes the noise, goes. device: "auto" (a GPU if the denoiser can use
+        one), "cpu", "cuda" or "cuda:1". Raises InputError where one of these is missing; DeviceError.
         """
-        pixels, name = denoiser.denoised(self.pixels, self.layers)
+        pixels, name = denoiser.denoised(self.pixels, self.layers, device)
         layers = {layer: array for layer, array in self.layers.items() if layer != "variance"}
         return replace(self, pixels=pixels, layers=layers, denoiser=name)
 

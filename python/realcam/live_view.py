@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._core import Camera, DeviceArray, LiveFrame, RenderSettings, Scene
+from ._core import Camera, DeviceArray, InputError, LiveFrame, RenderSettings, Scene
 from .image import Image
 from .settings import settings_of
 
@@ -27,7 +28,7 @@ class LiveView:
     CPU. Not for two threads at once, but for cancel().
 
     settings, also by their names, are those of render, but that effects are none unless they are named: planning
-    ("auto") takes longer than a frame, and rc.plan says what it would choose. Layers are not for frames. Raises
+    ("auto") takes longer than a frame, and rc.plan says what it would choose. Layers are image()'s, not frames'. Raises
     InputError; DeviceError where the device is not there.
     """
 
@@ -78,11 +79,13 @@ class LiveView:
         """
         return self._core.picture()
 
-    def image(self) -> Image:
-        """The same as Session.image returns it. Raises what picture raises."""
-        picture = self._core.image()
-        assert self._last is not None  # or there was no picture
+    def image(self, layers: str | Iterable[str] = ()) -> Image:
+        """The same as Session.image returns it, with these layers. Raises what picture raises."""
+        if self._last is None:
+            raise InputError("there is no picture yet; shoot() takes one")
         camera, settings = self._last
+        settings = settings.with_(layers=layers)
+        picture = self._core.image(camera, settings)
         return Image(**picture, camera=camera, seed=settings.seed, settings=settings)
 
     def cancel(self) -> None:

@@ -5,6 +5,8 @@ A package of its own, because importing `realcam` takes a third of a second, in 
 
 from __future__ import annotations
 
+import os
+from importlib.util import find_spec
 from pathlib import Path
 
 
@@ -12,3 +14,12 @@ def executable() -> Path:
     """The C++ program of this installation."""
     # Asked for without importing realcam.
     return Path(__file__).resolve().parents[1] / "realcam" / "bin" / "realcam"
+
+
+def denoiser_library() -> str:
+    """The path of Open Image Denoise: what REALCAM_OIDN names, or what realcam[denoise] brings; empty: neither."""
+    named = os.environ.get("REALCAM_OIDN", "")
+    package = None if named else find_spec("pyoidn")
+    folders = (package.submodule_search_locations or ()) if package else ()
+    found = (path for folder in folders for path in Path(folder).rglob("libOpenImageDenoise.so*"))
+    return named or str(next(found, ""))

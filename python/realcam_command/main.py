@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 
-from . import executable
+from . import denoiser_library, executable
 
 # What the C++ executable does. It comes with the Python package, which runs it, so that the two cannot differ.
 _OF_THE_EXECUTABLE = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
@@ -26,6 +26,8 @@ def main() -> None:
 
 def _become_the_executable(arguments: list[str]) -> None:
     program = executable()
+    if "--denoise" in arguments and (library := denoiser_library()):
+        os.environ["REALCAM_OIDN"] = library
     try:
         os.execv(program, ["realcam", *arguments])
     except OSError as error:

@@ -23,13 +23,14 @@ MAY_INCLUDE = {
     "embree": {*CORE, "bvh"},
     "cuda": {*CORE, "bvh"},
     "devices": {*CORE, *BACKENDS},
+    "denoise": {*CORE},
     "io": {*CORE},
     "image_io": {*CORE, "io"},
     "shot": {*CORE, "io"},
     # OpenImageIO is linked by the executable and by an extension of its own, which is loaded when it is needed.
-    "bindings": {*CORE, *BACKENDS, "plan", "devices", "io", "shot"},
+    "bindings": {*CORE, *BACKENDS, "plan", "devices", "denoise", "io", "shot"},
     "picture_bindings": {*CORE, "io", "image_io"},
-    "app": {*CORE, *BACKENDS, "plan", "devices", "io", "shot", "image_io"},
+    "app": {*CORE, *BACKENDS, "plan", "devices", "denoise", "io", "shot", "image_io"},
 }
 
 # What both extensions do when Python ends stays in one place.

@@ -145,7 +145,16 @@ def test_bench_says_where_the_benchmarks_are(
         ("lens info tessar-50mm --jsn", '(did you mean "--json"'),
         ("rendr", 'unknown command "rendr" (did you mean "render"'),
         ("lens lst", 'unknown command "lst" (did you mean "list"'),
-        ("render quad.obj -o a.png --noise 0.1", "say how far --spp auto goes"),
+        ("render quad.obj -o a.png --spp 4 --noise 0.1", "say how far --spp auto goes; the number of samples is given"),
+        ("render quad.obj -o a.png --noise-codes 0", "noise must be above 0"),
+        ("render quad.obj -o a.png --noise-codes -2", "noise must be above 0"),
+        ("render quad.obj -o a.png --noise-codes nan", '--noise-codes: "nan"'),
+        ("render quad.obj -o a.png --noise-codes inf", '--noise-codes: "inf" is not a number'),
+        ("render quad.obj -o a.png --noise 0", "noise must be above 0"),
+        ("render quad.obj -o a.png --seconds 0", "seconds must be above 0"),
+        ("render quad.obj -o a.png --seconds -1", "seconds must be above 0"),
+        ("render quad.obj -o a.png --seconds nan", '--seconds: "nan"'),
+        ("render quad.obj -o a.png --max-spp 0", "max_spp must lie between 2 and"),
         ("render quad.obj -o a.png --quality best", '--quality: "best": draft, photo or reference is wanted'),
         ("render quad.obj -o a.png --threshold-px 0", "must be above 0"),
         ("lens", "a command is missing; info, list are known (realcam lens --help lists the commands)"),
@@ -199,6 +208,46 @@ def test_noise_that_was_asked_for_is_in_the_json(tmp_path: Path) -> None:
     assert missed["noise"]["is_reached"] is False
     assert missed["noise"]["shortfall"] in told
     assert missed["warnings"] == [missed["noise"]["shortfall"]]
+
+
+@pictures
+def test_without_a_number_of_samples_the_noise_and_the_time_decide(tmp_path: Path) -> None:
+    (tmp_path / "quad.obj").write_text(QUAD)
+    (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nenvironment_cd_m2 = 100\n')
+    (tmp_path / "counted.toml").write_text('format = 1\nscene = "quad.obj"\nenvironment_cd_m2 = 100\nspp = 3\n')
+
+    def figures(scene: str, *words: object) -> tuple[dict[str, Any], str]:
+        small = ["--resolution", "48x32", "--device", "cpu", "--effects", "none", "--json"]
+        done = run("render", scene, "-o", "a.png", *small, *words, folder=tmp_path)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout), done.stderr
+
+    aim = "realcam: samples are taken until the noise is {}; --noise-codes, --seconds or --spp say otherwise\n"
+    for scene in ("quad.obj", "shot.toml"):
+        image, told = figures(scene)
+        assert (image["noise"]["wanted"], image["noise"]["unit"]) == (2, "codes")
+        assert image["noise"]["is_reached"]
+        assert aim.format("2 codes of 255, for 60 s at most") in told
+    # Who says what noise is wanted waits for it; who says how long, has the usual noise.
+    assert aim.format("3 codes of 255") in figures("quad.obj", "--noise-codes", 3)[1]
+    assert aim.format("10% of the light, for 9 s at most") in figures("shot.toml", "--noise", 0.1, "--seconds", 9)[1]
+    assert aim.format("2 codes of 255, for 9 s at most") in figures("shot.toml", "--seconds", 9)[1]
+    # A number of samples is one, wherever it stands.
+    for scene, words in (("counted.toml", []), ("shot.toml", ["--spp", 3])):
+        image, told = figures(scene, *words)
+        assert (image["spp"], image["noise"]) == (3, None)
+        assert "samples are taken" not in told
+
+
+@pictures
+def test_noise_and_time_that_are_out_of_reach_end_with_one_line(tmp_path: Path) -> None:
+    """The picture is written, and a warning says how far it got."""
+    for words in (["--noise-codes", 1e-9, "--max-spp", 32], ["--noise-codes", 1e-9, "--seconds", 1e-9]):
+        figures, told = render(tmp_path, "--spp", "auto", *words)
+        assert figures["noise"]["is_reached"] is False
+        assert figures["warnings"] == [figures["noise"]["shortfall"]]
+        assert told.count("realcam: warning: ") == 1
+        assert (tmp_path / "a.png").exists()
 
 
 @pictures

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -9,8 +12,23 @@ import numpy as np
 import pytest
 import realcam as rc
 from frame_scene import frame_scene
+from realcam.denoiser import opened
+from realcam_command import denoiser_library, executable
 
 GUIDES = ("albedo", "normal")
+NOWHERE = "/nowhere/libOpenImageDenoise.so"
+QUAD = "v -1 -1 -3\nv 1 -1 -3\nv 1 1 -4\nv -1 1 -4\nf 1 2 3 4\n"
+
+
+def is_here() -> bool:
+    try:
+        opened("cpu")
+    except rc.InputError:
+        return False
+    return True
+
+
+wants_it = pytest.mark.skipif(not is_here(), reason="the extra realcam[denoise] is not installed")
 
 
 def picture(spp: int, layers: tuple[str, ...] = (), seed: int = 0) -> rc.Image:
@@ -26,8 +44,8 @@ def picture(spp: int, layers: tuple[str, ...] = (), seed: int = 0) -> rc.Image:
     )
 
 
+@wants_it
 def test_noise_falls() -> None:
-    pytest.importorskip("pyoidn")
     noisy = picture(4, (*GUIDES, "variance", "depth_middle"), seed=1)
     clean = noisy.denoised()
     truth = picture(1024).pixels.astype(float)
@@ -44,8 +62,8 @@ def test_noise_falls() -> None:
     assert "denoised" in repr(clean)
 
 
+@wants_it
 def test_it_is_never_on_by_itself_and_tells(tmp_path: Path) -> None:
-    pytest.importorskip("pyoidn")
     noisy = picture(2, GUIDES)
     assert noisy.denoiser == ""
     assert "realcam:denoiser" not in noisy.metadata()
@@ -65,7 +83,109 @@ def test_what_is_missing_is_told_in_one_line(monkeypatch: pytest.MonkeyPatch) ->
         picture(1, ("albedo",)).denoised()
     assert "\n" not in str(error.value)
     image = picture(1, GUIDES)
-    monkeypatch.setitem(sys.modules, "pyoidn", None)
+    monkeypatch.setenv("REALCAM_OIDN", NOWHERE)
     with pytest.raises(rc.InputError, match=r"pip install realcam\[denoise\] brings it") as error:
         image.denoised()
     assert "\n" not in str(error.value)
+
+
+def test_a_library_that_is_another_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("REALCAM_OIDN", rc._core.__file__)
+    with pytest.raises(rc.InputError, match=r"oidnNewDevice.*; pip install realcam\[denoise\] brings it"):
+        opened("cpu")
+
+
+@wants_it
+@pytest.mark.parametrize("shape", [(4, 5, 1), (4, 5), (4, 4, 3), (0, 5, 3)])
+def test_layers_of_another_size_are_refused(shape: tuple[int, ...]) -> None:
+    right, other = np.ones((4, 5, 3), np.float32), np.ones(shape, np.float32)
+    with pytest.raises(rc.InputError, match="of one H and W"):
+        opened("cpu").denoised(right, other, right, fast=True)
+
+
+@wants_it
+@pytest.mark.parametrize("fast", [False, True])
+@pytest.mark.parametrize("size", [(1, 1), (3, 200), (5, 4), (64, 48)])
+def test_light_is_neither_made_nor_lost(fast: bool, size: tuple[int, int]) -> None:
+    """Of an even grey of any size. The network changes pixels at the edges by a third, so the mean counts.
+
+    The picture is scaled to what the network knows, so that bright pictures are dark ones times a factor.
+    """
+    denoiser = opened("cpu")
+    means = []
+    for exposure in (1e-4, 0.1, 30.0):
+        even = np.full((*size, 3), exposure, np.float32)
+        result = denoiser.denoised(even, np.full_like(even, 0.5), np.full_like(even, 0.5), fast)
+        assert result.shape == even.shape
+        means.append(float(result.mean()) / exposure)
+    # A single pixel is a corner.
+    assert means[0] == pytest.approx(1, abs=0.25 if size == (1, 1) else 0.01)
+    np.testing.assert_allclose(means, means[0], rtol=1e-3)
+
+
+@wants_it
+def test_a_denoiser_takes_pictures_of_other_sizes_and_qualities() -> None:
+    """As the lens bench has them: what is kept for one size must not be used for the next."""
+    one = opened("cpu")
+    rng = np.random.default_rng(1)
+    for size, fast in (((8, 9), True), ((20, 7), True), ((20, 7), False), ((8, 9), True)):
+        arrays = [rng.random((*size, 3), np.float32) for _ in range(3)]
+        np.testing.assert_array_equal(one.denoised(*arrays, fast), opened("cpu").denoised(*arrays, fast))
+
+
+def realcam(*words: str, folder: Path, library: str | None = None) -> subprocess.CompletedProcess[str]:
+    """The executable alone, which gets its library by its environment."""
+    (folder / "quad.obj").write_text(QUAD)
+    environment = {**os.environ, "REALCAM_OIDN": denoiser_library() if library is None else library}
+    command = [str(executable()), "render", "quad.obj", "--resolution", "48x32", "--device", "cpu", *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment)
+
+
+@pytest.mark.picture_files
+def test_no_picture_is_begun_without_the_library(tmp_path: Path) -> None:
+    done = realcam("-o", "a.png", "--denoise", folder=tmp_path, library=NOWHERE)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert "pip install realcam[denoise] brings it" in done.stderr
+    assert not (tmp_path / "a.png").exists()
+    assert realcam("-o", "a.png", "--spp", "1", folder=tmp_path, library=NOWHERE).returncode == 0
+
+
+@wants_it
+@pytest.mark.picture_files
+def test_the_command_denoises_as_python_does(tmp_path: Path) -> None:
+    oiio = pytest.importorskip("OpenImageIO")
+    words = ["--spp", "3", "--effects", "none", "--denoise", "--json"]
+    done = realcam("-o", "a.exr", "-o", "a.png", *words, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout)
+    (tmp_path / "shot.toml").write_text(
+        'format = 1\nscene = "quad.obj"\nresolution = [48, 32]\nspp = 3\neffects = []\n'
+    )
+    shot = rc.Shot.load(tmp_path / "shot.toml", device="cpu")
+    noisy = rc.render(shot.scene, shot.camera, shot.settings, layers=GUIDES, device="cpu")
+    clean = noisy.denoised(device="cpu")
+    assert figures["denoiser"] == clean.denoiser != ""
+    picture = oiio.ImageInput.open(str(tmp_path / "a.exr"))
+    spec = picture.spec()
+    assert spec.channelnames == ("R", "G", "B", "Z")  # the layers that it went by were not asked for
+    np.testing.assert_array_equal(picture.read_image(0, 0, 0, 3, "float"), clean.pixels)
+    for name in ("a.exr", "a.png"):
+        written = oiio.ImageBuf(str(tmp_path / name)).spec()
+        assert {key: written.getattribute(key) for key in clean.metadata()} == clean.metadata()
+    raw = realcam("-o", "b.exr", "--layers", "normal,variance", *words, folder=tmp_path)
+    assert raw.returncode == 0, raw.stderr
+    # The variance would be that of the noise, which is gone.
+    assert oiio.ImageBuf(str(tmp_path / "b.exr")).spec().channelnames[4:] == ("Normal.X", "Normal.Y", "Normal.Z")
+
+
+@wants_it
+@pytest.mark.picture_files
+def test_the_command_of_the_package_finds_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("REALCAM_OIDN", raising=False)
+    (tmp_path / "quad.obj").write_text(QUAD)
+    command = [sys.executable, "-m", "realcam", "render", "quad.obj", "-o", "a.png", "--denoise", "--spp", "1"]
+    done = subprocess.run(
+        [*command, "--resolution", "24x16", "--device", "cpu"], capture_output=True, text=True, cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    assert "denoised    by Open Image Denoise 2." in done.stdout

@@ -141,13 +141,15 @@ def test_shot_files_and_the_command_line_have_the_same_defaults(tmp_path: Path) 
     (tmp_path / "quad.obj").write_text("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n")
     (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nresolution = [6, 4]\n')
     shot = rc.Shot.load(tmp_path / "shot.toml")
-    assert shot.settings == DEFAULTS
+    # But for the samples: who takes one picture waits for its noise, and a program for as many samples each time.
+    assert shot.settings == DEFAULTS.with_(spp="auto", noise_codes=2, seconds=60)
     image = shot.render(device="cpu")
     command = [executable(), "render", "quad.obj", "-o", "a.png", "--json", "--device", "cpu", "--resolution", "6x4"]
     told = json.loads(subprocess.run(command, capture_output=True, check=True, cwd=tmp_path).stdout)
-    for name in ("spp", "seed", "max_bounces", "transport", "clamp_cd_m2"):
+    for name in ("seed", "max_bounces", "transport", "clamp_cd_m2"):
         assert told[name] == getattr(DEFAULTS, name), name
-    assert (tuple(told["effects"]), told["plan"], told["noise"]) == (image.effects, image.plan, None)
+    assert (tuple(told["effects"]), told["plan"]) == (image.effects, image.plan)
+    assert (told["spp"], told["noise"]["wanted"], told["noise"]["unit"]) == (image.spp, 2, "codes")
 
 
 def test_a_value_and_its_words_make_the_same_picture() -> None:

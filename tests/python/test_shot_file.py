@@ -267,6 +267,10 @@ def test_what_is_wrong_with_an_addition_is_told_with_its_line(text: str, says: s
         ("format = 1\nscene = 'quad.obj'\nresolution = [1]", r':3: "resolution" must be an array of 2 numbers'),
         ("format = 1\nscene = 'quad.obj'\nspp = 0", r":3: spp must lie between"),
         ("format = 1\nscene = 'quad.obj'\nspp = 1e300", r':3: "spp" wants whole numbers from 0 to'),
+        ("format = 1\nscene = 'quad.obj'\nspp = 4\nseconds = 3", r':3: .*belong to spp "auto"'),
+        ("format = 1\nscene = 'quad.obj'\nnoise_codes = 0", r":3: noise must be above 0"),
+        ("format = 1\nscene = 'quad.obj'\nnoise_codes = nan", r':3: "noise_codes" must be'),
+        ("format = 1\nscene = 'quad.obj'\nseconds = -1", r":3: seconds must be above 0"),
         ("format = 1\nscene = 'quad.obj'\nseed = -1", r':3: "seed" wants whole numbers from 0 to'),
         ("format = 1\nscene = 'quad.obj'\nenvironment_cd_m2 = -1", r":3: .*between 0 and 1e20"),
         ("format = 1\nscene = 'quad.obj'\nenvironment_cd_m2 = [1, 2]", r":3: .*array of 3 numbers"),
@@ -288,6 +292,23 @@ def test_mistakes_name_file_and_line(tmp_path: Path, text: str, message: str) ->
     with pytest.raises(rc.RealcamError, match=message) as error:
         load(tmp_path, text)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "settings"),
+    [
+        ("", {"spp": "auto", "noise_codes": 2, "seconds": 60}),
+        ("noise_codes = 3", {"spp": "auto", "noise_codes": 3}),
+        ("seconds = 5", {"spp": "auto", "noise_codes": 2, "seconds": 5}),
+        ("max_spp = 50", {"spp": "auto", "noise_codes": 2, "seconds": 60, "max_spp": 50}),
+        ("spp = 'auto'", {"spp": "auto", "noise_codes": 1}),
+        ("spp = 7", {"spp": 7}),
+    ],
+)
+def test_where_the_samples_end(text: str, settings: dict[str, object], tmp_path: Path) -> None:
+    """As docs/sampling.md says it."""
+    shot = load(tmp_path, f"format = 1\nscene = 'quad.obj'\n{text}")
+    assert shot.settings == rc.RenderSettings(**settings)
 
 
 def test_what_is_no_shot_file(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -10,7 +11,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from realcam_command import executable
+from realcam_command import denoiser_library, executable
 
 from .._core import InputError, Lens
 
@@ -20,12 +21,22 @@ def demo(
         Path,
         typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the pictures; made where it is missing."),
     ] = Path("realcam-demo"),
-    spp: Annotated[int, typer.Option(metavar="N", help="Samples per pixel.", min=1, max=2**24)] = 48,
+    spp: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Samples per pixel; 24 if denoised, 48 if not.", min=1, max=2**24),
+    ] = None,
+    denoise: Annotated[
+        bool | None,
+        typer.Option(help="Take the noise from the pictures; done where realcam[denoise] is installed."),
+    ] = None,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
 
     shot = scenes_folder() / "demo.toml"
+    denoises = bool(denoiser_library()) if denoise is None else denoise
+    samples = spp or (24 if denoises else 48)
+    words = ["--denoise"] if denoises else []
     new_folders = [folder for folder in (output, *output.parents) if not folder.exists()]
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # by way of what cleans up
     try:
@@ -33,8 +44,8 @@ def demo(
     except OSError as error:
         raise InputError(f"{output}: the folder cannot be made: {error.strerror}") from None
     try:
-        _render(shot, spp, output / "demo.png", output / "demo.exr")
-        _render(shot, max(1, spp // 4), output / "demo-thin-lens.png", "--model", "thin")
+        _render(shot, samples, output / "demo.png", output / "demo.exr", *words)
+        _render(shot, max(1, samples // 4), output / "demo-thin-lens.png", "--model", "thin", *words)
         # As the demo's camera has it: wide open and focused near.
         save_cross_section(Lens.load("double-gauss-50mm").focused(1.05), output / "lens.png")
     finally:
@@ -42,7 +53,7 @@ def demo(
             with suppress(OSError):
                 folder.rmdir()  # where nothing was written
     for name, what in (
-        ("demo.png", "the photograph"),
+        ("demo.png", "the photograph, denoised" if denoises else "the photograph"),
         ("demo.exr", "its film exposure in lux seconds, and depth"),
         ("demo-thin-lens.png", "the same through an ideal lens: no vignetting, no aberrations"),
         ("lens.png", "the lens and its rays"),
@@ -53,7 +64,8 @@ def demo(
 def _render(shot: Path, spp: int, *rest: Path | str) -> None:
     """`realcam render`. Whatever goes wrong it has said itself; Ctrl-C reaches it too."""
     words = [word if isinstance(word, str) else f"--output={word}" for word in rest]
-    with subprocess.Popen([executable(), "render", shot, "--spp", str(spp), *words]) as program:
+    environment = {**os.environ, "REALCAM_OIDN": denoiser_library()}
+    with subprocess.Popen([executable(), "render", shot, "--spp", str(spp), *words], env=environment) as program:
         try:
             while True:
                 with suppress(KeyboardInterrupt):

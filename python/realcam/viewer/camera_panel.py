@@ -86,6 +86,12 @@ class CameraPanel:
                 lambda value: self._run(self._bench.set_noise, float(value)),
                 "How much noise the picture may have when it is done, of the 255 levels from black to white",
             )
+            self._denoise = ui.switch("Denoise until then").props('data-testid="denoise"')
+            self._denoise.on("update:model-value", lambda e: self._run(self._bench.set_denoising, bool(_value(e))))
+            self._denoise.tooltip("Until then the picture is shown without its noise, as Open Image Denoise guesses")
+            if self._bench.why_no_denoiser:
+                self._denoise.disable()
+                ui.label(self._bench.why_no_denoiser).classes("rc-note").props('data-testid="why-no-denoiser"')
             self._film = self._choice(
                 "Film",
                 FILMS,
@@ -135,6 +141,7 @@ class CameraPanel:
         show_choice(self._width, {w: f"{w} pixels across" for w in sorted({*WIDTHS, width})}, width)
         noise = self._bench.noise_codes
         show_choice(self._noise, NOISES if noise in NOISES else {**NOISES, noise: f"{noise:g} grey levels"}, noise)
+        self._denoise.set_value(self._bench.denoises)
         size = now.film.width_mm, now.film.height_mm
         texts = FILMS if size in FILMS else {**FILMS, size: f"{size[0]:g} × {size[1]:g} mm"}
         show_choice(self._film, dict(texts), size)

@@ -16,7 +16,8 @@ from .noise_measurement import NoiseMeasurement
 from .pace import Size
 from .picture_request import Costs, Frame, PictureRequest
 
-_SMALL = {effect.name for effect in effects() if not effect.shows_in_previews}
+# Of few samples, those with wavelengths are coloured dots, which are larger than the effect.
+_NOT_IN_PREVIEWS = {effect.name for effect in effects() if effect.has_wavelengths or not effect.shows_in_previews}
 
 Arrays = tuple[NDArray[np.float32], NDArray[np.float32]]  # exposure and depth
 
@@ -40,6 +41,9 @@ class GrowingPicture:
     costs: Costs | None = None
     noise: NoiseMeasurement = field(default_factory=NoiseMeasurement)
     kept: Arrays | None = None  #: of the last frame, where the next one is slow
+    denoised_lx: NDArray[np.float32] | None = None  #: illuminance without noise, perhaps of fewer pixels
+    denoised_of: Size = (0, 0)  #: the pixels of the picture then
+    denoised_serial: int = 0  #: of the last frame that showed it
 
     def can_be(self, request: PictureRequest) -> bool:
         """Whether its samples are there and serve a request."""
@@ -51,11 +55,13 @@ class GrowingPicture:
         return self.request.camera.film.resolution
 
     def settings(self) -> RenderSettings:
-        """What is smaller than pixels is left out where these are fewer; diffraction's tables take 50 ms of a core."""
+        """What is smaller than its noise or than pixels is left out where these are fewer than wanted."""
         settings = self.request.settings
         if self.size == self.whole:
             return settings
-        return settings.with_(effects=[effect for effect in settings.effects if effect.partition("=")[0] not in _SMALL])
+        return settings.with_(
+            effects=[effect for effect in settings.effects if effect.partition("=")[0] not in _NOT_IN_PREVIEWS]
+        )
 
     def camera(self, metered_s: float) -> Camera:
         """With the pixels of now. metered_s: the exposure time where it follows the light."""
@@ -73,7 +79,7 @@ class GrowingPicture:
         is_quiet = self.noise_codes is not None and self.noise_codes <= self.request.noise_codes
         return is_quiet or self.samples >= self.request.max_spp
 
-    def frame_of(self, codes: NDArray[np.uint8], exposure_time_s: float) -> Callable[..., Frame]:
+    def frame_of(self, codes: NDArray[np.uint8], exposure_time_s: float, is_denoised: bool) -> Callable[..., Frame]:
         """Makes the Frame that shows it as it stands, of jpeg and jpeg_quality."""
         return partial(
             Frame,
@@ -90,4 +96,5 @@ class GrowingPicture:
             seconds=time.perf_counter() - self.begun,
             exposure_time_s=exposure_time_s,
             costs=self.costs,
+            is_denoised=is_denoised,
         )

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from .._core import Film, InputError, Lens, LensFileError, Plan, RealcamError
+from ..denoiser import GUIDES
 from ..image import Image
 from ..shot import Shot
 from .bench_state import restored
@@ -23,6 +24,7 @@ from .light_meter import middle_grey_lx_s
 from .listeners import Listeners, Problem
 from .picture_loop import PictureLoop
 from .picture_request import MOST_SPP, Frame, PictureRequest
+from .preview_denoiser import why_missing
 from .ring_scales import Ring
 
 
@@ -41,6 +43,8 @@ class LensBench:
         self.plan: Plan | None = None
         self.problem: Problem | None = None
         self.noise_codes = noise_codes
+        self.why_no_denoiser = why_missing(device)
+        self.denoises = not self.why_no_denoiser
         self.hovered: tuple[float, float] | None = None
         self.comparison = Comparison()
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
@@ -207,6 +211,13 @@ class LensBench:
         self.noise_codes = codes
         self._photograph()
 
+    def set_denoising(self, is_on: bool) -> None:
+        """Shows pictures without their noise for as long as they are refined. Raises InputError without a denoiser."""
+        if is_on and self.why_no_denoiser:
+            raise InputError(self.why_no_denoiser)
+        self.denoises = is_on
+        self._photograph()
+
     def compare(self, with_what: str, lens: Lens | None = None) -> None:
         """Shows a second picture; see Comparison. Raises InputError where its camera makes none."""
         comparison = Comparison.of(with_what, self.controls, lens)
@@ -229,9 +240,11 @@ class LensBench:
 
     # What comes of it.
 
-    def image(self, slot: str = "a") -> Image:
+    def image(self, slot: str = "a", *, is_denoised: bool = False) -> Image:
         """The picture with the samples that it has at its whole resolution; waits for the first of them."""
-        return self._loops[slot].image().result()
+        if not is_denoised:
+            return self._loops[slot].image().result()
+        return self._loops[slot].image(GUIDES).result().denoised(device=self._device)
 
     @property
     def is_refined(self) -> bool:
@@ -327,6 +340,7 @@ class LensBench:
             is_automatic=controls.is_automatic,
             compensation_ev=controls.compensation_ev,
             noise_codes=self.noise_codes,
+            denoises=self.denoises,
         )
 
     def _photograph(self) -> None:

@@ -62,7 +62,7 @@ class PictureLoop:
         device: str = "auto",
     ) -> None:
         self._live = LiveView(scene, device=device)
-        self._taker = PictureTaker(self._live, self._wait_for)
+        self._taker = PictureTaker(self._live, self._wait_for, device)
         self._on_error = on_error
         self._wake = threading.Condition()
         self._pending: _Pending | None = None
@@ -97,9 +97,9 @@ class PictureLoop:
     def jpeg_quality(self, quality: int) -> None:
         self._encoder.quality = quality
 
-    def image(self) -> Future[Image]:
+    def image(self, layers: tuple[str, ...] = ()) -> Future[Image]:
         """The picture as it stands, at its whole resolution with all its samples."""
-        return self._ask(self._image, True)
+        return self._ask(lambda: self._image(layers), True)
 
     def point(self, u: float, v: float) -> Future[Point]:
         """What is at u, v (0 to 1, from the upper left corner)."""
@@ -254,10 +254,10 @@ class PictureLoop:
             for question in quick:
                 self._answer(question)
             if pending:
-                self._develop_for(picture, pending)
+                self._develop_for(picture, pending, is_free=False)
 
-    def _develop_for(self, picture: GrowingPicture, pending: _Pending) -> None:
-        """Shows for a new request the samples that are there."""
+    def _develop_for(self, picture: GrowingPicture, pending: _Pending, *, is_free: bool = True) -> None:
+        """Shows for a new request the samples that are there. is_free: no frame is under way."""
         request = pending.request
         is_as_before = request == picture.request
         picture.request, picture.serial, picture.begun = request, pending.serial, pending.begun
@@ -269,13 +269,13 @@ class PictureLoop:
         # The picture first: its noise takes two pictures more to be developed.
         picture.noise_codes = picture.noise_tiles = None
         picture.is_final = picture.is_good_enough()
-        self._show(picture, self._taker.developed(picture))
+        self._show(picture, self._taker.developed(picture), is_free=is_free)
         picture.tell_noise(self._taker.camera(picture).exposure_time_s)
         if picture.is_good_enough() and not picture.is_final:
             picture.is_final = True
             self._show(picture, self._taker.developed(picture))
 
-    def _image(self) -> Image:
+    def _image(self, layers: tuple[str, ...]) -> Image:
         picture = self._picture
         if picture is None:
             raise InputError("there is no picture yet")
@@ -283,7 +283,7 @@ class PictureLoop:
             self._refine(picture)
             if self._pending:
                 raise Cancelled("another picture is wanted")
-        return self._taker.image(picture)
+        return self._taker.image(picture, layers)
 
     def _point(self, u: float, v: float) -> Point:
         picture = self._picture
@@ -292,8 +292,14 @@ class PictureLoop:
             raise InputError("there is no picture yet")
         return point_at(u, v, *self._taker.arrays(picture), picture.exposure_time_s)
 
-    def _show(self, picture: GrowingPicture, codes: NDArray[np.uint8]) -> None:
-        frame_of = picture.frame_of(codes, self._taker.camera(picture).exposure_time_s)
+    def _show(self, picture: GrowingPicture, codes: NDArray[np.uint8], *, is_free: bool = True) -> None:
+        is_denoised = picture.request.denoises and not picture.is_final
+        if is_denoised:
+            without_noise = self._taker.without_noise(picture, is_free=is_free)
+            if without_noise is None:
+                return  # the frame before stands
+            codes = without_noise
+        frame_of = picture.frame_of(codes, self._taker.camera(picture).exposure_time_s, is_denoised)
         try:
             self._encoder.submit(codes, frame_of)
         except RuntimeError:  # the program is ending, and takes no more work

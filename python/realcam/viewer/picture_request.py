@@ -20,6 +20,7 @@ class PictureRequest:
     compensation_ev: float = 0.0
     noise_codes: float = 1.0  #: the picture is refined until its noise is as small
     max_spp: int = MOST_SPP
+    denoises: bool = False  #: frames are shown without their noise, but for the last one
 
     def is_same_picture(self, other: PictureRequest) -> bool:
         """Whether the samples of one can be developed for the other."""
@@ -75,6 +76,7 @@ class Frame:
     exposure_time_s: float
     costs: Costs | None
     noise_tiles: list[list[float]] | None = None  #: the noise of parts of the picture, rows from above
+    is_denoised: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,20 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Camera, LiveFrame, develop
+from ..denoiser import GUIDES
 from ..image import Image
 from ..live_view import LiveView
 from .growing_picture import Arrays, GrowingPicture
 from .light_meter import metered_exposure_lx_s, middle_grey_lx_s
 from .pace import Pace
 from .picture_request import Costs, PictureRequest
+from .preview_denoiser import PreviewDenoiser
 
 _FEW_PIXELS = 50_000  # are developed here sooner than one more sample of them is taken
 
@@ -27,9 +30,10 @@ class PictureTaker:
     wait_for: called with a frame that is under way while the one before is kept, and returns when it is ready.
     """
 
-    def __init__(self, live: LiveView, wait_for: Callable[[LiveFrame, GrowingPicture], None]) -> None:
+    def __init__(self, live: LiveView, wait_for: Callable[[LiveFrame, GrowingPicture], None], device: str) -> None:
         self._live = live
         self._wait_for = wait_for
+        self._device = device
         self._metered_s = 0.0
         self.pace = Pace()
 
@@ -78,6 +82,26 @@ class PictureTaker:
             return self.shoot(picture, 1)  # the device takes a sample and develops in less time
         return self._developed_here(picture)
 
+    def without_noise(self, picture: GrowingPicture, *, is_free: bool) -> NDArray[np.uint8] | None:
+        """The samples that are there, denoised. is_free: no frame is under way, whose end this would have to wait for.
+
+        None: nothing that a frame has not shown, and no time for more.
+        """
+        is_new = picture.denoised_lx is None or picture.denoised_of != picture.size
+        if is_free and (is_new or self._denoiser.is_due):
+            image = self._live.image(GUIDES)
+            picture.denoised_lx = self._denoiser.denoised(image) / np.float32(image.camera.exposure_time_s)
+            picture.denoised_of = picture.size
+        elif picture.denoised_lx is None or picture.denoised_serial == picture.serial:
+            return None
+        picture.denoised_serial = picture.serial
+        camera = self.camera(picture)
+        return develop(picture.denoised_lx * np.float32(camera.exposure_time_s), camera.iso, picture.request.tone)
+
+    @cached_property
+    def _denoiser(self) -> PreviewDenoiser:
+        return PreviewDenoiser(self._device)
+
     def measure_noise(self, picture: GrowingPicture) -> None:
         """Where it is due; and whether the picture is good enough with it."""
         if picture.noise.is_due(picture.samples):
@@ -88,9 +112,9 @@ class PictureTaker:
                 picture.costs = Costs.of(self._live.image().stats, picture.spent_s)
         picture.is_final = picture.is_good_enough()
 
-    def image(self, picture: GrowingPicture) -> Image:
+    def image(self, picture: GrowingPicture, layers: tuple[str, ...]) -> Image:
         """All samples, with the exposure time that is wanted now."""
-        image, camera = self._live.image(), self.camera(picture)
+        image, camera = self._live.image(layers), self.camera(picture)
         ratio = np.float32(camera.exposure_time_s / image.camera.exposure_time_s)
         return replace(image, pixels=image.pixels * ratio, camera=camera)
 

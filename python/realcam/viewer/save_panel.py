@@ -28,12 +28,19 @@ class SavePanel:
             self._name = ui.input("Save as", value="picture.png").classes("grow").props('data-testid="save-name"')
             self._name.tooltip(f"A picture is {', '.join(PICTURE_SUFFIXES)}; a shot .toml; a lens .toml, .zmx or .seq")
             self._what = ui.select(list(_PROPOSED), value="picture").props('data-testid="save-what"')
-            self._what.on("update:model-value", lambda: self._name.set_value(_PROPOSED.get(self._what.value, "")))
+            self._what.on("update:model-value", self._propose)
+            self._denoised = ui.checkbox("Denoised").props('data-testid="save-denoised"')
+            self._denoised.tooltip("Without the noise that it has, as Open Image Denoise guesses; its metadata say so")
+            self._denoised.set_visibility(not self._bench.why_no_denoiser)
             save = ui.button("Save", on_click=lambda: self._try(self._save)).props('no-caps data-testid="save"')
             save.tooltip(f"In {folders.first}, or in another folder that was named when the lens bench was started")
             download = ui.button("Download", color=None).props('no-caps flat data-testid="download"').classes("rc-flat")
             download.on("click", lambda: self._try(self._download))
             download.tooltip("To where the browser keeps its downloads")
+
+    def _propose(self) -> None:
+        self._name.set_value(_PROPOSED.get(self._what.value, ""))
+        self._denoised.set_visibility(self._what.value == "picture" and not self._bench.why_no_denoiser)
 
     async def _try(self, action: Callable[[str, str], Any]) -> None:
         name, what = self._name.value, self._what.value
@@ -114,7 +121,10 @@ class SavePanel:
     async def _picture(self, name: str) -> bytes:
         """When it has the noise that is asked for, or the user wants it as it is. Raises Cancelled."""
         await self._refined()
-        return await self._window.do(lambda: picture_content(self._bench.image(), name, self._bench.shot.tone))
+        bench, is_denoised = self._bench, self._denoised.value is True
+        return await self._window.do(
+            lambda: picture_content(bench.image(is_denoised=is_denoised), name, bench.shot.tone)
+        )
 
     async def _refined(self) -> None:
         bench = self._bench

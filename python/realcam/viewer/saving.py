@@ -37,7 +37,8 @@ def picture_content(image: Image, name: str, tone: str) -> bytes:
     suffix = Path(name).suffix.lower()
     if suffix in (".jpg", ".jpeg"):
         codes = image.developed(tone)
-        return bytes(simplejpeg.encode_jpeg(codes, quality=_JPEG_QUALITY, colorsubsampling="444"))
+        jpeg = bytes(simplejpeg.encode_jpeg(codes, quality=_JPEG_QUALITY, colorsubsampling="444"))
+        return _with_comment(jpeg, f"realcam:denoiser {image.denoiser}") if image.denoiser else jpeg
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"picture{suffix}"
         if suffix == ".dng":
@@ -45,6 +46,13 @@ def picture_content(image: Image, name: str, tone: str) -> bytes:
         else:
             image.save(path, tone)
         return path.read_bytes()
+
+
+def _with_comment(jpeg: bytes, text: str) -> bytes:
+    """With a segment COM (ITU-T T.81) after that of JFIF, which is always the first."""
+    begin = 4 + int.from_bytes(jpeg[4:6], "big")
+    comment = text.encode()
+    return jpeg[:begin] + b"\xff\xfe" + (len(comment) + 2).to_bytes(2, "big") + comment + jpeg[begin:]
 
 
 def lens_content(lens: Lens, name: str) -> tuple[bytes, list[str]]:

@@ -20,6 +20,8 @@ export default {
     <canvas ref="magnifier" class="rc-magnifier" width="200" height="200" v-show="magnifier && showsMagnifier"
       :style="magnifierStyle"></canvas>
     <div v-if="mark" class="rc-crosshair" :style="mark"></div>
+    <div v-if="denoised.a" class="rc-badge" data-testid="denoised">denoised</div>
+    <div v-if="compares && denoised.b" class="rc-badge rc-right">denoised</div>
     <div v-if="compares" class="rc-wipe-line" :style="{ left: 100 * wipe + '%' }"></div>
     <div v-if="!isConnected" class="rc-lost" role="alert">Connection lost. Trying again...</div>
   </div>
@@ -44,7 +46,7 @@ export default {
 </section>`,
   data: () => ({
     mode: "focus", peaking: false, clipping: false, magnifier: false, showsMagnifier: false, magnifierStyle: {},
-    wipe: 0.5, compares: false, isConnected: true, mark: null, header: null, clipped: 0, problem: "",
+    wipe: 0.5, compares: false, isConnected: true, mark: null, header: null, clipped: 0, problem: "", denoised: {},
   }),
   computed: {
     status() {
@@ -89,6 +91,7 @@ export default {
     take({ header, bitmap }) {
       this.bitmaps[header.slot]?.close();
       this.bitmaps[header.slot] = bitmap;
+      this.denoised[header.slot] = header.is_denoised;
       if (header.slot === "a") {
         this.header = header;
         this.drawMarksSoon();

@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "../plan/plan.hpp"
+
+namespace realcam::app {
+
+/// A plan for programs; null where a number is infinite or does not exist.
+std::string json_of(const Plan& plan);
+
+}  // namespace realcam::app

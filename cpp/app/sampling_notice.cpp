@@ -1,0 +1,48 @@
+#include "sampling_notice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "values.hpp"
+
+namespace realcam::app {
+namespace {
+
+std::string duration_text(double seconds) {
+    if (seconds < 100) return short_number(std::max(1.0, std::round(seconds)), 2) + " s";
+    if (seconds < 6000) return short_number(seconds / 60, 2) + " minutes";
+    return short_number(seconds / 3600, 2) + " hours";
+}
+
+/// Nobody needs to be told of what is over sooner.
+constexpr double kLong_s = 3;
+
+}  // namespace
+
+std::string SamplingNotice::aim() const {
+    const bool is_in_codes = goal_.unit == NoiseUnit::codes;
+    std::string text =
+        "samples are taken until the noise is " + (is_in_codes ? short_number(goal_.noise) + " codes of 255"
+                                                               : short_number(100 * goal_.noise) + "% of the light");
+    if (std::isfinite(goal_.seconds)) text += ", for " + short_number(goal_.seconds) + " s at most";
+    if (sampling_ == shot::Sampling::unsaid) text += "; --noise-codes, --seconds or --spp say otherwise";
+    return text;
+}
+
+double SamplingNotice::took(double share) {
+    share_ = share;
+    elapsed_s_ = std::chrono::duration<double>(Clock::now() - start_).count();
+    return std::min(1.0, std::max(share, elapsed_s_ / goal_.seconds));
+}
+
+std::string SamplingNotice::expectation() {
+    if (has_told_ || !(share_ > 0) || share_ >= 1) return "";
+    has_told_ = true;
+    const double all_s = elapsed_s_ / share_;
+    if (all_s < kLong_s) return "";
+    const std::string all = "about " + duration_text(all_s);
+    if (all_s <= goal_.seconds) return "that is expected to take " + all;
+    return "that would take " + all + "; the picture ends after " + duration_text(goal_.seconds);
+}
+
+}  // namespace realcam::app

@@ -1,0 +1,233 @@
+#include "denoiser.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "../error.hpp"
+#include "../render/run_with_progress.hpp"
+#include "oidn_library.hpp"
+
+namespace realcam {
+namespace {
+
+constexpr std::size_t kPixelBytes = 3 * sizeof(float);
+
+/// A handle that its library releases.
+template <class Handle>
+class Owned {
+public:
+    Owned(Handle handle, void (*release)(Handle)) : handle_(handle), release_(release) {}
+    Owned(Owned&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)), release_(other.release_) {}
+    Owned& operator=(Owned&&) = delete;
+    ~Owned() {
+        if (handle_) release_(handle_);
+    }
+    operator Handle() const { return handle_; }
+
+private:
+    Handle handle_;
+    void (*release_)(Handle);
+};
+
+/// The network sees as much around a pixel; of smaller pictures it makes other light.
+constexpr int kLeastSide = 16;
+
+/// Three floats per pixel for a size, in which pixels beyond the picture have what its edge has.
+std::vector<float> resized(const float* values, int width, int height, int to_width, int to_height) {
+    std::vector<float> result;
+    result.reserve(3 * static_cast<std::size_t>(to_width) * static_cast<std::size_t>(to_height));
+    for (int y = 0; y < to_height; ++y)
+        for (int x = 0; x < to_width; ++x) {
+            const auto pixel = static_cast<std::size_t>(std::min(y, height - 1)) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(std::min(x, width - 1));
+            result.insert(result.end(), values + 3 * pixel, values + 3 * pixel + 3);
+        }
+    return result;
+}
+
+/// The GPU of a device's name; none where the CPU is meant.
+std::optional<int> gpu_of(const oidn::Library& library, const std::string& device) {
+    if (device == "cpu") return std::nullopt;
+    int ordinal = 0;
+    if (device.starts_with("cuda:")) std::from_chars(device.data() + 5, device.data() + device.size(), ordinal);
+    if (library.is_cuda_device_supported(ordinal)) return ordinal;
+    if (device == "auto") return std::nullopt;
+    throw DeviceError("Open Image Denoise cannot use the GPU " + std::to_string(ordinal) + "; device cpu is wanted");
+}
+
+}  // namespace
+
+struct Denoiser::Parts {
+    Parts(const std::string& device_name, int threads, const std::string& path)
+        : library(oidn::library(path)),
+          gpu(gpu_of(library, device_name)),
+          device(new_device(), library.release_device) {
+        if (!gpu) {
+            library.set_device_int(device, "numThreads", threads);
+            // The threads are also those of the renderer, which are not to stay on one core each.
+            library.set_device_bool(device, "setAffinity", false);
+        }
+        library.commit_device(device);
+        check();
+    }
+
+    oidn::Device new_device() const {
+        const oidn::Stream of_the_device = nullptr;
+        const oidn::Device made =
+            gpu ? library.new_cuda_device(&*gpu, &of_the_device, 1) : library.new_device(oidn::kCpu);
+        if (!made) check(nullptr);
+        return made;
+    }
+
+    void check() const { check(device); }
+    void check(oidn::Device of) const {
+        const char* message = nullptr;
+        const int error = library.get_device_error(of, &message);
+        if (error == oidn::kCancelled) throw Cancelled();
+        if (error != 0 || !of)
+            throw DeviceError(std::string("Open Image Denoise: ") + (message ? message : "no device"));
+    }
+
+    /// Filters and their memory are made anew for another size, which takes as long as they need for small pictures.
+    struct Filters {
+        Filters(const Parts& parts, int width, int height, DenoiseQuality quality)
+            : width(width),
+              height(height),
+              quality(quality),
+              color(parts.buffer(bytes())),
+              albedo(parts.buffer(bytes())),
+              normal(parts.buffer(bytes())),
+              output(parts.buffer(bytes())),
+              picture(parts.filter()) {
+            const bool is_high = quality == DenoiseQuality::high;
+            if (is_high)
+                for (const auto& [name, image] : {std::pair("albedo", &albedo), std::pair("normal", &normal)}) {
+                    layers.push_back(parts.filter());
+                    set(parts, layers.back(), name, *image);
+                    set(parts, layers.back(), "output", *image);
+                    // High takes more than twice the time, and the picture is no nearer to the converged one.
+                    parts.library.set_filter_int(layers.back(), "quality", oidn::kBalanced);
+                    parts.library.commit_filter(layers.back());
+                }
+            set(parts, picture, "color", color);
+            set(parts, picture, "albedo", albedo);
+            set(parts, picture, "normal", normal);
+            set(parts, picture, "output", output);
+            parts.library.set_filter_bool(picture, "hdr", true);
+            parts.library.set_filter_bool(picture, "cleanAux", is_high);
+            parts.library.set_filter_int(picture, "quality", is_high ? oidn::kHigh : oidn::kFast);
+            parts.library.commit_filter(picture);
+            parts.check();
+        }
+
+        std::size_t bytes() const {
+            return kPixelBytes * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+        }
+        void set(const Parts& parts, oidn::Filter filter, const char* name, oidn::Buffer buffer) const {
+            parts.library.set_filter_image(filter, name, buffer, oidn::kFloat3, static_cast<std::size_t>(width),
+                                           static_cast<std::size_t>(height), 0, 0, 0);
+        }
+
+        int width, height;
+        DenoiseQuality quality;
+        Owned<oidn::Buffer> color, albedo, normal, output;
+        std::vector<Owned<oidn::Filter>> layers;
+        Owned<oidn::Filter> picture;
+    };
+
+    Owned<oidn::Buffer> buffer(std::size_t bytes) const {
+        Owned<oidn::Buffer> made(library.new_buffer(device, bytes), library.release_buffer);
+        check();
+        return made;
+    }
+    Owned<oidn::Filter> filter() const {
+        Owned<oidn::Filter> made(library.new_filter(device, "RT"), library.release_filter);
+        check();
+        return made;
+    }
+
+    const Filters& filters_for(int width, int height, DenoiseQuality quality) {
+        if (!filters || filters->width != width || filters->height != height || filters->quality != quality) {
+            filters.reset();  // before the next take as much memory
+            filters = std::make_unique<Filters>(*this, width, height, quality);
+        }
+        return *filters;
+    }
+
+    void execute(oidn::Filter filter, std::atomic<bool>& stop, bool heeds) const {
+        const auto goes_on = [](void* stopped, double) { return !*static_cast<std::atomic<bool>*>(stopped); };
+        // Asking costs time on a GPU.
+        library.set_filter_monitor(filter, heeds ? oidn::Monitor(goes_on) : nullptr, &stop);
+        library.commit_filter(filter);
+        library.execute_filter(filter);
+        check();
+    }
+
+    const oidn::Library& library;
+    std::optional<int> gpu;
+    Owned<oidn::Device> device;
+    std::unique_ptr<Filters> filters;
+};
+
+Denoiser::Denoiser(const std::string& device, int threads, const std::string& library)
+    : parts_(std::make_unique<Parts>(device, threads, library)) {}
+
+Denoiser::~Denoiser() = default;
+
+std::string Denoiser::name() const {
+    const int version = parts_->library.get_device_int(parts_->device, "version");
+    return "Open Image Denoise " + std::to_string(version / 10000) + '.' + std::to_string(version / 100 % 100) + '.' +
+           std::to_string(version % 100);
+}
+
+std::vector<float> Denoiser::denoised(const NoisyPicture& picture, DenoiseQuality quality,
+                                      const KeepGoing& keep_going) {
+    if (const int width = std::max(picture.width, kLeastSide), height = std::max(picture.height, kLeastSide);
+        width != picture.width || height != picture.height) {
+        const auto larger = [&](const float* values) {
+            return resized(values, picture.width, picture.height, width, height);
+        };
+        const auto [exposure, albedo, normal] =
+            std::tuple(larger(picture.exposure), larger(picture.albedo), larger(picture.normal));
+        const std::vector<float> result =
+            denoised({width, height, exposure.data(), albedo.data(), normal.data()}, quality, keep_going);
+        return resized(result.data(), width, height, picture.width, picture.height);
+    }
+    const Parts::Filters& filters = parts_->filters_for(picture.width, picture.height, quality);
+    const oidn::Library& library = parts_->library;
+    std::vector<float> result(filters.bytes() / sizeof(float));
+    std::atomic<bool> stop{false};
+    const auto work = [&] {
+        library.write_buffer(filters.color, 0, filters.bytes(), picture.exposure);
+        library.write_buffer(filters.albedo, 0, filters.bytes(), picture.albedo);
+        library.write_buffer(filters.normal, 0, filters.bytes(), picture.normal);
+        const bool heeds = static_cast<bool>(keep_going);
+        for (const oidn::Filter layer : filters.layers) parts_->execute(layer, stop, heeds);
+        parts_->execute(filters.picture, stop, heeds);
+        library.read_buffer(filters.output, 0, filters.bytes(), result.data());
+        parts_->check();
+    };
+    run_heeding(work, keep_going, stop);
+    if (stop) throw Cancelled();
+    for (float& value : result) value = std::max(value, 0.0f);
+    return result;
+}
+
+void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing& keep_going) {
+    const auto values_of = [&](Layer layer) {
+        const auto is_it = [&](const LayerImage& other) { return other.layer == layer; };
+        return std::find_if(image.layers.begin(), image.layers.end(), is_it)->values.data();
+    };
+    image.exposure = denoiser.denoised(
+        {image.width, image.height, image.exposure.data(), values_of(Layer::albedo), values_of(Layer::normal)},
+        DenoiseQuality::high, keep_going);
+    std::erase_if(image.layers,
+                  [&](const LayerImage& layer) { return layer.layer == Layer::variance || !wanted.has(layer.layer); });
+}
+
+}  // namespace realcam

@@ -1,0 +1,77 @@
+#include "oidn_library.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <map>
+#include <mutex>
+
+#include "../error.hpp"
+
+namespace realcam::oidn {
+namespace {
+
+constexpr const char* kOfTheSystem = "libOpenImageDenoise.so.2";
+
+[[noreturn]] void fail(const std::string& why) {
+    throw InputError("Open Image Denoise is not here (" + why +
+                     "); pip install realcam[denoise] brings it, or REALCAM_OIDN names its libOpenImageDenoise.so");
+}
+
+std::string last_error() {
+    const char* error = dlerror();
+    return error ? error : "no reason is given";
+}
+
+template <class F>
+void find(void* handle, const char* name, F*& function) {
+    function = reinterpret_cast<F*>(dlsym(handle, name));
+    if (!function) fail(last_error());
+}
+
+Library loaded(const std::string& path) {
+    void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle) fail(last_error());
+    Library l;
+    find(handle, "oidnNewDevice", l.new_device);
+    find(handle, "oidnNewCUDADevice", l.new_cuda_device);
+    find(handle, "oidnIsCUDADeviceSupported", l.is_cuda_device_supported);
+    find(handle, "oidnSetDeviceInt", l.set_device_int);
+    find(handle, "oidnSetDeviceBool", l.set_device_bool);
+    find(handle, "oidnGetDeviceInt", l.get_device_int);
+    find(handle, "oidnCommitDevice", l.commit_device);
+    find(handle, "oidnReleaseDevice", l.release_device);
+    find(handle, "oidnGetDeviceError", l.get_device_error);
+    find(handle, "oidnNewBuffer", l.new_buffer);
+    find(handle, "oidnWriteBuffer", l.write_buffer);
+    find(handle, "oidnReadBuffer", l.read_buffer);
+    find(handle, "oidnReleaseBuffer", l.release_buffer);
+    find(handle, "oidnNewFilter", l.new_filter);
+    find(handle, "oidnSetFilterImage", l.set_filter_image);
+    find(handle, "oidnSetFilterBool", l.set_filter_bool);
+    find(handle, "oidnSetFilterInt", l.set_filter_int);
+    find(handle, "oidnSetFilterProgressMonitorFunction", l.set_filter_monitor);
+    find(handle, "oidnCommitFilter", l.commit_filter);
+    find(handle, "oidnExecuteFilter", l.execute_filter);
+    find(handle, "oidnReleaseFilter", l.release_filter);
+    return l;
+}
+
+std::string path_or_default(const std::string& path) {
+    if (!path.empty()) return path;
+    const char* named = std::getenv("REALCAM_OIDN");
+    return named && *named ? named : kOfTheSystem;
+}
+
+}  // namespace
+
+const Library& library(const std::string& path) {
+    static std::mutex mutex;
+    static auto* const libraries = new std::map<std::string, Library>;  // threads of theirs may outlive main
+    const std::string wanted = path_or_default(path);
+    const std::lock_guard lock(mutex);
+    const auto known = libraries->find(wanted);
+    return known != libraries->end() ? known->second : libraries->emplace(wanted, loaded(wanted)).first->second;
+}
+
+}  // namespace realcam::oidn
