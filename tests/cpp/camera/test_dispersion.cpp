@@ -67,7 +67,7 @@ TEST_CASE("cubics of both directions are each other's inverse") {
 
 TEST_CASE("the film's matrix over all wavelengths is the identity for D65, and shows white as white for all") {
     for (const char* name :
-         {"D65", "A", "FL2", "400:1,500:0.3,700:2", "380:1,780:1", "435:0,435.8:5,436.6:0,450:1,650:1"}) {
+         {"D65", "D50", "A", "FL2", "400:1,500:0.3,700:2", "380:1,780:1", "435:0,435.8:5,436.6:0,450:1,650:1"}) {
         CAPTURE(name);
         const FilmSpectrum spectrum(Illuminant::parse(name));
         double mean[9] = {};
@@ -82,6 +82,29 @@ TEST_CASE("the film's matrix over all wavelengths is the identity for D65, and s
                 for (int column = 0; column < 3; ++column)
                     CHECK(std::fabs(mean[3 * row + column] - (row == column ? 1.0 : 0.0)) < 1e-6);
         }
+    }
+}
+
+TEST_CASE("named illuminants have the chromaticities that CIE 15 prints") {
+    struct White {
+        const char* name;
+        double x, y;
+    };
+    // To four digits, the fewest that are printed; sums of 5 nm are what CIE 15 takes.
+    for (const White& white : {White{"D65", 0.3127, 0.3290}, White{"D50", 0.3457, 0.3585}, White{"A", 0.4476, 0.4074},
+                               White{"FL2", 0.3721, 0.3751}}) {
+        CAPTURE(white.name);
+        const Illuminant light = Illuminant::named(white.name);
+        double sum[3] = {};
+        for (std::size_t i = 0; i < kObserverX.size(); ++i) {
+            const double power = light.power(kFirstWavelength_nm + static_cast<double>(i) * kSpectrumStep_nm);
+            sum[0] += power * kObserverX[i];
+            sum[1] += power * kObserverY[i];
+            sum[2] += power * kObserverZ[i];
+        }
+        const double all = sum[0] + sum[1] + sum[2];
+        CHECK(std::fabs(sum[0] / all - white.x) < 1e-4);
+        CHECK(std::fabs(sum[1] / all - white.y) < 1e-4);
     }
 }
 
