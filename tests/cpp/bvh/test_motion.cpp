@@ -10,6 +10,7 @@
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
 #include "math/uniform_keys.hpp"
+#include "scene/light.hpp"
 
 using namespace realcam;
 using namespace realcam::test;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "camera/camera_setup.hpp"
 #include "doctest/doctest.h"
 #include "pixel_rays.hpp"
 #include "traced_ray.hpp"

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "about.hpp"
+#include "camera/camera_setup.hpp"
 #include "doctest/doctest.h"
 #include "pixel_rays.hpp"
 #include "traced_ray.hpp"

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "camera/camera_setup.hpp"
 #include "estimator_mean.hpp"
 #include "measurement.hpp"
 #include "pixel_rays.hpp"

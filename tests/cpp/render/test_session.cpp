@@ -13,6 +13,7 @@
 #include "bare_scene.hpp"
 #include "doctest/doctest.h"
 #include "io/lens/lens_file.hpp"
+#include "optics/lens/focus.hpp"
 #include "render/film_sums.hpp"
 #include "render/live_view.hpp"
 #include "render/take_picture.hpp"

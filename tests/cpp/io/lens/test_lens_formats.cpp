@@ -12,6 +12,7 @@
 #include "io/lens/lens_file.hpp"
 #include "io/lens_reading.hpp"
 #include "optics/analysis/spot.hpp"
+#include "optics/lens/focus.hpp"
 #include "optics/lens/lens_changes.hpp"
 #include "optics/lens/zoom.hpp"
 #include "optics/prescription/named_coatings.hpp"

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera_setup.hpp"
 #include "embree/fast_pupil_tracer.hpp"
 #include "embree/lens_rays.hpp"
 #include "pixel_rays.hpp"

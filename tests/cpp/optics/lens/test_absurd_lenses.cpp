@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera_setup.hpp"
 #include "camera/field_of_view.hpp"
 #include "embree/fast_pupil_tracer.hpp"
 #include "measurement.hpp"

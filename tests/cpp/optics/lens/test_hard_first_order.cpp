@@ -7,6 +7,7 @@
 #include "about.hpp"
 #include "measurement.hpp"
 #include "optics/hard_lens_list.hpp"
+#include "optics/lens/best_focus.hpp"
 #include "optics/oracle.hpp"
 #include "refusal.hpp"
 

@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera_setup.hpp"
 #include "camera/field_of_view.hpp"
 #include "measurement.hpp"
 #include "optics/hard_lens_list.hpp"
 #include "optics/hard_rays.hpp"
+#include "optics/lens/best_focus.hpp"
 #include "optics/lens/exposure.hpp"
 #include "pixel_rays.hpp"
 

@@ -7,6 +7,7 @@
 #include "camera/field_of_view.hpp"
 #include "field_picture.hpp"
 #include "measurement.hpp"
+#include "optics/lens/best_focus.hpp"
 #include "optics/lens/exposure.hpp"
 #include "optics/trace_backends.hpp"
 #include "traced_ray.hpp"

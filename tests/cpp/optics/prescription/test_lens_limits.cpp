@@ -6,6 +6,7 @@
 #include <string>
 
 #include "doctest/doctest.h"
+#include "optics/prescription/lens_checks.hpp"
 #include "traced_ray.hpp"
 
 namespace {

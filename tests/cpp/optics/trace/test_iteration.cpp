@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "math/random.hpp"
 #include "math/root.hpp"
 #include "measurement.hpp"
 #include "optics/lens/best_focus.hpp"
