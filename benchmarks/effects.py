@@ -17,15 +17,8 @@ import realcam as rc
 from frame_scene import frame_camera, frame_scene
 from machine import machine
 
-EFFECTS: list[tuple[str, ...]] = [
-    (),
-    ("coatings",),
-    ("dispersion",),
-    ("coatings", "dispersion"),
-    ("diffraction",),
-    ("coatings", "dispersion", "diffraction"),
-    ("ghosts",),
-]
+NAMES = tuple(effect.name for effect in rc.effects() if not effect.is_on)
+EFFECTS: list[tuple[str, ...]] = [(), *((name,) for name in NAMES), NAMES]
 LENSES = ("double-gauss-50mm", "phone-4mm")
 ROUNDS = 5
 

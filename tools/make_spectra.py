@@ -1,7 +1,7 @@
 """Writes cpp/camera/spectra.hpp: the spectra that dispersion works with, every 5 nm from 380 to 780.
 
 Needs colour-science (pip install colour-science), for its tables alone: the CIE 1931 observer, the CIE illuminants
-D65, A and FL2, and the basis of Mallett and Yuksel, "Spectral Primary Decomposition for Rendering with sRGB
+D65, D50, A and FL2, and the basis of Mallett and Yuksel, "Spectral Primary Decomposition for Rendering with sRGB
 Reflectance" (EGSR 2019).
 
     python tools/make_spectra.py && clang-format -i cpp/camera/spectra.hpp
@@ -53,7 +53,7 @@ def main() -> None:
     for i, name in enumerate(("X", "Y", "Z")):
         values = row(observer.values[:, i], observer.wavelengths)
         text += table(f"kObserver{name}", f"CIE 1931 2 degree observer, {'xyz'[i]}.", values)
-    for name in ("D65", "A", "FL2"):
+    for name in ("D65", "D50", "A", "FL2"):
         illuminant = colour.SDS_ILLUMINANTS[name]
         text += table(
             f"kIlluminant{name}", f"CIE illuminant {name}, relative.", row(illuminant.values, illuminant.wavelengths)

@@ -5,6 +5,7 @@
 
 #include "../io/lens/lens_file.hpp"
 #include "../io/text/json_writer.hpp"
+#include "../optics/lens/focus.hpp"
 #include "../optics/lens/zoom.hpp"
 #include "lens_report.hpp"
 #include "lens_words.hpp"

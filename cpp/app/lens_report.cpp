@@ -13,6 +13,7 @@
 #include "../optics/coating/coated_faces.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/paraxial.hpp"
+#include "../optics/prescription/lens_checks.hpp"
 #include "values.hpp"
 
 namespace realcam::app {

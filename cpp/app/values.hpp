@@ -1,5 +1,6 @@
 #pragma once
-// The words of the command line that are more than a number.
+// The words of the command line. CLI11's own conversions would not do: it reads numbers as long double and then rounds
+// once more, so that an option could differ from the same number in a shot file, and it takes 010 for 8.
 
 #include <array>
 #include <cstdint>

@@ -10,6 +10,7 @@
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/kernels.hpp"
 #include "../math/random.hpp"
+#include "../optics/pupil/pupil.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {

@@ -10,6 +10,7 @@
 #include "../camera/picture_angle.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../io/files/image_metadata.hpp"
+#include "../optics/pupil/pupil.hpp"
 #include "../shot/names.hpp"
 #include "bindings.hpp"
 #include "short_text.hpp"

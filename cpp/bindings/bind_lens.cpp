@@ -6,9 +6,11 @@
 
 #include "../io/lens/lens_format.hpp"
 #include "../io/lens/lens_glass.hpp"
+#include "../optics/lens/best_focus.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/lens_changes.hpp"
 #include "../optics/lens/zoom.hpp"
+#include "../optics/prescription/clearance.hpp"
 #include "bindings.hpp"
 #include "coating_from.hpp"
 #include "short_text.hpp"

@@ -108,7 +108,18 @@ py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso,
     return codes;
 }
 
+std::string line_text(const EffectInfo& effect) {
+    return effect.name + (": " + line_of(effect));
+}
+
+std::string line_text(const Device& device) {
+    return device.name + ": " + device.description;
+}
+
 }  // namespace
+
+template <>
+struct RestoredCheck<Device> : AnyMembers {};
 
 void bind_render(py::module_& m) {
     py::class_<RenderStats> stats(m, "RenderStats", "What a picture cost. Stage seconds are summed over the threads.");
@@ -130,18 +141,39 @@ void bind_render(py::module_& m) {
         "_effect_notices",
         [](const LensSystem& lens, const RenderSettings& settings) { return effect_notices(settings.effects, lens); },
         "lens"_a, "settings"_a);
-    m.def("_effects", [] {
-        py::list rows;
-        for (const EffectInfo& effect : kEffects)
-            rows.append(
-                py::dict("name"_a = effect.name, "what"_a = effect.what, "needs"_a = effect.needs,
-                         "usage"_a = effect.usage, "is_on"_a = effect.is_on(),
-                         "parameter"_a = effect.parameter ? py::cast(EffectChoice().*effect.parameter) : py::none(),
-                         "has_wavelengths"_a = effect.has_wavelengths, "needs_full_lens"_a = effect.needs_full_lens,
-                         "needs_coatings"_a = effect.needs_coatings, "shows_in_previews"_a = effect.shows_in_previews,
-                         "cpu_time"_a = effect.cpu_time, "gpu_time"_a = effect.gpu_time));
-        return rows;
-    });
+    py::class_<EffectInfo> effect_type(m, "EffectInfo", "What can be simulated besides. str() is a line of it.");
+    def_copy(effect_type);
+    effect_type.def_readonly("name", &EffectInfo::name, "For effects=(...).")
+        .def_readonly("what", &EffectInfo::what, "It is.")
+        .def_readonly("needs", &EffectInfo::needs, "Of lens, scene and camera.")
+        .def_readonly("usage", &EffectInfo::usage, "What else to know, or \"\".")
+        .def_property_readonly("is_on", &EffectInfo::is_on, "Unless it is left out, as \"-name\".")
+        .def_property_readonly(
+            "parameter",
+            [](const EffectInfo& effect) {
+                return effect.parameter ? std::optional(EffectChoice().*effect.parameter) : std::nullopt;
+            },
+            "What name alone means of \"name=number\"; None: it has none.")
+        .def_readonly("has_wavelengths", &EffectInfo::has_wavelengths,
+                      "Samples have one each, so that an illuminant can be named.")
+        .def_readonly("needs_full_lens", &EffectInfo::needs_full_lens, "The camera model \"full\".")
+        .def_readonly("needs_coatings", &EffectInfo::needs_coatings, "In the lens file; else they are guessed.")
+        .def_readonly("shows_in_previews", &EffectInfo::shows_in_previews,
+                      "In pictures of fewer pixels than were asked for.")
+        .def_readonly("cpu_time", &EffectInfo::cpu_time,
+                      "Of a picture with it over one without (benchmarks/effects.py); 0: not measured.")
+        .def_readonly("gpu_time", &EffectInfo::gpu_time, "Likewise.")
+        .def_property_readonly("description", &line_of, "What it is and needs, in a line.")
+        .def("__str__", py::overload_cast<const EffectInfo&>(&line_text))
+        .def("__repr__", [](const EffectInfo& e) { return "<realcam.EffectInfo " + line_text(e) + '>'; });
+    m.def(
+        "effects",
+        [] {
+            py::list rows;  // of the table itself: each effect is one object
+            for (const EffectInfo& row : kEffects) rows.append(py::cast(row, py::return_value_policy::reference));
+            return rows;
+        },
+        "All effects that can be named.");
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");
@@ -153,12 +185,13 @@ void bind_render(py::module_& m) {
             return metered_exposure(image);
         },
         "exposure"_a);
-    m.def("_devices", [] {
-        py::list rows;
-        for (const Device& device : devices())
-            rows.append(py::dict("name"_a = device.name, "description"_a = device.description));
-        return rows;
-    });
+    py::class_<Device> device_type(m, "Device", "What this machine can render with. str() is a line of it.");
+    def_hashable_value(device_type);
+    device_type.def_readonly("name", &Device::name, "For device=...: \"cpu\", \"cuda:0\", ...")
+        .def_readonly("description", &Device::description, "For people.")
+        .def("__str__", py::overload_cast<const Device&>(&line_text))
+        .def("__repr__", [](const Device& d) { return "<realcam.Device " + line_text(d) + '>'; });
+    m.def("devices", &devices, "All devices of this machine, the CPU first.");
 }
 
 }  // namespace realcam::bindings

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "../devices/devices.hpp"
+#include "../render/session.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "picture.hpp"

@@ -280,7 +280,7 @@ constexpr const char* kDoc =
     "quality, \"draft\" (2 pixels, 4 codes), \"photo\" (0.5, 1) or \"reference\" (0.1, 0.25), or threshold_px and\n"
     "threshold_codes; or names of what is simulated besides (rc.effects() lists them; docs/dispersion.md), () for\n"
     "none. Warns of what the lens cannot give of them.\n"
-    "illuminant: of dispersion and diffraction, the spectrum of all light: \"D65\", \"A\", \"FL2\", a wavelength in "
+    "illuminant: of dispersion and diffraction, the spectrum of all light: \"D65\", \"D50\", \"A\", \"FL2\", a wavelength in "
     "nm,\n"
     "or (wavelength_nm, power) pairs; None: D65. As an attribute it is a text.\n"
     "pupil_sampling: where a full lens's rays are sent: \"outline\", where real rays were found to pass; to compare\n"

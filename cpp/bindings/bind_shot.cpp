@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "../io/files/image_metadata.hpp"
+#include "../render/session.hpp"
 #include "../shot/shot_file.hpp"
 #include "bindings.hpp"
 #include "picture_readers.hpp"

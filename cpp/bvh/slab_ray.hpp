@@ -1,5 +1,4 @@
 #pragma once
-#include "../scene/surface_point.hpp"
 #include "wide_bvh.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -1,15 +1,10 @@
 #include "camera.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
-#include <tuple>
 #include <utility>
 
-#include "../math/uniform_keys.hpp"
-#include "../optics/lens/exposure.hpp"
-#include "../optics/trace/lens_dispersion.hpp"
-#include "exposed_rays.hpp"
+#include "../optics/prescription/lens_checks.hpp"
 
 namespace realcam {
 
@@ -109,8 +104,6 @@ Affine<double> scene_from_camera(const Pose& pose) {
     return {axes.right, axes.up, axes.backward, pose.position_m};
 }
 
-namespace {
-
 Motion motion_of(const std::vector<PoseKey>& keys) {
     Motion motion;
     for (const PoseKey& key : keys) {
@@ -119,25 +112,6 @@ Motion motion_of(const std::vector<PoseKey>& keys) {
     }
     return motion;
 }
-
-/// At even times of the exposure; empty where it does not move meanwhile. Throws InputError where it turns too fast.
-std::vector<Affine<double>> exposure_keys(const Camera& camera) {
-    if (!camera.moves()) return {};
-    const Motion motion = motion_of(camera.motion);
-    const TimeInterval exposure = camera.exposure();
-    // What is near shows where the camera is, and what is far how it is turned.
-    Motion turns = motion, ways = motion;
-    for (Affine<double>& turn : turns.transforms) turn.origin = {0, 0, 0};
-    for (Affine<double>& way : ways.transforms) way = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, way.origin};
-    const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, middle[] = {{0, 0, 0}};
-    const std::optional<int> turning = key_steps(turns, exposure, axes), going = key_steps(ways, exposure, middle);
-    if (!turning || !going)
-        throw InputError("the camera turns too fast; in one exposure about 20 turns can be followed");
-    const int steps = std::max(*turning, *going);
-    return steps == 0 ? std::vector<Affine<double>>() : uniform_keys(motion, exposure, steps);
-}
-
-}  // namespace
 
 IdealLens ideal_lens_of(const LensSystem& lens, const FirstOrder& data) {
     IdealLens ideal{std::fabs(data.effective_focal_length), 0, 0.5 * data.entrance_pupil_diameter};
@@ -187,40 +161,6 @@ ThickLens thick_lens_of(const LensSystem& lens, const FirstOrder& data) {
     return thick;
 }
 
-namespace {
-
-/// The circle of confusion of the ideal lens in the entrance pupil. Let R be the radius of its pupil, and b and s_f the
-/// distances from it to the film and to the plane in focus. The rays of a point at s fill the pupil. They meet the
-/// plane in focus over 2 R |s_f - s| / s, and the film over b / s_f times that. Where the entrance pupil is at
-/// infinity, the matrix of the real lens is used.
-CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens thin, ThickLens thick,
-                                      double film_distance) {
-    const double radius = static_cast<double>(thin.pupil_radius), image = static_cast<double>(thin.image_distance),
-                 inverse = static_cast<double>(thin.inverse_object_distance);
-    CircleOfConfusion circle{};
-    if (std::isfinite(entrance_pupil_position) && std::isfinite(radius * image * inverse)) {
-        // s = t + entrance_pupil_position, and the ray through the pupil's middle rises by s / b.
-        circle.rim = static_cast<float>(radius * (1 - inverse * entrance_pupil_position));
-        circle.rim_slope = static_cast<float>(-radius * inverse);
-        circle.middle = static_cast<float>(entrance_pupil_position / image);
-        circle.middle_slope = static_cast<float>(1 / image);
-        circle.least_middle = static_cast<float>(radius / image);
-        return circle;
-    }
-    const double A = static_cast<double>(thick.A), B = static_cast<double>(thick.B), C = static_cast<double>(thick.C),
-                 D = static_cast<double>(thick.D), pupil = static_cast<double>(thick.exit_pupil_distance);
-    const auto front = [&](double film, double slope) {
-        const double last = film - film_distance * slope;
-        return std::pair(static_cast<float>(D * last - B * slope), static_cast<float>(C * last - A * slope));
-    };
-    std::tie(circle.rim, circle.rim_slope) = front(0, static_cast<double>(thick.exit_pupil_radius) / pupil);
-    std::tie(circle.middle, circle.middle_slope) = front(1, 1 / pupil);
-    circle.least_middle = std::numeric_limits<float>::min();
-    return circle;
-}
-
-}  // namespace
-
 void validate_ideal(const LensSystem& lens, CameraModel model) {
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const std::string which = "the ideal camera models have no place for lens \"" + lens.name + "\": its ";
@@ -263,116 +203,6 @@ bool lies_near(const Camera& camera, Vec3d origin_m) {
 void validate_on_gpu(const Camera& camera) {
     if (camera.model == CameraModel::full_lens_double)
         throw InputError("the camera model full_double is for the CPU; device cpu is wanted");
-}
-
-CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraSetup* last, const LensEffects& effects)
-    : camera_(validated(camera)),
-      effects_(effects),
-      path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm),
-      tables_(camera.lens, film_radius(), effects, tracer, last ? &last->tables_ : nullptr) {
-    const std::vector<Affine<double>> keys = camera_detail::exposure_keys(camera);
-    for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
-    if (last && last->has_pupil_of(camera, tables_.pupil_wavelengths(), effects.pupil_sampling))
-        pupil_ = last->pupil_;
-    else if (has_real_pupil(camera.model))
-        pupil_ = std::make_shared<const Pupil>(sampled_lens(camera.lens, effects.pupil_sampling), film_radius(), tracer,
-                                               tables_.pupil_wavelengths());
-    if (!pupil_) {
-        camera_detail::validate_ideal(camera.lens, camera.model);
-        axis_irradiance_ = last && !last->pupil_ && last->camera_.lens == camera.lens
-                               ? last->axis_irradiance_
-                               : static_cast<float>(axis_irradiance(camera.lens));
-        if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
-        return;
-    }
-    const std::string lens = "lens \"" + camera.lens.name + "\"";
-    if (!(camera.lens.stop_semi_diameter > 0)) throw InputError("no light passes " + lens + ": its stop is closed");
-    if (!(pupil_->image_radius() > 0))
-        throw InputError("no light passes " + lens +
-                         " in this state: what it blocks in the middle is larger than what its stop leaves open, or "
-                         "a surface is out of reach");
-    if (!pupil_->follows())
-        throw InputError("the stop of " + lens + ", a hole of radius " +
-                         std::to_string(1000 * camera.lens.stop_semi_diameter) +
-                         " um, is too small for pictures through every surface; open it, or use another camera model");
-    if (camera.model == CameraModel::polynomial_lens)
-        polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
-    if (camera.model == CameraModel::full_lens_double) {
-        path_in_double_.emplace(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm);
-        view_in_double_ = path_in_double_->view();
-    }
-}
-
-CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
-    using namespace camera_detail;
-    const LensSystem& lens = camera_.lens;
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    CameraView view{};
-    static_cast<CameraPlacement&>(view) =
-        placement(scene_from_camera(pose_at(camera_, camera_.exposure().begin_s)), origin_m);
-    view.model = camera_.model;
-    view.width = camera_.film.width;
-    view.height = camera_.film.height;
-    view.film_half_width = static_cast<float>(0.5 * camera_.film.width_mm);
-    view.film_half_height = static_cast<float>(0.5 * camera_.film.height_mm);
-    view.film_middle = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
-    view.film_distance = static_cast<float>(lens.film_distance);
-    view.front_vertex_m = static_cast<float>(0.001 * lens.film_position());
-    view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
-    view.thin = thin_lens_of(lens, data);
-    view.thick = thick_lens_of(lens, data);
-    if (map_) view.map = map_->view();
-    view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
-    view.axis_irradiance = axis_irradiance_;
-    if (pupil_) view.pupil = pupil_->view();
-    view.lens = path_.view();
-    if (path_in_double_) view.lens_in_double = &view_in_double_;
-    if (polynomial_) view.polynomial = polynomial_->view();
-    const double across = std::fabs(static_cast<double>(view.thin.image_distance));
-    static_cast<EffectViews&>(view) = tables_.views(camera_.film.width_mm * camera_.film.height_mm / (across * across));
-    set_times(view, scene_moves);
-    return view;
-}
-
-const Camera& CameraSetup::validated(const Camera& camera) {
-    validate(camera);
-    return camera;
-}
-
-void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
-    const LensSystem& lens = camera_.lens;
-    if (last && last->map_ && last->has_lens_and_film_of(camera_)) {
-        map_ = last->map_;
-        return;
-    }
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    const double image = static_cast<double>(camera_detail::thin_lens_of(lens, data).image_distance);
-    map_ = std::make_shared<const LensMap>(lens, film_radius(), image, data.entrance_pupil_position, tracer);
-}
-
-CameraPlacement CameraSetup::placement(const Affine<double>& scene_from_camera, Vec3d origin_m) {
-    return {static_cast<Vec3f>(scene_from_camera.origin - origin_m), static_cast<Vec3f>(scene_from_camera.x),
-            static_cast<Vec3f>(scene_from_camera.y), static_cast<Vec3f>(scene_from_camera.z)};
-}
-
-void CameraSetup::set_times(CameraView& view, bool scene_moves) const {
-    view.keys = keys_.data();
-    view.key_count = static_cast<int>(keys_.size());
-    if (keys_.empty() && !scene_moves) return;
-    const double all = camera_.shutter.readout_time_s + camera_.seen_time();
-    view.row_time = static_cast<float>(camera_.shutter.readout_time_s / all / camera_.film.height);
-    view.exposed_time = static_cast<float>(camera_.seen_time() / all);
-}
-
-bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
-    return camera_.lens == camera.lens && camera_.film.width_mm == camera.film.width_mm &&
-           camera_.film.height_mm == camera.film.height_mm && camera_.film.shift_mm == camera.film.shift_mm;
-}
-
-bool CameraSetup::has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths,
-                               PupilSampling sampling) const {
-    return pupil_ && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&
-           tables_.pupil_wavelengths() == wavelengths && effects_.pupil_sampling == sampling;
 }
 
 }  // namespace realcam

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "../math/append_alias_table.hpp"
+#include "../optics/pupil/pupil_search.hpp"
 
 namespace realcam {
 

@@ -3,7 +3,6 @@
 
 #include "../error.hpp"
 #include "../optics/analysis/aperture_diffraction.hpp"
-#include "../optics/pupil/pupil_search.hpp"
 #include "diffraction_view.hpp"
 
 namespace REALCAM_NAMESPACE {

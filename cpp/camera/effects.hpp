@@ -53,12 +53,16 @@ struct EffectChoice : Effects {
     constexpr bool have_ghosts() const { return ghosts || film_reflection; }
 };
 
+/// Named, because nvcc puts parentheses around members of such types, of which the host's compiler then warns.
+using EffectSwitch = bool EffectChoice::*;
+using EffectParameter = double EffectChoice::*;
+
 /// Of one effect.
 struct EffectInfo {
     const char* name;  ///< on the command line, in shot files and in Python; with a "-" before it: left out; with "="
                        ///< and a number behind it: with that parameter
-    bool EffectChoice::* member;
-    double EffectChoice::* parameter = nullptr;  ///< null: it has none
+    EffectSwitch member;
+    EffectParameter parameter = nullptr;  ///< null: it has none
     const char* what;  ///< it is
     const char* needs;  ///< of lens, scene and camera
     const char* usage = "";  ///< what else a user should know

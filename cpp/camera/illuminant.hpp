@@ -14,11 +14,11 @@ struct SpectrumPoint {
     bool operator==(const SpectrumPoint&) const = default;
 };
 
-/// The spectrum of all light in a picture: of a name (D65, A, FL2), one line, or a table. A value.
+/// The spectrum of all light in a picture: of a name (D65, D50, A, FL2), one line, or a table. A value.
 class Illuminant {
 public:
     static constexpr const char* kWanted =
-        "D65, A, FL2, a wavelength in nm, or a table of wavelengths and powers (400:0.5,550:1,700:0.2)";
+        "D65, D50, A, FL2, a wavelength in nm, or a table of wavelengths and powers (400:0.5,550:1,700:0.2)";
 
     Illuminant() = default;
 
@@ -51,7 +51,8 @@ private:
         const char* name;
         const VisibleSpectrum& spectrum;
     };
-    static constexpr Named kNamed[] = {{"D65", kIlluminantD65}, {"A", kIlluminantA}, {"FL2", kIlluminantFL2}};
+    static constexpr Named kNamed[] = {
+        {"D65", kIlluminantD65}, {"D50", kIlluminantD50}, {"A", kIlluminantA}, {"FL2", kIlluminantFL2}};
 
     [[noreturn]] static void fail(const std::string& why) { throw InputError("illuminant: " + why); }
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <mutex>
 
-#include "camera.hpp"
+#include "camera_setup.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "../math/random.hpp"
+#include "../optics/pupil/pupil.hpp"
+
 namespace realcam {
 
 LensMap::LensMap(const LensSystem& lens, double film_radius, double thin_image_distance, double pupil_position,

@@ -1,7 +1,9 @@
 #pragma once
 #include <vector>
 
-#include "../optics/pupil/pupil.hpp"
+#include "../optics/prescription/lens_system.hpp"
+#include "../optics/pupil/pupil_tracer.hpp"
+#include "../optics/pupil/pupil_view.hpp"
 #include "lens_map_view.hpp"
 
 namespace REALCAM_NAMESPACE {

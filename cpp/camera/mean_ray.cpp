@@ -4,6 +4,7 @@
 
 #include "../optics/analysis/film_bundle.hpp"
 #include "../optics/analysis/psf.hpp"
+#include "../optics/analysis/scene_bundle.hpp"
 
 namespace realcam {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../optics/analysis/bundle_quadrature.hpp"
-#include "../optics/analysis/scene_bundle.hpp"
+#include "../optics/analysis/film_chief_ray.hpp"
 #include "../optics/pupil/pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -1,4 +1,5 @@
 #pragma once
+#include "film_spectrum.hpp"
 #include "sensor_response.hpp"
 
 namespace REALCAM_NAMESPACE {

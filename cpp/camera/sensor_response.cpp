@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "../math/gauss_legendre.hpp"
+#include "film_spectrum.hpp"
 
 namespace realcam {
 

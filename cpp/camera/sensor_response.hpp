@@ -3,7 +3,6 @@
 #include <array>
 #include <vector>
 
-#include "film_spectrum.hpp"
 #include "illuminant.hpp"
 #include "sensor.hpp"
 

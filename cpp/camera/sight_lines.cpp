@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "../optics/analysis/film_bundle.hpp"
+#include "camera_setup.hpp"
 #include "generate_rays.hpp"
+#include "mean_ray.hpp"
 
 namespace realcam {
 

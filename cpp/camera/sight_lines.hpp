@@ -5,10 +5,12 @@
 
 #include "../math/odd_curve.hpp"
 #include "../optics/analysis/film_chief_ray.hpp"
+#include "../optics/trace/ray_loop.hpp"
 #include "camera.hpp"
-#include "mean_ray.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+class CameraSetup;
 
 /// Which ray stands for all the light that a film point gets.
 enum class SightRay {

@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "../bvh/traverse_scene.hpp"
+#include "../camera/camera_setup.hpp"
 #include "../camera/generate_rays.hpp"
 #include "../render/seconds_since.hpp"
 #include "../scene/light_sample.hpp"

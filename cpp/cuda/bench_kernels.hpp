@@ -1,5 +1,6 @@
 #pragma once
 #include "../camera/camera.hpp"
+#include "../optics/pupil/pupil_tracer.hpp"
 #include "../scene/assembly.hpp"
 
 namespace realcam {

@@ -1,5 +1,6 @@
 #include "cuda_rays.hpp"
 
+#include "../camera/camera_setup.hpp"
 #include "cuda_stream.hpp"
 #include "current_device.hpp"
 #include "device_arrays.hpp"

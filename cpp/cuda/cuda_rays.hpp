@@ -5,6 +5,8 @@
 
 namespace realcam {
 
+class CameraSetup;
+
 /// Traces rays through a lens on a GPU: as trace_rays of the CPU, with arrays in that GPU's memory. Returns when they
 /// are traced. Throws InputError and DeviceError.
 void trace_rays_on_device(int ordinal, const LensSystem& lens, LightDirection direction, double wavelength_nm,

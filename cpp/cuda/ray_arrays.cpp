@@ -1,5 +1,6 @@
 #include "ray_arrays.hpp"
 
+#include "../camera/camera_setup.hpp"
 #include "array_kernels.hpp"
 #include "cuda_rays.hpp"
 #include "cuda_stream.hpp"

@@ -6,6 +6,8 @@
 
 namespace realcam {
 
+class CameraSetup;
+
 /// Numbers in a GPU's memory that somebody else owns: float32 or float64, in C order.
 struct ForeignNumbers {
     const void* data;

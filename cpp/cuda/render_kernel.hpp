@@ -7,6 +7,7 @@
 #include "../camera/camera_view.hpp"
 #include "../render/ghost_film.hpp"
 #include "../render/kind_of.hpp"
+#include "../render/path_settings.hpp"
 #include "../render/pixel_sum.hpp"
 #include "../scene/scene_view.hpp"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "../render/session.hpp"
-
 namespace realcam {
+
+class Session;
 
 /// What pictures can be taken with, by the name that make_session takes.
 struct Device {

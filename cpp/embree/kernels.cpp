@@ -14,6 +14,7 @@
 #include "../render/ghost_film.hpp"
 #include "../render/kind_of.hpp"
 #include "../render/pixel_sum.hpp"
+#include "../render/render_samples.hpp"
 #include "../render/see_layers.hpp"
 #include "../render/trace_lights.hpp"
 #include "packet_scene.hpp"

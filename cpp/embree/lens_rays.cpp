@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "../camera/camera_setup.hpp"
 #include "../camera/ray_request.hpp"
 #include "../optics/analysis/aim_request.hpp"
 #include "../optics/analysis/bundle_quadrature.hpp"

@@ -11,6 +11,8 @@
 
 namespace realcam {
 
+class CameraSetup;
+
 /// Traces rays through a lens on all cores. Origins in mm and directions (of any length) in the lens frame, count x 3.
 /// Rays with a component that is not finite, a direction of length zero or an origin beyond kFarthestOrigin end as
 /// bad_input with zeros. A ray from far away that meets no surface ends where it is nearest to the first vertex. Only

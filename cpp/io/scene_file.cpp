@@ -28,14 +28,6 @@
 namespace realcam::io {
 namespace {
 
-std::string suffix_of(const std::string& path) {
-    std::string suffix = std::filesystem::path(path).extension().string();
-    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (suffix == ".obj" || suffix == ".gltf" || suffix == ".glb" || suffix == ".ply") return suffix;
-    throw SceneFileError(path + ": a scene file ends in .glb, .gltf, .obj or .ply" +
-                         (suffix.empty() ? "" : ", not in " + suffix));
-}
-
 /// Throws for a file that is none, that is empty, or that is larger than memory, which all formats then need.
 void check_file(const std::string& path) {
     const std::uint64_t size = RegularFile(path).size();
@@ -56,11 +48,14 @@ void limit_warnings(std::vector<std::string>& warnings, const std::string& path)
     warnings.push_back(path + ": and " + std::to_string(left_out) + " warnings more");
 }
 
-Scene read_ply_scene(const std::string& path, double scale, const ImageReader& read_image, Checkpoint& checkpoint) {
+Assembly read_ply_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image,
+                        Checkpoint& checkpoint) {
+    if (!options.objects.empty()) throw InputError(path + ": a .ply file has no nodes that could be objects");
     Scene scene;
     FileScene file;
     file.path = path;
-    for (const std::string& name : read_ply(scene, path, scale, checkpoint)) file.pictures.push_back({name, false, {}});
+    for (const std::string& name : read_ply(scene, path, options.scale, checkpoint))
+        file.pictures.push_back({name, false, {}});
     Material plain;
     // The colours of vertices are the surface's own.
     if (!scene.colors.empty()) plain.diffuse = {1, 1, 1};
@@ -139,18 +134,42 @@ Assembly assemble(const FileScene& file, const SceneFileOptions& options, const 
     return scene;
 }
 
+Assembly read_obj_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image,
+                        Checkpoint& checkpoint) {
+    return assemble(read_obj(path, options.scale, checkpoint), options, read_image, checkpoint);
+}
+
+Assembly read_gltf_scene(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image,
+                         Checkpoint& checkpoint) {
+    return assemble(read_gltf(path, checkpoint), options, read_image, checkpoint);
+}
+
+struct SceneFormat {
+    std::string_view suffix;
+    Assembly (*read)(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image,
+                     Checkpoint& checkpoint);
+};
+
+constexpr SceneFormat kFormats[] = {
+    {".glb", &read_gltf_scene}, {".gltf", &read_gltf_scene}, {".obj", &read_obj_scene}, {".ply", &read_ply_scene}};
+
+const SceneFormat& format_of(const std::string& path) {
+    std::string suffix = std::filesystem::path(path).extension().string(), known;
+    std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+    for (const SceneFormat& format : kFormats) {
+        if (format.suffix == suffix) return format;
+        known.append(known.empty() ? "" : &format == std::end(kFormats) - 1 ? " or " : ", ").append(format.suffix);
+    }
+    throw SceneFileError(path + ": a scene file ends in " + known + (suffix.empty() ? "" : ", not in " + suffix));
+}
+
 Assembly read_any(const std::string& path, const SceneFileOptions& options, const ImageReader& read_image) {
     Checkpoint checkpoint(options.keep_going);
     // The system knows no longer ones, and no message has to repeat them.
     if (path.size() > PATH_MAX) throw SceneFileError(in_quotes(path) + ": no such file");
-    const std::string suffix = suffix_of(path);
+    const SceneFormat& format = format_of(path);
     check_file(path);
-    if (suffix == ".ply") {
-        if (!options.objects.empty()) throw InputError(path + ": a .ply file has no nodes that could be objects");
-        return read_ply_scene(path, options.scale, read_image, checkpoint);
-    }
-    const FileScene file = suffix == ".obj" ? read_obj(path, options.scale, checkpoint) : read_gltf(path, checkpoint);
-    return assemble(file, options, read_image, checkpoint);
+    return format.read(path, options, read_image, checkpoint);
 }
 
 }  // namespace

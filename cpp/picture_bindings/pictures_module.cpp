@@ -90,10 +90,18 @@ std::vector<image_io::PictureView::Layer> layers_from(const py::dict& layers, co
     return views;
 }
 
-void write_picture(const std::string& path, const FloatArray& exposure, const FloatArray& depth, const Camera& camera,
-                   const RenderSettings& settings, int spp, std::uint32_t seed, bool film_tone, const py::dict& layers,
-                   const IdNames& object_names, const IdNames& material_names, const std::string& plan,
-                   const std::string& denoiser) {
+template <class T>
+T member(const py::object& image, const char* name) {
+    try {
+        return image.attr(name).cast<T>();
+    } catch (const py::cast_error&) {
+        throw InputError("the image's " + std::string(name) + " must be such as rc.render gives");
+    }
+}
+
+/// `image`: a realcam.Image.
+void write_picture(const std::string& path, const py::object& image, bool film_tone) {
+    const auto exposure = member<FloatArray>(image, "pixels"), depth = member<FloatArray>(image, "depth");
     if (exposure.ndim() != 3 || exposure.shape(2) != 3 || depth.ndim() != 2 || depth.shape(0) != exposure.shape(0) ||
         depth.shape(1) != exposure.shape(1))
         throw InputError("the picture's pixels must have the shape (H, W, 3), and its depth (H, W)");
@@ -102,15 +110,16 @@ void write_picture(const std::string& path, const FloatArray& exposure, const Fl
                                         static_cast<int>(depth.shape(0)),
                                         exposure.data(),
                                         depth.data(),
-                                        layers_from(layers, depth, kept),
-                                        object_names,
-                                        material_names};
+                                        layers_from(py::dict(image.attr("layers")), depth, kept),
+                                        member<IdNames>(image, "object_names"),
+                                        member<IdNames>(image, "material_names")};
+    io::ImageMetadata metadata =
+        io::metadata_of(member<Camera>(image, "camera"), member<RenderSettings>(image, "settings"));
+    metadata.spp = member<int>(image, "spp");
+    metadata.seed = member<std::uint32_t>(image, "seed");
+    metadata.denoiser = member<std::string>(image, "denoiser");
+    metadata.plan = member<std::string>(image, "plan");
     const Unlocked unlocked;
-    io::ImageMetadata metadata = io::metadata_of(camera, settings);
-    metadata.spp = spp;
-    metadata.seed = seed;
-    metadata.denoiser = denoiser;
-    metadata.plan = plan;
     image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
 }
 
@@ -143,8 +152,7 @@ PYBIND11_MODULE(_pictures, m) {
     m.doc() = "Picture files, through OpenImageIO. Paths are bytes, as os.fsencode makes them.";
     m.def("read_texture", &read_texture, "path"_a, "encoded"_a);
     m.def("read_environment", &read_environment, "path"_a);
-    m.def("write_picture", &write_picture, "path"_a, "exposure"_a, "depth"_a, "camera"_a, "settings"_a, "spp"_a,
-          "seed"_a, "film_tone"_a, "layers"_a, "object_names"_a, "material_names"_a, "plan"_a, "denoiser"_a);
+    m.def("write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a);
     m.def("write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
     m.def("read_film", &read_film, "path"_a);
     m.def("check_image_path", &image_io::check_image_path, "path"_a);

@@ -1,4 +1,5 @@
 #pragma once
+#include "../camera/camera_setup.hpp"
 #include "measure_times.hpp"
 #include "plan_shot.hpp"
 #include "probe_scene.hpp"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../camera/pupil_sampling.hpp"
 #include "../render/take_picture.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "../optics/lens/focus.hpp"
 #include "axis_crossings.hpp"
 #include "room.hpp"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "../camera/camera.hpp"
 #include "../camera/effects.hpp"
+#include "../optics/prescription/lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,5 +1,6 @@
 #pragma once
 #include "../scene/environment.hpp"
+#include "../scene/scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,5 +1,6 @@
 #pragma once
-#include "../scene/surface_point.hpp"
+
+#include "../math/color.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "../camera/picture_map.hpp"
+#include "../scene/surface_point.hpp"
 
 namespace realcam {
 

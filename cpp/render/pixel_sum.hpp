@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "../camera/develop.hpp"
-#include "render_samples.hpp"
+#include "path_state.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../camera/effect_tables.hpp"
 #include "effect_names.hpp"
 
 namespace realcam {

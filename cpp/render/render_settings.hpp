@@ -5,12 +5,17 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/effects.hpp"
+#include "../camera/ghost_choice.hpp"
+#include "../camera/illuminant.hpp"
+#include "../camera/pupil_sampling.hpp"
 #include "layers.hpp"
 #include "noise_goal.hpp"
 #include "path_settings.hpp"
 #include "plan_thresholds.hpp"
 
 namespace REALCAM_NAMESPACE {
+
+struct LensEffects;
 
 inline constexpr int kMaxThreads = 4096;  ///< more than machines have cores; TBB falls over what is far beyond
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "../optics/analysis/psf.hpp"
+#include "adaptive_sampling.hpp"
 #include "left_out_motion.hpp"
 #include "motion_vectors.hpp"
 #include "run_with_progress.hpp"

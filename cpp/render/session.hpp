@@ -10,7 +10,6 @@
 #include "../camera/camera.hpp"
 #include "../camera/develop.hpp"
 #include "../scene/scene_checks.hpp"
-#include "adaptive_sampling.hpp"
 #include "image.hpp"
 #include "layer_film.hpp"
 #include "live_frame.hpp"

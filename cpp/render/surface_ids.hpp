@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "../scene/assembly.hpp"
+#include "../scene/surface_point.hpp"
 #include "layer_sum.hpp"
 #include "layers.hpp"
 

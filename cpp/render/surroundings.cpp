@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "gap_finder.hpp"
+#include "vast_sheets.hpp"
+
 namespace realcam {
 
 Surroundings::Surroundings(const Assembly& assembly) : pieces_(assembly), kept_(pieces_.count(), true) {

@@ -1,8 +1,7 @@
 #pragma once
 #include <limits>
 
-#include "gap_finder.hpp"
-#include "vast_sheets.hpp"
+#include "scene_pieces.hpp"
 
 namespace REALCAM_NAMESPACE {
 

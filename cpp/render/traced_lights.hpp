@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "../camera/camera.hpp"
+#include "../camera/camera_setup.hpp"
 #include "../camera/lens_way.hpp"
 #include "../optics/pupil/pupil_tracer.hpp"
 #include "light_groups.hpp"

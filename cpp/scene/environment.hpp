@@ -2,6 +2,7 @@
 #include "../math/cdf.hpp"
 #include "../math/sampling.hpp"
 #include "light_sample.hpp"
+#include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 

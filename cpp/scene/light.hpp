@@ -2,6 +2,7 @@
 #include "environment.hpp"
 #include "light_tree.hpp"
 #include "opacity.hpp"
+#include "scattering.hpp"
 
 namespace REALCAM_NAMESPACE {
 

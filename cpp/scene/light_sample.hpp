@@ -1,6 +1,5 @@
 #pragma once
-#include "scattering.hpp"
-#include "scene_view.hpp"
+#include "../math/color.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -1,6 +1,7 @@
 #pragma once
 #include "../math/random.hpp"
 #include "light_sample.hpp"
+#include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -2,10 +2,14 @@
 #include <optional>
 #include <string>
 
-#include "../render/session.hpp"
+#include "../render/progress.hpp"
 #include "../scene/assembly.hpp"
 #include "picture_readers.hpp"
 #include "shot_request.hpp"
+
+namespace realcam {
+class Session;
+}
 
 namespace realcam::shot {
 

@@ -20,8 +20,10 @@ from ._core import (
     Coating,
     CoatingLayer,
     CoatingResponse,
+    Device,
     DeviceArray,
     DeviceError,
+    EffectInfo,
     FieldOfView,
     Film,
     FirstOrder,
@@ -52,12 +54,13 @@ from ._core import (
     TraceResult,
     Wavefront,
     __version__,
+    devices,
+    effects,
     glass_names,
     lens_names,
     sensor_names,
 )
 from .accuracy import AccuracyCost, accuracy_cost
-from .choices import Device, EffectInfo, devices, effects
 from .drawing import CrossSection, cross_section
 from .image import Image
 from .image_file import read_environment

@@ -14,7 +14,7 @@ from ._core import InputError, __version__
 from .files import write_whole
 
 # EXIF's LightSource. Any other light has no number.
-LIGHT_SOURCES = {"": 21, "D65": 21, "A": 17, "FL2": 14}
+LIGHT_SOURCES = {"": 21, "D65": 21, "D50": 23, "A": 17, "FL2": 14}
 OTHER_LIGHT_SOURCE = 255
 CFA, LINEAR_RAW = 32803, 34892  # PhotometricInterpretation
 # IEC 61966-2-1.

@@ -123,26 +123,7 @@ class Image:
         """
         if tone not in ("film", "linear"):
             raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
-        try:
-            image_file.pictures().write_picture(
-                system_name(path),
-                self.pixels,
-                self.depth,
-                self.camera,
-                self.settings,
-                self.spp,
-                self.seed,
-                tone == "film",
-                dict(self.layers),
-                list(self.object_names),
-                list(self.material_names),
-                self.plan,
-                self.denoiser,
-            )
-        except TypeError:
-            raise InputError(
-                "pixels, camera, settings, spp, seed, layers and names of the image must be such as rc.render gives"
-            ) from None
+        image_file.pictures().write_picture(system_name(path), self, tone == "film")
 
     def metadata(self) -> dict[str, str]:
         """Names ("realcam:...") and values of what is written into picture files."""

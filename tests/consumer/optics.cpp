@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <realcam/optics/lens/focus.hpp>
 #include <realcam/optics/lens/paraxial.hpp>
+#include <realcam/optics/prescription/lens_checks.hpp>
 #include <realcam/optics/trace/lens_path.hpp>
 
 int main() {

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "camera/camera.hpp"
+#include "camera/camera_setup.hpp"
 #include "camera/ray_request.hpp"
 #include "draw_lens.hpp"
 #include "embree/kernels.hpp"
 #include "io/lens/lens_file.hpp"
+#include "optics/lens/focus.hpp"
 #include "target.hpp"
 
 namespace realcam::fuzz {

@@ -56,7 +56,7 @@ CLAIMS = {
     "zoom-80-200mm": Claim(80.1, 4.5, 42.495, 30.2),
 }
 
-# Their figures are compared by tests/cpp/test_lens_file.cpp and tests/cpp/test_first_order.cpp.
+# Their figures are compared by test_lens_file.cpp and test_first_order.cpp of tests/cpp.
 COMPARED_ELSEWHERE = {
     "achromat-75mm",
     "cooke-triplet-50mm",

@@ -1,6 +1,6 @@
 """Scene files that are wrong, endless or named strangely, and Ctrl-C while one is read: Python's share of it.
 
-What the files themselves may hold is tested in C++ (tests/cpp/test_hostile_*.cpp).
+What the files themselves may hold is tested in C++ (tests/cpp/io/*/test_hostile_*.cpp).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Lens.psf: against another program's propagation, its own two other methods, and what is known of spikes and limits.
 
-tests/cpp/test_psf.cpp has the closed forms.
+tests/cpp/optics/analysis/test_psf.cpp has the closed forms.
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
 #include "lens_file.hpp"
 
+#include "../../optics/lens/best_focus.hpp"
 #include "../../optics/lens/focus.hpp"
+#include "../../optics/prescription/lens_checks.hpp"
 #include "../../optics/prescription/lens_limits.hpp"
 #include "../files/regular_file.hpp"
 #include "../text/toml_document.hpp"

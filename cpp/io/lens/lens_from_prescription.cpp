@@ -5,8 +5,11 @@
 #include <numbers>
 #include <set>
 
+#include "../../optics/lens/best_focus.hpp"
 #include "../../optics/lens/focus.hpp"
 #include "../../optics/lens/paraxial.hpp"
+#include "../../optics/prescription/clearance.hpp"
+#include "../../optics/prescription/lens_checks.hpp"
 #include "../text/printable.hpp"
 #include "lens_asphere_terms.hpp"
 #include "lens_error.hpp"

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "../prescription/glass_resonances.hpp"
+#include "wavefront.hpp"
+
 namespace realcam {
 
 PointBundle::PointBundle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double film_distance,

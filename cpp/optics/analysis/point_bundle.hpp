@@ -1,8 +1,6 @@
 #pragma once
-#include "../prescription/glass_resonances.hpp"
 #include "field_rays.hpp"
 #include "ray_aiming.hpp"
-#include "wavefront.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -8,7 +8,11 @@
 
 namespace realcam {
 
+namespace psf_detail {
+
 namespace {
+
+constexpr double kMostWaves = 1 << 24;
 
 /// um: a quarter of wavelength x f-number, of the finest detail of an image half; for a spot that is larger than the
 /// window, up to twice that, which all of the detail still needs.
@@ -19,63 +23,22 @@ double psf_pitch(const PointBundle& bundle, int size) {
     return std::clamp(spot / size, 0.25 * detail, 0.5 * detail);
 }
 
-}  // namespace
-
-namespace psf_detail {
-
-namespace {
-
-constexpr double kMostWaves = 1 << 24;
-
-}  // namespace
-
-BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t rays) {
-    const double half = 0.5e-3 * psf.size * psf.pitch_um, phase = largest_phase(part.bundle, part.centre, half);
-    const auto count = [](BundleSampling s) { return static_cast<double>(s.spokes) * s.nodes; };
-    if (!(phase < 1e5) || count(sampling_for(phase)) > kMostWaves)
-        throw InputError("psf: the light's phase differs by " + std::to_string(std::lround(phase / std::numbers::pi)) +
-                         " waves on the array, too many for a sum of rays; give a smaller array, another "
-                         "film_distance_mm or the method \"geometric\"");
-    BundleSampling sampling = sampling_for(phase);
-    if (rays == 0) return sampling;
-    const double least = phase * (0.25 * phase + 1);
-    if (static_cast<double>(rays) < least)
-        throw InputError("psf: " + std::to_string(rays) +
-                         " rays cannot follow the wavefront over the array: at least " +
-                         std::to_string(static_cast<std::int64_t>(least) + 1) + " are wanted, " +
-                         std::to_string(static_cast<std::int64_t>(count(sampling))) + " are good");
-    const double more = std::sqrt(static_cast<double>(rays) / count(sampling));
-    return {static_cast<int>(std::ceil(more * sampling.spokes)), static_cast<int>(std::ceil(more * sampling.nodes))};
-}
-
-namespace {
-
 /// Irradiance per um^2 of a sum of 1.
 double scale_of(const Part& part) {
     const double per_mm2 = part.bundle.wave_number / (2 * std::numbers::pi);
     return 1e-6 * part.weight * per_mm2 * per_mm2 / part.light.energy;
 }
 
-}  // namespace
-
-void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values, const RayLoop& loop) {
-    values.assign(static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size), 0);
+/// Largest value of the same light without aberrations: all waves in phase, all colours in one place.
+double ideal_peak(const std::vector<Part>& parts) {
+    double ideal = 0;
     for (const Part& part : parts) {
-        FilmGrid own = grid;
-        own.centre = {grid.centre.x + part.centre.x, grid.centre.y + part.centre.y};
-        PlaneWaveSum sum(own, part.bundle.wave_number);
-        if (part.light.mirrored && own.centre.x != 0)
-            sum.add(with_mirror_images(part.light), loop);
-        else
-            sum.add(part.light, loop);
-        const double scale = scale_of(part);
-        for (int y = 0; y < grid.size; ++y)
-            for (int x = 0; x < grid.size; ++x)
-                values[static_cast<std::size_t>(y * grid.size + x)] += scale * std::norm(sum(x, y));
+        double amplitude = 0;
+        for (const PlaneWave& wave : part.light.waves) amplitude += wave.amplitude;
+        ideal += scale_of(part) * amplitude * amplitude;
     }
+    return ideal;
 }
-
-namespace {
 
 /// The largest value near the largest of the array's: between its points, by smaller and smaller grids.
 double peak_near(const std::vector<Part>& parts, const Psf& psf, const RayLoop& loop) {
@@ -134,6 +97,42 @@ void add_rays(const Part& part, Psf& psf, std::int64_t rays, const RayLoop& loop
 
 }  // namespace
 
+BundleSampling checked_sampling(const Part& part, const Psf& psf, std::int64_t rays) {
+    const double half = 0.5e-3 * psf.size * psf.pitch_um, phase = largest_phase(part.bundle, part.centre, half);
+    const auto count = [](BundleSampling s) { return static_cast<double>(s.spokes) * s.nodes; };
+    if (!(phase < 1e5) || count(sampling_for(phase)) > kMostWaves)
+        throw InputError("psf: the light's phase differs by " + std::to_string(std::lround(phase / std::numbers::pi)) +
+                         " waves on the array, too many for a sum of rays; give a smaller array, another "
+                         "film_distance_mm or the method \"geometric\"");
+    BundleSampling sampling = sampling_for(phase);
+    if (rays == 0) return sampling;
+    const double least = phase * (0.25 * phase + 1);
+    if (static_cast<double>(rays) < least)
+        throw InputError("psf: " + std::to_string(rays) +
+                         " rays cannot follow the wavefront over the array: at least " +
+                         std::to_string(static_cast<std::int64_t>(least) + 1) + " are wanted, " +
+                         std::to_string(static_cast<std::int64_t>(count(sampling))) + " are good");
+    const double more = std::sqrt(static_cast<double>(rays) / count(sampling));
+    return {static_cast<int>(std::ceil(more * sampling.spokes)), static_cast<int>(std::ceil(more * sampling.nodes))};
+}
+
+void add_waves(const std::vector<Part>& parts, FilmGrid grid, std::vector<double>& values, const RayLoop& loop) {
+    values.assign(static_cast<std::size_t>(grid.size) * static_cast<std::size_t>(grid.size), 0);
+    for (const Part& part : parts) {
+        FilmGrid own = grid;
+        own.centre = {grid.centre.x + part.centre.x, grid.centre.y + part.centre.y};
+        PlaneWaveSum sum(own, part.bundle.wave_number);
+        if (part.light.mirrored && own.centre.x != 0)
+            sum.add(with_mirror_images(part.light), loop);
+        else
+            sum.add(part.light, loop);
+        const double scale = scale_of(part);
+        for (int y = 0; y < grid.size; ++y)
+            for (int x = 0; x < grid.size; ++x)
+                values[static_cast<std::size_t>(y * grid.size + x)] += scale * std::norm(sum(x, y));
+    }
+}
+
 Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& loop) {
     if (request.colours.empty()) throw InputError("psf: no wavelength is given");
     if (!(request.size >= 2 && request.size <= 4096)) throw InputError("psf: size must lie between 2 and 4096");
@@ -169,21 +168,6 @@ Start start(const LensSystem& lens, const PsfRequest& request, const RayLoop& lo
     psf.values.assign(static_cast<std::size_t>(psf.size) * static_cast<std::size_t>(psf.size), 0);
     return made;
 }
-
-namespace {
-
-/// Largest value of the same light without aberrations: all waves in phase, all colours in one place.
-double ideal_peak(const std::vector<Part>& parts) {
-    double ideal = 0;
-    for (const Part& part : parts) {
-        double amplitude = 0;
-        for (const PlaneWave& wave : part.light.waves) amplitude += wave.amplitude;
-        ideal += scale_of(part) * amplitude * amplitude;
-    }
-    return ideal;
-}
-
-}  // namespace
 
 }  // namespace psf_detail
 

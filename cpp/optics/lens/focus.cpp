@@ -6,6 +6,9 @@
 #include <limits>
 
 #include "../../math/root.hpp"
+#include "../prescription/clearance.hpp"
+#include "../prescription/lens_checks.hpp"
+#include "best_focus.hpp"
 #include "paraxial.hpp"
 
 namespace realcam {

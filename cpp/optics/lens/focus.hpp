@@ -1,6 +1,5 @@
 #pragma once
-#include "../prescription/lens_checks.hpp"
-#include "best_focus.hpp"
+#include "../prescription/lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
 

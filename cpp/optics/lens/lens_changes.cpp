@@ -3,6 +3,7 @@
 #include <string>
 
 #include "../coating/coated_faces.hpp"
+#include "../prescription/lens_checks.hpp"
 
 namespace realcam {
 

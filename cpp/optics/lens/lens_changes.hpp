@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "../prescription/lens_checks.hpp"
+#include "../prescription/lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
 

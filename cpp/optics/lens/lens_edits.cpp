@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "../coating/coated_faces.hpp"
+#include "best_focus.hpp"
+#include "lens_changes.hpp"
 
 namespace realcam {
 

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "best_focus.hpp"
-#include "lens_changes.hpp"
+#include "../prescription/lens_checks.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "../../math/least_squares.hpp"
+#include "../../math/random.hpp"
+#include "../trace/lens_path.hpp"
 #include "paraxial.hpp"
 
 namespace realcam {

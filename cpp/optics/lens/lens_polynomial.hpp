@@ -1,9 +1,8 @@
 #pragma once
 #include <vector>
 
-#include "../../math/random.hpp"
+#include "../prescription/lens_system.hpp"
 #include "../pupil/pupil_view.hpp"
-#include "../trace/lens_path.hpp"
 #include "../trace/lens_polynomial_view.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "focus.hpp"
+
 namespace realcam {
 
 int zoom_position_named(const LensSystem& lens, const std::string& name) {

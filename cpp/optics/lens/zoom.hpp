@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "focus.hpp"
+#include "../prescription/lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
 

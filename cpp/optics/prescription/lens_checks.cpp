@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "clearance.hpp"
 #include "coating_checks.hpp"
 #include "lens_limits.hpp"
 

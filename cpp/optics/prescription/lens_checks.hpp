@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "clearance.hpp"
+#include "lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "../../math/random.hpp"
+
 namespace realcam {
 
 Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, const std::vector<double>& wavelengths_nm)

@@ -1,7 +1,6 @@
 #pragma once
 #include <vector>
 
-#include "../../math/random.hpp"
 #include "pupil_outline_search.hpp"
 #include "pupil_row_search.hpp"
 #include "pupil_view.hpp"

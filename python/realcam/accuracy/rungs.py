@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .._core import Camera, Scene
+from .._core import Camera, Scene, effects
 from ..image import Image
 from ..planning import plan
 from ..render import render
@@ -74,8 +74,13 @@ def _diffuse(image: Image) -> Picture:
 
 
 def known_effects(camera: Camera) -> tuple[str, ...]:
-    """Those of which the lens file says what they need: ghosts and coatings want to know what covers the glass."""
-    return ("dispersion", "diffraction") + (() if camera.lens.unknown_coatings else ("coatings", "ghosts"))
+    """Those of which the lens file says what they need: some want to know what covers the glass, and come last.
+
+    What the film reflects is in no lens file.
+    """
+    wanted = [effect for effect in effects() if not effect.is_on and effect.name != "film_reflection"]
+    wanted.sort(key=lambda effect: effect.needs_coatings)
+    return tuple(effect.name for effect in wanted if not (effect.needs_coatings and camera.lens.unknown_coatings))
 
 
 def ways_to_sample() -> list[Level]:

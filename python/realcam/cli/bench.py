@@ -10,8 +10,7 @@ from typing import Annotated, Optional
 import typer
 from rich.console import Console
 
-from .._core import InputError
-from ..choices import devices
+from .._core import InputError, devices
 from .options import check_known
 
 

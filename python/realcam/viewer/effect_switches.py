@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-from .._core import Plan
-from ..choices import effects
+from .._core import Plan, effects
 
 EFFECTS = tuple(effect.name for effect in effects() if not effect.is_on)
 _WITHOUT_SURFACES = {effect.name for effect in effects() if not effect.needs_full_lens}

@@ -9,8 +9,7 @@ from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
-from .._core import glass_names
-from ..choices import effects
+from .._core import effects, glass_names
 from .effect_switches import EFFECTS
 
 

@@ -10,8 +10,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from .._core import Camera, RenderSettings
-from ..choices import effects
+from .._core import Camera, RenderSettings, effects
 from .noise_measurement import NoiseMeasurement
 from .pace import Size
 from .picture_request import Costs, Frame, PictureRequest

@@ -1,0 +1,60 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "../optics/lens/lens_polynomial.hpp"
+#include "../optics/pupil/pupil.hpp"
+#include "camera.hpp"
+#include "effect_tables.hpp"
+#include "lens_map.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// A camera made ready: owns the tables that its view points to.
+class CameraSetup {
+public:
+    /// Throws InputError, also for a camera that turns too fast for the exposure. `tracer`: see Pupil. `last`: a set-up
+    /// whose pupil is taken over if it is the same one: finding it is most of the work, and a camera that only moves
+    /// keeps it.
+    explicit CameraSetup(const Camera& camera, PupilTracer tracer = {}, const CameraSetup* last = nullptr,
+                         const LensEffects& effects = {});
+
+    /// `origin_m`: of the placed scene. `scene_moves`: whether that does during the exposure.
+    CameraView view(Vec3d origin_m, bool scene_moves = false) const;
+
+    const Camera& camera() const { return camera_; }
+    /// The polynomials of a camera with the model polynomial_lens; else null.
+    const LensPolynomial* polynomial() const { return polynomial_ ? &*polynomial_ : nullptr; }
+    const EffectTables& effects() const { return tables_; }
+
+private:
+    /// Before anything is made from it: a camera without a lens has no surface to begin with.
+    static const Camera& validated(const Camera& camera);
+
+    /// Distance of the film point furthest from the axis, mm.
+    double film_radius() const { return camera_.film.radius_mm(); }
+
+    void set_map(const PupilTracer& tracer, const CameraSetup* last);
+
+    static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m);
+
+    void set_times(CameraView& view, bool scene_moves) const;
+
+    bool has_lens_and_film_of(const Camera& camera) const;
+    bool has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths, PupilSampling sampling) const;
+
+    Camera camera_;
+    LensEffects effects_;
+    LensPath<float> path_;
+    EffectTables tables_;
+    std::optional<LensPath<double>> path_in_double_;
+    LensView<double> view_in_double_{};
+    std::optional<LensPolynomial> polynomial_;
+    std::vector<CameraPlacement> keys_;  ///< positions relative to the first
+    std::shared_ptr<const Pupil> pupil_;
+    float axis_irradiance_ = 0;  ///< of an ideal lens
+    std::shared_ptr<const LensMap> map_;  ///< of the model mapped_lens
+};
+
+}  // namespace REALCAM_NAMESPACE

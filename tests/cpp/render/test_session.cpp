@@ -1,0 +1,339 @@
+// What all sessions have in common, on a device that only writes down what it is asked for.
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bare_scene.hpp"
+#include "doctest/doctest.h"
+#include "io/lens/lens_file.hpp"
+#include "optics/lens/focus.hpp"
+#include "render/film_sums.hpp"
+#include "render/live_view.hpp"
+#include "render/take_picture.hpp"
+
+using namespace realcam;
+
+namespace {
+
+class NotedFrame final : public LiveFrame {
+public:
+    explicit NotedFrame(std::int64_t samples, const std::atomic<bool>& stopped)
+        : samples_(samples), stopped_(stopped) {}
+    int width() const override { return 1; }
+    int height() const override { return 1; }
+    std::int64_t samples() const override { return samples_; }
+    bool wait_for(std::chrono::microseconds longest) const override {
+        if (!is_there && !stopped_) std::this_thread::sleep_for(longest);
+        return is_there || stopped_;
+    }
+    const std::uint8_t* codes() const override { return nullptr; }
+
+    std::atomic<bool> is_there{false};
+
+private:
+    std::int64_t samples_;
+    const std::atomic<bool>& stopped_;
+};
+
+class NotedSession final : public Session {
+public:
+    std::string name() const override { return "notes"; }
+
+    std::vector<std::string> notes;
+    std::vector<SampleRange> taken, seen;
+    std::function<void()> while_taking, while_seeing;
+    std::vector<std::shared_ptr<NotedFrame>> frames;
+    bool fails = false;
+    std::atomic<bool> stop_flag{false};
+
+private:
+    void prepare(const Assembly&, const Camera&, const RenderSettings&, const KeepGoing&, OwnStop&) override {
+        notes.push_back("prepare");
+        if (fails) throw DeviceError("lost");
+    }
+    void clear() override { notes.push_back("clear"); }
+    void take(const SampleRange& range, const PixelCounts&, std::atomic<std::int64_t>& done, OwnStop&) override {
+        notes.push_back("take");
+        taken.push_back(range);
+        if (while_taking) while_taking();
+        done += range.count;
+        if (fails) throw DeviceError("lost");
+    }
+    std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve,
+                                     std::shared_ptr<void>) override {
+        for (const SampleRange& range : ranges) taken.push_back(range);
+        return frames.emplace_back(std::make_shared<NotedFrame>(samples(), stop_flag));
+    }
+    Image develop() override { return {}; }
+    LayerImage develop_variance() override { return {Layer::variance, {0, 0, 0}, {}}; }
+    void see_layers(const SampleRange& range, std::vector<LayerSum>& film, std::atomic<std::int64_t>& done,
+                    OwnStop&) override {
+        notes.push_back("see layers");
+        seen.push_back(range);
+        if (while_seeing) while_seeing();
+        for (LayerSum& sum : film) sum.weight += range.count;
+        done += range.count;
+    }
+    void see_middle_surfaces(std::vector<MiddleSurface>& film, OwnStop&) override {
+        notes.push_back("see middle");
+        for (MiddleSurface& surface : film) surface = {1.5f, {0, 0, 1}, 0, kNoInstance, 0, {0, 0, -1.5f}};
+    }
+    std::vector<std::int64_t> count_samples() override { return {samples()}; }
+    PlacedCamera placed_camera() const override { return {}; }
+    std::size_t frames_in_flight() const override { return 2; }
+    void raise_stop() noexcept override {
+        ++raised_;
+        stop_flag = true;
+    }
+    void lower_stop() noexcept override { stop_flag = --raised_ > 0; }
+    bool is_stopped() const override { return stop_flag; }
+
+    std::atomic<int> raised_{0};
+};
+
+Camera small_camera() {
+    Camera camera;
+    camera.lens = io::read_lens("tessar-50mm");
+    camera.film.width = camera.film.height = 1;
+    return camera;
+}
+
+const std::vector<std::string> kAnew = {"prepare", "clear", "take"}, kOn = {"take"};
+
+}  // namespace
+
+TEST_CASE("a session prepares what is another picture, and goes on with what is the same") {
+    Assembly scene(test::bare_scene());
+    scene.instances.push_back({std::make_shared<const Scene>(test::bare_scene()), {}, "chair"});
+    Camera camera = small_camera();
+    RenderSettings settings{.effects = {}};
+    NotedSession session;
+    CHECK_THROWS_WITH_AS(session.add(1), "nothing is set that could be photographed; set() prepares it", InputError);
+    const auto next = [&] {
+        session.notes.clear();
+        session.set(scene, camera, settings);
+        session.add(2);
+        return session.notes;
+    };
+    CHECK(next() == kAnew);
+    CHECK(next() == kOn);
+    CHECK(session.picture().spp == 4);
+    camera.iso = 1600;
+    camera.exposure_time_s = 3;
+    settings.spp = 7;
+    settings.threads = 2;
+    CHECK(next() == kOn);
+
+    const std::vector<std::function<void()>> changes = {
+        [&] { camera.pose.position_m.x += 1; },
+        [&] { camera.lens = focused(camera.lens, 2000); },
+        [&] { camera.film.width_mm *= 0.5; },
+        [&] { camera.model = CameraModel::thin_lens; },
+        [&] { settings.seed = 1; },
+        [&] { settings.max_bounces = 3; },
+        [&] { scene.instances[0].scene_from_object.origin.y = 1; },
+        [&] { scene = Assembly(test::bare_scene()); },
+    };
+    for (const auto& change : changes) {
+        change();
+        CHECK(next() == kAnew);
+        CHECK(session.picture().spp == 2);
+    }
+    session.restart();
+    CHECK_THROWS_AS(session.picture(), InputError);
+    CHECK(next() == std::vector<std::string>{"clear", "take"});
+}
+
+TEST_CASE("a session refuses what makes no picture, and keeps the one that it has") {
+    const Assembly scene(test::bare_scene());
+    const Camera camera = small_camera();
+    NotedSession session;
+    session.set(scene, camera, {.effects = {}});
+    session.add(3);
+    Scene broken = test::bare_scene();
+    broken.triangles[0].vertices[0] = 3;
+    CHECK_THROWS_WITH_AS(session.set(Assembly(broken), camera, {.effects = {}}),
+                         "scene: triangle 0: vertex 3 does not exist; there are 3", InputError);
+    Camera blind = camera;
+    blind.film.width = 0;
+    CHECK_THROWS_AS(session.set(scene, blind, {.effects = {}}), InputError);
+    CHECK_THROWS_AS(session.set(scene, camera, {.max_bounces = -1, .effects = {}}), InputError);
+    CHECK_THROWS_AS(session.add(0), InputError);
+    CHECK(session.picture().spp == 3);
+}
+
+TEST_CASE("samples go on where the last ended, also after a stop; a failure begins anew") {
+    const Assembly scene(test::bare_scene());
+    const Camera camera = small_camera();
+    NotedSession session;
+    session.set(scene, camera, {.effects = {}});
+    session.add(3);
+    std::thread stop;
+    session.while_taking = [&] {
+        stop = std::thread([&] { session.cancel(); });
+        while (!session.stop_flag) std::this_thread::yield();
+    };
+    CHECK_THROWS_AS(session.add(4), Cancelled);
+    stop.join();
+    session.while_taking = {};
+    session.add(5);
+    CHECK(session.taken.back().first == 7);
+    CHECK(session.taken.back().count == 5);
+    CHECK(session.sample_counts().counts == std::vector<std::int64_t>{12});
+
+    session.cancel(Collected::drop);
+    CHECK_THROWS_WITH_AS(session.picture(), "there is no picture yet; samples have to be taken first", InputError);
+    CHECK(session.sample_counts().counts == std::vector<std::int64_t>{0});
+    session.add(1);
+    CHECK(session.taken.back().first == 0);
+
+    session.fails = true;
+    CHECK_THROWS_AS(session.add(1), DeviceError);
+    session.fails = false;
+    CHECK_THROWS_AS(session.add(1), InputError);
+    session.notes.clear();
+    session.set(scene, camera, {.effects = {}});
+    session.add(1);
+    CHECK(session.notes == kAnew);
+    CHECK(session.taken.back().first == 0);
+}
+
+TEST_CASE("a picture is taken from its first sample on") {
+    const Assembly scene(test::bare_scene());
+    const Camera camera = small_camera();
+    NotedSession session;
+    for (int i = 0; i < 2; ++i) {
+        const Image image = take_picture(session, scene, camera, {.spp = 20, .effects = {}}, {});
+        CHECK(image.spp == 20);
+        CHECK(image.stats.seconds >= image.stats.setup_seconds);
+        CHECK(session.taken.back().first == 0);
+    }
+    CHECK_THROWS_AS(take_picture(session, scene, camera, {.spp = 0, .effects = {}}, {}), InputError);
+}
+
+TEST_CASE("as many frames are under way as the device takes") {
+    const Camera camera = small_camera();
+    auto owned = std::make_unique<NotedSession>();
+    NotedSession& session = *owned;
+    LiveView view(std::move(owned), test::bare_scene());
+    CHECK_THROWS_AS(view.collected(), InputError);
+    CHECK(view.shoot(camera, {.spp = 2, .effects = {}}, ToneCurve::film)->samples() == 2);
+    CHECK(view.shoot(camera, {.spp = 3, .effects = {}}, ToneCurve::film)->samples() == 5);
+    // The third has to wait for the first, here until nobody wants to.
+    int asked = 0;
+    CHECK_THROWS_AS(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film, [&] { return ++asked < 3; }),
+                    Cancelled);
+    CHECK(asked == 3);
+    CHECK(session.frames.size() == 2);
+    session.frames[0]->is_there = true;
+    CHECK(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film)->samples() == 6);
+    CHECK_THROWS_AS(view.shoot(camera, {.spp = 0, .effects = {}}, ToneCurve::film), InputError);
+    view.cancel();
+    CHECK_THROWS_AS(view.collected().picture(), InputError);
+    CHECK(view.shoot(camera, {.spp = 1, .effects = {}}, ToneCurve::film)->samples() == 1);
+    view.show(test::bare_scene());
+    CHECK_THROWS_AS(view.collected(), InputError);
+    session.stop_flag = true;  // so that the frames under way end
+}
+
+TEST_CASE("each pixel is developed with its own number of samples") {
+    FilmSums film(3);
+    film[0] = {{2, 4, 6}, {}, 9, 3, 4};
+    film[1] = {{2, 4, 6}, {}, 0, 0, 2};
+    const Image image = developed(film, 3, 1, 2);
+    CHECK(image.exposure == std::vector<float>{1, 2, 3, 2, 4, 6, 0, 0, 0});
+    constexpr float none = std::numeric_limits<float>::infinity();
+    CHECK(image.depth == std::vector<float>{3, none, none});
+    CHECK(samples_of(film) == std::vector<std::int64_t>{4, 2, 0});
+    // Exposures of 1 to 6 times middle grey, 10 / ISO lux seconds (ISO 12232): 0.18 to 1.08 of white, by IEC 61966-2-1.
+    CHECK(developed_codes(film, 2, 10, ToneCurve::linear) ==
+          std::vector<std::uint8_t>{118, 162, 194, 162, 221, 255, 0, 0, 0});
+    film[0] += film[1];
+    CHECK(samples_of(film)[0] == 6);
+}
+
+TEST_CASE("layers catch up with the samples of a picture, and are seen once") {
+    const Assembly scene(test::bare_scene());
+    Camera camera = small_camera();
+    RenderSettings settings{.effects = {}};
+    NotedSession session;
+    session.set(scene, camera, settings);
+    session.add(3);
+    CHECK(session.picture().layers.empty());
+    CHECK(session.seen.empty());
+
+    // Wanted later, and of the same picture: its samples are seen from the first on.
+    settings.layers = {Layer::circle_of_confusion_mm, Layer::depth_middle, Layer::object_id, Layer::sample_count};
+    session.set(scene, camera, settings);
+    Image image = session.picture();
+    CHECK(session.taken.size() == 1);
+    REQUIRE(session.seen.size() == 1);
+    CHECK(session.seen[0].first == 0);
+    CHECK(session.seen[0].count == 3);
+    REQUIRE(image.layers.size() == 4);
+    CHECK(image.layers[1].numbers == std::vector<std::uint32_t>{3});
+    CHECK(image.layers[2].values == std::vector<float>{1.5f});
+    CHECK(image.layers[3].numbers == std::vector<std::uint32_t>{1});
+    CHECK(image.object_names == IdNames{"", "static geometry"});
+    CHECK(image.material_names.empty());
+    session.notes.clear();
+    session.add(2);
+    CHECK(session.notes == std::vector<std::string>{"take", "see layers"});
+    CHECK(session.seen.back().first == 3);
+    CHECK(session.seen.back().count == 2);
+    session.picture();
+    CHECK(session.notes.size() == 2);
+
+    // Half of a layer is none.
+    std::thread stop;
+    session.while_seeing = [&] {
+        stop = std::thread([&] { session.cancel(); });
+        while (!session.stop_flag) std::this_thread::yield();
+    };
+    CHECK_THROWS_AS(session.add(1), Cancelled);
+    stop.join();
+    session.while_seeing = {};
+    session.picture();
+    CHECK(session.seen.back().first == 0);
+    CHECK(session.seen.back().count == 6);
+
+    // Another place is another picture; so is one whose squares were not summed.
+    camera.pose.position_m.x += 1;
+    session.set(scene, camera, settings);
+    session.add(1);
+    CHECK(session.seen.back().first == 0);
+    CHECK(session.seen.back().count == 1);
+    settings.layers = {Layer::variance};
+    session.notes.clear();
+    session.set(scene, camera, settings);
+    session.add(1);
+    CHECK(session.notes == kAnew);
+    image = session.picture();
+    REQUIRE(image.layers.size() == 1);
+    CHECK(image.layers[0].layer == Layer::variance);
+    settings.layers = {};
+    session.notes.clear();
+    session.set(scene, camera, settings);
+    session.add(1);
+    CHECK(session.notes == kOn);
+}
+
+TEST_CASE("the variance of a pixel is that of the mean of its samples") {
+    FilmSums film(2);
+    // Samples 1, 2 and 6 of one channel: their variance is 7, that of their mean 7 / 3, after 2 s four times as much.
+    film[0] = {{9, 0, 3}, {41, 0, 3}, 0, 0, 3};
+    film[1] = {{5, 5, 5}, {25, 25, 25}, 0, 0, 1};
+    const LayerImage variance = developed_variance(film, 2);
+    REQUIRE(variance.values.size() == 6);
+    CHECK(double(variance.values[0]) == doctest::Approx(28.0 / 3));
+    CHECK(variance.values[1] == 0);
+    CHECK(variance.values[2] == 0);
+    for (std::size_t i = 3; i < 6; ++i) CHECK(std::isnan(variance.values[i]));
+}
