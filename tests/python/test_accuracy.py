@@ -58,6 +58,7 @@ def test_all_levels_are_there(cost: AccuracyCost) -> None:
         "pixel pupil",
         "fitted outline, random",
         "fitted outline",
+        "fitted outline, lights traced",
     ]
     assert cost.size == (24, 16)
     assert not cost.missing
@@ -137,7 +138,7 @@ def test_an_interrupted_ladder_keeps_what_is_done() -> None:
     )
     assert [rung.name for rung in cost.rungs] == ["pinhole, gather filter", "pinhole, heat diffusion", "pinhole"]
     assert cost.missing[:2] == ("thin lens", "thin lens, distortion and vignetting")
-    assert cost.missing[-1] == "fitted outline"
+    assert cost.missing[-1] == "fitted outline, lights traced"
     assert "Interrupted; not measured: thin lens, " in str(cost)
 
 

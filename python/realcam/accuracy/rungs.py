@@ -21,14 +21,15 @@ Blur = Callable[[Image], Picture]
 class Level:
     """One way to take the picture.
 
-    model, effects, pupil_sampling: of render; blur: what is done to the picture afterwards; is_stratified: else each
-    sample has random numbers of its own, whatever the others of its pixel have.
+    model, effects, pupil_sampling, light_tracing: of render; blur: what is done to the picture afterwards;
+    is_stratified: else each sample has random numbers of its own, whatever the others of its pixel have.
     """
 
     name: str
     model: str = "full"
     effects: tuple[str, ...] = ()
     pupil_sampling: str = "outline"
+    light_tracing: str = "weighted"
     is_stratified: bool = True
     blur: Blur | None = field(default=None, compare=False)
 
@@ -54,6 +55,7 @@ class Level:
             seed=seed,
             effects=self.effects,
             pupil_sampling=self.pupil_sampling,
+            light_tracing=self.light_tracing,
             layers=("circle_of_confusion_mm",) if self.blur else (),
             **settings,  # type: ignore[arg-type]
         )
@@ -85,7 +87,7 @@ def known_effects(camera: Camera) -> tuple[str, ...]:
 
 def ways_to_sample() -> list[Level]:
     """The same picture, every surface of the lens, by other samples."""
-    return [
+    by_pixels = [
         Level("rear element, random", pupil_sampling="rear_element", is_stratified=False),
         Level("rear element", pupil_sampling="rear_element"),
         Level("exit pupil", pupil_sampling="exit_pupil"),
@@ -93,6 +95,7 @@ def ways_to_sample() -> list[Level]:
         Level("fitted outline, random", is_stratified=False),
         Level("fitted outline"),
     ]
+    return [*(replace(level, light_tracing="off") for level in by_pixels), Level("fitted outline, lights traced")]
 
 
 def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings: object) -> list[Level]:

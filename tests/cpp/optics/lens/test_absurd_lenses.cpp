@@ -12,6 +12,7 @@
 #include "optics/analysis/field_rays.hpp"
 #include "optics/analysis/ray_aiming.hpp"
 #include "optics/lens/exposure.hpp"
+#include "optics/prescription/lens_checks.hpp"
 #include "pixel_rays.hpp"
 #include "traced_ray.hpp"
 

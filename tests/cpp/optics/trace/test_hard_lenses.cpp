@@ -3,6 +3,7 @@
 #include "measurement.hpp"
 #include "optics/hard_lens_list.hpp"
 #include "optics/hard_rays.hpp"
+#include "optics/prescription/lens_checks.hpp"
 
 using namespace realcam;
 using namespace realcam::test;
