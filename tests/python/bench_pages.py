@@ -158,13 +158,15 @@ class Server:
 class BenchPage:
     """A window on a server. Refuses to be left with an exception in the page's scripts."""
 
-    def __init__(self, browser: Any, url: str, **settings: Any) -> None:
+    def __init__(self, browser: Any, url: str = "", **settings: Any) -> None:
         self.context = browser.new_context(viewport=VIEWPORT, **settings)
         self.page = self.context.new_page()
+        self.page.set_default_timeout(1000 * WAIT_S)
         self.complaints: list[str] = []
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("console", self._hear)
-        self.open(url)
+        if url:
+            self.open(url)
 
     def _hear(self, message: Any) -> None:
         if message.type == "error":

@@ -54,10 +54,11 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="session")
-def kept_page(browser: Any, server: Server) -> Iterator[BenchPage]:
+def kept_page(browser: Any) -> Iterator[BenchPage]:
+    """Opened by each test, so that a server that fails one fails no other."""
     from .bench_pages import BenchPage
 
-    page = BenchPage(browser, server.url)
+    page = BenchPage(browser)
     yield page
     page.close()
 
