@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBlock = PupilTracer::kBlock;
 /// Fewer do not tell where all the others are.
-constexpr int kEnoughHits = 12;
+constexpr int kEnoughHits = 32;
 
 /// In the lens's own axes.
 EntryPlane plane_in_lens(const TracedLight& light) {
@@ -141,20 +141,21 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     if (!(half_tangent < 1.5f * largest_half_tangent_)) return std::nullopt;
     const int bin = std::min(static_cast<int>(half_tangent / largest_half_tangent_ * kGhostBins), kGhostBins - 1);
     const GhostEntry& entry = entries_[static_cast<std::size_t>(bin)];
-    const float reach = 2 * std::max(entry.high - entry.low, 2 * entry.half_width),
+    const float reach = std::max(entry.high - entry.low, 2 * entry.half_width),
                 at = 0.5f * (entry.low + entry.high);
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
     Rectangle in = {at - reach, at + reach, -reach, reach};
     Probe found;
     for (int round = 0; round < 2; ++round) {
-        int rays = kBlock;
+        // What the rectangle of a point or a sun leaves out is lost, while samples of pixels find it of an emitter.
+        int rays = light.kind == TracedLightKind::triangles ? kBlock : 4 * kBlock;
         found = probe(places, light, in, rays);
-        if (found.hits < kEnoughHits) found = probe(places, light, in, rays = 4 * kBlock);
+        if (found.hits < kEnoughHits && rays == kBlock) found = probe(places, light, in, rays = 4 * kBlock);
         if (found.hits == 0) return std::nullopt;
         // A margin for what lies between the rays.
         const auto widened = [&](float low, float high, float whole) {
             const float margin = std::max(high - low, whole / std::sqrt(static_cast<float>(rays))) *
-                                 (found.hits < kEnoughHits ? 1.0f : 0.1f);
+                                 (found.hits < kEnoughHits ? 1.0f : round == 0 ? 0.3f : 0.1f);
             return std::pair(low - margin, high + margin);
         };
         const Rectangle& box = found.entries;

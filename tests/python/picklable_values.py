@@ -108,6 +108,7 @@ def plan() -> rc.Plan:
 ALL_MAKERS: dict[str, list[Callable[[], Any]]] = {
     **MAKERS,
     "RenderStats": [lambda: image().stats],
+    "Device": [lambda: rc.devices()[0]],
     "Plan": [plan],
     "PlanDecision": [lambda: plan().decisions[0]],
 }

@@ -269,7 +269,7 @@ def test_what_makes_no_picture_is_an_error() -> None:
     with pytest.raises(rc.InputError, match="dispersion: the camera's model must be full"):
         taken(camera.replace(model="thin"), effects=["dispersion"])
     for illuminant, words in (
-        ("D50", "is unknown"),
+        ("D100", "is unknown"),
         (900.0, "between 380 and 780"),
         ([(500, 1.0), (480, 1.0)], "must rise"),
         ([(500, 1.0)], "at least two points"),
