@@ -32,7 +32,7 @@ struct TracedLightsView {
     const TracedLight* lights;
     std::int32_t light_count;  ///< 0: there are none
     const std::int32_t* turns;  ///< which light a sample takes, by the last bits of its number
-    std::int32_t turn_count;    ///< a power of two
+    std::int32_t turn_count;  ///< a power of two
     const std::int32_t* triangles;  ///< area lights of the scene, light by light
     const float* cdfs;  ///< of each light's triangles, one entry more than they are
     std::int32_t triangle_count;

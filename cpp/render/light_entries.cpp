@@ -141,8 +141,7 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     if (!(half_tangent < 1.5f * largest_half_tangent_)) return std::nullopt;
     const int bin = std::min(static_cast<int>(half_tangent / largest_half_tangent_ * kGhostBins), kGhostBins - 1);
     const GhostEntry& entry = entries_[static_cast<std::size_t>(bin)];
-    const float reach = std::max(entry.high - entry.low, 2 * entry.half_width),
-                at = 0.5f * (entry.low + entry.high);
+    const float reach = std::max(entry.high - entry.low, 2 * entry.half_width), at = 0.5f * (entry.low + entry.high);
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
     Rectangle in = {at - reach, at + reach, -reach, reach};
     Probe found;
@@ -154,8 +153,10 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
         if (found.hits == 0) return std::nullopt;
         // A margin for what lies between the rays.
         const auto widened = [&](float low, float high, float whole) {
-            const float margin = std::max(high - low, whole / std::sqrt(static_cast<float>(rays))) *
-                                 (found.hits < kEnoughHits ? 1.0f : round == 0 ? 0.3f : 0.1f);
+            const float margin =
+                std::max(high - low, whole / std::sqrt(static_cast<float>(rays))) * (found.hits < kEnoughHits ? 1.0f
+                                                                                     : round == 0             ? 0.3f
+                                                                                                              : 0.1f);
             return std::pair(low - margin, high + margin);
         };
         const Rectangle& box = found.entries;
