@@ -65,12 +65,9 @@ void LightEntries::find_pupil_rays() {
 Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) const {
     const Vec2f u = sample_joint_2d(0, number, 1), v = sample_joint_2d(0, number, 2);
     const float time = v.x * splat_ghosts_detail::all_times(camera_);
-    const CameraPlacement placement = camera_at(camera_, time);
-    const auto in_lens = [&](Vec3f way) {
-        return Vec3f{dot(way, placement.right), dot(way, placement.up), dot(way, placement.backward)};
-    };
+    const splat_ghosts_detail::LensFrame frame = splat_ghosts_detail::lens_frame(camera_, time);
     const std::int32_t light = group.lights[static_cast<std::size_t>(v.y * static_cast<float>(group.lights.size()))];
-    if (group.kind == TracedLightKind::sun) return in_lens(-scene_.suns[light].direction);
+    if (group.kind == TracedLightKind::sun) return frame.direction(-scene_.suns[light].direction);
     Vec3f place;
     if (group.kind == TracedLightKind::point) {
         place = point_light_at(scene_, scene_.points[light], time).position;
@@ -79,7 +76,7 @@ Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) cons
         const Vec2f at = sample_triangle(u);
         place = triangle.corner + at.x * triangle.edge_u + at.y * triangle.edge_v;
     }
-    return 1000.0f * in_lens(place - front_vertex(placement, camera_.front_vertex_m));
+    return 1000.0f * frame.direction(place - front_vertex(frame.camera, frame.front_vertex_m));
 }
 
 LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight& light, const Rectangle& in,

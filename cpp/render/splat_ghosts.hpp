@@ -75,6 +75,21 @@ struct GhostSamples {
     SceneRays<N> shadow;
 };
 
+/// mm^2.
+REALCAM_INLINE float pixel_area(const CameraView& camera) {
+    return 4.0f * camera.film_half_width * camera.film_half_height /
+           (static_cast<float>(camera.width) * static_cast<float>(camera.height));
+}
+
+/// Sets the ray from a place to the light that a sample has found there.
+template <int N>
+REALCAM_INLINE void set_shadow_ray(Vec3f from, const LightSample& light, int lane, GhostSamples<N>& samples) {
+    const bool is_near = light.distance < kFarAway;
+    samples.shadow.origin.set(lane, from);
+    samples.shadow.direction.set(lane, is_near ? light.distance * light.direction : light.direction);
+    samples.shadow.far[lane] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
+}
+
 /// Chooses a light, for the middle of the lens.
 template <SceneKind scene_kind, int N>
 REALCAM_INLINE void choose_lights(const SceneView& view, const CameraView& camera, std::uint32_t stream,
@@ -143,10 +158,7 @@ REALCAM_INLINE void send_light(const SceneView& view, const CameraView& camera, 
         const float over = scale * cosine / (samples.density[i] * samples.lights[i].probability);
         samples.color.set(i, bounded_light(over * light.irradiance));
         rays.direction.set(i, -to_light);
-        const bool is_near = light.distance < kFarAway;
-        samples.shadow.origin.set(i, here.position);
-        samples.shadow.direction.set(i, is_near ? light.distance * light.direction : light.direction);
-        samples.shadow.far[i] = is_near ? (light.reach > 0.0f ? light.reach : 0.0f) : kFarAway;
+        set_shadow_ray(here.position, light, i, samples);
     }
 }
 
@@ -221,9 +233,6 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     using namespace splat_ghosts_detail;
     const GhostBlock block = ghost_block(ghosts, range);
     const std::uint32_t stream = block.stream, first_sample = block.first_sample + first;
-    const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
-                             (static_cast<float>(camera.width) * static_cast<float>(camera.height));
-
     GhostSamples<N> samples;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
@@ -241,7 +250,7 @@ REALCAM_HD inline void splat_ghosts(const SceneView& view, const CameraView& cam
     }
     choose_lights<scene_kind>(view, camera, stream, first_sample, samples);
     choose_entries(ghosts, block.entries, stream, first_sample, samples);
-    send_light<scene_kind>(view, camera, 1.0f / (pixel_area * block.way.probability), samples);
+    send_light<scene_kind>(view, camera, 1.0f / (pixel_area(camera) * block.way.probability), samples);
     PassedPower<N> passed;
     pass_ghost_way<lens_kind, has_wavelengths>(ghosts, block.way, samples.rays, samples.variable, passed);
     Lanes<std::int32_t, N> pixel, hidden;

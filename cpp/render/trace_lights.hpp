@@ -77,16 +77,10 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         const float weight = place.is_met ? 1.0f - mis_weight(1.0f, place.traced / cosine) : 1.0f;
         const float scale = weight * cosine * light.entry_area() / (pixel_area * light.probability);
         samples.color.set(i, bounded_light(scale * place.sample.irradiance));
-        const auto in_lens = [&](Vec3f scene) {
-            return Vec3f{dot(scene, placement.right), dot(scene, placement.up), dot(scene, placement.backward)};
-        };
-        samples.rays.origin.set(i, in_lens(along * plane.along + across * plane.across));
-        samples.rays.direction.set(i, -in_lens(place.sample.direction));
-        const bool is_near = place.sample.distance < kFarAway;
-        samples.shadow.origin.set(i, entry);
-        samples.shadow.direction.set(i,
-                                     is_near ? place.sample.distance * place.sample.direction : place.sample.direction);
-        samples.shadow.far[i] = is_near ? (place.sample.reach > 0.0f ? place.sample.reach : 0.0f) : kFarAway;
+        const splat_ghosts_detail::LensFrame frame{placement, camera.front_vertex_m};
+        samples.rays.origin.set(i, frame.direction(along * plane.along + across * plane.across));
+        samples.rays.direction.set(i, -frame.direction(place.sample.direction));
+        splat_ghosts_detail::set_shadow_ray(entry, place.sample, i, samples);
     }
 }
 
@@ -129,9 +123,7 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
             if constexpr (has_wavelengths) place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
         }
     }
-    const float pixel_area = 4.0f * camera.film_half_width * camera.film_half_height /
-                             (static_cast<float>(camera.width) * static_cast<float>(camera.height));
-    send_traced_light<scene_kind>(view, camera, round, first_sample, pixel_area, samples);
+    send_traced_light<scene_kind>(view, camera, round, first_sample, pixel_area(camera), samples);
     // Light of a sample enters at one place, and each of its wavelengths goes its own way from there.
     constexpr int kMostSteps = has_wavelengths ? kSharedWavelengths : 1;
     const int steps = has_wavelengths && camera.dispersion.cell_count > 1 ? kMostSteps : 1;
