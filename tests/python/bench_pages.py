@@ -255,6 +255,14 @@ class BenchPage:
         option.click()
         self.page.locator(".q-menu").wait_for(state="detached")
 
+    def choose_what_to_save(self, what: str) -> None:
+        """Waits for the name that the server then proposes: it would replace one that is filled in before it."""
+        if self.page.locator('.q-field:has([data-testid="save-what"]) .q-field__native span').inner_text() == what:
+            return
+        proposed = {"picture": "picture.png", "shot": "shot.toml", "lens": "lens.toml"}[what]
+        self.choose("save-what", what)
+        until(self.test_id("save-name").input_value, lambda name: name == proposed, "the name that is proposed")
+
     def cell(self, surface: int, field: str) -> Any:
         return self.page.locator(f'[data-cell="{surface}-{field}"]')
 

@@ -233,7 +233,7 @@ def lens_info(path: Path) -> float:
 
 def save(bench: BenchPage, what: str, name: str) -> None:
     if what != "picture":
-        bench.choose("save-what", what)
+        bench.choose_what_to_save(what)
     bench.test_id("save-name").fill(name)
     bench.test_id("save").click()
     bench.until_text("said", lambda text: text == f"Wrote {name}")
@@ -450,7 +450,7 @@ def test_saving(bench: BenchPage, server: Server) -> None:
     save(bench, "shot", "saved.toml")
     shot = rc.Shot.load(server.shot.parent / "saved.toml")
     assert shot.camera.lens.first_order().f_number == pytest.approx(4, rel=0.05)
-    bench.choose("save-what", "picture")
+    bench.choose_what_to_save("picture")
     for k, name in enumerate(("../outside.png", "/tmp/outside.png", "saved.gif", "")):
         bench.test_id("save-name").fill(name)
         bench.test_id("save").click()
@@ -463,7 +463,7 @@ def test_no_file_is_replaced_without_a_word(bench: BenchPage, server: Server) ->
     file = server.shot.parent / "mine.toml"
     file.write_text("of some worth")
     for answer, is_kept in (("Keep it", True), ("Replace it", False)):
-        bench.choose("save-what", "lens")
+        bench.choose_what_to_save("lens")
         bench.test_id("save-name").fill(file.name)
         bench.test_id("save").click()
         bench.page.get_by_text("mine.toml is there already").wait_for()
@@ -569,13 +569,11 @@ def test_the_keyboard_alone(bench: BenchPage) -> None:
     bench.until_text("iso-text", lambda text: text == "ISO 125")
     page.keyboard.press("Shift+I")
     bench.until_text("iso-text", lambda text: text == "ISO 100")
-    for key in ("ArrowLeft", "ArrowUp", "Shift+ArrowRight", "+", "-"):
-        before = bench.picture().astype(int)
+    before = bench.until_picture(lambda p: True, "ISO 100").astype(int)
+    for key in ("ArrowLeft", "ArrowUp", "Shift+ArrowRight", "+", "-", "+"):
+        # The picture is waited for until it is done, because one of before would pass for that of the next key.
         page.keyboard.press(key)
-        until(lambda: bench.picture(), lambda p, b=before: np.abs(p - b).mean() > 10, key)
-    before = bench.picture().astype(int)
-    page.keyboard.press("+")
-    bench.until_picture(lambda p: np.abs(p - before).mean() > 10, "nearer")
+        before = bench.until_picture(lambda p, b=before: np.abs(p - b).mean() > 10, key).astype(int)
     page.keyboard.press("f")
     bench.until_text("focus-text", lambda text: text != "Focus 1.2 m")
     for _ in range(9):
