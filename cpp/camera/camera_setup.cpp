@@ -97,6 +97,11 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
                          " um, is too small for pictures through every surface; open it, or use another camera model");
     if (camera.model == CameraModel::polynomial_lens)
         polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
+    if (camera.model != CameraModel::polynomial_lens)
+        pupil_entries_ = last && last->pupil_entries_ && last->pupil_ == pupil_
+                             ? last->pupil_entries_
+                             : std::make_shared<const PupilEntries>(pupil_->view(), path_.view(), film_radius(),
+                                                                    camera.lens.film_distance, tracer);
     if (camera.model == CameraModel::full_lens_double) {
         path_in_double_.emplace(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm);
         view_in_double_ = path_in_double_->view();

@@ -8,6 +8,7 @@
 #include "camera.hpp"
 #include "effect_tables.hpp"
 #include "lens_map.hpp"
+#include "pupil_entries.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -27,6 +28,8 @@ public:
     /// The polynomials of a camera with the model polynomial_lens; else null.
     const LensPolynomial* polynomial() const { return polynomial_ ? &*polynomial_ : nullptr; }
     const EffectTables& effects() const { return tables_; }
+    /// Of a camera whose lights can be followed through every surface of the lens; else null.
+    const PupilEntries* pupil_entries() const { return pupil_entries_.get(); }
 
 private:
     /// Before anything is made from it: a camera without a lens has no surface to begin with.
@@ -53,6 +56,7 @@ private:
     std::optional<LensPolynomial> polynomial_;
     std::vector<CameraPlacement> keys_;  ///< positions relative to the first
     std::shared_ptr<const Pupil> pupil_;
+    std::shared_ptr<const PupilEntries> pupil_entries_;
     float axis_irradiance_ = 0;  ///< of an ideal lens
     std::shared_ptr<const LensMap> map_;  ///< of the model mapped_lens
 };

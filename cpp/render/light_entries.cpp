@@ -25,42 +25,13 @@ EntryPlane plane_in_lens(const TracedLight& light) {
 
 }  // namespace
 
-LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, const LensWay& way,
+LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                            const PupilTracer& tracer)
-    : scene_(scene), camera_(camera), to_film_(way.surfaces()), tracer_(tracer) {
-    find_pupil_rays();
-}
-
-void LightEntries::find_pupil_rays() {
-    constexpr int kSide = 8, kPerRing = kSide * kSide, kRings = kGhostBins;
-    static_assert(kRings * kPerRing % kBlock == 0);
-    const float half_width = std::fabs(camera_.film_middle.x) + camera_.film_half_width,
-                half_height = std::fabs(camera_.film_middle.y) + camera_.film_half_height;
-    const float film_radius = std::hypot(half_width, half_height);
-    std::vector<FoundRay> found;
-    for (int first = 0; first < kRings * kPerRing; first += kBlock) {
-        PupilTracer::Rays rays;
-        for (int k = 0; k < kBlock; ++k) {
-            const int ring = (first + k) / kPerRing, place = (first + k) % kPerRing;
-            const float radius = film_radius * (static_cast<float>(ring) + 0.5f) / kRings;
-            const PupilSample pupil =
-                sample_pupil(camera_.pupil, radius, 0, (static_cast<float>(place % kSide) + 0.5f) / kSide,
-                             (static_cast<float>(place / kSide) + 0.5f) / kSide);
-            rays.origin.set(k, {radius, 0, camera_.film_distance});
-            rays.direction.set(k, pupil.direction);
-            rays.status[k] = pupil.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
-        }
-        tracer_.trace(camera_.lens, rays);
-        for (int k = 0; k < kBlock; ++k) {
-            if (rays.status[k] != 0) continue;
-            FoundRay ray{};
-            set_front(rays.origin[k], normalized(rays.direction[k]), ray);
-            found.push_back(ray);
-        }
-    }
-    largest_half_tangent_ = largest_half_tangent_of(found);
-    entries_ = entries_of(found, largest_half_tangent_);
-}
+    : scene_(scene),
+      camera_(camera),
+      to_film_(setup.effects().lens_way().surfaces()),
+      tracer_(tracer),
+      pupil_entries_(*setup.pupil_entries()) {}
 
 Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) const {
     const Vec2f u = sample_joint_2d(0, number, 1), v = sample_joint_2d(0, number, 2);
@@ -135,9 +106,8 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     const float sine = std::hypot(light.from.x, light.from.y), half_tangent = sine / (1 - light.from.z);
     const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
     light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
-    if (!(half_tangent < 1.5f * largest_half_tangent_)) return std::nullopt;
-    const int bin = std::min(static_cast<int>(half_tangent / largest_half_tangent_ * kGhostBins), kGhostBins - 1);
-    const GhostEntry& entry = entries_[static_cast<std::size_t>(bin)];
+    if (!(half_tangent < 1.5f * pupil_entries_.largest_half_tangent())) return std::nullopt;
+    const GhostEntry& entry = pupil_entries_.at(half_tangent);
     const float reach = std::max(entry.high - entry.low, 2 * entry.half_width), at = 0.5f * (entry.low + entry.high);
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
     Rectangle in = {at - reach, at + reach, -reach, reach};

@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "../camera/entry_search.hpp"
-#include "../camera/lens_way.hpp"
+#include "../camera/camera_setup.hpp"
 #include "light_groups.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -19,7 +18,8 @@ struct FoundLight {
 /// lens in their direction, then in the rectangle that holds what was found.
 class LightEntries {
 public:
-    LightEntries(const SceneView& scene, const CameraView& camera, const LensWay& way, const PupilTracer& tracer);
+    /// `camera`: of the set-up, which has entries of its pupil.
+    LightEntries(const SceneView& scene, const CameraView& camera, const CameraSetup& setup, const PupilTracer& tracer);
 
     /// Nothing where no light of the group reaches the film.
     std::optional<FoundLight> of(const LightGroup& group) const;
@@ -36,7 +36,6 @@ private:
 
     using Places = std::array<Vec3f, 64>;
 
-    void find_pupil_rays();
     /// A place of the group in the lens's frame, mm; of a sun the direction towards it.
     Vec3f place_of(const LightGroup& group, std::uint32_t number) const;
     Probe probe(const Places& places, const TracedLight& light, const Rectangle& in, int rays) const;
@@ -45,8 +44,7 @@ private:
     const CameraView& camera_;
     LensView<float> to_film_;
     const PupilTracer& tracer_;
-    GhostEntries entries_{};
-    float largest_half_tangent_ = 0;
+    const PupilEntries& pupil_entries_;
 };
 
 }  // namespace REALCAM_NAMESPACE

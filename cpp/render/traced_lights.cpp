@@ -52,11 +52,11 @@ std::vector<int> halvings_of(const std::vector<double>& weights) {
 
 }  // namespace
 
-TracedLights::TracedLights(const SceneView& scene, const CameraView& camera, const LensWay& way, LightTracing tracing,
-                           const PupilTracer& tracer) {
+TracedLights::TracedLights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
+                           LightTracing tracing, const PupilTracer& tracer) {
     std::vector<LightGroup> groups = light_groups(scene, camera);
     if (groups.empty()) return;
-    const LightEntries entries(scene, camera, way, tracer);
+    const LightEntries entries(scene, camera, setup, tracer);
     std::vector<std::optional<FoundLight>> found(groups.size());
     tracer.for_each(static_cast<int>(groups.size()), [&](int i) {
         const auto k = static_cast<std::size_t>(i);
@@ -147,9 +147,8 @@ TracedLightsView TracedLights::view() const {
 
 TracedLights traced_lights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup,
                            LightTracing tracing, const PupilTracer& tracer) {
-    const bool has_way = camera.model == CameraModel::full_lens || camera.model == CameraModel::full_lens_double;
-    if (!has_way || tracing == LightTracing::off || (scene.light_node_count == 0 && scene.sun_count == 0)) return {};
-    return TracedLights(scene, camera, setup.effects().lens_way(), tracing, tracer);
+    if (!setup.pupil_entries() || tracing == LightTracing::off) return {};
+    return TracedLights(scene, camera, setup, tracing, tracer);
 }
 
 std::vector<GhostView> splatted_lights(const CameraSetup& setup, const TracedLights& lights) {

@@ -2,7 +2,6 @@
 #include <vector>
 
 #include "../camera/camera_setup.hpp"
-#include "../camera/lens_way.hpp"
 #include "../optics/pupil/pupil_tracer.hpp"
 #include "light_groups.hpp"
 #include "path_settings.hpp"
@@ -14,8 +13,8 @@ namespace REALCAM_NAMESPACE {
 class TracedLights {
 public:
     TracedLights() = default;
-    /// `camera`: with the scene's origin, and a real pupil. `way`: of its lens.
-    TracedLights(const SceneView& scene, const CameraView& camera, const LensWay& way, LightTracing tracing,
+    /// `camera`: of the set-up, with the scene's origin. The set-up has entries of its pupil.
+    TracedLights(const SceneView& scene, const CameraView& camera, const CameraSetup& setup, LightTracing tracing,
                  const PupilTracer& tracer);
 
     bool empty() const { return lights_.empty(); }

@@ -1,0 +1,50 @@
+#include "pupil_entries.hpp"
+
+#include <algorithm>
+
+namespace realcam {
+namespace {
+
+std::vector<FoundRay> rays_of(const PupilView& pupil, const LensView<float>& lens, double film_radius,
+                              double film_distance, const PupilTracer& tracer) {
+    constexpr int kBlock = PupilTracer::kBlock, kSide = 8, kPerRing = kSide * kSide, kRings = kGhostBins;
+    static_assert(kRings * kPerRing % kBlock == 0);
+    std::vector<FoundRay> found;
+    for (int first = 0; first < kRings * kPerRing; first += kBlock) {
+        PupilTracer::Rays rays;
+        for (int k = 0; k < kBlock; ++k) {
+            const int ring = (first + k) / kPerRing, place = (first + k) % kPerRing;
+            const float radius = static_cast<float>(film_radius) * (static_cast<float>(ring) + 0.5f) / kRings;
+            const PupilSample sample =
+                sample_pupil(pupil, radius, 0, (static_cast<float>(place % kSide) + 0.5f) / kSide,
+                             (static_cast<float>(place / kSide) + 0.5f) / kSide);
+            rays.origin.set(k, {radius, 0, static_cast<float>(film_distance)});
+            rays.direction.set(k, sample.direction);
+            rays.status[k] = sample.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        }
+        tracer.trace(lens, rays);
+        for (int k = 0; k < kBlock; ++k) {
+            if (rays.status[k] != 0) continue;
+            FoundRay ray{};
+            set_front(rays.origin[k], normalized(rays.direction[k]), ray);
+            found.push_back(ray);
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+PupilEntries::PupilEntries(const PupilView& pupil, const LensView<float>& lens, double film_radius,
+                           double film_distance, const PupilTracer& tracer) {
+    const std::vector<FoundRay> found = rays_of(pupil, lens, film_radius, film_distance, tracer);
+    largest_half_tangent_ = largest_half_tangent_of(found);
+    entries_ = entries_of(found, largest_half_tangent_);
+}
+
+const GhostEntry& PupilEntries::at(float half_tangent) const {
+    const int bin = static_cast<int>(half_tangent / largest_half_tangent_ * kGhostBins);
+    return entries_[static_cast<std::size_t>(std::min(bin, kGhostBins - 1))];
+}
+
+}  // namespace realcam
