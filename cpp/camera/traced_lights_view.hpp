@@ -7,6 +7,20 @@ namespace REALCAM_NAMESPACE {
 
 enum class TracedLightKind : std::int32_t { point, sun, triangles };
 
+/// A rectangle of a plane with two axes.
+struct PlaneRectangle {
+    float low_along, high_along, low_across, high_across;
+
+    REALCAM_INLINE float area() const { return (high_along - low_along) * (high_across - low_across); }
+    REALCAM_INLINE bool holds(float along, float across) const {
+        return (along >= low_along) & (along <= high_along) & (across >= low_across) & (across <= high_across);
+    }
+    /// `u`: 0 to 1, along and across.
+    REALCAM_INLINE Vec2f at(Vec2f u) const {
+        return {low_along + u.x * (high_along - low_along), low_across + u.y * (high_across - low_across)};
+    }
+};
+
 /// A light whose image is found from its own side (trace_lights.hpp): a point light, a sun, or emitting triangles that
 /// lie near each other.
 struct TracedLight {
@@ -14,16 +28,11 @@ struct TracedLight {
     std::int32_t first, count;  ///< of its triangles in the lists of TracedLightsView; else its number, and 1
     Vec3f from;  ///< unit, towards its middle, in the lens's axes
     Vec3f along;  ///< unit, at a right angle to it, away from the lens's axis
-    /// Where its light enters the lens: a rectangle in the plane across `from` through the front vertex, mm, in the
-    /// direction `along`, and across that.
-    float low_along, high_along, low_across, high_across;
+    /// Where its light enters the lens: in the plane across `from` through the front vertex, mm, in the direction
+    /// `along`, and across that.
+    PlaneRectangle entries;
     std::int32_t halvings;  ///< a sample takes it with the probability 2^-halvings
     float probability;
-
-    REALCAM_INLINE float entry_area() const { return (high_along - low_along) * (high_across - low_across); }
-    REALCAM_INLINE bool is_entry(float along, float across) const {
-        return (along >= low_along) & (along <= high_along) & (across >= low_across) & (across <= high_across);
-    }
 };
 
 /// The lights of a scene whose images are found from their side, as one camera sees them. Others are found by samples

@@ -220,12 +220,14 @@ void for_ghosts_of(realcam_ghosts* job, Take&& take) {
 
 template <SceneKind scene_kind, bool has_wavelengths>
 void splat_ghosts_with(realcam_ghosts* job) {
-    if (static_cast<const GhostView*>(job->ghost_view)->light == GhostLight::direct)
-        for_ghosts_of<scene_kind>(
-            job, [](auto&... with) { trace_lights<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
-    else
-        for_ghosts_of<scene_kind>(
-            job, [](auto&... with) { splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
+    for_ghosts_of<scene_kind>(
+        job, [](auto&... with) { splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
+}
+
+template <SceneKind scene_kind, bool has_wavelengths>
+void trace_lights_with(realcam_ghosts* job) {
+    for_ghosts_of<scene_kind>(
+        job, [](auto&... with) { trace_lights<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
 }
 
 template <bool has_wavelengths>
@@ -238,20 +240,26 @@ void gather_ghosts_with(realcam_ghosts* job) {
     });
 }
 
-void splat_ghosts_of(realcam_ghosts* job) {
-    const auto& camera = *static_cast<const CameraView*>(job->camera_view);
-    const auto& ghosts = *static_cast<const GhostView*>(job->ghost_view);
-    const bool has_wavelengths = ghosts.effects.have_wavelengths();
-    if (ghosts.light == GhostLight::of_objects)
-        return has_wavelengths ? gather_ghosts_with<true>(job) : gather_ghosts_with<false>(job);
-    switch (kind_of(*static_cast<const SceneView*>(job->scene_view), camera)) {
-        case SceneKind::plain:
-            return has_wavelengths ? splat_ghosts_with<SceneKind::plain, true>(job)
-                                   : splat_ghosts_with<SceneKind::plain, false>(job);
-        default:
-            return has_wavelengths ? splat_ghosts_with<SceneKind::any, true>(job)
-                                   : splat_ghosts_with<SceneKind::any, false>(job);
+/// For the light that the job's GhostView names.
+template <bool has_wavelengths>
+void take_splats_with(realcam_ghosts* job) {
+    const bool is_plain = kind_of(*static_cast<const SceneView*>(job->scene_view),
+                                  *static_cast<const CameraView*>(job->camera_view)) == SceneKind::plain;
+    switch (static_cast<const GhostView*>(job->ghost_view)->light) {
+        case GhostLight::of_lights:
+        case GhostLight::starbursts:
+            return is_plain ? splat_ghosts_with<SceneKind::plain, has_wavelengths>(job)
+                            : splat_ghosts_with<SceneKind::any, has_wavelengths>(job);
+        case GhostLight::direct:
+            return is_plain ? trace_lights_with<SceneKind::plain, has_wavelengths>(job)
+                            : trace_lights_with<SceneKind::any, has_wavelengths>(job);
+        case GhostLight::of_objects: return gather_ghosts_with<has_wavelengths>(job);
     }
+}
+
+void take_splats(realcam_ghosts* job) {
+    return static_cast<const GhostView*>(job->ghost_view)->effects.have_wavelengths() ? take_splats_with<true>(job)
+                                                                                      : take_splats_with<false>(job);
 }
 
 void generate_all(const void* request) {
@@ -300,7 +308,7 @@ extern "C" const realcam_kernels REALCAM_JOIN(realcam_kernels_, REALCAM_ISA) = {
                                                                                 realcam::render_tile,
                                                                                 realcam::see_layers_of_tile,
                                                                                 realcam::see_middle_surfaces_of_tile,
-                                                                                realcam::splat_ghosts_of,
+                                                                                realcam::take_splats,
                                                                                 realcam::generate_all,
                                                                                 realcam::trace_block,
                                                                                 realcam::trace_all<double>,

@@ -50,12 +50,12 @@ Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) cons
     return 1000.0f * frame.direction(place - front_vertex(frame.camera, frame.front_vertex_m));
 }
 
-LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight& light, const Rectangle& in,
+LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight& light, const PlaneRectangle& in,
                                         int count) const {
     const EntryPlane plane = plane_in_lens(light);
     const float columns_per_mm = static_cast<float>(camera_.width) / (2 * camera_.film_half_width);
     Probe probe;
-    const auto widen = [&](Rectangle& box, float along, float across) {
+    const auto widen = [&](PlaneRectangle& box, float along, float across) {
         if (probe.hits == 0) box = {along, along, across, across};
         box = {std::min(box.low_along, along), std::max(box.high_along, along), std::min(box.low_across, across),
                std::max(box.high_across, across)};
@@ -65,9 +65,7 @@ LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight&
         Vec2f at[kBlock];
         for (int k = 0; k < kBlock; ++k) {
             const auto number = static_cast<std::uint32_t>(first + k);
-            const Vec2f u = sample_joint_2d(0, number, 0);
-            at[k] = {in.low_along + u.x * (in.high_along - in.low_along),
-                     in.low_across + u.y * (in.high_across - in.low_across)};
+            at[k] = in.at(sample_joint_2d(0, number, 0));
             const Vec3f entry = at[k].x * plane.along + at[k].y * plane.across, place = places[number % places.size()];
             const Vec3f way = light.kind == TracedLightKind::sun ? -place : entry - place;
             rays.origin.set(k, entry);
@@ -77,9 +75,8 @@ LightEntries::Probe LightEntries::probe(const Places& places, const TracedLight&
         tracer_.trace(to_film_, rays);
         for (int k = 0; k < kBlock; ++k) {
             if (rays.status[k] != 0) continue;
-            const Vec3f o = rays.origin[k], d = rays.direction[k];
-            const float way = (camera_.film_distance - o.z) / d.z;
-            const Vec2f film = {o.x + way * d.x - camera_.film_middle.x, o.y + way * d.y - camera_.film_middle.y};
+            const Vec2f place = crossing_at(camera_.film_distance, rays.origin[k], rays.direction[k]);
+            const Vec2f film = {place.x - camera_.film_middle.x, place.y - camera_.film_middle.y};
             // A pixel more, for what other wavelengths and diffraction bring there.
             if (!(std::fabs(film.x) <= camera_.film_half_width + 1 / columns_per_mm) ||
                 !(std::fabs(film.y) <= camera_.film_half_height + 1 / columns_per_mm))
@@ -110,7 +107,7 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     const GhostEntry& entry = pupil_entries_.at(half_tangent);
     const float reach = std::max(entry.high - entry.low, 2 * entry.half_width), at = 0.5f * (entry.low + entry.high);
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
-    Rectangle in = {at - reach, at + reach, -reach, reach};
+    PlaneRectangle in = {at - reach, at + reach, -reach, reach};
     Probe found;
     for (int round = 0; round < 2; ++round) {
         // What the rectangle of a point or a sun leaves out is lost, while samples of pixels find it of an emitter.
@@ -126,15 +123,12 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
                                                                                                               : 0.1f);
             return std::pair(low - margin, high + margin);
         };
-        const Rectangle& box = found.entries;
+        const PlaneRectangle& box = found.entries;
         const auto [low, high] = widened(box.low_along, box.high_along, in.high_along - in.low_along);
         const auto [left, right] = widened(box.low_across, box.high_across, in.high_across - in.low_across);
         in = {low, high, left, right};
     }
-    light.low_along = in.low_along;
-    light.high_along = in.high_along;
-    light.low_across = in.low_across;
-    light.high_across = in.high_across;
+    light.entries = in;
     const double wide = static_cast<double>(found.film.high_along - found.film.low_along),
                  high = static_cast<double>(found.film.high_across - found.film.low_across);
     return FoundLight{light, (wide + 1) * (high + 1)};

@@ -25,20 +25,17 @@ public:
     std::optional<FoundLight> of(const LightGroup& group) const;
 
 private:
-    struct Rectangle {
-        float low_along, high_along, low_across, high_across;
-    };
     /// What rays through a rectangle have found.
     struct Probe {
         int hits = 0;
-        Rectangle entries{}, film{};  ///< mm; pixels
+        PlaneRectangle entries{}, film{};  ///< mm; pixels
     };
 
     using Places = std::array<Vec3f, 64>;
 
     /// A place of the group in the lens's frame, mm; of a sun the direction towards it.
     Vec3f place_of(const LightGroup& group, std::uint32_t number) const;
-    Probe probe(const Places& places, const TracedLight& light, const Rectangle& in, int rays) const;
+    Probe probe(const Places& places, const TracedLight& light, const PlaneRectangle& in, int rays) const;
 
     const SceneView& scene_;
     const CameraView& camera_;

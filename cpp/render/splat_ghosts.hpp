@@ -195,9 +195,7 @@ REALCAM_INLINE void reach_film(const CameraView& camera, const GhostView& ghosts
         samples.shadow.active[i] = 0;
         pixel[i] = -1;
         if (samples.rays.status[i] != 0) continue;
-        const Vec3f o = samples.rays.origin[i], d = samples.rays.direction[i];
-        const float way = (camera.film_distance - o.z) / d.z;
-        Vec2f film = {o.x + way * d.x, o.y + way * d.y};
+        Vec2f film = crossing_at(camera.film_distance, samples.rays.origin[i], samples.rays.direction[i]);
         if constexpr (has_wavelengths) {
             if (ghosts.light != GhostLight::of_lights && camera.effects.diffraction) {
                 const std::uint32_t sample = first + static_cast<std::uint32_t>(i);

@@ -46,27 +46,35 @@ REALCAM_INLINE TracedPlace place_on(const SceneView& scene, const TracedLightsVi
     place.sample.irradiance = (1.0f / chosen.probability) * sample.irradiance;
     // Its density per steradian has the cosine and the distance in it.
     if (sample.pdf < kDelta)
-        place.traced = lights.scale * light.probability * chosen.probability * sample.pdf / light.entry_area();
+        place.traced = lights.scale * light.probability * chosen.probability * sample.pdf / light.entries.area();
     return place;
 }
 
-/// Takes the light, its place and its entry for each sample, and sends the light there.
-template <SceneKind scene_kind, int N>
+/// Takes the light, its time, place and entry for each sample, and sends the light there. `wavelength`: of each sample
+/// the place of its first one among the cells.
+template <SceneKind scene_kind, bool has_wavelengths, int N>
 REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& camera, std::uint32_t round,
-                                      std::uint32_t first, float pixel_area, GhostSamples<N>& samples) {
+                                      std::uint32_t first, float pixel_area, GhostSamples<N>& samples,
+                                      Lanes<float, N>& wavelength) {
     const TracedLightsView& lights = camera.traced_lights;
     for (int i = 0; i < N; ++i) {
         const std::uint32_t number = first + static_cast<std::uint32_t>(i);
         const std::int32_t at = lights.turns[number & static_cast<std::uint32_t>(lights.turn_count - 1)];
         const TracedLight light = lights.lights[at];
         const std::uint32_t stream = hash32(static_cast<std::uint32_t>(at), round), sample = number >> light.halvings;
-        const Vec2f u = sample_joint_2d(stream, sample, traced_dimension::entry);
+        samples.number[i] = hash32(round, number);
+        samples.time[i] = samples.place[i] = samples.variable[i] = 0;
+        samples.light_density[i] = kDelta;
+        if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
+            const Vec2f u = sample_joint_2d(stream, sample, traced_dimension::time);
+            if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * splat_ghosts_detail::all_times(camera);
+            if constexpr (has_wavelengths) wavelength[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
+        }
+        const Vec2f enters = light.entries.at(sample_joint_2d(stream, sample, traced_dimension::entry));
         CameraPlacement placement = camera;
         if constexpr (scene_kind == SceneKind::any) placement = camera_at(camera, samples.time[i]);
         const EntryPlane plane = entry_plane(placement, camera.front_vertex_m, light);
-        const float along = light.low_along + u.x * (light.high_along - light.low_along),
-                    across = light.low_across + u.y * (light.high_across - light.low_across);
-        const Vec3f entry = plane.middle + (0.001f * along) * plane.along + (0.001f * across) * plane.across;
+        const Vec3f entry = plane.middle + (0.001f * enters.x) * plane.along + (0.001f * enters.y) * plane.across;
         const TracedPlace place = place_on<scene_kind>(view, lights, at, light, entry, samples.time[i],
                                                        sample_joint_2d(stream, sample, traced_dimension::place));
         const float cosine = dot(place.sample.direction, plane.from);
@@ -75,10 +83,10 @@ REALCAM_INLINE void send_traced_light(const SceneView& view, const CameraView& c
         samples.rays.status[i] = 0;
         // Of 1 / (1 + 1 / r^2), for any r.
         const float weight = place.is_met ? 1.0f - mis_weight(1.0f, place.traced / cosine) : 1.0f;
-        const float scale = weight * cosine * light.entry_area() / (pixel_area * light.probability);
+        const float scale = weight * cosine * light.entries.area() / (pixel_area * light.probability);
         samples.color.set(i, bounded_light(scale * place.sample.irradiance));
         const splat_ghosts_detail::LensFrame frame{placement, camera.front_vertex_m};
-        samples.rays.origin.set(i, frame.direction(along * plane.along + across * plane.across));
+        samples.rays.origin.set(i, frame.direction(enters.x * plane.along + enters.y * plane.across));
         samples.rays.direction.set(i, -frame.direction(place.sample.direction));
         splat_ghosts_detail::set_shadow_ray(entry, place.sample, i, samples);
     }
@@ -107,23 +115,10 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
     const auto block = static_cast<std::uint32_t>(range.first_block);
     const std::uint32_t round = hash32(range.seed, static_cast<std::uint32_t>(range.first_block >> 24) + 1u);
     const std::uint32_t first_sample = block * kGhostBlock + first;
-    const TracedLightsView& lights = camera.traced_lights;
     GhostSamples<N> samples;
-    [[maybe_unused]] Lanes<float, N> place;
-    for (int i = 0; i < N; ++i) {
-        const std::uint32_t number = first_sample + static_cast<std::uint32_t>(i);
-        samples.number[i] = hash32(round, number);
-        samples.time[i] = samples.place[i] = samples.variable[i] = 0;
-        samples.light_density[i] = kDelta;
-        if constexpr (scene_kind == SceneKind::any || has_wavelengths) {
-            const std::int32_t at = lights.turns[number & static_cast<std::uint32_t>(lights.turn_count - 1)];
-            const Vec2f u = sample_joint_2d(hash32(static_cast<std::uint32_t>(at), round),
-                                            number >> lights.lights[at].halvings, traced_dimension::time);
-            if constexpr (scene_kind == SceneKind::any) samples.time[i] = u.x * all_times(camera);
-            if constexpr (has_wavelengths) place[i] = u.y * static_cast<float>(camera.dispersion.cell_count);
-        }
-    }
-    send_traced_light<scene_kind>(view, camera, round, first_sample, pixel_area(camera), samples);
+    [[maybe_unused]] Lanes<float, N> wavelength;
+    send_traced_light<scene_kind, has_wavelengths>(view, camera, round, first_sample, pixel_area(camera), samples,
+                                                   wavelength);
     // Light of a sample enters at one place, and each of its wavelengths goes its own way from there.
     constexpr int kMostSteps = has_wavelengths ? kSharedWavelengths : 1;
     const int steps = has_wavelengths && camera.dispersion.cell_count > 1 ? kMostSteps : 1;
@@ -133,7 +128,7 @@ REALCAM_HD inline void trace_lights(const SceneView& view, const CameraView& cam
     Lanes<std::int32_t, N> pixels[kMostSteps], reached = {}, hidden{};
     ColorLanes<N> colors[kMostSteps];
     for (int step = 0; step < steps; ++step) {
-        if constexpr (has_wavelengths) set_wavelengths(camera.dispersion, place, step, samples);
+        if constexpr (has_wavelengths) set_wavelengths(camera.dispersion, wavelength, step, samples);
         samples.rays = entering;
         samples.color = sent;
         PassedPower<N> passed;

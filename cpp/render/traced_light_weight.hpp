@@ -31,7 +31,8 @@ REALCAM_INLINE EntryPlane entry_plane(const CameraPlacement& camera, float front
 /// samples of the light take the place, per square metre.
 REALCAM_INLINE float traced_samples(const TracedLightsView& lights, const TracedLight& light, float pdf, float cosine,
                                     float distance, float entry_cosine) {
-    return lights.scale * light.probability * pdf * distance * distance / (light.entry_area() * cosine * entry_cosine);
+    return lights.scale * light.probability * pdf * distance * distance /
+           (light.entries.area() * cosine * entry_cosine);
 }
 
 /// What counts of an emitter's light that a ray meets straight from the film.
@@ -57,7 +58,8 @@ REALCAM_INLINE float seen_light_weight(const SceneView& scene, const CameraView&
     // From the light, because the ray may have begun anywhere on its way.
     const float distance = dot(point.position - plane.middle, plane.from) / entry_cosine;
     const Vec3f entry = point.position - distance * direction - plane.middle;
-    if (!(distance > 0.0f) || !light.is_entry(1000.0f * dot(entry, plane.along), 1000.0f * dot(entry, plane.across)))
+    if (!(distance > 0.0f) ||
+        !light.entries.holds(1000.0f * dot(entry, plane.along), 1000.0f * dot(entry, plane.across)))
         return 1.0f;
     const float cosine = std::fabs(dot(direction, point.geometric_normal));
     return mis_weight(

@@ -77,9 +77,9 @@ inline void find_film_points(FilmPointsRequest<T>& request) {
         trace_lens<lens_kind>(r.lens, rays);
         REALCAM_LANES
         for (int k = 0; k < N; ++k) {
-            const T t = (r.film - rays.origin.z[k]) / rays.direction.z[k];
-            x[k] = rays.origin.x[k] + t * rays.direction.x[k];
-            y[k] = rays.origin.y[k] + t * rays.direction.y[k];
+            const Vec2<T> at = crossing_at(r.film, rays.origin[k], rays.direction[k]);
+            x[k] = at.x;
+            y[k] = at.y;
         }
         for (int k = 0; k < used; ++k) {
             to[0] = static_cast<float>(x[k]);

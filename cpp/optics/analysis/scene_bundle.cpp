@@ -19,8 +19,7 @@ double SceneBundle::film_height(Entry entry) const {
     LensRays<double, 1> ray;
     trace(entries, ray);
     if (ray.status[0] != 0) return std::numeric_limits<double>::quiet_NaN();
-    const Vec3d o = ray.origin[0], d = ray.direction[0];
-    return o.x + (film_distance_ - o.z) / d.z * d.x;
+    return crossing_at(film_distance_, ray.origin[0], ray.direction[0]).x;
 }
 
 }  // namespace realcam
