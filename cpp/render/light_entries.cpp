@@ -13,6 +13,7 @@ namespace {
 constexpr int kBlock = PupilTracer::kBlock;
 /// Fewer do not tell where all the others are.
 constexpr int kEnoughHits = 32;
+constexpr int kMostRounds = 10;
 
 /// In the lens's own axes.
 EntryPlane plane_in_lens(const TracedLight& light) {
@@ -31,7 +32,8 @@ LightEntries::LightEntries(const SceneView& scene, const CameraView& camera, con
       camera_(camera),
       to_film_(setup.effects().lens_way().surfaces()),
       tracer_(tracer),
-      pupil_entries_(*setup.pupil_entries()) {}
+      pupil_entries_(*setup.pupil_entries()),
+      front_reach_(entry_reach(setup.camera().lens)) {}
 
 Vec3f LightEntries::place_of(const LightGroup& group, std::uint32_t number) const {
     const Vec2f u = sample_joint_2d(0, number, 1), v = sample_joint_2d(0, number, 2);
@@ -105,11 +107,14 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
     if (!(half_tangent < 1.5f * pupil_entries_.largest_half_tangent())) return std::nullopt;
     const GhostEntry& entry = pupil_entries_.at(half_tangent);
-    const float reach = std::max(entry.high - entry.low, 2 * entry.half_width), at = 0.5f * (entry.low + entry.high);
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
-    PlaneRectangle in = {at - reach, at + reach, -reach, reach};
+    const float middle_along = 0.5f * (entry.low + entry.high);
+    float reach = std::max({entry.high - entry.low, 2 * entry.half_width, front_reach_ / 64});
+    if (entry.half_width == 0) reach = front_reach_;
+    PlaneRectangle in = {middle_along - reach, middle_along + reach, -reach, reach};
     Probe found;
-    for (int round = 0; round < 2; ++round) {
+    bool is_coarse = true;
+    for (int round = 0; round < kMostRounds; ++round) {
         // What the rectangle of a point or a sun leaves out is lost, while samples of pixels find it of an emitter.
         int rays = light.kind == TracedLightKind::triangles ? kBlock : 4 * kBlock;
         found = probe(places, light, in, rays);
@@ -117,16 +122,23 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
         if (found.hits == 0) return std::nullopt;
         // A margin for what lies between the rays.
         const auto widened = [&](float low, float high, float whole) {
-            const float margin =
-                std::max(high - low, whole / std::sqrt(static_cast<float>(rays))) * (found.hits < kEnoughHits ? 1.0f
-                                                                                     : round == 0             ? 0.3f
-                                                                                                              : 0.1f);
+            const float share = found.hits < kEnoughHits ? 1.0f : is_coarse ? 0.3f : 0.1f;
+            const float margin = share * std::max(high - low, whole / std::sqrt(static_cast<float>(rays)));
             return std::pair(low - margin, high + margin);
         };
         const PlaneRectangle& box = found.entries;
         const auto [low, high] = widened(box.low_along, box.high_along, in.high_along - in.low_along);
         const auto [left, right] = widened(box.low_across, box.high_across, in.high_across - in.low_across);
-        in = {low, high, left, right};
+        const bool is_inside = in.holds(low, left) && in.holds(high, right);
+        if (is_inside || round + 1 == kMostRounds) {
+            in = {low, high, left, right};
+            if (!is_coarse) break;
+            is_coarse = false;
+        } else {
+            // The pupil's rays were few in this direction, as near the axis: there is more light beside.
+            const float along = 0.5f * (in.high_along - in.low_along), across = 0.5f * (in.high_across - in.low_across);
+            in = {in.low_along - along, in.high_along + along, in.low_across - across, in.high_across + across};
+        }
     }
     light.entries = in;
     const double wide = static_cast<double>(found.film.high_along - found.film.low_along),

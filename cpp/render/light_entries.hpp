@@ -15,7 +15,8 @@ struct FoundLight {
 };
 
 /// Looks for where the light of lamps enters the lens, by rays from them: first about where rays of the pupil leave the
-/// lens in their direction, then in the rectangle that holds what was found.
+/// lens in their direction, then in the rectangle that holds what was found. Where that ends at the border of what was
+/// looked at, in more.
 class LightEntries {
 public:
     /// `camera`: of the set-up, which has entries of its pupil.
@@ -42,6 +43,7 @@ private:
     LensView<float> to_film_;
     const PupilTracer& tracer_;
     const PupilEntries& pupil_entries_;
+    float front_reach_;  ///< radius of a circle that holds all places where light enters the lens, mm
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
+#include "../scene/bounding_box.hpp"
 #include "../scene/light.hpp"
 
 namespace realcam {
@@ -41,11 +43,42 @@ private:
         return static_cast<double>(dot(front_ - light.corner, light.normal)) > -reach_m;
     }
 
+    /// f(number) of all lights of a node: point lights, and behind them area lights.
+    template <class F>
+    void for_lights(std::int32_t at, F&& f) const {
+        const LightNode& node = scene_.light_nodes[at];
+        if (node.second_child > 0) {
+            for_lights(at + 1, f);
+            for_lights(node.second_child, f);
+            return;
+        }
+        for (const std::int32_t light : {-1 - node.second_child, node.partner})
+            if (light >= 0) f(light);
+    }
+
+    /// Of all lights of a node together. The node's own bounds also hold the way of lights that move; what moves with
+    /// one instance stays as large as it is.
+    double size_m(std::int32_t at) const {
+        const double swept = static_cast<double>(length(scene_.light_nodes[at].high - scene_.light_nodes[at].low));
+        if (scene_.kind != SceneKind::any) return swept;
+        BoundingBox box;
+        std::set<std::uint32_t> instances;
+        for_lights(at, [&](std::int32_t light) {
+            const bool is_point = light < scene_.point_count;
+            instances.insert(is_point ? kNoInstance : scene_.areas[light - scene_.point_count].instance);
+            if (is_point) return;
+            const AreaLight& area = scene_.areas[light - scene_.point_count];
+            for (const Vec3f corner : {area.corner, area.corner + area.edge_u, area.corner + area.edge_v})
+                box.add(static_cast<Vec3d>(corner));
+        });
+        const bool is_one = instances.size() == 1 && *instances.begin() != kNoInstance;
+        return is_one && scene_.instances[*instances.begin()].key_count > 0 ? box.diagonal() : swept;
+    }
+
     void look_at(std::int32_t at) {
         const LightNode& node = scene_.light_nodes[at];
-        const double size = static_cast<double>(length(node.high - node.low)),
-                     blur = blur_m(0.5f * (node.low + node.high));
-        const bool is_small = size < 2 * kLargestSize * blur;
+        const double blur = blur_m(0.5f * (node.low + node.high));
+        const bool is_small = size_m(at) < 2 * kLargestSize * blur;
         if (!is_small && node.second_child > 0) {
             look_at(at + 1);
             look_at(node.second_child);
@@ -59,25 +92,18 @@ private:
     }
 
     void collect(std::int32_t at, LightGroup& group, double& area) {
-        const LightNode& node = scene_.light_nodes[at];
-        if (node.second_child > 0) {
-            collect(at + 1, group, area);
-            collect(node.second_child, group, area);
-            return;
-        }
-        for (const std::int32_t light : {-1 - node.second_child, node.partner}) {
-            if (light < 0) continue;
+        for_lights(at, [&](std::int32_t light) {
             if (light < scene_.point_count) {
                 groups_.push_back({TracedLightKind::point, {light}});
-                continue;
+                return;
             }
             const AreaLight& triangle = scene_.areas[light - scene_.point_count];
-            if (!shines(triangle)) continue;
+            if (!shines(triangle)) return;
             group.lights.push_back(light - scene_.point_count);
             const float cosine = dot(normalized(front_ - triangle.corner), triangle.normal);
             area += static_cast<double>(triangle.area *
                                         (triangle.is_two_sided ? std::fabs(cosine) : std::max(cosine, 0.0f)));
-        }
+        });
     }
 
     const SceneView& scene_;
