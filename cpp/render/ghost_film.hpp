@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "../math/color.hpp"
@@ -85,7 +86,11 @@ struct GhostBlocks {
 inline GhostBlocks ghost_blocks(const CameraView& camera, const SampleRange& range, const GhostView& ghosts) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height),
                         per_block = kGhostBlock * static_cast<std::uint64_t>(ghosts.pixel_samples);
-    const auto up_to = [&](std::uint64_t samples) { return (samples * pixels + per_block - 1) / per_block; };
+    // At least one for each sample, so that twice the samples are twice the blocks in small pictures, too: by what a
+    // picture changes then its noise is known (AdaptiveSampling).
+    const auto up_to = [&](std::uint64_t samples) {
+        return std::max(samples, (samples * pixels + per_block - 1) / per_block);
+    };
     return {up_to(range.first), up_to(std::uint64_t{range.first} + range.count)};
 }
 

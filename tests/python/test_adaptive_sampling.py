@@ -96,6 +96,46 @@ def test_stopping_by_noise_does_not_bias_the_mean(device: str) -> None:
     assert abs(np.mean(means) - expected) < 4 * error
 
 
+LAMP = scenes.scene_of(scenes.quad((0, 0, -4), 0.004, emission=1e5))
+POINT = scenes.scene_of(scenes.quad((0, 0, 9), 1)).with_point_light((0, 0, -4), (1e4,) * 3)
+
+
+@pytest.mark.parametrize(
+    ("scene", "focus_m", "resolution"),
+    [
+        (LAMP, 1.0, (48, 32)),
+        (POINT, 1.0, (48, 32)),
+        (POINT, 1.0, (24, 16)),
+        (POINT, 1.0, (12, 8)),
+        (POINT, 4.0, (24, 16)),
+    ],
+)
+def test_the_noise_of_lamps_is_told(scene: rc.Scene, focus_m: float, resolution: tuple[int, int], device: str) -> None:
+    """Their light comes from samples of their own, few for a picture of few pixels."""
+    lens = rc.Lens.load("double-gauss-50mm").focused(focus_m)
+    view = rc.Camera(lens, film=rc.Film(24, 16, resolution), position=(0, 0, 0), exposure_time_s=1, iso=1e-3)
+    told, pictures = [], []
+    for seed in range(30):
+        session = rc.Session(scene, view, device=device, effects=(), seed=seed, max_bounces=0)
+        told.append(session.add_until(1e-3, max_spp=16).noise)
+        pictures.append(session.image().pixels.astype(np.float64))
+    rows, columns = np.indices(resolution[::-1])
+    across, down = (max(1, (side + 8) // 16) for side in resolution)
+    tile = rows * down // resolution[1] * across + columns * across // resolution[0]
+    variance, mean = np.var(pictures, axis=0, ddof=1), np.mean(pictures, axis=0)
+    spread = 0.0  # of the noisiest half of a tile, as a share of its light or of a hundredth of white
+    for half in range(2 * across * down):
+        pixels = (2 * tile + (rows + columns) % 2) == half
+        light = max(float(mean[pixels].mean()), 0.01 / (0.018 * view.iso))
+        spread = max(spread, float(np.sqrt(variance[pixels].mean())) / light)
+    assert spread > 0
+    ratio = float(np.sqrt(np.mean(np.square(told)))) / spread
+    # Independent samples change by as much as they err, and are told 2^-0.6 of it where two doublings by chance show a
+    # faster rate. Where the error falls like 1 / n, the change is sqrt(5) of it. 30 seeds with a few lit pixels each
+    # know either within a fifth.
+    assert 0.8 * 0.85 < ratio < 1.2 * 2.24
+
+
 def test_what_cannot_be_reached_is_said(device: str) -> None:
     with pytest.warns(UserWarning, match=r"noise is .* where the picture is noisiest, not 0\.001; about .* samples"):
         image = rc.render(half_noisy(), camera(), effects=(), spp="auto", noise=0.001, max_spp=64, device=device)
