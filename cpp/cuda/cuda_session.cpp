@@ -81,7 +81,7 @@ private:
             renderer->clear_counts();
             renderer->forget_pupils(settings().pupil_sampling == PupilSampling::pixel);
         }
-        front().clear_splats(width(), height());
+        front().clear_splats(width(), height(), settings().layers.has(Layer::variance) ? 2 : 1);
     }
 
     void take(const SampleRange& range, const PixelCounts& counts, std::atomic<std::int64_t>& done,
@@ -118,10 +118,11 @@ private:
     }
 
     LayerImage develop_variance() override {
-        if (!fits()) return developed_variance(film_, camera().exposure_time_s);
+        const DeviceRenderer::SplatsOnHost splats = front().download_splats();
+        if (!fits()) return developed_variance(film_, camera().exposure_time_s, splats.view());
         FilmSums sums(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
         front().download_film(sums.data());
-        return developed_variance(sums, camera().exposure_time_s);
+        return developed_variance(sums, camera().exposure_time_s, splats.view());
     }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,

@@ -30,12 +30,14 @@ public:
             source->view, [&](const auto* from, std::size_t count) { return arrays_.copy(from, count, stream); });
     }
 
-    /// An empty film of so many pixels.
-    void clear(int width, int height, CudaStream& stream) {
+    /// So many empty films (GhostFilmView) of so many pixels.
+    void clear(int width, int height, int films, CudaStream& stream) {
         width_ = width;
         height_ = height;
-        sums_.resize(view_.way_count > 0 ? static_cast<std::size_t>(width) * static_cast<std::size_t>(height) : 0);
-        blocks_done_.resize(1);
+        films_ = films;
+        const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+        sums_.resize(view_.way_count > 0 ? static_cast<std::size_t>(films) * pixels : 0);
+        blocks_done_.resize(static_cast<std::size_t>(films));
         sums_.clear(stream);
         blocks_done_.clear(stream);
     }
@@ -50,7 +52,7 @@ public:
                             : view_.light == GhostLight::direct   ? launch_trace_lights
                                                                   : launch_splat_ghosts;
         for (std::uint64_t block = blocks.first; block < blocks.end; block += kLaunch)
-            launch({scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), blocks_done_.data(), block,
+            launch({scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), films_, blocks_done_.data(), block,
                     static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, settings,
                     units_per_lux_},
                    stream);
@@ -58,25 +60,36 @@ public:
 
     GhostFilmView seen() const {
         if (sums_.size() == 0) return {};
-        return {view_.light, sums_.data(), units_per_lux_, blocks_done_.data(), width_, height_};
+        return {view_.light, sums_.data(), films_, units_per_lux_, blocks_done_.data(), width_, height_};
     }
 
     /// Copies all to the host, and waits for it.
     struct OnHost {
         GhostLight light = GhostLight::of_lights;
         std::vector<GhostSum> sums;
-        unsigned long long blocks = 0;
+        std::vector<unsigned long long> blocks;  ///< in each film
         double units_per_lux = 1;
         int width = 0, height = 0;
 
         GhostFilmView view() const {
-            return {light, sums.empty() ? nullptr : sums.data(), units_per_lux, &blocks, width, height};
+            return {light,
+                    sums.empty() ? nullptr : sums.data(),
+                    static_cast<int>(blocks.size()),
+                    units_per_lux,
+                    blocks.data(),
+                    width,
+                    height};
         }
     };
     OnHost download(const CudaStream& stream) const {
-        OnHost here{view_.light, std::vector<GhostSum>(sums_.size()), 0, units_per_lux_, width_, height_};
+        OnHost here{view_.light,
+                    std::vector<GhostSum>(sums_.size()),
+                    std::vector<unsigned long long>(blocks_done_.size()),
+                    units_per_lux_,
+                    width_,
+                    height_};
         sums_.download(here.sums.data(), stream);
-        blocks_done_.download(&here.blocks, stream);
+        blocks_done_.download(here.blocks.data(), stream);
         stream.wait("copying ghosts from it");
         return here;
     }
@@ -85,7 +98,7 @@ private:
     DeviceArrays arrays_;
     GhostView view_{};
     double units_per_lux_ = 1;
-    int width_ = 0, height_ = 0;
+    int width_ = 0, height_ = 0, films_ = 1;
     DeviceArray<GhostSum> sums_;
     DeviceArray<unsigned long long> blocks_done_;
 };

@@ -95,9 +95,9 @@ void DeviceRenderer::set_splats(const std::vector<SplatSource>& sources) {
         splats_[i].set(i < sources.size() ? &sources[i] : nullptr, stream_);
 }
 
-void DeviceRenderer::clear_splats(int width, int height) {
+void DeviceRenderer::clear_splats(int width, int height, int films) {
     const CurrentDevice current(ordinal_);
-    for (DeviceGhosts& light : splats_) light.clear(width, height, stream_);
+    for (DeviceGhosts& light : splats_) light.clear(width, height, films, stream_);
 }
 
 void DeviceRenderer::splat(const SampleRange& range, const PathSettings& settings) {

@@ -41,9 +41,9 @@ public:
     /// Later samples know what those until now have found.
     void learn_pupils();
 
-    /// Of the pictures that follow, at most kMostSplats, and empty films for them.
+    /// Of the pictures that follow, at most kMostSplats, and empty films for them, so many for each (GhostFilmView).
     void set_splats(const std::vector<SplatSource>& sources);
-    void clear_splats(int width, int height);
+    void clear_splats(int width, int height, int films);
     /// Starts to add the samples that belong to those of pixels.
     void splat(const SampleRange& range, const PathSettings& settings);
     struct SplatsOnHost {

@@ -14,8 +14,9 @@ struct GhostJob {
     CameraView camera;
     GhostView ghosts;
     const volatile int* stop;  ///< not 0: no block is begun
-    GhostSum* sums;            ///< of all pixels; added to
-    unsigned long long* blocks_done;
+    GhostSum* sums;  ///< of all pixels, film by film; added to
+    int films;       ///< 1, or 2: of blocks with even and with odd numbers
+    unsigned long long* blocks_done;  ///< in each film
     std::uint64_t first_block;
     std::uint32_t block_count, seed;
     PathSettings settings;

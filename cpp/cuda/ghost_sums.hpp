@@ -22,15 +22,17 @@ struct GhostSplat {
     const GhostJob& job;
 
     __device__ void operator()(std::int32_t pixel, Color lux, float dither) const {
+        const std::int64_t film = film_of_block(range_of(job).first_block, job.films);
+        GhostSum* const sums = job.sums + film * job.camera.width * job.camera.height;
         const float channels[3] = {lux.r, lux.g, lux.b};
         for (int c = 0; c < 3; ++c)
-            atomicAdd(reinterpret_cast<unsigned long long*>(&job.sums[pixel].units[c]),
+            atomicAdd(reinterpret_cast<unsigned long long*>(&sums[pixel].units[c]),
                       static_cast<unsigned long long>(ghost_units(channels[c], job.units_per_lux, dither)));
     }
 };
 
 __device__ inline void count_block(const GhostJob& job) {
-    if (threadIdx.x == 0) atomicAdd(job.blocks_done, 1ull);
+    if (threadIdx.x == 0) atomicAdd(job.blocks_done + film_of_block(range_of(job).first_block, job.films), 1ull);
 }
 
 }  // namespace realcam

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <future>
 #include <mutex>
@@ -38,8 +39,9 @@ DeviceError rtc_error(RTCError code) {
 /// What was traced apart from the samples of pixels, of one light.
 struct SplatFilm {
     GhostLight light;
-    std::vector<GhostSum> sums;  ///< of all pixels
-    unsigned long long blocks = 0;  ///< in them
+    std::vector<GhostSum> sums;  ///< of all pixels, film by film
+    int films;
+    std::array<unsigned long long, 2> blocks{};  ///< in each film
     double units_per_lux = 1;
 };
 
@@ -84,8 +86,9 @@ private:
         const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
         film_.assign(pixels, PixelSum{});
         splats_.clear();
+        const std::size_t films = settings().layers.has(Layer::variance) ? 2 : 1;
         for (const GhostView& light : splatted_lights(*setup_, traced_lights_))
-            splats_.push_back({light.light, std::vector<GhostSum>(pixels)});
+            splats_.push_back({light.light, std::vector<GhostSum>(films * pixels), static_cast<int>(films)});
         const bool learns = settings().pupil_sampling == PupilSampling::pixel;
         known_.assign(learns ? pixels : 0, PixelPupil{});
         found_ = known_;
@@ -127,7 +130,7 @@ private:
         });
     }
 
-    LayerImage develop_variance() override { return developed_variance(film_, camera().exposure_time_s); }
+    LayerImage develop_variance() override { return developed_variance(film_, camera().exposure_time_s, splatted()); }
 
     std::shared_ptr<LiveFrame> start(const std::vector<SampleRange>& ranges, ToneCurve curve,
                                      std::shared_ptr<void> under_way) override {
@@ -249,8 +252,10 @@ private:
                 job.stopped = &is_raised;
                 job.stop = &stop_.flag();
                 job.sums = film.sums.data();
+                job.films = film.films;
                 kernels().splat_ghosts(&job);
-                std::atomic_ref(film.blocks) += job.blocks_done;
+                for (std::size_t k = 0; k < film.blocks.size(); ++k)
+                    std::atomic_ref(film.blocks[k]) += job.blocks_done[k];
             });
         });
     }
@@ -258,8 +263,9 @@ private:
     SplattedLight splatted() const {
         SplattedLight splatted;
         for (std::size_t i = 0; i < splats_.size(); ++i)
-            splatted.films[i] = {splats_[i].light,   splats_[i].sums.data(), splats_[i].units_per_lux,
-                                 &splats_[i].blocks, camera_view_.width,     camera_view_.height};
+            splatted.films[i] = {splats_[i].light,         splats_[i].sums.data(),   splats_[i].films,
+                                 splats_[i].units_per_lux, splats_[i].blocks.data(), camera_view_.width,
+                                 camera_view_.height};
         return splatted;
     }
 

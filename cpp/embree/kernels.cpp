@@ -199,7 +199,7 @@ void for_ghosts_of(realcam_ghosts* job, Take&& take) {
     const SceneView view = *static_cast<const SceneView*>(job->scene_view);
     const CameraView camera = *static_cast<const CameraView*>(job->camera_view);
     const GhostView ghosts = *static_cast<const GhostView*>(job->ghost_view);
-    auto* const sums = static_cast<GhostSum*>(job->sums);
+    GhostSum* sums = nullptr;
     PacketScene<scene_kind> scene{static_cast<RTCScene>(job->embree_scene),
                                   static_cast<std::uint32_t>(view.instance_count), RayOrder::incoherent, 0};
     const auto splat = [&](std::int32_t pixel, Color lux, float dither) {
@@ -211,9 +211,11 @@ void for_ghosts_of(realcam_ghosts* job, Take&& take) {
     static_assert(kGhostBlock % kLanes == 0);
     for (std::uint64_t i = 0; i < job->block_count && !job->stopped(job->stop); ++i) {
         const GhostRange range{job->first_block + i, job->seed};
+        const int film = film_of_block(range.first_block, job->films);
+        sums = static_cast<GhostSum*>(job->sums) + std::int64_t{film} * camera.width * camera.height;
         for (std::uint32_t first = 0; first < kGhostBlock; first += kLanes)
             take(view, camera, ghosts, range, first, scene, splat);
-        ++job->blocks_done;
+        ++job->blocks_done[film];
     }
     job->rays += scene.rays_traced;
 }

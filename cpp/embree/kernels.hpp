@@ -34,8 +34,9 @@ struct realcam_ghosts {
     double units_per_lux;
     int (*stopped)(const void* stop);  // asked before each block; what is left then is left out
     const void* stop;
-    void* sums;  // GhostSum of all pixels; added to, also by other threads
-    std::uint64_t blocks_done, rays;
+    void* sums;  // GhostSum of all pixels, film by film; added to, also by other threads
+    int films;   // 1, or 2: of blocks with even and with odd numbers
+    std::uint64_t blocks_done[2], rays;
 };
 
 struct realcam_kernels {

@@ -30,11 +30,13 @@ std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_
     return codes;
 }
 
-LayerImage developed_variance(const FilmSums& film, double exposure_time_s) {
+LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted) {
     LayerImage image{Layer::variance, {}, {}};
     image.values.reserve(3 * film.size());
-    for (const PixelSum& sum : film)
-        for (int channel = 0; channel < 3; ++channel) image.values.push_back(sum.variance(channel, exposure_time_s));
+    for (std::size_t i = 0; i < film.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            image.values.push_back(
+                film[i].variance(channel, exposure_time_s, splatted.variance(static_cast<std::int64_t>(i), channel)));
     return image;
 }
 

@@ -20,7 +20,7 @@ std::vector<std::uint8_t> developed_codes(const FilmSums& film, double exposure_
                                           const SplattedLight& splatted = {});
 
 /// Variance of the exposure, 3 per pixel (PixelSum::variance).
-LayerImage developed_variance(const FilmSums& film, double exposure_time_s);
+LayerImage developed_variance(const FilmSums& film, double exposure_time_s, const SplattedLight& splatted = {});
 
 /// How many samples each pixel has.
 std::vector<std::int64_t> samples_of(const FilmSums& film);

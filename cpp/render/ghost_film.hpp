@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "../math/color.hpp"
 #include "sample_range.hpp"
@@ -26,6 +27,11 @@ inline double ghost_units_per_lux(const SceneView& scene, const CameraView& came
     return most > 1e-30 ? 0x1p36 / most : 0x1p36;
 }
 
+/// To which of so many films (GhostFilmView) a block's samples are added.
+REALCAM_INLINE int film_of_block(std::uint64_t block, int films) {
+    return static_cast<int>(block) & (films - 1);
+}
+
 /// `dither`: a random number from 0 to 1, so that what is less than a unit is not lost in the mean.
 REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float dither) {
     constexpr double kMost = 0x1p52;
@@ -33,20 +39,43 @@ REALCAM_INLINE std::int64_t ghost_units(float lux, double units_per_lux, float d
     return static_cast<std::int64_t>(units < kMost ? std::floor(units) : kMost);
 }
 
-/// One light of a picture that was traced apart from its samples, to be added to what these saw.
+/// One light of a picture that was traced apart from its samples, to be added to what these saw. Where the variance is
+/// wanted, there are two films: of blocks with even and of those with odd numbers.
 struct GhostFilmView {
     GhostLight light = GhostLight::of_lights;
-    const GhostSum* sums = nullptr;  ///< of all pixels; null: there are none
+    const GhostSum* sums = nullptr;  ///< of all pixels, film by film; null: there are none
+    int films = 1;
     double units_per_lux = 1;
-    const unsigned long long* blocks = nullptr;  ///< of kGhostBlock samples of the whole film, that are in the sums
+    const unsigned long long* blocks = nullptr;  ///< of kGhostBlock samples of the whole film, that are in each film
     int width = 0, height = 0;                   ///< pixels
 
     /// Ghosts are smoothed by one pixel (a binomial filter of five by five), which costs them no detail worth the name
     /// and takes as much noise from them as thirteen times the samples would.
-    REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
-        if (!sums || *blocks == 0) return 0;
-        if (light == GhostLight::starbursts || light == GhostLight::direct)
-            return irradiance_of(static_cast<double>(sums[pixel].units[channel]));
+    REALCAM_HD double irradiance(std::int64_t pixel, int channel) const { return irradiance(pixel, channel, 0, films); }
+
+    /// Of the irradiance, lux^2: by the difference between the two films. NaN where one has no sample.
+    double variance(std::int64_t pixel, int channel) const {
+        if (!sums) return 0;
+        if (films < 2 || blocks[0] == 0 || blocks[1] == 0) return std::numeric_limits<double>::quiet_NaN();
+        const double a = static_cast<double>(blocks[0]), b = static_cast<double>(blocks[1]);
+        const double difference = irradiance(pixel, channel, 0, 1) - irradiance(pixel, channel, 1, 2);
+        return difference * difference * a * b / ((a + b) * (a + b));
+    }
+
+private:
+    /// By some of the films.
+    REALCAM_HD double irradiance(std::int64_t pixel, int channel, int first_film, int end) const {
+        unsigned long long taken = 0;
+        for (int film = first_film; sums && film < end; ++film) taken += blocks[film];
+        if (taken == 0) return 0;
+        const double scale = units_per_lux * static_cast<double>(taken) * kGhostBlock;
+        const auto units_at = [&](std::int64_t at) {
+            std::int64_t units = 0;
+            for (int film = first_film; film < end; ++film)
+                units += sums[at + film * std::int64_t{width} * height].units[channel];
+            return static_cast<double>(units);
+        };
+        if (light == GhostLight::starbursts || light == GhostLight::direct) return units_at(pixel) / scale;
         constexpr double kWeights[] = {1, 4, 6, 4, 1}, kSum = 256;
         const int column = static_cast<int>(pixel % width), row = static_cast<int>(pixel / width);
         const auto inside = [](int place, int count) { return place < 0 ? 0 : place < count ? place : count - 1; };
@@ -54,15 +83,9 @@ struct GhostFilmView {
         for (int y = -2; y <= 2; ++y) {
             const std::int64_t first = static_cast<std::int64_t>(inside(row + y, height)) * width;
             for (int x = -2; x <= 2; ++x)
-                units += kWeights[y + 2] * kWeights[x + 2] *
-                         static_cast<double>(sums[first + inside(column + x, width)].units[channel]);
+                units += kWeights[y + 2] * kWeights[x + 2] * units_at(first + inside(column + x, width));
         }
-        return irradiance_of(units / kSum);
-    }
-
-private:
-    REALCAM_HD double irradiance_of(double units) const {
-        return units / (units_per_lux * static_cast<double>(*blocks) * kGhostBlock);
+        return units / kSum / scale;
     }
 };
 
@@ -73,6 +96,11 @@ struct SplattedLight {
     REALCAM_HD double irradiance(std::int64_t pixel, int channel) const {
         double sum = 0;
         for (const GhostFilmView& film : films) sum += film.irradiance(pixel, channel);
+        return sum;
+    }
+    double variance(std::int64_t pixel, int channel) const {
+        double sum = 0;
+        for (const GhostFilmView& film : films) sum += film.variance(pixel, channel);
         return sum;
     }
 };

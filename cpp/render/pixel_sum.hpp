@@ -56,12 +56,13 @@ struct PixelSum {
         const double lux_s = static_cast<double>(exposure(channel, exposure_time_s, ghosts));
         return srgb_code(apply_tone_curve(curve, sensor_value(lux_s, iso)));
     }
-    /// Variance of the exposure, (lux seconds)^2, as the mean of independent samples; NaN for fewer than two.
-    REALCAM_HD float variance(int channel, double exposure_time_s) const {
+    /// Variance of the exposure, (lux seconds)^2, as the mean of independent samples; NaN for fewer than two. `ghosts`:
+    /// that of the irradiance that was found apart from them, lux^2.
+    REALCAM_HD float variance(int channel, double exposure_time_s, double ghosts = 0) const {
         if (samples < 2) return std::numeric_limits<float>::quiet_NaN();
         const double n = static_cast<double>(samples), sum = irradiance[channel];
         const double spread = squares[channel] - sum * sum / n;
-        return film_exposure((spread > 0 ? spread : 0) / (n * (n - 1)) * exposure_time_s * exposure_time_s);
+        return film_exposure(((spread > 0 ? spread : 0) / (n * (n - 1)) + ghosts) * exposure_time_s * exposure_time_s);
     }
     /// Mean depth, metres; infinite where nothing was met.
     REALCAM_HD float mean_depth() const {

@@ -339,6 +339,36 @@ def test_variance_is_a_bound_where_the_samples_are_spread_evenly(device: str) ->
     assert actual.mean() < 0.2 * told.mean()
 
 
+def far_point(tangent_x: float, tangent_y: float) -> rc.Scene:
+    place = (tangent_x * 1e4, tangent_y * 1e4, -1e4)
+    return scenes.scene_of(scenes.quad((0, 0, 9), 1)).with_point_light(place, (1e8,) * 3)
+
+
+@pytest.mark.parametrize(
+    ("scene", "film", "settings", "least"),
+    [
+        (far_point(0, 0), rc.Film(1.2, 0.8, (24, 16)), {}, 0.01),
+        (scenes.scene_of(scenes.quad((0, 0, -4), 0.004, emission=1e5)), rc.Film(1.2, 0.8, (24, 16)), {}, 0.2),
+        (far_point(0.1, 0.05), rc.Film(24, 24, (24, 24)), {"effects": ["diffraction"], "light_tracing": "off"}, 0.5),
+        (far_point(0.1, 0.05), rc.Film(24, 24, (24, 24)), {"effects": ["ghosts=0"], "light_tracing": "off"}, 0.05),
+    ],
+    ids=["point", "lamp", "starburst", "ghosts"],
+)
+@pytest.mark.filterwarnings("ignore:ghosts")
+def test_variance_includes_light_that_starts_at_lamps(
+    scene: rc.Scene, film: rc.Film, settings: dict[str, object], least: float, device: str
+) -> None:
+    by = rc.Camera(lens(1.0).stopped_down(2.8), film=film, position=(0, 0, 0), exposure_time_s=1)
+    options = {"effects": (), "spp": 64, "max_bounces": 0, "layers": "variance", "device": device} | settings
+    images = [rc.render(scene, by, seed=seed, **options) for seed in range(200)]  # type: ignore[arg-type]
+    actual = np.stack([image.pixels for image in images]).astype(float).var(axis=0, ddof=1).sum()
+    told = np.stack([image.layers["variance"] for image in images]).astype(float).mean(axis=0).sum()
+    # A starburst lights four pixels. Each figure of a pixel has one degree of freedom and 200 seeds, its variance 199:
+    # the quotient of the sums has a deviation of sqrt(2 * 2 / 200 / 4) = 0.07. Four of them. Even samples have less
+    # noise than is told.
+    assert least < actual / told < 1.3
+
+
 def test_variance_scales_with_samples_and_exposure(device: str) -> None:
     scene = speckled_scene()
 
