@@ -143,6 +143,17 @@ void bind_render(py::module_& m) {
         "lens"_a, "settings"_a);
     py::class_<EffectInfo> effect_type(m, "EffectInfo", "What can be simulated besides. str() is a line of it.");
     def_copy(effect_type);
+    // Each effect is one object, of the table itself.
+    py::tuple effect_rows(std::size(kEffects));
+    for (std::size_t i = 0; i < std::size(kEffects); ++i)
+        effect_rows[i] = py::cast(kEffects[i], py::return_value_policy::reference);
+    def_pickle(
+        effect_type, [](const py::object& self) { return self.attr("name"); },
+        [effect_rows](const std::string& name) -> py::object {
+            const EffectInfo* effect = find_effect(name);
+            if (!effect) throw InputError("it is an effect that this version does not have");
+            return effect_rows[static_cast<std::size_t>(effect - kEffects)];
+        });
     effect_type.def_readonly("name", &EffectInfo::name, "For effects=(...).")
         .def_readonly("what", &EffectInfo::what, "It is.")
         .def_readonly("needs", &EffectInfo::needs, "Of lens, scene and camera.")
@@ -165,15 +176,8 @@ void bind_render(py::module_& m) {
         .def_readonly("gpu_time", &EffectInfo::gpu_time, "Likewise.")
         .def_property_readonly("description", &line_of, "What it is and needs, in a line.")
         .def("__str__", py::overload_cast<const EffectInfo&>(&line_text))
-        .def("__repr__", [](const EffectInfo& e) { return "<realcam.EffectInfo " + line_text(e) + '>'; });
-    m.def(
-        "effects",
-        [] {
-            py::list rows;  // of the table itself: each effect is one object
-            for (const EffectInfo& row : kEffects) rows.append(py::cast(row, py::return_value_policy::reference));
-            return rows;
-        },
-        "All effects that can be named.");
+        .def("__repr__", [](const EffectInfo& e) { return std::string("<realcam.EffectInfo ") + e.name + '>'; });
+    m.def("effects", [effect_rows] { return py::list(effect_rows); }, "All effects that can be named.");
     m.def("develop", &develop, "exposure"_a, "iso"_a, "tone"_a = "film",
           "Film exposure in lux seconds (any shape) as 8-bit sRGB codes at a sensitivity; 10 / iso lux seconds become\n"
           "middle grey, 118. tone: \"film\" (soft highlights) or \"linear\" (clipped).");

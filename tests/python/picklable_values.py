@@ -67,6 +67,7 @@ MAKERS: dict[str, list[Callable[[], Any]]] = {
     ],
     "Lens": [lens, lambda: lens().with_coating("bare"), lambda: lens().focused(2), lambda: lens().stopped_down(8)],
     "FirstOrder": [lambda: lens().first_order(), lambda: lens().stopped_down(8).first_order()],
+    "EffectInfo": [lambda: rc.effects()[0], lambda: rc.effects()[1]],
     "RenderSettings": [
         lambda: rc.RenderSettings(spp="auto", effects="dispersion", illuminant="A", layers="all"),
         lambda: rc.RenderSettings(),

@@ -72,6 +72,14 @@ def test_copies(kind: str) -> None:
     assert copy.deepcopy({"here": [value]}) == {"here": [value]}
 
 
+def test_all_effects_and_devices_pickle_and_copy() -> None:
+    for value in (*rc.effects(), *rc.devices()):
+        for again in (pickle.loads(pickle.dumps(value)), copy.copy(value), copy.deepcopy(value)):
+            assert again == value
+            assert hash(again) == hash(value)
+            assert str(again) == str(value)
+
+
 @pytest.mark.parametrize("kind", ["AimedRays", "TraceResult", "CameraRays", "Image"])
 def test_a_deep_copy_has_arrays_of_its_own(kind: str) -> None:
     value = MAKERS[kind][0]()
