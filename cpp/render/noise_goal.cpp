@@ -6,8 +6,10 @@
 namespace realcam {
 
 void validate(const NoiseGoal& goal) {
-    if (!(goal.noise > 0) || !std::isfinite(goal.noise))
-        throw InputError("noise must be above 0: a share of the light, or 8-bit codes");
+    constexpr double kLeast = 1e-9;  // below the rounding of a float; squares of less vanish in double
+    if (!(goal.noise >= kLeast) || !std::isfinite(goal.noise))
+        throw InputError(goal.unit == NoiseUnit::codes ? "noise_codes must be a number from 1e-9 on: 8-bit codes"
+                                                       : "noise must be a number from 1e-9 on: a share of the light");
     if (goal.most_samples < 2 || goal.most_samples > (1 << 24))
         throw InputError("max_spp must lie between 2 and 16777216");
     if (!(goal.seconds > 0)) throw InputError("seconds must be above 0");

@@ -268,7 +268,7 @@ def test_what_is_wrong_with_an_addition_is_told_with_its_line(text: str, says: s
         ("format = 1\nscene = 'quad.obj'\nspp = 0", r":3: spp must lie between"),
         ("format = 1\nscene = 'quad.obj'\nspp = 1e300", r':3: "spp" wants whole numbers from 0 to'),
         ("format = 1\nscene = 'quad.obj'\nspp = 4\nseconds = 3", r':3: .*belong to spp "auto"'),
-        ("format = 1\nscene = 'quad.obj'\nnoise_codes = 0", r":3: noise must be above 0"),
+        ("format = 1\nscene = 'quad.obj'\nnoise_codes = 0", r":3: noise_codes must be a number from 1e-9 on"),
         ("format = 1\nscene = 'quad.obj'\nnoise_codes = nan", r':3: "noise_codes" must be'),
         ("format = 1\nscene = 'quad.obj'\nseconds = -1", r":3: seconds must be above 0"),
         ("format = 1\nscene = 'quad.obj'\nseed = -1", r':3: "seed" wants whole numbers from 0 to'),
