@@ -15,6 +15,10 @@ constexpr int kBlock = PupilTracer::kBlock;
 constexpr int kEnoughHits = 32;
 constexpr int kMostRounds = 10;
 
+float half_tangent_of(Vec3f from) {
+    return std::hypot(from.x, from.y) / (1 - from.z);
+}
+
 /// In the lens's own axes.
 EntryPlane plane_in_lens(const TracedLight& light) {
     CameraPlacement lens{};
@@ -102,16 +106,25 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     }
     if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
     light.from = normalized(middle);
-    const float sine = std::hypot(light.from.x, light.from.y), half_tangent = sine / (1 - light.from.z);
+    const float sine = std::hypot(light.from.x, light.from.y);
     const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
     light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
-    if (!(half_tangent < 1.5f * pupil_entries_.largest_half_tangent())) return std::nullopt;
-    const GhostEntry& entry = pupil_entries_.at(half_tangent);
+    // A place of the front that is nearer to the light may see it in the field where the front's middle does not.
+    Vec3f nearest = middle;
+    if (light.kind != TracedLightKind::sun) {
+        nearest = (1.0f / static_cast<float>(places.size())) * middle;
+        const float beside = std::hypot(nearest.x, nearest.y);
+        nearest = {std::max(0.0f, beside - front_reach_), 0, nearest.z};
+    }
+    if (!(half_tangent_of(normalized(nearest)) < 1.5f * pupil_entries_.largest_half_tangent())) return std::nullopt;
+    const GhostEntry& entry = pupil_entries_.at(half_tangent_of(light.from));
     // A light that is near is seen elsewhere and in other sizes than one that is far: from twice the size on.
-    const float middle_along = 0.5f * (entry.low + entry.high);
-    float reach = std::max({entry.high - entry.low, 2 * entry.half_width, front_reach_ / 64});
-    if (entry.half_width == 0) reach = front_reach_;
+    const float middle_along = 0.5f * (entry.low + entry.high),
+                reach = std::max({entry.high - entry.low, 2 * entry.half_width, front_reach_ / 64});
+    const PlaneRectangle front = {-front_reach_, front_reach_, -front_reach_, front_reach_};
     PlaneRectangle in = {middle_along - reach, middle_along + reach, -reach, reach};
+    bool is_front = entry.half_width == 0;
+    if (is_front) in = front;
     Probe found;
     bool is_coarse = true;
     for (int round = 0; round < kMostRounds; ++round) {
@@ -119,7 +132,12 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
         int rays = light.kind == TracedLightKind::triangles ? kBlock : 4 * kBlock;
         found = probe(places, light, in, rays);
         if (found.hits < kEnoughHits && rays == kBlock) found = probe(places, light, in, rays = 4 * kBlock);
-        if (found.hits == 0) return std::nullopt;
+        if (found.hits == 0) {
+            if (is_front) return std::nullopt;
+            is_front = true;
+            in = front;
+            continue;
+        }
         // A margin for what lies between the rays.
         const auto widened = [&](float low, float high, float whole) {
             const float share = found.hits < kEnoughHits ? 1.0f : is_coarse ? 0.3f : 0.1f;

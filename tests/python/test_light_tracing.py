@@ -96,6 +96,22 @@ def test_no_light_is_lost_on_the_axis_of_a_narrow_field(
     assert got == pytest.approx(want, rel=3e-3)
 
 
+@pytest.mark.parametrize("lens_name", ["sonnar-180mm", "telephoto-250mm", "macro-105mm"])
+def test_points_beside_the_field_of_a_wide_front_are_seen(lens_name: str, device: str) -> None:
+    """Near the lens, where only the nearer side of its front sees them in the field. As a small lamp is seen there."""
+    lens, film = rc.Lens.load(lens_name).focused(5.0), rc.Film(12, 8, (24, 16))
+    place = (0.02, 0.0, -1e-3 * lens.film_position_mm - (0.15 if lens_name == "macro-105mm" else 0.6))
+    at = camera(lens, film, position=(0, 0, 0))
+    lamp = lamps(place, radius=0.002, radiance=1e6)
+    point = behind().with_point_light(place, (1e6 * 0.004**2,) * 3)
+    by_pixels = [float(photograph(lamp, at, "off", device, spp=512, seed=seed).mean()) for seed in range(8)]
+    want, error = float(np.mean(by_pixels)), float(np.std(by_pixels, ddof=1)) / math.sqrt(8)
+    assert error < 0.03 * want
+    got = float(photograph(point, at, "weighted", device, spp=256).mean())
+    # The lamp shines with the cosine of up to 8 degrees less than the point.
+    assert abs(got - want) < 5 * error + 0.01 * want
+
+
 def test_a_point_out_of_focus_is_an_even_disc(device: str, backend: str) -> None:
     """A slow lens has no aberrations to speak of: the flux over the area of the stop's shadow."""
     lens, film = stop_in_front(1.0, 20.0), rc.Film(1.2, 0.8, (36, 24))
