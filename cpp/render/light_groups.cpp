@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "../scene/bounding_box.hpp"
 #include "../scene/light.hpp"
@@ -56,23 +55,28 @@ private:
             if (light >= 0) f(light);
     }
 
+    std::uint32_t instance_of(std::int32_t light) const {
+        return light < scene_.point_count ? kNoInstance : scene_.areas[light - scene_.point_count].instance;
+    }
+
     /// Of all lights of a node together. The node's own bounds also hold the way of lights that move; what moves with
     /// one instance stays as large as it is.
     double size_m(std::int32_t at) const {
         const double swept = static_cast<double>(length(scene_.light_nodes[at].high - scene_.light_nodes[at].low));
-        if (scene_.kind != SceneKind::any) return swept;
+        std::int32_t leaf = at;
+        while (scene_.light_nodes[leaf].second_child > 0) ++leaf;
+        const std::uint32_t instance = instance_of(-1 - scene_.light_nodes[leaf].second_child);
+        if (instance == kNoInstance || scene_.instances[instance].key_count == 0) return swept;
         BoundingBox box;
-        std::set<std::uint32_t> instances;
+        bool is_one = true;
         for_lights(at, [&](std::int32_t light) {
-            const bool is_point = light < scene_.point_count;
-            instances.insert(is_point ? kNoInstance : scene_.areas[light - scene_.point_count].instance);
-            if (is_point) return;
+            is_one &= instance_of(light) == instance;
+            if (!is_one) return;
             const AreaLight& area = scene_.areas[light - scene_.point_count];
             for (const Vec3f corner : {area.corner, area.corner + area.edge_u, area.corner + area.edge_v})
                 box.add(static_cast<Vec3d>(corner));
         });
-        const bool is_one = instances.size() == 1 && *instances.begin() != kNoInstance;
-        return is_one && scene_.instances[*instances.begin()].key_count > 0 ? box.diagonal() : swept;
+        return is_one ? box.diagonal() : swept;
     }
 
     void look_at(std::int32_t at) {
