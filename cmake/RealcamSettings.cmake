@@ -48,7 +48,10 @@ endif()
 target_compile_options(realcam_settings INTERFACE
   "$<$<COMPILE_LANGUAGE:CXX>:${warnings};-fopenmp-simd>"
   # Nothing pedantic: what nvcc hands to the host compiler is not.
-  "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-Xcompiler=-Wall,-Wextra,-fopenmp-simd>")
+  "$<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr;-Xcompiler=-Wall,-Wextra,-fopenmp-simd>"
+  # Quotients and roots to two units in the last place. Rounded correctly, each would be a subroutine with a branch to
+  # it, and kernels a tenth slower. Where the last bit counts, the lens and the BVH, the core has its own (platform.hpp).
+  "$<$<COMPILE_LANGUAGE:CUDA>:-prec-div=false;-prec-sqrt=false>")
 
 if(REALCAM_SANITIZE)
   set(sanitize -fsanitize=${REALCAM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

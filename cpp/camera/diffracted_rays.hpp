@@ -28,11 +28,12 @@ REALCAM_HD inline void diffract(const CameraView& camera, const SampleBlock<N>& 
                                 DiffractedPoints<N>& film) {
     const DiffractionView view = camera.diffraction;
     const float reach_squared = view.largest_radius * view.largest_radius;
+    const PixelPoints<N> samples(camera, block);
+    const LaneNumbers<N> u(block, dimension::diffraction), v(block, dimension::diffraction + 1);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec2f place = film_point(camera, block.column[i], block.row[i], block.random(i, dimension::film));
-        const DiffractionKick kick = draw_kick(view, place, block.random(i, dimension::diffraction),
-                                               block.random(i, dimension::diffraction + 1));
+        const Vec2f place = samples[i];
+        const DiffractionKick kick = draw_kick(view, place, u[i], v[i]);
         const Vec2f from = {place.x - nm[i] * kick.mm_per_nm.x, place.y - nm[i] * kick.mm_per_nm.y};
         const bool on_film = from.x * from.x + from.y * from.y < reach_squared;
         film.points.set(i, {select(on_film, from.x, place.x), select(on_film, from.y, place.y)});

@@ -24,9 +24,10 @@ REALCAM_INLINE bool lies_in_pixel(const CameraView& camera, const SampleBlock<N>
 template <int N>
 REALCAM_INLINE void draw_wavelengths(const DispersionView& view, const SampleBlock<N>& block,
                                      SampleWavelengths<N>& wavelengths) {
+    const LaneNumbers<N> u(block, dimension::time);
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        wavelengths.place[i] = block.random(i, dimension::time).y * static_cast<float>(view.cell_count);
+        wavelengths.place[i] = u[i].y * static_cast<float>(view.cell_count);
         wavelengths.shares[i] = 1;
     }
     REALCAM_LANES

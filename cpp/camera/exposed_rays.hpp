@@ -33,8 +33,12 @@ REALCAM_INLINE void move_rays(const CameraView& camera, const float (&times)[N],
 template <int N>
 REALCAM_HD inline void expose_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                    float (&times)[N]) {
-    const bool moves = camera.exposed_time > 0.0f;
-    set_times(camera, block, times, [&](int i) { return moves ? block.random(i, dimension::time).x : 0.0f; });
+    if (camera.exposed_time > 0.0f) {
+        const LaneNumbers<N> u(block, dimension::time);
+        set_times(camera, block, times, [&](int i) { return u[i].x; });
+    } else {
+        set_times(camera, block, times, [](int) { return 0.0f; });
+    }
     move_rays(camera, times, rays);
 }
 

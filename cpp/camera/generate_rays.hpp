@@ -1,54 +1,10 @@
 #pragma once
-#include <cstdint>
-
-#include "../math/random.hpp"
 #include "../math/sampling.hpp"
 #include "../optics/trace/lens_trace.hpp"
 #include "camera_view.hpp"
+#include "lane_numbers.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-/// Which samples a block of lanes takes. Unused lanes have used = 0 and otherwise valid numbers.
-template <int N>
-struct SampleBlock {
-    Lanes<std::int32_t, N> column,
-        row;  ///< of the pixel; row 0 at the top of the picture
-    Lanes<std::int32_t, N> used;
-    Lanes<std::uint32_t, N> stream;  ///< pixel_stream() of the pixel
-    Lanes<std::uint32_t, N> sample;
-
-    REALCAM_INLINE Vec2f random(int lane, std::uint32_t dimension) const {
-        return dimension < kJointPairs ? sample_joint_2d(stream[lane], sample[lane], dimension)
-                                       : sample_2d(stream[lane], sample[lane], dimension);
-    }
-    /// Random bits of a sample that are in no sequence.
-    REALCAM_INLINE std::uint32_t bits(int lane, std::uint32_t salt) const {
-        return hash32(stream[lane] ^ sample[lane], salt);
-    }
-};
-
-/// The random sequence of a pixel.
-REALCAM_INLINE std::uint32_t pixel_stream(std::int32_t pixel, std::uint32_t seed) {
-    return hash32(static_cast<std::uint32_t>(pixel), seed);
-}
-
-/// Dimension pairs of the random sequence. Those below kJointPairs, which are all up to the first bounce, are of one
-/// sequence together.
-namespace dimension {
-inline constexpr std::uint32_t film = 0, pupil = 1, first_bounce = 2, per_bounce = 2, light = 0, scatter = 1;
-/// The dimension pair of the time, which most samples do not use. Its second number is the wavelength's.
-inline constexpr std::uint32_t time = 4;
-inline constexpr std::uint32_t second_bounce = kJointPairs;
-/// For the end of long paths, far behind those of the last bounce.
-inline constexpr std::uint32_t roulette = 0x10000;
-/// Two pairs of diffraction's.
-inline constexpr std::uint32_t diffraction = 0x30000;
-
-/// The first of a bounce.
-REALCAM_INLINE constexpr std::uint32_t of_bounce(int bounce) {
-    return bounce == 0 ? first_bounce : second_bounce + static_cast<std::uint32_t>(bounce - 1) * per_bounce;
-}
-}  // namespace dimension
 
 /// Rays in scene axes, metres, relative to the origin of the placed scene.
 template <int N>
@@ -124,21 +80,25 @@ template <int N>
 struct PixelPoints {
     const CameraView& camera;
     const SampleBlock<N>& block;
+    LaneNumbers<N> u;
 
+    REALCAM_INLINE PixelPoints(const CameraView& of, const SampleBlock<N>& samples)
+        : camera(of), block(samples), u(samples, dimension::film) {}
     REALCAM_INLINE Vec2f operator[](int lane) const {
-        return film_point(camera, block.column[lane], block.row[lane], block.random(lane, dimension::film));
+        return film_point(camera, block.column[lane], block.row[lane], u[lane]);
     }
     /// Where light of a wavelength falls that the lens brings to the place `at`.
     REALCAM_INLINE Vec2f landing(int, Vec2f at, float) const { return at; }
 };
 
+/// `ray_of(film point, lane)`.
 template <int N, class Points, class RayOf>
 REALCAM_HD inline void generate_ideal_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                            CameraRays<N>& rays, RayOf&& ray_of) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const bool used = block.used[i] != 0;
-        place_ray(camera, rays, i, ray_of(film[i], block.random(i, dimension::pupil)), used);
+        place_ray(camera, rays, i, ray_of(film[i], i), used);
         rays.sampled[i] = rays.passed[i] = block.used[i];
     }
 }
@@ -156,12 +116,11 @@ REALCAM_INLINE void mark_sampled(const SampleBlock<N>& block, LensRays<T, N>& in
 /// Rays from film and pupil, in front of the last surface.
 template <class T, int N, class Points>
 REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
-                                    LensRays<T, N>& inside, CameraRays<N>& rays) {
+                                    const LaneNumbers<N>& u, LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
-        const Vec2f u = block.random(i, dimension::pupil);
-        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.x, u.y);
+        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u[i].x, u[i].y);
         inside.origin.set(i, static_cast<Vec3<T>>(Vec3f{at.x, at.y, camera.film_distance}));
         inside.direction.set(i, static_cast<Vec3<T>>(pupil.direction));
         rays.weight[i] = pupil.weight;
@@ -186,18 +145,18 @@ REALCAM_INLINE void place_lens_rays(const CameraView& camera, const LensRays<T, 
 
 template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
-                                          CameraRays<N>& rays) {
+                                          const LaneNumbers<N>& u, CameraRays<N>& rays) {
     LensRays<float, N> inside;
-    start_lens_rays(camera, block, film, inside, rays);
+    start_lens_rays(camera, block, film, u, inside, rays);
     trace_lens<lens_kind>(camera.lens, inside);
     place_lens_rays(camera, inside, rays);
 }
 
 template <int N, class Points>
 REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, const SampleBlock<N>& block,
-                                                    const Points& film, CameraRays<N>& rays) {
+                                                    const Points& film, const LaneNumbers<N>& u, CameraRays<N>& rays) {
     LensRays<double, N> inside;
-    start_lens_rays(camera, block, film, inside, rays);
+    start_lens_rays(camera, block, film, u, inside, rays);
     trace_lens(*camera.lens_in_double, inside);
     place_lens_rays(camera, inside, rays);
 }
@@ -205,14 +164,13 @@ REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, co
 /// generate_lens_rays of a camera whose pixels learn where light passes.
 template <int N, class Points>
 REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
-                                              CameraRays<N>& rays) {
+                                              const LaneNumbers<N>& numbers, CameraRays<N>& rays) {
     LensRays<float, N> inside;
     int cells[N];
     const auto pixel_of = [&](int lane) { return block.row[lane] * camera.width + block.column[lane]; };
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
-        const GuidedPlace u =
-            guided(camera.pixel_pupils.known[pixel_of(i)].promising(), block.random(i, dimension::pupil));
+        const GuidedPlace u = guided(camera.pixel_pupils.known[pixel_of(i)].promising(), numbers[i]);
         cells[i] = pixel_pupil::cell_of(u.place);
         const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.place.x, u.place.y);
         inside.origin.set(i, {at.x, at.y, camera.film_distance});
@@ -232,13 +190,13 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
 /// Through the polynomials, and past the rims of first and last surface and the stop.
 template <int N, class Points>
 REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const SampleBlock<N>& block,
-                                                const Points& film, CameraRays<N>& rays) {
+                                                const Points& film, const LaneNumbers<N>& u, CameraRays<N>& rays) {
     const LensPolynomialView& lens = camera.polynomial;
     const auto squared = [](Vec2f v) { return v.x * v.x + v.y * v.y; };
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        const Vec2f at = film[i], u = block.random(i, dimension::pupil);
-        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.x, u.y);
+        const Vec2f at = film[i];
+        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u[i].x, u[i].y);
         const float way = camera.film_distance / pupil.direction.z;
         const Vec2f last = {at.x - way * pupil.direction.x, at.y - way * pupil.direction.y};
         const LensPolynomialRay ray = evaluate(lens, at, last);
@@ -262,39 +220,40 @@ REALCAM_HD inline void generate_polynomial_rays(const CameraView& camera, const 
 template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_rays_from(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                           CameraRays<N>& rays) {
+    if (camera.model == CameraModel::pinhole)
+        return generate_ideal_rays(camera, block, film, rays,
+                                   [&](Vec2f at, int) { return thin_lens_ray(camera, at, {0.5f, 0.5f}, 0.0f); });
+    const LaneNumbers<N> u(block, dimension::pupil);
     switch (camera.model) {
-        case CameraModel::pinhole:
-            generate_ideal_rays(camera, block, film, rays,
-                                [&](Vec2f at, Vec2f u) { return thin_lens_ray(camera, at, u, 0.0f); });
-            break;
+        case CameraModel::pinhole: break;
         case CameraModel::thin_lens:
-            generate_ideal_rays(camera, block, film, rays, [&](Vec2f at, Vec2f u) {
-                return thin_lens_ray(camera, at, u, camera.thin.pupil_radius);
+            generate_ideal_rays(camera, block, film, rays, [&](Vec2f at, int lane) {
+                return thin_lens_ray(camera, at, u[lane], camera.thin.pupil_radius);
             });
             break;
         case CameraModel::mapped_lens:
             generate_ideal_rays(camera, block, film, rays,
-                                [&](Vec2f at, Vec2f u) { return mapped_lens_ray(camera, at, u); });
+                                [&](Vec2f at, int lane) { return mapped_lens_ray(camera, at, u[lane]); });
             break;
         case CameraModel::thick_lens:
             generate_ideal_rays(camera, block, film, rays,
-                                [&](Vec2f at, Vec2f u) { return thick_lens_ray(camera, at, u); });
+                                [&](Vec2f at, int lane) { return thick_lens_ray(camera, at, u[lane]); });
             break;
         case CameraModel::full_lens:
             if constexpr (lens_kind == LensKind::any) {
                 if (camera.pixel_pupils.known) {
-                    generate_learning_rays(camera, block, film, rays);
+                    generate_learning_rays(camera, block, film, u, rays);
                     break;
                 }
             }
-            generate_lens_rays<lens_kind>(camera, block, film, rays);
+            generate_lens_rays<lens_kind>(camera, block, film, u, rays);
             break;
         case CameraModel::polynomial_lens:
-            if constexpr (lens_kind == LensKind::any) generate_polynomial_rays(camera, block, film, rays);
+            if constexpr (lens_kind == LensKind::any) generate_polynomial_rays(camera, block, film, u, rays);
             break;
         case CameraModel::full_lens_double:
             if constexpr (lens_kind == LensKind::any && !kIsDeviceCode)
-                generate_lens_rays_in_double(camera, block, film, rays);
+                generate_lens_rays_in_double(camera, block, film, u, rays);
             break;
     }
 }
@@ -303,7 +262,7 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
 /// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `lens_kind`: any, or the lens's own.
 template <LensKind lens_kind = LensKind::any, int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
-    generate_rays_from<lens_kind>(camera, block, PixelPoints<N>{camera, block}, rays);
+    generate_rays_from<lens_kind>(camera, block, PixelPoints<N>(camera, block), rays);
 }
 
 }  // namespace REALCAM_NAMESPACE

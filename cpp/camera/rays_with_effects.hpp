@@ -18,7 +18,7 @@ template <int N, Effects effects>
 struct FilmPointsWith : PixelPoints<N> {
     REALCAM_INLINE FilmPointsWith(const CameraView& camera, const SampleBlock<N>& block,
                                   const WavelengthsWith<N, effects>&)
-        : PixelPoints<N>{camera, block} {}
+        : PixelPoints<N>(camera, block) {}
 };
 template <int N, Effects effects>
     requires(effects.diffraction)
@@ -34,19 +34,20 @@ template <LensKind lens_kind, Effects effects, int N, class Points>
 REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                              [[maybe_unused]] WavelengthsWith<N, effects>& wavelengths,
                                              CameraRays<N>& rays) {
+    const LaneNumbers<N> u(block, dimension::pupil);
     LensRays<float, N> inside;
     if constexpr (effects.have_wavelengths()) {
         const DispersionView& view = camera.dispersion;
         Lanes<float, N> variable;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) variable[i] = view.variable.at(wavelengths.nm[i]);
-        start_lens_rays(camera, block, film, inside, rays);
+        start_lens_rays(camera, block, film, u, inside, rays);
         trace_surfaces<lens_kind, effects.coatings>(camera.lens, inside, ManyWavelengths{view.to_scene, variable},
                                                     camera.coatings.to_scene, variable, wavelengths.passed[0]);
         if (view.cell_count > 1) find_shares<lens_kind, effects.coatings>(camera, block, inside, film, wavelengths);
     } else {
         Lanes<float, N> passed;
-        start_lens_rays(camera, block, film, inside, rays);
+        start_lens_rays(camera, block, film, u, inside, rays);
         trace_surfaces<lens_kind, true>(camera.lens, inside, OneWavelength{}, camera.coatings.one_wavelength, nullptr,
                                         passed);
         REALCAM_LANES

@@ -129,17 +129,17 @@ void DeviceRenderer::reserve_film(std::int64_t pixels, bool merges) {
 }
 
 void DeviceRenderer::rehearse() {
-    for (const bool timed : {false, true}) launch({0, 0, 0, 0}, {}, sums_.data(), {}, timed);
+    launch({0, 0, 0, 0}, {}, sums_.data(), {});
     launch_develop(sums_.data(), {}, 0, 1, exposure_.data(), depth_.data(), stream_);
     launch_merge(sums_.data(), others_.data(), 0, stream_);
 }
 
 void DeviceRenderer::launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums,
-                            const PixelCounts& counts, bool timed) {
+                            const PixelCounts& counts) {
     launch_render({scene_.view(), scene_.bvh(), camera_, sums, counts_.data(), stop_.data(), settings.path(),
                    settings.seed, part.first_sample, part.sample_count, counts.counts, counts.taken, part.first_row,
                    part.row_count, settings.layers.has(Layer::variance)},
-                  timed, stream_);
+                  stream_);
 }
 
 void DeviceRenderer::clear_film(std::int64_t pixels) {
@@ -155,8 +155,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         const std::size_t pixels = static_cast<std::size_t>(part.row_count) * static_cast<std::size_t>(camera_.width);
         sample_counts_.upload(counts.counts, pixels, stream_);
     }
-    // Two launches are under way at any time, so that the GPU never waits for the host. Clocks are counted in the
-    // first, which may be the only one, and in the third, which is the first of full length.
+    // Two launches are under way at any time, so that the GPU never waits for the host.
     std::array<CudaEvent, 3> ends;
     std::array<std::int64_t, 3> sizes{};
     LaunchPlan plan(part, camera_.width);
@@ -176,7 +175,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
         const std::int64_t first = static_cast<std::int64_t>(piece.first_row - part.first_row) * camera_.width;
         const PixelCounts here{counts.counts ? sample_counts_.data() + first : nullptr,
                                counts.taken + (piece.first_sample - part.first_sample)};
-        launch(piece, settings, sums_.data() + first, here, started == 0 || started == 2);
+        launch(piece, settings, sums_.data() + first, here);
         const std::size_t i = started++ % 3;
         ends[i].record(stream_);
         sizes[i] = static_cast<std::int64_t>(piece.sample_count) * piece.row_count * camera_.width;
@@ -186,7 +185,7 @@ void DeviceRenderer::expose(const FilmPart& part, const RenderSettings& settings
 
 void DeviceRenderer::add(const FilmPart& part, const RenderSettings& settings) {
     const CurrentDevice current(ordinal_);
-    launch(part, settings, sums_.data(), {}, false);
+    launch(part, settings, sums_.data(), {});
 }
 
 void DeviceRenderer::develop_codes(double exposure_time_s, double iso, ToneCurve curve, std::uint8_t* codes) {

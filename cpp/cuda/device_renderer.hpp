@@ -109,8 +109,7 @@ private:
     /// Starts everything on no pixels: the GPU loads the code and makes room for what threads keep in memory.
     void rehearse();
     /// Starts to add samples to `sums`, those of the part's first row. `counts`: in this GPU's memory.
-    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts,
-                bool timed);
+    void launch(const FilmPart& part, const RenderSettings& settings, PixelSum* sums, const PixelCounts& counts);
 
     SplattedLight splatted() const;
 

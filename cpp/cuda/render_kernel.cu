@@ -41,7 +41,7 @@ struct CompiledKernel {
     int effects;
     LensKind lens;
     SceneKind scene;
-    RenderKernel (*of)(bool instanced, bool timed);
+    RenderKernel (*of)(bool instanced);
 
     bool serves(const RenderJob& job) const {
         const SceneKind wanted = kind_of(job.scene, job.camera);
@@ -59,25 +59,25 @@ constexpr CompiledKernel kKernels[] = {
 };
 
 /// The last one of each set serves any lens and any scene.
-RenderKernel kernel_for(const RenderJob& job, bool timed) {
+RenderKernel kernel_for(const RenderJob& job) {
     const CompiledKernel* kernel = kKernels;
     while (!kernel->serves(job)) ++kernel;
-    return kernel->of(job.scene.instance_count > 0, timed);
+    return kernel->of(job.scene.instance_count > 0);
 }
 
 }  // namespace
 
 void check_render_code() {
     cudaFuncAttributes attributes{};
-    const RenderKernel kernel = render_kernel_of<LensKind::any, SceneKind::any, 0>(true, false);
+    const RenderKernel kernel = render_kernel_of<LensKind::any, SceneKind::any, 0>(true);
     check_cuda(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)), "loading its code");
 }
 
-void launch_render(const RenderJob& job, bool timed, cudaStream_t stream) {
+void launch_render(const RenderJob& job, cudaStream_t stream) {
     const int lanes = lanes_per_pixel(static_cast<std::int64_t>(job.camera.width) * job.row_count, job.sample_count);
     const WarpTiles tiles(lanes);
     const unsigned blocks = blocks_for(tiles.across(job.camera.width) * tiles.down(job.row_count) * kWarpSize);
-    const RenderKernel kernel = kernel_for(job, timed);
+    const RenderKernel kernel = kernel_for(job);
     kernel<<<blocks, kBlockSize, 0, stream>>>(job, lanes);
     check_cuda(cudaGetLastError(), "starting to render");
 }

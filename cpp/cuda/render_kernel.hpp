@@ -16,7 +16,7 @@ namespace realcam {
 /// What the threads of all launches have counted.
 struct RenderCounts {
     unsigned long long sampled_rays, passed_rays, scene_rays;
-    unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< of the launches that looked at the clock
+    unsigned long long lens_clocks, scene_clocks, all_clocks;  ///< of the threads that counted them
 };
 
 /// One launch: some samples of some rows of pixels. All pointers are the device's.
@@ -38,8 +38,8 @@ struct RenderJob {
 /// Throws UnsupportedGpu where the current device cannot run this build's code.
 void check_render_code();
 
-/// Starts a job. `timed`: also counts clocks. Throws DeviceError.
-void launch_render(const RenderJob& job, bool timed, cudaStream_t stream);
+/// Starts a job. Throws DeviceError.
+void launch_render(const RenderJob& job, cudaStream_t stream);
 
 /// Sums as exposure (3 per pixel, lux seconds) and depth (metres).
 void launch_develop(const PixelSum* sums, const SplattedLight& splatted, std::int64_t pixels, double exposure_time_s,

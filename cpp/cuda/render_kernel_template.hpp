@@ -13,35 +13,71 @@ namespace render_kernel_detail {
 /// Six blocks of four warps hide more latency than four hold registers: 4% faster on an H200 for all that is spilled.
 constexpr int kBlocksPerMultiprocessor = 6;
 
-struct NoClock {
-    __device__ void enter(RenderStage) {}
-    __device__ void report(RenderCounts*) const {}
-};
+/// The clocks that the first thread of every sixteenth block spends in each stage. Whether a block counts them is the
+/// same for all its threads, which costs two instructions. What was counted lies in shared memory, because no registers
+/// are free while a ray is on its way.
+class StageClock {
+public:
+    struct Count {
+        std::uint32_t clocks[3];  ///< of each stage; a thread's share of a launch is short
+        std::uint32_t since;
+        RenderStage stage;
+    };
 
-/// Clocks of one thread. Of each stage 32 bits: a thread's share of a launch is short.
-struct StageClock {
-    std::uint32_t clocks[3] = {0, 0, 0};
-    std::uint32_t since;
-    RenderStage stage = RenderStage::other;
-
-    __device__ StageClock() : since(now()) {}
-    __device__ void enter(RenderStage next) {
-        const std::uint32_t time = now();
-        for (int i = 0; i < 3; ++i) clocks[i] += i == static_cast<int>(stage) ? time - since : 0u;
-        since = time;
-        stage = next;
+    __device__ explicit StageClock(Count& count) : count_(count) {
+        if (is_running()) count_ = {{0, 0, 0}, now(), RenderStage::other};
     }
+    __device__ void enter(RenderStage next) {
+        if (!is_running()) return;
+        const std::uint32_t time = now();
+        count_.clocks[static_cast<int>(count_.stage)] += time - count_.since;
+        count_.since = time;
+        count_.stage = next;
+    }
+    __device__ void report(RenderCounts* counts) {
+        if (!is_running()) return;
+        enter(RenderStage::other);
+        const unsigned long long lens = count_.clocks[static_cast<int>(RenderStage::lens)],
+                                 scene = count_.clocks[static_cast<int>(RenderStage::scene)];
+        atomicAdd(&counts->lens_clocks, lens);
+        atomicAdd(&counts->scene_clocks, scene);
+        atomicAdd(&counts->all_clocks, lens + scene + count_.clocks[static_cast<int>(RenderStage::other)]);
+    }
+
+private:
+    __device__ static bool is_running() { return blockIdx.x % 16 == 0 && threadIdx.x == 0; }
     __device__ static std::uint32_t now() {
         std::uint32_t time;
         asm volatile("mov.u32 %0, %%clock;" : "=r"(time));
         return time;
     }
-    __device__ void report(RenderCounts* counts) const {
-        const unsigned long long lens = clocks[static_cast<int>(RenderStage::lens)],
-                                 scene = clocks[static_cast<int>(RenderStage::scene)];
-        atomicAdd(&counts->lens_clocks, lens);
-        atomicAdd(&counts->scene_clocks, scene);
-        atomicAdd(&counts->all_clocks, lens + scene + clocks[static_cast<int>(RenderStage::other)]);
+
+    Count& count_;
+};
+
+/// What a thread has collected of its pixel, in shared memory for the same reason.
+struct ThreadSums {
+    double of[8][kBlockSize];
+
+    __device__ double& operator[](int i) { return of[i][threadIdx.x]; }
+    __device__ void clear() {
+        for (int i = 0; i < 8; ++i) (*this)[i] = 0;
+    }
+    __device__ void add(const PixelSum& sample, bool has_squares) {
+        for (int c = 0; c < 3; ++c) (*this)[c] += sample.irradiance[c];
+        (*this)[3] += sample.depth;
+        (*this)[4] += sample.met;
+        if (!has_squares) return;
+        for (int c = 0; c < 3; ++c) (*this)[5 + c] += sample.squares[c];
+    }
+    /// Of all threads of the pixel, but for the number of samples.
+    __device__ PixelSum of_pixel(int lanes) {
+        PixelSum sum{};
+        for (int c = 0; c < 3; ++c) sum.irradiance[c] = sum_of_neighbours((*this)[c], lanes);
+        sum.depth = sum_of_neighbours((*this)[3], lanes);
+        sum.met = sum_of_neighbours((*this)[4], lanes);
+        for (int c = 0; c < 3; ++c) sum.squares[c] = sum_of_neighbours((*this)[5 + c], lanes);
+        return sum;
     }
 };
 
@@ -52,7 +88,7 @@ __device__ inline std::uint32_t samples_of(const RenderJob& job, std::int64_t pi
     return wanted > job.pixels_taken ? min(wanted - job.pixels_taken, job.sample_count) : 0;
 }
 
-template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced, class Clock>
+template <LensKind lens_kind, SceneKind scene_kind, int effects_number, bool instanced>
 __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     render(const __grid_constant__ RenderJob job, int lanes_per_pixel) {
     constexpr Effects effects = kCompiledEffects[effects_number];
@@ -61,13 +97,12 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
     const auto [column, row] = tiles.pixel_of(thread_index(), job.camera.width);
     const bool inside = column < job.camera.width && row < job.row_count;
 
-    // These are not in registers, because none are free and they are seldom wanted.
-    __shared__ double squares[3][kBlockSize];
-    for (auto& channel : squares) channel[threadIdx.x] = 0;
-    PixelSum sum{};
-    std::uint32_t sampled = 0, passed = 0;
+    __shared__ ThreadSums sums;
+    __shared__ StageClock::Count clocks;
+    sums.clear();
+    std::uint32_t samples = 0, sampled = 0, passed = 0;
     BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
-    Clock clock;
+    StageClock clock(clocks);
     if (inside) {
         SampleBlock<1> block;
         PathResults<1> results;
@@ -82,24 +117,17 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
             block.sample[0] = job.first_sample + s;
             render_samples<lens_kind, scene_kind, effects>(job.scene, job.camera, job.path, block, scene, clock,
                                                            results);
-            sum.add(results, 0);
-            if (job.adds_squares) {
-                PixelSum added{};
-                added.add_squares(results, 0);
-                for (int c = 0; c < 3; ++c) squares[c][threadIdx.x] += added.squares[c];
-            }
+            PixelSum sample{};
+            sample.add(results, 0);
+            sample.add_squares(results, 0);
+            sums.add(sample, job.adds_squares);
             sampled += static_cast<std::uint32_t>(results.sampled[0]);
             passed += static_cast<std::uint32_t>(results.passed[0]);
         }
-        sum.samples = s / static_cast<std::uint32_t>(tiles.lanes);  // counted in the loop it would be spilled
-        clock.enter(RenderStage::other);
+        samples = s / static_cast<std::uint32_t>(tiles.lanes);  // counted in the loop it would be spilled
     }
-    for (double& e : sum.irradiance) e = sum_of_neighbours(e, tiles.lanes);
-    if (job.adds_squares)
-        for (int c = 0; c < 3; ++c) sum.squares[c] = sum_of_neighbours(squares[c][threadIdx.x], tiles.lanes);
-    sum.depth = sum_of_neighbours(sum.depth, tiles.lanes);
-    sum.met = sum_of_neighbours(sum.met, tiles.lanes);
-    sum.samples = sum_of_neighbours(sum.samples, tiles.lanes);
+    PixelSum sum = sums.of_pixel(tiles.lanes);
+    sum.samples = sum_of_neighbours(samples, tiles.lanes);
     if (inside && lane % tiles.lanes == 0) job.sums[static_cast<std::int64_t>(row) * job.camera.width + column] += sum;
 
     sampled = sum_of_neighbours(sampled, kWarpSize);
@@ -110,19 +138,15 @@ __global__ void __launch_bounds__(kBlockSize, kBlocksPerMultiprocessor)
         atomicAdd(&job.counts->passed_rays, passed);
         atomicAdd(&job.counts->scene_rays, traced);
     }
-    if (inside) clock.report(job.counts);
+    clock.report(job.counts);
 }
 
 }  // namespace render_kernel_detail
 
 template <LensKind lens_kind, SceneKind scene_kind, int effects>
-RenderKernel render_kernel_of(bool instanced, bool timed) {
+RenderKernel render_kernel_of(bool instanced) {
     using namespace render_kernel_detail;
-    if (instanced)
-        return timed ? render<lens_kind, scene_kind, effects, true, StageClock>
-                     : render<lens_kind, scene_kind, effects, true, NoClock>;
-    return timed ? render<lens_kind, scene_kind, effects, false, StageClock>
-                 : render<lens_kind, scene_kind, effects, false, NoClock>;
+    return instanced ? render<lens_kind, scene_kind, effects, true> : render<lens_kind, scene_kind, effects, false>;
 }
 
 }  // namespace realcam

@@ -40,26 +40,25 @@ REALCAM_INLINE float unit_float(std::uint32_t bits) {
     return static_cast<float>(static_cast<std::int32_t>(bits >> 8)) * 0x1p-24f;
 }
 
-/// Second Sobol' dimension of an index given with its bits in reverse order: the generator matrix is Pascal's
-/// triangle modulo 2, applied in five steps.
-REALCAM_INLINE std::uint32_t sobol_second(std::uint32_t reversed_index) {
-    std::uint32_t v = reversed_index;
-    v ^= v << 16;
-    v ^= (v & 0x00ff00ffu) << 8;
-    v ^= (v & 0x0f0f0f0fu) << 4;
-    v ^= (v & 0x33333333u) << 2;
-    v ^= (v & 0x55555555u) << 1;
+/// Second Sobol' dimension of an index, its bits in reverse order: the generator matrix is Pascal's triangle modulo 2,
+/// applied in five steps.
+REALCAM_INLINE std::uint32_t sobol_second(std::uint32_t index) {
+    std::uint32_t v = index;
+    v ^= v >> 16;
+    v ^= (v & 0xff00ff00u) >> 8;
+    v ^= (v & 0xf0f0f0f0u) >> 4;
+    v ^= (v & 0xccccccccu) >> 2;
+    v ^= (v & 0xaaaaaaaau) >> 1;
     return v;
 }
 
 /// A point of a shuffled, scrambled (0,2)-sequence in [0,1)^2 (Burley 2020). `stream` stands for seed and pixel.
 REALCAM_INLINE Vec2f sample_2d(std::uint32_t stream, std::uint32_t sample, std::uint32_t dimension) {
     const std::uint32_t seed = hash32(stream, dimension);
-    // The shuffled index, bits reversed: the first Sobol' dimension itself.
-    const std::uint32_t first = scramble_reversed(reverse_bits(sample), seed);
-    const std::uint32_t second = sobol_second(first);
-    const std::uint32_t x = reverse_bits(scramble_reversed(reverse_bits(first), hash32(seed ^ 0x68bc21ebu)));
-    const std::uint32_t y = reverse_bits(scramble_reversed(reverse_bits(second), hash32(seed ^ 0x02e5be93u)));
+    // The shuffled index is the first Sobol' dimension, its bits in reverse order.
+    const std::uint32_t index = reverse_bits(scramble_reversed(reverse_bits(sample), seed));
+    const std::uint32_t x = reverse_bits(scramble_reversed(index, hash32(seed ^ 0x68bc21ebu)));
+    const std::uint32_t y = reverse_bits(scramble_reversed(sobol_second(index), hash32(seed ^ 0x02e5be93u)));
     return {unit_float(x), unit_float(y)};
 }
 
@@ -69,8 +68,6 @@ REALCAM_INLINE Vec2f sample_2d(std::uint32_t stream, std::uint32_t sample, std::
 inline constexpr std::uint32_t kJointPairs = 5;
 
 namespace random_detail {
-
-inline constexpr int kQuickBits = 16;  ///< of an index, that most pictures' samples have
 
 /// Sobol' dimensions, of which the first two are functions, by S. Joe and F. Y. Kuo, "Constructing Sobol sequences with
 /// better two-dimensional projections" (SIAM Journal on Scientific Computing 30, 2008). Of each bit of the index, the
@@ -103,43 +100,43 @@ REALCAM_INLINE void add_columns(std::uint32_t index, std::uint32_t& x, std::uint
                                 std::integer_sequence<int, bits...>) {
     const auto add = [&]<int bit>(std::integral_constant<int, bit>) {
         constexpr std::uint32_t of_x = kSobol[pair - 1][0].columns[bit], of_y = kSobol[pair - 1][1].columns[bit];
-        const std::uint32_t wanted = 0u - (index >> bit & 1u);
+        const auto wanted = static_cast<std::uint32_t>(static_cast<std::int32_t>(index << (31 - bit)) >> 31);
         x ^= of_x & wanted;
         y ^= of_y & wanted;
     };
     (add(std::integral_constant<int, first + bits>{}), ...);
 }
 
-template <std::uint32_t pair>
+template <std::uint32_t pair, int bits>
 REALCAM_INLINE void sobol_pair(std::uint32_t index, std::uint32_t& x, std::uint32_t& y) {
-    x = y = 0;
-    add_columns<pair, 0>(index, x, y, std::make_integer_sequence<int, kQuickBits>{});
-    if (index >> kQuickBits != 0)
-        add_columns<pair, kQuickBits>(index, x, y, std::make_integer_sequence<int, 32 - kQuickBits>{});
+    add_columns<pair, 0>(index, x, y, std::make_integer_sequence<int, 8>{});
+    if (bits > 8 || (bits == 0 && index >> 8 != 0))
+        add_columns<pair, 8>(index, x, y, std::make_integer_sequence<int, 8>{});
+    if (bits > 16 || (bits == 0 && index >> 16 != 0))
+        add_columns<pair, 16>(index, x, y, std::make_integer_sequence<int, 16>{});
 }
 
 }  // namespace random_detail
 
-/// A pair of dimensions, less than kJointPairs, of a point of a shuffled, scrambled Sobol' sequence in all of them. The
-/// first pair is a (0,2)-sequence. `stream` stands for seed and pixel.
+/// A pair of dimensions, less than kJointPairs, of a point of a scrambled Sobol' sequence in all of them. The first
+/// pair is a (0,2)-sequence. `stream` stands for seed and pixel: Owen's scrambling makes sequences of different streams
+/// independent, so that their order need not be shuffled. `bits`: that sample numbers have at most; 0 looks for itself.
+template <int bits = 0>
 REALCAM_INLINE Vec2f sample_joint_2d(std::uint32_t stream, std::uint32_t sample, std::uint32_t pair) {
     using namespace random_detail;
-    const std::uint32_t seed = hash32(stream, pair);
-    // Shuffled within blocks that one loop's bits can count.
-    const std::uint32_t reversed = scramble_reversed(reverse_bits(sample), hash32(stream));
-    const std::uint32_t index =
-        (reverse_bits(reversed) & ((1u << kQuickBits) - 1u)) | (sample >> kQuickBits << kQuickBits);
-    std::uint32_t x = reverse_bits(index), y = 0;  // each in reverse order
+    std::uint32_t x = 0, y = 0;  // each in reverse order
     switch (pair) {
         case 0:
-            y = reverse_bits(sobol_second(x));
-            x = index;
+            x = sample;
+            y = sobol_second(sample);
             break;
-        case 1: sobol_pair<1>(index, x, y); break;
-        case 2: sobol_pair<2>(index, x, y); break;
-        case 3: sobol_pair<3>(index, x, y); break;
-        default: sobol_pair<4>(index, x, y); break;
+        case 1: sobol_pair<1, bits>(sample, x, y); break;
+        case 2: sobol_pair<2, bits>(sample, x, y); break;
+        case 3: sobol_pair<3, bits>(sample, x, y); break;
+        default: sobol_pair<4, bits>(sample, x, y); break;
     }
+    // A salt that no dimension of sample_2d has. Hashed twice: seeds that were hashed once are correlated.
+    const std::uint32_t seed = hash32(stream, ~pair);
     const std::uint32_t a = reverse_bits(scramble_reversed(x, hash32(seed ^ 0x68bc21ebu)));
     const std::uint32_t b = reverse_bits(scramble_reversed(y, hash32(seed ^ 0x02e5be93u)));
     return {unit_float(a), unit_float(b)};

@@ -6,12 +6,11 @@ namespace REALCAM_NAMESPACE {
 
 namespace scatter_plain_paths_detail {
 
-/// Light and the next ray for Lambert's lobe, as scatter_path finds them for one path. `goes_on`: at compile time,
-/// because gcc makes no vector code of a loop that asks for it.
+/// Light for Lambert's lobe, as scatter_path finds it for one path. `goes_on`: at compile time, because gcc makes no
+/// vector code of a loop that asks for it.
 template <bool goes_on, int N>
-REALCAM_INLINE void scatter_lambert(const PathSettings& settings, int bounce, const PlainSurfaces<N>& surfaces,
-                                    const LightSamples<N>& lights, const PathNumbers<N>& u, PathState<N>& path,
-                                    ShadowRays<N>& shadow) {
+REALCAM_INLINE void light_lambert(const PathSettings& settings, int bounce, const PlainSurfaces<N>& surfaces,
+                                  const LightSamples<N>& lights, const PathState<N>& path, ShadowRays<N>& shadow) {
     const float clamp = bounce > 0 ? settings.clamp : 0.0f;
     const int count = path.count, places = whole_vectors<N>(count);
     REALCAM_LANES
@@ -25,7 +24,12 @@ REALCAM_INLINE void scatter_lambert(const PathSettings& settings, int bounce, co
         const Color seen = (weight * density) * surfaces.diffuse[i] * path.throughput[i] * light.irradiance;
         shadow.set(i, place, light, clamped(select(is_seen, seen, Color{0, 0, 0}), clamp * path.weight[i]));
     }
-    if (!goes_on) return;
+}
+
+/// The next ray for Lambert's lobe, likewise.
+template <int N>
+REALCAM_INLINE void scatter_lambert(const PlainSurfaces<N>& surfaces, const PathNumbers<N>& u, PathState<N>& path) {
+    const int count = path.count, places = whole_vectors<N>(count);
     REALCAM_LANES
     for (int i = 0; i < places; ++i) {
         const SurfacePlace place = surfaces[i];
@@ -56,11 +60,12 @@ REALCAM_INLINE void scatter_plain_paths(const SceneView& view, const PathSetting
     LightSamples<N> lights;
     sample_lights<SceneKind::plain>(view, surfaces, path,
                                     PathNumbers<N>(block, path, first_dimension + dimension::light), seed, lights);
+    const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
+    if (!surfaces.has_phong && !goes_on) return light_lambert<false>(settings, bounce, surfaces, lights, path, shadow);
     const PathNumbers<N> u(block, path, first_dimension + dimension::scatter);
     if (!surfaces.has_phong) {
-        const bool goes_on = bounce < settings.max_bounces && settings.transport == LightTransport::paths;
-        return goes_on ? scatter_lambert<true>(settings, bounce, surfaces, lights, u, path, shadow)
-                       : scatter_lambert<false>(settings, bounce, surfaces, lights, u, path, shadow);
+        light_lambert<true>(settings, bounce, surfaces, lights, path, shadow);
+        return scatter_lambert(surfaces, u, path);
     }
     for (int i = 0; i < path.count; ++i) {
         PlainBsdf bsdf{surfaces.normal[i], surfaces.geometric_normal[i], -path.rays.direction[i], surfaces.diffuse[i],

@@ -205,35 +205,37 @@ REALCAM_INLINE SurfacePoint point_on_mesh(const MeshView& mesh, Hit hit, Vec3f r
     SurfacePoint point;
     point.position = hit_position(mesh, plane, hit, ray_origin, ray_direction);
     point.is_front = dot(plane.normal, ray_direction) <= 0;
-    point.geometric_normal = point.is_front ? plane.normal : -plane.normal;
-    point.normal = point.geometric_normal;
+    // In variables until the end: gcc keeps what belongs to `point` in memory, and reading it back there waits.
+    const Vec3f geometric = (point.is_front ? 1.0f : -1.0f) * plane.normal;
+    Vec3f normal = geometric;
     const bool is_textured = scene_kind != SceneKind::plain || material.diffuse_texture.texture >= 0;
     const SurfaceUv uv = is_textured ? surface_uv(mesh, triangle, hit) : SurfaceUv{{0, 0}, {0, 0}, {0, 0}};
     if (mesh.normals) {
         const Vec3f n = w * mesh.normals[corner[0]] + hit.u * mesh.normals[corner[1]] + hit.v * mesh.normals[corner[2]];
         const float n2 = dot(n, n);
-        if (n2 > 0) point.normal = (1.0f / std::sqrt(n2)) * n;
+        if (n2 > 0) normal = (1.0f / std::sqrt(n2)) * n;
     }
     if constexpr (scene_kind != SceneKind::plain) {
-        const auto mapped = [&](const TextureReference& map, float scale, Vec3f normal) {
-            if (map.texture < 0 || !mesh.uvs) return normal;
-            const Vec3f outer = dot(normal, plane.normal) < 0 ? -normal : normal;
+        const Vec3f smooth = normal;
+        const auto mapped = [&](const TextureReference& map, float scale) {
+            if (map.texture < 0 || !mesh.uvs) return smooth;
+            const Vec3f outer = dot(smooth, plane.normal) < 0 ? -smooth : smooth;
             return mapped_normal(mesh, triangle, map, scale, uv, outer);
         };
         point.clearcoat = material.clearcoat;
-        point.coat_normal = point.normal;
+        point.coat_normal = smooth;
         if (point.clearcoat > 0.0f) {
             point.clearcoat *= texture_color(mesh, material.clearcoat_texture, uv.at).r;
             point.clearcoat_roughness =
                 material.clearcoat_roughness * texture_color(mesh, material.clearcoat_roughness_texture, uv.at).g;
-            point.coat_normal =
-                mapped(material.clearcoat_normal_texture, material.clearcoat_normal_scale, point.normal);
-            if (dot(point.coat_normal, point.geometric_normal) < 0) point.coat_normal = -point.coat_normal;
+            point.coat_normal = mapped(material.clearcoat_normal_texture, material.clearcoat_normal_scale);
+            if (dot(point.coat_normal, geometric) < 0) point.coat_normal = -point.coat_normal;
         }
-        point.normal = mapped(material.normal_texture, material.normal_scale, point.normal);
+        normal = mapped(material.normal_texture, material.normal_scale);
     }
+    point.geometric_normal = geometric;
     // On the ray's side too, so that a silhouette seen from behind its shading normal does not turn black.
-    if (dot(point.normal, point.geometric_normal) < 0) point.normal = -point.normal;
+    point.normal = (dot(normal, geometric) < 0 ? -1.0f : 1.0f) * normal;
     point.material = &material;
     point.diffuse = material.diffuse;
     point.emission = point.is_front ? material.emission : Color{0, 0, 0};

@@ -1,12 +1,33 @@
 #pragma once
+#include <utility>
+
 #include "scene_view.hpp"
 
 namespace REALCAM_NAMESPACE {
 
+namespace texture_detail {
+
 /// sRGB transfer function (IEC 61966-2-1), from a code value of 0..255 to linear.
+constexpr float linear_of_code(int code) {
+    const double v = code / 255.0, base = (v + 0.055) / 1.055, square = base * base;
+    // base^2.4: Newton's method for the fifth root of base^2, because std::pow is not for compilers.
+    double root = 1;
+    for (int i = 0; i < 60; ++i) root -= (root - square / (root * root * root * root)) / 5;
+    return static_cast<float>(v <= 0.04045 ? v / 12.92 : square * root);
+}
+
+template <int... codes>
+REALCAM_INLINE float linear_by_table(std::uint8_t code, std::integer_sequence<int, codes...>) {
+    // An array of numbers: of a class with a constructor nvcc makes zeros.
+    static constexpr float kLinear[] = {linear_of_code(codes)...};
+    return kLinear[code];
+}
+
+}  // namespace texture_detail
+
+/// By a table, because a lookup of a texture asks twelve times.
 REALCAM_INLINE float srgb_to_linear(std::uint8_t code) {
-    const float v = static_cast<float>(code) * (1.0f / 255.0f);
-    return v <= 0.04045f ? v * (1.0f / 12.92f) : std::pow((v + 0.055f) * (1.0f / 1.055f), 2.4f);
+    return texture_detail::linear_by_table(code, std::make_integer_sequence<int, 256>{});
 }
 
 /// Where a row or column of texels lies in the picture. It is one of the picture itself, or the next to it on either
@@ -76,7 +97,7 @@ REALCAM_INLINE TextureView level_of(TextureView texture, int level) {
 
 /// The four texels about a point, and where between them it lies.
 struct TextureSpot {
-    int column, row;    ///< of the upper left one
+    int column, row;  ///< of the upper left one
     float right, down;  ///< 0..1
     int next_column, next_row;
 };

@@ -17,8 +17,7 @@ ROOT = Path(__file__).parents[2]
 KERNEL = """
 #include "cuda/render_kernel_template.hpp"
 namespace realcam::render_kernel_detail {
-template __global__ void render<LensKind::plain, SceneKind::plain, 0, false, NoClock>(const __grid_constant__ RenderJob,
-                                                                                      int);
+template __global__ void render<LensKind::plain, SceneKind::plain, 0, false>(const __grid_constant__ RenderJob, int);
 }
 """
 # What is cut out of which file: each pattern must be found once.

@@ -215,9 +215,13 @@ def test_all_techniques_see_the_same(case: str, device: str) -> None:
         error = np.sqrt((alone.var(axis=0) + other.var(axis=0)) / (len(seeds) - 1))
         lit = alone.mean(axis=0) > 1e-6 * alone.mean()
         difference = np.abs(alone.mean(axis=0) - other.mean(axis=0))
+        # Where samples of pixels meet a lamp seven times on average, once in a thousand tests they never do. What one
+        # brings follows from Poisson's law: the variance over the mean.
+        met_once = float((alone.var(axis=0)[lit] / alone.mean(axis=0)[lit]).max()) / len(seeds)
+        missed = np.where(alone.mean(axis=0) < 7 * met_once, 7 * met_once, 0)
         # Student's t with some seven degrees of freedom, in 72 blocks: above 7 once in a thousand tests. Float32 and
         # the unit of the sums add what is left.
-        assert (difference <= 7 * error + 1e-5 * alone.mean(axis=0).max()).all(), (
+        assert (difference <= 7 * error + missed + 1e-5 * alone.mean(axis=0).max()).all(), (
             case,
             tracing,
             difference[lit] / error[lit],

@@ -28,7 +28,7 @@ Bins over_pixels(F&& numbers) {
 
 }  // namespace
 
-TEST_CASE("sample_2d is uniform on the square, over pixels, for every sample and dimension") {
+TEST_CASE("numbers are uniform on the square, over pixels, for every sample and dimension") {
     ChiSquareTests tests("sample_2d: the square");
     for (const std::uint32_t seed : {0u, 77u})
         for (const std::uint32_t sample : {0u, 1u, 6u, 1000000u})
@@ -36,12 +36,41 @@ TEST_CASE("sample_2d is uniform on the square, over pixels, for every sample and
                 tests.add(over_pixels([&](int p) { return sample_2d(pixel_stream(p, seed), sample, dimension); }));
     tests.hold();
 
+    ChiSquareTests joint("sample_joint_2d: the square");
+    for (const std::uint32_t seed : {0u, 77u})
+        for (const std::uint32_t sample : {0u, 1u, 6u, 1000000u})
+            for (std::uint32_t pair = 0; pair < kJointPairs; ++pair)
+                joint.add(over_pixels([&](int p) { return sample_joint_2d(pixel_stream(p, seed), sample, pair); }));
+    joint.hold();
+
     ChiSquareTests broken("sample_2d with one seed for both coordinates");
     broken.add(over_pixels([](int p) {
         const float x = sample_2d(pixel_stream(p, 0), 3, 0).x;
         return Vec2f{x, x};
     }));
     broken.breaks();
+}
+
+TEST_CASE("numbers of different dimensions are independent, over pixels") {
+    ChiSquareTests tests("two dimensions: the square");
+    constexpr std::uint32_t kPairs = kJointPairs + 2;
+    for (const std::uint32_t sample : {0u, 1u, 1000000u}) {
+        std::vector<std::vector<float>> numbers(2 * kPairs);
+        for (int p = 0; p < kPixels; ++p)
+            for (std::uint32_t pair = 0; pair < kPairs; ++pair) {
+                const std::uint32_t stream = pixel_stream(p, 1);
+                const Vec2f u =
+                    pair < kJointPairs ? sample_joint_2d(stream, sample, pair) : sample_2d(stream, sample, pair);
+                numbers[2 * pair].push_back(u.x);
+                numbers[2 * pair + 1].push_back(u.y);
+            }
+        for (std::size_t a = 0; a < numbers.size(); ++a)
+            for (std::size_t b = 0; b < a; ++b)
+                tests.add(over_pixels([&](int p) -> Vec2f {
+                    return {numbers[a][static_cast<std::size_t>(p)], numbers[b][static_cast<std::size_t>(p)]};
+                }));
+    }
+    tests.hold();
 }
 
 TEST_CASE("each coordinate is uniform down to 2^-12") {

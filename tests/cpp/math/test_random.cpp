@@ -71,7 +71,7 @@ TEST_CASE("the two dimensions are Sobol's: reversed bits, and Pascal's triangle 
                 if ((c & r) == r) bit ^= (v >> c) & 1u;
             second |= bit << (31 - r);
         }
-        REQUIRE(sobol_second(reversed) == second);
+        REQUIRE(reverse_bits(sobol_second(v)) == second);
     }
 }
 
@@ -99,7 +99,9 @@ TEST_CASE("the samples of a pixel are a (0,2)-sequence") {
                 }
 }
 
-TEST_CASE("samples of different pixels, dimensions and seeds have even means and no correlation") {
+/// `draw(stream, sample, pair of dimensions)`.
+template <class Draw>
+void check_means_and_correlations(Draw&& draw) {
     // Independent numbers: means within 5 standard deviations of sqrt(1/12 / n), correlations within 5 /
     // sqrt(n).
     constexpr int kPixels = 200000;
@@ -108,9 +110,8 @@ TEST_CASE("samples of different pixels, dimensions and seeds have even means and
             double mean[4] = {}, product[6] = {};
             for (int p = 0; p < kPixels; ++p) {
                 const std::uint32_t here = pixel_stream(p, seed), next = pixel_stream(p + 1, seed);
-                const Vec2f a = sample_2d(here, sample, 0), b = sample_2d(here, sample, 1),
-                            c = sample_2d(next, sample, 0);
-                const Vec2f e = sample_2d(pixel_stream(p, seed + 1), sample, 0), g = sample_2d(here, sample + 1, 2);
+                const Vec2f a = draw(here, sample, 0), b = draw(here, sample, 1), c = draw(next, sample, 0);
+                const Vec2f e = draw(pixel_stream(p, seed + 1), sample, 0), g = draw(here, sample + 1, 2);
                 const auto centred = [](float v) { return static_cast<double>(v) - 0.5; };
                 mean[0] += centred(a.x);
                 mean[1] += centred(a.y);
@@ -125,6 +126,22 @@ TEST_CASE("samples of different pixels, dimensions and seeds have even means and
             }
             for (const double m : mean) CHECK(std::fabs(m / kPixels) < 5 * std::sqrt(1.0 / 12 / kPixels));
             for (const double c : product) CHECK(std::fabs(12 * c / kPixels) < 5 / std::sqrt(kPixels));
+        }
+}
+
+TEST_CASE("samples of different pixels, dimensions and seeds have even means and no correlation") {
+    check_means_and_correlations([](auto... of) { return sample_2d(of...); });
+    check_means_and_correlations([](auto... of) { return sample_joint_2d(of...); });
+}
+
+TEST_CASE("joint samples are the same for whoever knows how many bits their numbers have") {
+    const auto same = [](Vec2f a, Vec2f b) { return a.x == b.x && a.y == b.y; };
+    for (std::uint32_t pair = 0; pair < kJointPairs; ++pair)
+        for (const std::uint32_t sample : {0u, 5u, 255u, 256u, 0xfffeu, 0x10000u, 0xfedcba98u}) {
+            const Vec2f u = sample_joint_2d(9, sample, pair);
+            if (sample < 0x100) REQUIRE(same(u, sample_joint_2d<8>(9, sample, pair)));
+            if (sample < 0x10000) REQUIRE(same(u, sample_joint_2d<16>(9, sample, pair)));
+            REQUIRE(same(u, sample_joint_2d<32>(9, sample, pair)));
         }
 }
 
