@@ -1,0 +1,61 @@
+"""The pages of the API: every public name of realcam and its modules, with the text of its docstring."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from written import write_text
+
+# Names of `realcam` by what they are for. tests/python/test_site.py holds that none is missing.
+GROUPS = {
+    "Lenses": (
+        "Lens", "Surface", "Stop", "Mirror", "Glass", "Coating", "CoatingLayer", "CoatingResponse", "FirstOrder",
+        "Ghost", "lens_names", "glass_names", "CrossSection", "cross_section",
+    ),
+    "Rays, wavefronts and spots": (
+        "AimedRays", "PSF", "RayBundle", "RayStatus", "Seidel", "Spot", "TraceResult", "Wavefront",
+    ),
+    "Changing a lens": ("Optimisation", "Targets", "Variable", "optimised"),
+    "Photographers' figures": (
+        "DepthOfField", "FieldOfView", "PhotographicFigures", "depth_of_field", "photographic_figures",
+    ),
+    "Camera": ("Camera", "Film", "CameraRays", "RayChunks"),
+    "Scene": ("Scene", "Material", "read_environment"),
+    "Pictures": (
+        "render", "RenderSettings", "RenderStats", "Image", "Shot", "Session", "ReachedNoise", "LiveView", "LiveFrame",
+        "Device", "DeviceArray", "devices",
+    ),
+    "Effects and accuracy": (
+        "effects", "EffectInfo", "plan", "Plan", "PlanDecision", "accuracy_cost", "AccuracyCost",
+    ),
+    "Sensors": ("Sensor", "RawImage", "sensor_names"),
+    "Vision": (
+        "ProjectionStatus", "CameraModelFit", "fit_camera_model", "camera_json", "save_camera_json", "save_colmap",
+    ),
+    "Errors": (
+        "RealcamError", "InputError", "ArgumentError", "LensFileError", "SceneFileError", "ImageFileError",
+        "DeviceError", "NothingToPlan", "Cancelled",
+    ),
+}  # fmt: skip
+MODULES = {"realcam.analysis": "Aberrations and MTF, as arrays and as plots", "realcam.draw": "Drawings of lenses"}
+
+
+def summary(title: str, module: str, names: tuple[str, ...]) -> str:
+    rows = "\n".join(f"   {module}.{name}" for name in names)
+    return f"{title}\n{'-' * len(title)}\n\n.. autosummary::\n   :toctree: .\n   :nosignatures:\n\n{rows}\n"
+
+
+def write(folder: Path) -> None:
+    """Writes the page index.rst; Sphinx writes those of the names beside it."""
+    modules = {name: import_module(name) for name in MODULES}
+    parts = [
+        "Python\n======\n\n"
+        "What ``import realcam as rc`` brings. :doc:`The tour </docs/python>` shows how it is used.\n",
+        *(summary(title, "realcam", names) for title, names in GROUPS.items()),
+        *(
+            summary(title, name, tuple(n for n in modules[name].__all__ if callable(getattr(modules[name], n))))
+            for name, title in MODULES.items()
+        ),
+    ]
+    write_text(folder / "index.rst", "\n".join(parts))

@@ -1,0 +1,75 @@
+"""Builds the site of the documentation: ./run docs, or python docs/site/build.py -o FOLDER
+
+Sphinx reads build/docs/source, where the pages stand beside each other as they do in the repository, so that links
+between them hold. What is made by programs (tutorials, the API) stands there, too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import api_pages
+from sphinx.cmd.build import main as sphinx
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+WORK = ROOT / "build" / "docs"
+PAGES = WORK / "source"
+# The pages, and the files that links of theirs lead to.
+PATTERNS = (
+    "*.md", "docs/*.md", "docs/decisions/*.md", "docs/generated/*.md", "docs/images/*", "docs/generated/images/*",
+    "lenses/*.md", "sensors/*.md", "benchmarks/results/*.md", "benchmarks/results/*.png", "examples/*.py",
+    "examples/tutorials/*.*", "tests/consumer/CMakeLists.txt",
+)  # fmt: skip
+
+
+def copy_changed(source: Path, target: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if not target.is_file() or target.stat().st_mtime != source.stat().st_mtime:
+        shutil.copy2(source, target)
+
+
+def lay_out(pages: Path) -> None:
+    for pattern in PATTERNS:
+        for gone in {path.relative_to(pages) for path in pages.glob(pattern) if path.is_file()}:
+            if gone != Path("index.md") and not (ROOT / gone).is_file():
+                (pages / gone).unlink()
+        for path in ROOT.glob(pattern):
+            copy_changed(path, pages / path.relative_to(ROOT))
+    copy_changed(HERE / "index.md", pages / "index.md")
+    # sphinx-gallery starts programs in their own folder, users start them in the repository's.
+    tutorials = pages / "tutorial_sources"
+    shutil.rmtree(tutorials, ignore_errors=True)
+    for path in (ROOT / "examples" / "tutorials").iterdir():
+        copy_changed(path, tutorials / path.name)
+    for name in ("scenes", "examples", "build/dev"):
+        (tutorials / name).parent.mkdir(exist_ok=True)
+        (tutorials / name).symlink_to(ROOT / name)
+
+
+def timed(what: str, make: Callable[[], object]) -> None:
+    start = time.monotonic()
+    make()
+    print(f"{what}: {time.monotonic() - start:.0f} s", flush=True)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "out" / "docs", help="folder of the site")
+    arguments = parser.parse_args()
+    lay_out(PAGES)
+    timed("API", lambda: api_pages.write(PAGES / "api"))
+    words = ["-W", "--keep-going", "-q", "-b", "html", "-c", HERE, "-d", WORK / "doctrees", PAGES, arguments.output]
+    status = sphinx([str(word) for word in words])
+    if status == 0:
+        print(f"The site is in {arguments.output}: open index.html")
+    return int(status)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
