@@ -17,12 +17,6 @@ from .picture_request import Costs, Frame, PictureRequest
 
 # Of few samples, those with wavelengths are coloured dots, which are larger than the effect.
 _NOT_IN_PREVIEWS = {effect.name for effect in effects() if effect.has_wavelengths or not effect.shows_in_previews}
-# In 8-bit codes: about as much as half a pixel of colour changes at an edge of a quarter of the contrast.
-_HIDING_NOISE = 32.0
-# A picture without these effects ends at the latest with four times the noise that is asked for, after a 16th of the
-# samples: so much longer the whole picture takes.
-_HIDING_RATIO = 4.0
-_ENOUGH_SPP = 8  # that a frame of all pixels has: little noise in little time, so that the effects are there at once
 
 Arrays = tuple[NDArray[np.float32], NDArray[np.float32]]  # exposure and depth
 
@@ -41,8 +35,6 @@ class GrowingPicture:
     is_final: bool = False
     refines_from: float = 0.0  #: time.perf_counter()
     is_given_up: bool = False  #: and its samples with it
-    is_complete: bool = False  #: all effects are simulated where it has all its pixels
-    stands_until: int = 0  #: it has so many samples: the last frame without these effects has less noise
     noise_codes: float | None = None
     noise_tiles: list[list[float]] | None = None
     costs: Costs | None = None
@@ -61,36 +53,14 @@ class GrowingPicture:
         """The resolution that is wanted in the end."""
         return self.request.camera.film.resolution
 
-    @property
-    def left_out(self) -> tuple[str, ...]:
-        """The effects that are smaller than noise or pixels, and not simulated yet."""
-        if self.is_complete and self.size == self.whole:
-            return ()
-        return tuple(effect for effect in self.request.settings.effects if effect.partition("=")[0] in _NOT_IN_PREVIEWS)
-
     def settings(self) -> RenderSettings:
-        """Those of the samples that are taken now."""
-        settings, left_out = self.request.settings, self.left_out
-        return settings.with_(effects=[effect for effect in settings.effects if effect not in left_out])
-
-    def is_complete_from_now(self, spp: int) -> bool:
-        """Whether the noise of all pixels lets see what is left out, or does after a frame of spp samples."""
-        if not self.left_out or self.size != self.whole:
-            return False
-        limit = max(_HIDING_NOISE, _HIDING_RATIO * self.request.noise_codes)
-        is_quiet = self.noise_codes is not None and self.noise_codes <= limit
-        return is_quiet or spp >= _ENOUGH_SPP or self.samples >= self.request.max_spp
-
-    def begin_anew(self) -> None:
-        """Without samples: the next ones have other pixels, or other effects."""
-        self.samples, self.spent_s = 0, 0.0
-
-    def complete(self) -> None:
-        """Simulates all effects from now on."""
-        self.is_complete, self.stands_until = True, self.samples
-        self.begin_anew()
-        self.noise = NoiseMeasurement()
-        self.noise_codes = self.noise_tiles = None
+        """What is smaller than its noise or than pixels is left out where these are fewer than wanted."""
+        settings = self.request.settings
+        if self.size == self.whole:
+            return settings
+        return settings.with_(
+            effects=[effect for effect in settings.effects if effect.partition("=")[0] not in _NOT_IN_PREVIEWS]
+        )
 
     def camera(self, metered_s: float) -> Camera:
         """With the pixels of now. metered_s: the exposure time where it follows the light."""
@@ -105,8 +75,6 @@ class GrowingPicture:
         self.noise_tiles = self.noise.tiles(*developed)
 
     def is_good_enough(self) -> bool:
-        if self.left_out:
-            return False
         is_quiet = self.noise_codes is not None and self.noise_codes <= self.request.noise_codes
         return is_quiet or self.samples >= self.request.max_spp
 
@@ -128,5 +96,4 @@ class GrowingPicture:
             exposure_time_s=exposure_time_s,
             costs=self.costs,
             is_denoised=is_denoised,
-            left_out=self.left_out,
         )

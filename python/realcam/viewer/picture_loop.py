@@ -218,10 +218,8 @@ class PictureLoop:
         is_new_size = picture.size != picture.whole
         if is_new_size:
             picture.size = pace.next_size(picture.size, picture.whole)
-        spp = pace.refining_spp(picture.size)
-        completes = picture.is_complete_from_now(spp)
-        missing = request.max_spp - (0 if is_new_size or completes else picture.samples)
-        spp = min(spp, max(1, missing))
+        missing = request.max_spp - (0 if is_new_size else picture.samples)
+        spp = min(pace.refining_spp(picture.size), max(1, missing))
         if picture.kept is None and pace.is_slow(spp, picture.size):
             self._taker.keep(picture)
         with self._wake:
@@ -229,9 +227,7 @@ class PictureLoop:
                 return
             self._refines = True
         if is_new_size:
-            picture.begin_anew()
-        if completes:
-            picture.complete()
+            picture.samples, picture.spent_s = 0, 0.0
         try:
             codes = self._taker.shoot(picture, spp)
         finally:
@@ -239,8 +235,6 @@ class PictureLoop:
                 self._refines = False
         if picture.size == picture.whole:
             self._taker.measure_noise(picture)
-        if picture.samples < picture.stands_until and not picture.is_final:
-            return
         if request.is_automatic and picture.samples <= 2 * spp and self._taker.meter(picture):
             self._show(picture, self._taker.developed(picture))
         else:
@@ -285,9 +279,7 @@ class PictureLoop:
         picture = self._picture
         if picture is None:
             raise InputError("there is no picture yet")
-        while picture.size != picture.whole or picture.left_out or picture.samples < max(1, picture.stands_until):
-            if picture.left_out and picture.size == picture.whole and picture.samples:
-                picture.complete()
+        while picture.size != picture.whole or not picture.samples:
             self._refine(picture)
             if self._pending:
                 raise Cancelled("another picture is wanted")

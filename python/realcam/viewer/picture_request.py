@@ -77,7 +77,6 @@ class Frame:
     costs: Costs | None
     noise_tiles: list[list[float]] | None = None  #: the noise of parts of the picture, rows from above
     is_denoised: bool = False
-    left_out: tuple[str, ...] = ()  #: effects that are not simulated yet, because noise or pixels are larger
 
 
 @dataclass(frozen=True)

@@ -54,9 +54,8 @@ export default {
       if (!h) return "No picture yet";
       const noise = h.noise_codes === null ? "" : `, noise ${h.noise_codes.toFixed(1)} grey levels`;
       const done = h.is_final ? ", done" : h.is_preview ? ", preview" : "";
-      const without = h.left_out.length ? `, without ${h.left_out.join(" and ")}` : "";
       const clipped = this.clipped > 0.0005 ? `, ${(100 * this.clipped).toFixed(1)}% clipped` : "";
-      return `${h.width} × ${h.height} pixels, ${h.samples} sample${h.samples === 1 ? "" : "s"}${noise}${clipped}${without}${done}`;
+      return `${h.width} × ${h.height} pixels, ${h.samples} sample${h.samples === 1 ? "" : "s"}${noise}${clipped}${done}`;
     },
     /// As wide as the column, but no higher than most of the window.
     stageStyle() {
