@@ -2,7 +2,8 @@
 #include <pybind11/numpy.h>
 
 #include <cstddef>
-#include <cstring>
+#include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -12,12 +13,14 @@ namespace realcam::bindings {
 template <class T>
 using InputArray = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// A copy of numbers in C order.
-template <class T>
-pybind11::array_t<T> copy_of(const std::vector<T>& values, std::vector<pybind11::ssize_t> shape) {
-    pybind11::array_t<T> array(std::move(shape));
-    std::memcpy(array.mutable_data(), values.data(), values.size() * sizeof(T));
-    return array;
+/// Numbers in C order as an array that keeps them. `values` is moved from or copied, which shows in the call.
+template <class Numbers>
+auto array_from(Numbers values, std::vector<pybind11::ssize_t> shape) {
+    auto kept = std::make_unique<Numbers>(std::move(values));
+    auto* const data = kept->data();
+    const pybind11::capsule owner(kept.get(), [](void* numbers) { delete static_cast<Numbers*>(numbers); });
+    kept.release();
+    return pybind11::array_t<std::remove_pointer_t<decltype(data)>>(std::move(shape), data, owner);
 }
 
 /// An array of shape (n,) of f(i).

@@ -16,11 +16,11 @@ py::array_t<float> denoised(Denoiser& denoiser, const InputArray<float>& exposur
             throw InputError("exposure, albedo and normal must be arrays of (H, W, 3) numbers, of one H and W");
     const int width = static_cast<int>(exposure.shape(1)), height = static_cast<int>(exposure.shape(0));
     const NoisyPicture picture = {width, height, exposure.data(), albedo.data(), normal.data()};
-    const std::vector<float> result = [&] {
+    std::vector<float> result = [&] {
         const Unlocked unlocked;
         return denoiser.denoised(picture, fast ? DenoiseQuality::fast : DenoiseQuality::high, heed_signals);
     }();
-    return copy_of(result, {height, width, 3});
+    return array_from(std::move(result), {height, width, 3});
 }
 
 }  // namespace

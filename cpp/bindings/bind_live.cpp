@@ -50,11 +50,11 @@ public:
 
     /// Of the last frame's camera and settings, but with layers.
     py::dict image(const Camera& camera, const RenderSettings& settings) const {
-        const Image image = [&] {
+        Image image = [&] {
             const Unlocked unlocked;
             return view_->picture(camera, settings, heed_signals);
         }();
-        return picture_from(image, settings.layers);
+        return picture_from(std::move(image), settings.layers);
     }
 
     py::tuple picture() const {
@@ -66,12 +66,12 @@ public:
             }();
             return py::make_tuple(picture.exposure, picture.depth);
         }
-        const Image image = [&] {
+        Image image = [&] {
             const Unlocked unlocked;
             return session.picture(heed_signals);
         }();
-        return py::make_tuple(copy_of(image.exposure, {image.height, image.width, 3}),
-                              copy_of(image.depth, {image.height, image.width}));
+        return py::make_tuple(array_from(std::move(image.exposure), {image.height, image.width, 3}),
+                              array_from(std::move(image.depth), {image.height, image.width}));
     }
 
     void show(const Assembly& scene) { view_->show(scene); }

@@ -124,17 +124,18 @@ PinholeCamera pinhole_of(const Camera& camera) {
 
 py::array_t<double> camera_matrix(const Camera& camera) {
     const PinholeCamera pinhole = pinhole_of(camera);
-    return copy_of<double>({pinhole.focal_x, 0, pinhole.centre_x, 0, pinhole.focal_y, pinhole.centre_y, 0, 0, 1},
-                           {3, 3});
+    return array_from(
+        std::vector<double>{pinhole.focal_x, 0, pinhole.centre_x, 0, pinhole.focal_y, pinhole.centre_y, 0, 0, 1},
+        {3, 3});
 }
 
 py::tuple world_to_camera(const Camera& camera) {
     const PinholeCamera p = pinhole_of(camera);
     const Vec3d t = p.translation_m;
-    return py::make_tuple(copy_of<double>({p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z, p.forward.x,
-                                           p.forward.y, p.forward.z},
-                                          {3, 3}),
-                          copy_of<double>({t.x, t.y, t.z}, {3}));
+    return py::make_tuple(array_from(std::vector<double>{p.right.x, p.right.y, p.right.z, p.down.x, p.down.y, p.down.z,
+                                                         p.forward.x, p.forward.y, p.forward.z},
+                                     {3, 3}),
+                          array_from(std::vector<double>{t.x, t.y, t.z}, {3}));
 }
 
 }  // namespace

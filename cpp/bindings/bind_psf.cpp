@@ -71,7 +71,7 @@ Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
         const auto n = static_cast<std::size_t>(pupil.size);
         const auto size = static_cast<std::size_t>(psf.size), first = n - size / 2;
         const py::array_t<std::complex<double>> sums =
-            inverse(copy_of(pupil.values, {pupil.size, pupil.size}), "norm"_a = "forward");
+            inverse(array_from(pupil.values, {pupil.size, pupil.size}), "norm"_a = "forward");
         const std::complex<double>* from = sums.data();
         for (std::size_t y = 0; y < size; ++y)
             for (std::size_t x = 0; x < size; ++x)
@@ -140,7 +140,7 @@ void bind_psf(py::module_& m) {
                         "points (docs/psf.md).");
     def_value(psf);
     psf.def_property_readonly(
-           "values", [](const Psf& p) { return copy_of(p.values, {p.size, p.size}); },
+           "values", [](const Psf& p) { return array_from(p.values, {p.size, p.size}); },
            "(size, size): share of the light that passes the lens, per um^2; their sum times pitch_um^2 is 1 over the "
            "whole\nfilm. Rows from the lowest y, columns from the lowest x.")
         .def_readonly("pitch_um", &Psf::pitch_um, "From point to point.")

@@ -89,7 +89,7 @@ py::dict render(const Assembly& scene, const Camera& camera, const RenderSetting
         const RenderTurn turn;
         image = take_picture(session, scene, camera, settings, report);
     }
-    return picture_from(image, settings.layers);
+    return picture_from(std::move(image), settings.layers);
 }
 
 py::array_t<std::uint8_t> develop(const InputArray<float>& exposure, double iso, const std::string& tone) {
@@ -185,7 +185,7 @@ void bind_render(py::module_& m) {
         "_metered_exposure",
         [](const py::array_t<float, py::array::c_style | py::array::forcecast>& exposure) {
             Image image;
-            image.exposure.assign(exposure.data(), exposure.data() + exposure.size());
+            image.exposure = PictureFloats({exposure.data(), static_cast<std::size_t>(exposure.size())});
             return metered_exposure(image);
         },
         "exposure"_a);

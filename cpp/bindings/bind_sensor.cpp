@@ -151,7 +151,7 @@ py::array_t<std::uint16_t> expose(const Sensor& sensor, const InputArray<float>&
 }
 
 py::array_t<double> matrix_array(const SensorMatrix& m) {
-    return copy_of(std::vector<double>(m.begin(), m.end()), {3, 3});
+    return array_from(std::vector<double>(m.begin(), m.end()), {3, 3});
 }
 
 Sensor with_changes(Sensor sensor, const std::optional<std::string>& name, std::optional<double> pixel_pitch_um,
@@ -364,7 +364,7 @@ void bind_sensor(py::module_& m) {
         "_sensor_color",
         [](const Sensor& sensor, const std::string& illuminant) {
             const SensorColor color = sensor_color(sensor, illuminant_from(illuminant));
-            return py::make_tuple(copy_of(std::vector<double>(color.white.begin(), color.white.end()), {3}),
+            return py::make_tuple(array_from(std::vector<double>(color.white.begin(), color.white.end()), {3}),
                                   matrix_array(color.camera_from_xyz), matrix_array(color.film_from_balanced),
                                   matrix_array(color.d50_from_balanced));
         },

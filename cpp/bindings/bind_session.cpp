@@ -68,15 +68,15 @@ public:
             const Unlocked unlocked;
             return session_->picture(heed_signals);
         }();
-        return picture_from(image, settings_.layers);
+        return picture_from(std::move(image), settings_.layers);
     }
 
     py::array_t<std::int64_t> samples() {
-        const SampleCounts samples = [&] {
+        SampleCounts samples = [&] {
             const Unlocked unlocked;
             return session_->sample_counts(heed_signals);
         }();
-        return copy_of(samples.counts, {samples.height, samples.width});
+        return array_from(std::move(samples.counts), {samples.height, samples.width});
     }
 
     void cancel() { session_->cancel(); }

@@ -7,6 +7,6 @@ namespace realcam::bindings {
 
 /// What the core says of an Image, by the names of its fields: a dict of the layers that were asked for among them, and
 /// the names of objects and materials by their ids.
-pybind11::dict picture_from(const Image& image, LayerSet layers);
+pybind11::dict picture_from(Image image, LayerSet layers);
 
 }  // namespace realcam::bindings

@@ -18,6 +18,7 @@
 #include "device_renderer.hpp"
 #include "host_scene.hpp"
 #include "on_device.hpp"
+#include "picture_pool.hpp"
 #include "share_array.hpp"
 
 namespace realcam {
@@ -150,8 +151,8 @@ private:
             image.width = width();
             image.height = height();
             const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
-            image.exposure.resize(3 * pixels);
-            image.depth.resize(pixels);
+            image.exposure = exposures_.take(3 * pixels);
+            image.depth = depths_.take(pixels);
             front().develop(camera().exposure_time_s, image.exposure.data(), image.depth.data());
         } else {
             image = developed(film_, width(), height(), camera().exposure_time_s, front().download_splats().view());
@@ -317,6 +318,7 @@ private:
     std::string name_;
     std::vector<OnDevice<DeviceRenderer>> renderers_;
     FramePool pool_;
+    PicturePool exposures_, depths_;
     LastSetup last_setup_;
     std::shared_ptr<const CameraSetup> setup_;
     TracedLights traced_lights_;

@@ -223,9 +223,9 @@ void denoise(Image& image, LayerSet wanted, Denoiser& denoiser, const KeepGoing&
         const auto is_it = [&](const LayerImage& other) { return other.layer == layer; };
         return std::find_if(image.layers.begin(), image.layers.end(), is_it)->values.data();
     };
-    image.exposure = denoiser.denoised(
+    image.exposure = PictureFloats(denoiser.denoised(
         {image.width, image.height, image.exposure.data(), values_of(Layer::albedo), values_of(Layer::normal)},
-        DenoiseQuality::high, keep_going);
+        DenoiseQuality::high, keep_going));
     std::erase_if(image.layers,
                   [&](const LayerImage& layer) { return layer.layer == Layer::variance || !wanted.has(layer.layer); });
 }

@@ -9,7 +9,7 @@
 namespace realcam {
 
 AdaptiveSampling::AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso,
-                                   const std::vector<float>& exposure, const std::vector<std::int64_t>& samples)
+                                   std::span<const float> exposure, const std::vector<std::int64_t>& samples)
     : width_(width),
       height_(height),
       goal_(goal),
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> AdaptiveSampling::next(double most) {
     return counts;
 }
 
-void AdaptiveSampling::add(const std::vector<float>& exposure, const std::vector<std::uint32_t>& counts) {
+void AdaptiveSampling::add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts) {
     std::vector<double> difference(halves_.size()), mean(halves_.size()), taken(halves_.size());
     for_pixels([&](std::size_t pixel, std::size_t half) {
         for (std::size_t c = 3 * pixel; c < 3 * pixel + 3; ++c) {

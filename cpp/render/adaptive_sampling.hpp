@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "noise_goal.hpp"
@@ -25,14 +26,14 @@ public:
     static constexpr int kTileSide = 16;
 
     /// `exposure`: of the picture so far, 3 per pixel, lux seconds; `samples`: of each pixel.
-    AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso, const std::vector<float>& exposure,
+    AdaptiveSampling(int width, int height, const NoiseGoal& goal, double iso, std::span<const float> exposure,
                      const std::vector<std::int64_t>& samples);
 
     /// Samples that each pixel is to get more; all 0: it is finished. `most`: of all pixels together, about.
     std::vector<std::uint32_t> next(double most);
 
     /// Takes in the picture with these samples.
-    void add(const std::vector<float>& exposure, const std::vector<std::uint32_t>& counts);
+    void add(std::span<const float> exposure, const std::vector<std::uint32_t>& counts);
 
     ReachedNoise reached() const;
 

@@ -8,13 +8,13 @@ Image developed(const FilmSums& film, int width, int height, double exposure_tim
     Image image;
     image.width = width;
     image.height = height;
-    image.exposure.reserve(3 * film.size());
-    image.depth.reserve(film.size());
+    image.exposure = PictureFloats(3 * film.size());
+    image.depth = PictureFloats(film.size());
     for (std::size_t i = 0; i < film.size(); ++i) {
         for (int channel = 0; channel < 3; ++channel)
-            image.exposure.push_back(
-                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel)));
-        image.depth.push_back(film[i].mean_depth());
+            image.exposure[3 * i + static_cast<std::size_t>(channel)] =
+                film[i].exposure(channel, exposure_time_s, splatted.irradiance(static_cast<std::int64_t>(i), channel));
+        image.depth[i] = film[i].mean_depth();
     }
     return image;
 }

@@ -5,6 +5,7 @@
 
 #include "../platform.hpp"
 #include "layers.hpp"
+#include "picture_floats.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -22,9 +23,9 @@ struct RenderStats {
 /// A noiseless exposure, as it lies on the film.
 struct Image {
     int width = 0, height = 0;
-    std::vector<float> exposure;  ///< height * width * 3, lux seconds, linear Rec. 709
-    std::vector<float> depth;  ///< height * width, metres along the axis from the film; below 0 behind it, which a
-                               ///< fisheye may see; infinite: nothing there
+    PictureFloats exposure;  ///< height * width * 3, lux seconds, linear Rec. 709
+    PictureFloats depth;  ///< height * width, metres along the axis from the film; below 0 behind it, which a
+                          ///< fisheye may see; infinite: nothing there
     std::vector<LayerImage> layers;  ///< those that were asked for, but for depth
     IdNames object_names, material_names;  ///< of the ids in layers; empty where there are none
     std::int64_t spp = 0;  ///< samples that were asked for, per pixel; where noise was, their mean

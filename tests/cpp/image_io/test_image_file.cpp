@@ -44,13 +44,13 @@ Image test_image() {
     Image image;
     image.width = 5;
     image.height = 150;
-    image.exposure.assign(3 * 5 * 150, 0.1f);
-    image.depth.assign(5 * 150, 2.5f);
+    image.exposure = PictureFloats(std::vector<float>(3 * 5 * 150, 0.1f));
+    image.depth = PictureFloats(std::vector<float>(5 * 150, 2.5f));
     image.exposure[0] = 10.0f;
     image.exposure[1] = 0.0f;
     image.exposure[2] = std::numeric_limits<float>::quiet_NaN();
     image.exposure[3 * (5 * 149 + 4)] = 0.25f;
-    image.depth.back() = std::numeric_limits<float>::infinity();
+    image.depth[5 * 150 - 1] = std::numeric_limits<float>::infinity();
     return image;
 }
 

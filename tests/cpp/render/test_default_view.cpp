@@ -29,7 +29,7 @@ Camera camera_with(const std::string& lens) {
 
 Image grey(int count, float exposure) {
     Image image;
-    image.exposure.assign(3 * static_cast<std::size_t>(count), exposure);
+    image.exposure = PictureFloats(std::vector<float>(3 * static_cast<std::size_t>(count), exposure));
     return image;
 }
 

@@ -248,9 +248,10 @@ TEST_CASE("each pixel is developed with its own number of samples") {
     film[0] = {{2, 4, 6}, {}, 9, 3, 4};
     film[1] = {{2, 4, 6}, {}, 0, 0, 2};
     const Image image = developed(film, 3, 1, 2);
-    CHECK(image.exposure == std::vector<float>{1, 2, 3, 2, 4, 6, 0, 0, 0});
+    CHECK(std::vector<float>(image.exposure.begin(), image.exposure.end()) ==
+          std::vector<float>{1, 2, 3, 2, 4, 6, 0, 0, 0});
     constexpr float none = std::numeric_limits<float>::infinity();
-    CHECK(image.depth == std::vector<float>{3, none, none});
+    CHECK(std::vector<float>(image.depth.begin(), image.depth.end()) == std::vector<float>{3, none, none});
     CHECK(samples_of(film) == std::vector<std::int64_t>{4, 2, 0});
     // Exposures of 1 to 6 times middle grey, 10 / ISO lux seconds (ISO 12232): 0.18 to 1.08 of white, by IEC 61966-2-1.
     CHECK(developed_codes(film, 2, 10, ToneCurve::linear) ==

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "../render/picture_floats.hpp"
+#include "pinned_array.hpp"
+
+namespace realcam {
+
+/// Memory for pictures that is used again when nobody holds it any more. Pinning it takes longer than the copy of one
+/// picture, so it is pinned from the second picture of a size on.
+class PicturePool {
+public:
+    PictureFloats take(std::size_t size) {
+        if (size != size_) {
+            size_ = size;
+            arrays_.clear();
+            return PictureFloats(size);
+        }
+        for (const auto& array : arrays_)
+            if (array.use_count() == 1) return floats_of(array);
+        if (arrays_.size() == kMost) return PictureFloats(size);
+        return floats_of(arrays_.emplace_back(std::make_shared<PinnedArray<float>>(size)));
+    }
+
+private:
+    /// Who keeps many pictures does not keep them in memory that cannot be paged out.
+    static constexpr std::size_t kMost = 3;
+
+    static PictureFloats floats_of(const std::shared_ptr<PinnedArray<float>>& array) {
+        return {std::shared_ptr<float[]>(array, array->data()), array->size()};
+    }
+
+    std::vector<std::shared_ptr<PinnedArray<float>>> arrays_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace realcam
