@@ -19,7 +19,7 @@ struct GhostSum {
 inline double ghost_units_per_lux(const SceneView& scene, const CameraView& camera, const GhostView& ghosts) {
     const LightReceiver middle{front_vertex(camera, camera.front_vertex_m), {0, 0, 0}};
     double light = scene.has_environment ? 4 * static_cast<double>(environment_importance(scene)) : 0.0;
-    if (scene.light_node_count > 0) light += static_cast<double>(light_importance(scene.light_nodes[0], middle));
+    if (scene.light_node_count > 0) light += static_cast<double>(most_illuminance(scene.light_nodes[0], middle));
     for (int i = 0; i < scene.sun_count; ++i) light += static_cast<double>(luminance(scene.suns[i].illuminance));
     const double pixel_mm2 = 4.0 * static_cast<double>(camera.film_half_width) *
                              static_cast<double>(camera.film_half_height) / camera.width / camera.height;

@@ -90,7 +90,7 @@ public:
                 const LightNode all = scene.light_nodes[0];
                 REALCAM_LANES
                 for (int i = 0; i < places; ++i)
-                    local[i] = light_importance(all, {surfaces.position[i], surfaces.normal[i]});
+                    local[i] = most_illuminance(all, {surfaces.position[i], surfaces.normal[i]});
             }
             for (int k = 0; k < scene.sun_count; ++k) {
                 const SunLight sun = scene.suns[k];

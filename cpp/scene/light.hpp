@@ -165,7 +165,7 @@ REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, float local, float
 REALCAM_INLINE LightKinds light_kinds(const SceneView& scene, LightReceiver receiver) {
     float local = 0.0f, suns = 0.0f;
     if (count_light_kinds(scene) > 1) {
-        if (scene.light_node_count > 0) local = light_importance(scene.light_nodes[0], receiver);
+        if (scene.light_node_count > 0) local = most_illuminance(scene.light_nodes[0], receiver);
         for (int i = 0; i < scene.sun_count; ++i) suns += sun_importance(scene.suns[i], receiver.normal);
     }
     return light_kinds(scene, local, suns);

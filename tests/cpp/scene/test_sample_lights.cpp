@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "bare_scene.hpp"
@@ -130,6 +131,60 @@ TEST_CASE("sample_area_light follows its density over every triangle") {
                 CHECK(!(sample.reach > 1));
                 if (from.z <= 0) CHECK(sample.irradiance.r == 0);  // on the lights and behind them
             }
+}
+
+TEST_CASE("the mean cosine of a cone is near its integral") {
+    for (int t = 0; t <= 180; t += 4)
+        for (int s = 2; s <= 180; s += 4) {
+            CAPTURE(t);
+            CAPTURE(s);
+            const double theta = t * std::numbers::pi / 180, spread = s * std::numbers::pi / 180;
+            constexpr int kSteps = 100;
+            double sum = 0;
+            for (int i = 0; i < kSteps; ++i) {
+                const double z = 1 + (i + 0.5) / kSteps * (std::cos(spread) - 1), r = std::sqrt(1 - z * z);
+                for (int k = 0; k < kSteps; ++k)
+                    sum += std::max(0.0, z * std::cos(theta) +
+                                             r * std::cos((k + 0.5) / kSteps * std::numbers::pi) * std::sin(theta));
+            }
+            const double mean = sum / (kSteps * kSteps);
+            const float found = mean_cosine(static_cast<float>(std::cos(theta)), static_cast<float>(std::cos(spread)));
+            CHECK(static_cast<double>(found) == doctest::Approx(mean).scale(1).epsilon(0.03));
+        }
+}
+
+TEST_CASE("a lamp's importance is its illuminance, and its bound above that") {
+    // An octahedron from afar.
+    std::vector<Lamp> faces;
+    const Vec3d axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (const double x : {-1.0, 1.0})
+        for (const double y : {-1.0, 1.0})
+            for (const double z : {-1.0, 1.0}) {
+                const Vec3d a = x * axes[0], b = y * axes[1], c = z * axes[2];
+                faces.push_back(x * y * z > 0 ? Lamp{a, b, c, 1.0f} : Lamp{a, c, b, 1.0f});
+            }
+    const Scene scene = with_lamps(faces);
+    const RenderSpaceScene placed(scene, {0, 0, 0});
+    const SceneView view = placed.view();
+    Uniform uniform(5);
+    for (int i = 0; i < 100; ++i) {
+        const Vec3f direction = sample_sphere(uniform.pair());
+        const LightReceiver receiver{30.0f * direction, sample_sphere(uniform.pair())};
+        double illuminance = 0;
+        for (int k = 0; k < view.area_count; ++k) {
+            const AreaLight& face = view.areas[k];
+            const Vec3f way = face.corner + (1.0f / 3.0f) * (face.edge_u + face.edge_v) - receiver.position;
+            const float squared = dot(way, way), emitted = -dot(face.normal, way), received = dot(receiver.normal, way);
+            if (emitted > 0 && received > 0)
+                illuminance += static_cast<double>(luminance(face.radiance) * face.area * emitted * received) /
+                               static_cast<double>(squared * squared);
+        }
+        const LightNode& all = view.light_nodes[0];
+        // As if it were a ball, whose silhouette is a quarter of the area, sqrt(3). Its own are from sqrt(2) to 2.
+        const double of_ball = static_cast<double>(luminance(view.areas[0].radiance)) * std::sqrt(3.0) / 900;
+        CHECK(std::fabs(static_cast<double>(light_importance(all, receiver)) - illuminance) < 0.22 * of_ball);
+        CHECK(static_cast<double>(most_illuminance(all, receiver)) >= illuminance);
+    }
 }
 
 TEST_CASE("a light is chosen from the tree with the probability that is said of it") {
