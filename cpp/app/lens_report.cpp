@@ -9,6 +9,7 @@
 
 #include "../camera/field_of_view.hpp"
 #include "../io/text/json_writer.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../optics/analysis/transmission.hpp"
 #include "../optics/coating/coated_faces.hpp"
 #include "../optics/lens/focus.hpp"
@@ -107,7 +108,7 @@ std::string table(const LensSystem& lens) {
 /// Full angles across width, height and diagonal, degrees; NaN where no light reaches that far.
 std::array<double, 3> field_of_view(const LensSystem& lens) {
     const auto full = [&](double size) { return 2 * field_angle(lens, size / 2) * 180 / std::numbers::pi; };
-    return {full(lens.film_width), full(lens.film_height), full(std::hypot(lens.film_width, lens.film_height))};
+    return {full(lens.film_width), full(lens.film_height), full(hypotenuse(lens.film_width, lens.film_height))};
 }
 
 /// What is assumed of surfaces of which the lens does not say how they are coated; empty where it says all.

@@ -9,6 +9,7 @@
 #include "../devices/devices.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../embree/kernels.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../math/random.hpp"
 #include "../optics/pupil/pupil.hpp"
 #include "bindings.hpp"
@@ -26,7 +27,7 @@ using Block = LensRays<float, kLanes>;
 
 /// Rays from all over the film into the pupil, as a picture sends them.
 std::vector<Block> rays_of_a_frame(const LensSystem& lens) {
-    const Pupil pupil(lens, 0.5 * std::hypot(lens.film_width, lens.film_height), fast_pupil_tracer());
+    const Pupil pupil(lens, 0.5 * hypotenuse(lens.film_width, lens.film_height), fast_pupil_tracer());
     std::vector<Block> blocks(kBlocks);
     for (std::size_t b = 0; b < blocks.size(); ++b)
         for (int i = 0; i < kLanes; ++i) {

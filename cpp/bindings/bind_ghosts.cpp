@@ -5,6 +5,7 @@
 
 #include "../camera/ghost_tables.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../optics/ghost/ghost.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -31,7 +32,7 @@ Ghost ghost_of(const LensSystem& lens, GhostPair pair, double wavelength_nm, std
 std::vector<Ghost> ghosts_of(const LensSystem& lens, double film_reflectance) {
     if (!(film_reflectance >= 0 && film_reflectance <= 1))
         throw InputError("film_reflectance must be a share from 0 to 1");
-    const double film_radius = 0.5 * std::hypot(lens.film_width, lens.film_height);
+    const double film_radius = 0.5 * hypotenuse(lens.film_width, lens.film_height);
     const GhostTables tables(lens, film_radius, {true, film_reflectance, 0}, fast_pupil_tracer(), nullptr);
     std::vector<Ghost> ghosts;
     for (std::size_t k = 0; k < tables.pairs().size(); ++k)

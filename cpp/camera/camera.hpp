@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "../math/affine.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../math/motion.hpp"
 #include "../optics/lens/paraxial.hpp"
 #include "camera_view.hpp"
@@ -21,7 +22,7 @@ struct Film {
 
     /// Distance of the film's farthest point from the axis, mm.
     double radius_mm() const {
-        return std::hypot(0.5 * width_mm + std::fabs(shift_mm.x), 0.5 * height_mm + std::fabs(shift_mm.y));
+        return hypotenuse(0.5 * width_mm + std::fabs(shift_mm.x), 0.5 * height_mm + std::fabs(shift_mm.y));
     }
     /// Converts column and row, counted from the picture's upper left corner, to mm from the axis, right and up as the
     /// picture shows it; and back.

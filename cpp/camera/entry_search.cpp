@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "../math/hypotenuse.hpp"
 #include "../optics/analysis/film_bundle.hpp"
 #include "../optics/trace/open_iris.hpp"
 
@@ -10,7 +11,7 @@ namespace realcam {
 namespace entry_search_detail {
 
 double reach_of(const Surface& surface) {
-    return 1.02 * std::hypot(surface.clear_semi_diameter, surface.sag(surface.clear_semi_diameter));
+    return 1.02 * hypotenuse(surface.clear_semi_diameter, surface.sag(surface.clear_semi_diameter));
 }
 
 }  // namespace entry_search_detail
@@ -35,7 +36,7 @@ std::vector<FoundRay> EntrySearch::along(const LensSystem& lens, const std::vect
 
 EntrySearch::Rectangle EntrySearch::all_directions(int ring) const {
     const double r = radius_of(ring);
-    const auto cosine_to = [&](double away) { return away / std::hypot(away, film_distance); };
+    const auto cosine_to = [&](double away) { return away / hypotenuse(away, film_distance); };
     return {cosine_to(-rear_reach - r), cosine_to(rear_reach - r), cosine_to(rear_reach)};
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "../math/hypotenuse.hpp"
+
 namespace realcam {
 
 double picture_angle(const Camera& camera, double image_height_mm) {
@@ -30,7 +32,7 @@ FieldOfView field_of_view(const Camera& camera) {
     };
     const double beyond = (x + right) * (x - right) + (y + up) * (y - up);
     return {between(x + right, x - right), between(y + up, y - up),
-            between(std::hypot(x + right, y + up), std::copysign(std::hypot(x - right, y - up), beyond))};
+            between(hypotenuse(x + right, y + up), std::copysign(hypotenuse(x - right, y - up), beyond))};
 }
 
 std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera) {

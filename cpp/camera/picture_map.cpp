@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../math/hypotenuse.hpp"
 #include "middle_rays.hpp"
 
 namespace realcam {
@@ -16,7 +17,7 @@ PictureMap::PictureMap(const CameraView& camera)
     static_cast<CameraPlacement&>(along) = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     along.keys = nullptr;
     along.key_count = 0;
-    const float corner = std::hypot(camera.film_half_width + std::fabs(camera.film_middle.x),
+    const float corner = hypotenuse(camera.film_half_width + std::fabs(camera.film_middle.x),
                                     camera.film_half_height + std::fabs(camera.film_middle.y));
     along.film_middle = {0, 0};
     along.width = 2 * kRadii;
@@ -39,7 +40,7 @@ PictureMap::PictureMap(const CameraView& camera)
 }
 
 std::optional<Vec2<double>> PictureMap::pixel_of(Vec3d point, bool is_direction) const {
-    const double radius = std::hypot(point.x, point.y);
+    const double radius = hypotenuse(point.x, point.y);
     const std::optional<double> film = film_radius(radius, point.z, is_direction);
     if (!film) return std::nullopt;
     const double share = radius > 0 ? *film / radius : 0;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "../math/hypotenuse.hpp"
+
 namespace realcam {
 
 Projection::Projection(const Camera& camera, std::shared_ptr<const SightLines> lines)
@@ -35,7 +37,7 @@ PixelRay Projection::ray_of(Vec2<double> pixel) const {
     const Affine<double>& place = places_[places_.size() == 1 ? 0 : static_cast<std::size_t>(row_of(pixel.y))];
     // Seen from behind the camera, as the picture shows it.
     const auto [x, y] = film_.place_of(pixel);
-    const double radius = std::hypot(x, y);
+    const double radius = hypotenuse(x, y);
     if (!(radius <= lines_->reach())) return {kNowhere3, kNowhere3};
     const std::optional<SightLine> line = lines_->at(radius);
     if (!line) return {kNowhere3, kNowhere3};
@@ -49,7 +51,7 @@ PixelRay Projection::ray_of(Vec2<double> pixel) const {
 
 ProjectedPoint Projection::seen_from(const Affine<double>& place, Vec3d point_m) const {
     const Vec3d from = 1000.0 * (point_m - place.origin);
-    const double x = dot(from, place.x), y = dot(from, place.y), away = std::hypot(x, y);
+    const double x = dot(from, place.x), y = dot(from, place.y), away = hypotenuse(x, y);
     const double ahead = -dot(from, place.z) - lines_->reference();
     const std::optional<double> radius = lines_->radius_towards({away, ahead});
     if (!radius) {

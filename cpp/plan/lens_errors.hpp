@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../camera/picture_codes.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../optics/trace/lens_path.hpp"
 #include "plan.hpp"
 #include "sampled_bundles.hpp"
@@ -56,7 +57,7 @@ inline void raise(double& most, double value) {
 inline void compare(const BundleSpot& full, const BundleSpot& other, double px_per_mm, ModelError& error) {
     const double smaller = px_per_mm * std::min(full.diameter, other.diameter);
     const double visible = px_per_mm / std::max(1.0, smaller / kWideDisc);
-    raise(error.moved_px, visible * std::hypot(full.x - other.x, full.y - other.y));
+    raise(error.moved_px, visible * hypotenuse(full.x - other.x, full.y - other.y));
     raise(error.blur_px, blur_between(px_per_mm * full.diameter, px_per_mm * other.diameter));
 }
 
@@ -118,7 +119,7 @@ inline LensErrors lens_errors(const CameraView& full, const CameraView& ideal, c
         // The thin lens at the place that shows in the plane in focus what this one shows here.
         const BundleSpot there = spot_of(traced, full.circle, sharp), ideally = spot_of(thin, full.circle, sharp);
         const auto scale = static_cast<float>(
-            film.x != 0 || film.y != 0 ? std::hypot(there.x, there.y) / std::hypot(ideally.x, ideally.y) : 1.0);
+            film.x != 0 || film.y != 0 ? hypotenuse(there.x, there.y) / hypotenuse(ideally.x, ideally.y) : 1.0);
         const SampledBundle mapped = ideal_bundle([&](Vec2f u) {
             return thin_lens_ray(ideal, {scale * film.x, scale * film.y}, u, ideal.thin.pupil_radius);
         });

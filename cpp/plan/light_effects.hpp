@@ -9,6 +9,7 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/picture_codes.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../optics/analysis/transmission.hpp"
 #include "../optics/ghost/ghost.hpp"
 #include "../optics/lens/axial_share.hpp"
@@ -124,7 +125,7 @@ public:
             most =
                 std::min(most, rim(meeting.surface) / std::fabs(meeting.of_height * height + meeting.of_slope * slope));
         const double tangent = most * std::fabs(path_.of_height.slope * height + path_.of_slope.slope * slope);
-        return {tangent / std::hypot(tangent, 1), most * std::fabs(slope)};
+        return {tangent / hypotenuse(tangent, 1.0), most * std::fabs(slope)};
     }
 
 private:
@@ -194,7 +195,7 @@ inline std::optional<GhostDisc> ghost_disc(const Camera& camera, const SceneFact
                                            const SeenLight& light, double share, double pixel) {
     const double across = light.from.x / -light.from.z, down = light.from.y / -light.from.z;
     // On the axis too the place of the ghost moves with the slope, by as much as close to it.
-    const double slope = std::max(std::hypot(across, down), 1e-6);
+    const double slope = std::max(hypotenuse(across, down), 1e-6);
     const std::optional<GhostBundle::Spot> spot = bundle.spot_of(slope);
     if (!spot) return {};
     const double chief = spot->middle / slope;

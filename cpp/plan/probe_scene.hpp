@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "../camera/pupil_sampling.hpp"
+#include "../math/hypotenuse.hpp"
 #include "../render/take_picture.hpp"
 #include "plan.hpp"
 #include "scene_facts.hpp"
@@ -143,7 +144,7 @@ inline SceneFacts probe_scene(Session& session, const Assembly& scene, Camera ca
         double motion = 0;
         if (moves) {
             const float* at = &image.layers[1].values[2 * i];
-            motion = std::hypot(static_cast<double>(at[0]), static_cast<double>(at[1])) * columns / film.width;
+            motion = hypotenuse(static_cast<double>(at[0]), static_cast<double>(at[1])) * columns / film.width;
         }
         facts.tiles.push_back({1000 * depth - vertex_mm, value, motion});
         sees_anything |= std::isfinite(depth) || value > 0;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../math/hypotenuse.hpp"
 #include "../math/vec3.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -26,7 +27,7 @@ struct WideView {
             for (int x = 0; x < side; ++x) {
                 const double scale = 2 * half_slope / side, away = 0.5 * (side - 1);
                 // Those that it just touches count, so that there is always one.
-                if (std::hypot(x - away, y - away) * scale > slope + scale) continue;
+                if (hypotenuse(x - away, y - away) * scale > slope + scale) continue;
                 sum += values[static_cast<std::size_t>(y * side + x)];
                 ++count;
             }

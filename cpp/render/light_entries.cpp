@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../math/hypotenuse.hpp"
 #include "../math/random.hpp"
 #include "splat_ghosts.hpp"
 #include "traced_light_weight.hpp"
@@ -16,7 +17,7 @@ constexpr int kEnoughHits = 32;
 constexpr int kMostRounds = 10;
 
 float half_tangent_of(Vec3f from) {
-    return std::hypot(from.x, from.y) / (1 - from.z);
+    return hypotenuse(from.x, from.y) / (1 - from.z);
 }
 
 /// In the lens's own axes.
@@ -106,14 +107,14 @@ std::optional<FoundLight> LightEntries::of(const LightGroup& group) const {
     }
     if (!(dot(middle, middle) > 0) || !std::isfinite(dot(middle, middle))) return std::nullopt;
     light.from = normalized(middle);
-    const float sine = std::hypot(light.from.x, light.from.y);
+    const float sine = hypotenuse(light.from.x, light.from.y);
     const Vec2f away = sine > 0 ? Vec2f{light.from.x / sine, light.from.y / sine} : Vec2f{1, 0};
     light.along = {-light.from.z * away.x, -light.from.z * away.y, sine};
     // A place of the front that is nearer to the light may see it in the field where the front's middle does not.
     Vec3f nearest = middle;
     if (light.kind != TracedLightKind::sun) {
         nearest = (1.0f / static_cast<float>(places.size())) * middle;
-        const float beside = std::hypot(nearest.x, nearest.y);
+        const float beside = hypotenuse(nearest.x, nearest.y);
         nearest = {std::max(0.0f, beside - front_reach_), 0, nearest.z};
     }
     if (!(half_tangent_of(normalized(nearest)) < 1.5f * pupil_entries_.largest_half_tangent())) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "../../math/hypotenuse.hpp"
 #include "../../optics/lens/best_focus.hpp"
 #include "../../optics/lens/focus.hpp"
 #include "../../optics/lens/paraxial.hpp"
@@ -198,7 +199,7 @@ private:
 
     /// How far from the axis light may be at a plane.
     double reach_of_light(const LensSystem& lens, std::size_t plane) const {
-        const double film = 0.5 * std::hypot(lens.film_width, lens.film_height);
+        const double film = 0.5 * hypotenuse(lens.film_width, lens.film_height);
         const auto rim = [&](std::size_t i) { return lens.surfaces[i].clear_semi_diameter; };
         std::size_t before = plane, behind = plane + 1;
         while (before > 0 && is_open_plane(before - 1)) --before;
@@ -221,7 +222,7 @@ private:
                 height, largest_image_height(states_[k].lens, states_[k].object_distance, p_.field_kind, p_.fields));
         const double focal = std::fabs(first_order(states_.front().lens, lens_.wavelength_nm).effective_focal_length);
         if (!(height > 0) || !std::isfinite(height)) {
-            height = std::isfinite(focal) ? 0.5 * focal : std::hypot(18.0, 12.0);
+            height = std::isfinite(focal) ? 0.5 * focal : hypotenuse(18.0, 12.0);
             warn("states no field: the film's diagonal is taken to be the focal length");
         }
         for (auto& [state, distance] : states_) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../math/hypotenuse.hpp"
 #include "../../optics/analysis/field_rays.hpp"
 #include "../../optics/analysis/ray_aiming.hpp"
 #include "../../optics/analysis/trace_path.hpp"
@@ -17,7 +18,7 @@ namespace {
 constexpr double kMargin = 1 + 1e-9;
 
 double size_of(const PrescriptionField& field) {
-    return std::hypot(field.x, field.y);
+    return hypotenuse(field.x, field.y);
 }
 
 /// The angle at which the chief ray of a field comes, by first-order optics.
@@ -96,7 +97,7 @@ RayRims rims_of_rays(const LensSystem& lens, double object_distance, FieldKind k
                     int status, surface;
                     trace_rays_of<1>(paths[i].request(1, origin, direction, {at, out, &length, &status, &surface}), 0);
                     if (status != 0) break;
-                    result.semi_diameters[i] = std::max(result.semi_diameters[i], kMargin * std::hypot(at[0], at[1]));
+                    result.semi_diameters[i] = std::max(result.semi_diameters[i], kMargin * hypotenuse(at[0], at[1]));
                 }
             }
         } catch (const InputError&) {  // no chief ray

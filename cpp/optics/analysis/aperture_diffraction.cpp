@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "../../math/hypotenuse.hpp"
+
 namespace realcam {
 
 namespace aperture_diffraction_detail {
@@ -47,7 +49,7 @@ struct Side {
     bool begins_at_corner = false, ends_at_corner = false;
 
     Side(Point from, Point to) : from(from), to(to), angle(normal_angle(from, to)) {}
-    double length() const { return std::hypot(to.x - from.x, to.y - from.y); }
+    double length() const { return hypotenuse(to.x - from.x, to.y - from.y); }
 };
 
 /// The sides of a polygon. Its points lie beside the corners of the edge, of which it cuts off a little: there its

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../math/hypotenuse.hpp"
+
 namespace realcam {
 
 PlaneWaves with_mirror_images(const PlaneWaves& light) {
@@ -20,7 +22,7 @@ double largest_phase(const PointBundle& bundle, Vec2<double> centre, double half
     const auto part = [&](double low, double high, double from_chief, double spot) {
         return 0.5 * (high - low) * (std::fabs(from_chief) + half_window + spot);
     };
-    return bundle.wave_number * std::hypot(part(bundle.slope_low.x, bundle.slope_high.x, centre.x, bundle.spot.x),
+    return bundle.wave_number * hypotenuse(part(bundle.slope_low.x, bundle.slope_high.x, centre.x, bundle.spot.x),
                                            part(bundle.slope_low.y, bundle.slope_high.y, centre.y, bundle.spot.y));
 }
 

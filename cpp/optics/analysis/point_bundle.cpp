@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../math/hypotenuse.hpp"
 #include "../prescription/glass_resonances.hpp"
 #include "wavefront.hpp"
 
@@ -87,7 +88,7 @@ void PointBundle::measure(const FieldRays& rays, int look) {
     centroid = {centroid.x / weight, centroid.y / weight};
     middle = {0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
     // What lies beyond the outermost rays: half a cell on either side, and a hair where all are in one line.
-    const double beyond = 1 + 2.0 / look, hair = 1e-3 * std::hypot(high.x - low.x, high.y - low.y);
+    const double beyond = 1 + 2.0 / look, hair = 1e-3 * hypotenuse(high.x - low.x, high.y - low.y);
     if (mirrored) middle.x = centroid.x = 0;
     reach = {beyond * 0.5 * (high.x - low.x) + hair, beyond * 0.5 * (high.y - low.y) + hair};
 }

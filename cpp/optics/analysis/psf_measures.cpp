@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../math/hypotenuse.hpp"
+
 namespace realcam {
 
 double energy_inside(const Psf& psf, double radius_um, Vec2<double> about_um) {
@@ -12,12 +14,12 @@ double energy_inside(const Psf& psf, double radius_um, Vec2<double> about_um) {
     for (int row = 0; row < psf.size; ++row)
         for (int column = 0; column < psf.size; ++column) {
             const double x = column - psf.size / 2 - about_um.x / psf.pitch_um;
-            const double y = row - psf.size / 2 - about_um.y / psf.pitch_um, distance = std::hypot(x, y);
+            const double y = row - psf.size / 2 - about_um.y / psf.pitch_um, distance = hypotenuse(x, y);
             if (distance > reach + 0.8) continue;
             int inside = kParts * kParts;
             for (int i = 0; distance > reach - 0.8 && i < kParts * kParts; ++i)
                 inside -=
-                    std::hypot(x + (i % kParts + 0.5) / kParts - 0.5, y + (i / kParts + 0.5) / kParts - 0.5) > reach;
+                    hypotenuse(x + (i % kParts + 0.5) / kParts - 0.5, y + (i / kParts + 0.5) / kParts - 0.5) > reach;
             sum += psf.values[static_cast<std::size_t>(row * psf.size + column)] * inside / (kParts * kParts);
         }
     return sum * psf.pitch_um * psf.pitch_um;

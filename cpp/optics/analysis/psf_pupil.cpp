@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../math/hypotenuse.hpp"
+
 namespace realcam {
 
 namespace {
@@ -19,7 +21,7 @@ std::optional<Cell> cell_with(const PointBundle& bundle, Vec2<double> slope, Loc
         const std::optional<LocalWave> next = local_wave(bundle, near.entry_at(slope));
         if (!next) return {};
         near = *next;
-        if (std::hypot(near.wave.slope.x - slope.x, near.wave.slope.y - slope.y) < tolerance) {
+        if (hypotenuse(near.wave.slope.x - slope.x, near.wave.slope.y - slope.y) < tolerance) {
             const PointBundle::Entry entries[1] = {near.entry};
             bool passes[1];
             bundle.pass(entries, passes);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../../math/hypotenuse.hpp"
 #include "../lens/paraxial.hpp"
 #include "../pupil/pupil_pattern.hpp"
 
@@ -48,7 +49,7 @@ AimedRay RayAimer::operator()(Vec2<double> place) const {
 }
 
 Vec2<double> RayAimer::off_the_edge(Vec2<double> place) const {
-    const double share = std::hypot(place.x, place.y) / reach_;
+    const double share = hypotenuse(place.x, place.y) / reach_;
     const double inwards = std::fabs(share - 1) < kEdge ? (1 - kEdge) / share : 1.0;
     return {inwards * place.x, inwards * place.y};
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "../../math/hypotenuse.hpp"
 #include "../trace/lens_path.hpp"
 #include "aim_request.hpp"
 #include "object_point.hpp"
@@ -67,7 +68,7 @@ private:
     std::optional<Probe> probe(const ObjectPoint& from, Entry entry) const;
 
     static double miss(const Probe& probe, Vec2<double> place) {
-        return std::hypot(probe.at.x - place.x, probe.at.y - place.y);
+        return hypotenuse(probe.at.x - place.x, probe.at.y - place.y);
     }
 
     std::optional<Entry> aimed(const ObjectPoint& from, Vec2<double> place, Entry entry) const;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "../../math/hypotenuse.hpp"
+
 namespace realcam {
 
 namespace {
@@ -14,7 +16,7 @@ SpotSize size_about(const Spot& spot, Vec2<double> middle, const RayLoop& loop) 
     loop.in_order(spot.points.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             if (!spot.rays.passes(i)) continue;
-            const double radius = std::hypot(spot.points[i].x - middle.x, spot.points[i].y - middle.y);
+            const double radius = hypotenuse(spot.points[i].x - middle.x, spot.points[i].y - middle.y);
             sum += spot.rays.pattern[i].weight * radius * radius;
             weight += spot.rays.pattern[i].weight;
             largest = std::max(largest, radius);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../../math/hypotenuse.hpp"
 #include "../../math/least_squares.hpp"
 #include "../../math/random.hpp"
 #include "../trace/lens_path.hpp"
@@ -131,7 +132,7 @@ PolynomialError LensPolynomial::error_of(const std::vector<float>& coefficients,
         const Vec2f found = evaluate(view, {static_cast<float>(ray.film.x), static_cast<float>(ray.film.y)},
                                      {static_cast<float>(ray.last.x), static_cast<float>(ray.last.y)})
                                 .direction;
-        const double off = focal_length_ * std::hypot(static_cast<double>(found.x) - ray.vectors[1].x,
+        const double off = focal_length_ * hypotenuse(static_cast<double>(found.x) - ray.vectors[1].x,
                                                       static_cast<double>(found.y) - ray.vectors[1].y);
         error.rms += off * off / static_cast<double>(rays.size());
         if (off > error.worst) {

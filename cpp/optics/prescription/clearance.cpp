@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../math/hypotenuse.hpp"
+
 namespace realcam {
 
 namespace {
@@ -114,7 +116,7 @@ bool film_crosses_lens(const LensSystem& lens) {
         const Surface& last = lens.surfaces[i];
         if (!last.bends_light()) continue;
         const double distance = lens.film_position() - lens.vertices()[i];
-        const double corner = 0.5 * std::hypot(lens.film_width, lens.film_height);
+        const double corner = 0.5 * hypotenuse(lens.film_width, lens.film_height);
         const double reach = std::min(last.clear_semi_diameter, corner);
         constexpr int kSteps = 64;
         for (int k = 0; k <= kSteps; ++k)

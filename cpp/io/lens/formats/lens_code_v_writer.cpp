@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "../../../math/hypotenuse.hpp"
 #include "../../../optics/lens/paraxial.hpp"
 #include "../../text/printable.hpp"
 #include "../lens_glass.hpp"
@@ -24,7 +25,7 @@ public:
         std::string text = "RDM N;LEN\nTITLE '" + quoted(lens_.title.empty() ? lens_.name : lens_.title) + "'\nEPD " +
                            exact_number(data.entrance_pupil_diameter) + "\nDIM M\nWL " +
                            exact_number(lens_.wavelength_nm) + "\nREF 1\nWTW 1\n";
-        const double corner = 0.5 * std::hypot(lens_.film_width, lens_.film_height);
+        const double corner = 0.5 * hypotenuse(lens_.film_width, lens_.film_height);
         text += "XRI 0.0 0.0\nYRI 0.0 " + exact_number(corner) + "\nWTF 1.0 1.0\n";
         text += private_glasses();
         const double object = lens_.focus_distance - lens_.film_position();

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <set>
 
+#include "../../../math/hypotenuse.hpp"
 #include "../../../optics/lens/paraxial.hpp"
 #include "../../text/printable.hpp"
 #include "../lens_glass.hpp"
@@ -30,7 +31,7 @@ public:
             head += '\n';
         }
         // The corner of the film, as a real image height.
-        const double corner = 0.5 * std::hypot(lens_.film_width, lens_.film_height);
+        const double corner = 0.5 * hypotenuse(lens_.film_width, lens_.film_height);
         head += "FTYP 3 0 2 1 0 0 0\nXFLN 0 0\nYFLN 0 " + exact_number(corner) + "\nWAVM 1 " +
                 exact_number(lens_.wavelength_nm / 1000) + " 1\nPWAV 1\n";
         const double object = lens_.focus_distance - lens_.film_position();
