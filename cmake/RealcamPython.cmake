@@ -15,34 +15,23 @@ endif()
 # Without pybind11's extras: link-time optimisation would merge code built for different instruction sets.
 pybind11_add_module(_core MODULE NO_EXTRAS ${REALCAM_BINDINGS_SOURCES})
 target_link_libraries(_core PRIVATE realcam_settings)
-realcam_link_if_present(_core PRIVATE ${realcam_backends})
+realcam_link_if_present(_core PRIVATE ${realcam_backends} realcam_image_io realcam_command)
+if(TARGET realcam_command)
+  target_compile_definitions(_core PRIVATE REALCAM_HAS_PICTURES=1)
+endif()
 # Most of the time goes into templates of pybind11 that all files share.
 set_target_properties(_core PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python
                       UNITY_BUILD ${REALCAM_UNITY} UNITY_BUILD_BATCH_SIZE 9)
 install(TARGETS _core LIBRARY DESTINATION realcam COMPONENT python)
-if(REALCAM_PICTURE_BINDINGS_SOURCES)
-  pybind11_add_module(_pictures MODULE NO_EXTRAS ${REALCAM_PICTURE_BINDINGS_SOURCES}
-                      ${PROJECT_SOURCE_DIR}/cpp/bindings/unlocked.cpp)
-  target_link_libraries(_pictures PRIVATE realcam_settings realcam_image_io)
-  set_target_properties(_pictures PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python)
-  install(TARGETS _pictures LIBRARY DESTINATION realcam COMPONENT python)
-endif()
 install(FILES ${PROJECT_SOURCE_DIR}/scenes/demo.glb ${PROJECT_SOURCE_DIR}/scenes/demo.toml
         DESTINATION realcam/scenes COMPONENT python)
 
-# Links in the source tree serve an editable install. They are renewed with every build, because several build trees may
+# A link in the source tree serves an editable install. It is renewed with every build, because several build trees may
 # take turns.
 if(NOT SKBUILD)
   add_custom_target(realcam_core_link ALL COMMENT "Linking the extension into python/realcam")
-  function(realcam_link_into_package target folder)
-    add_dependencies(realcam_core_link ${target})
-    add_custom_command(TARGET realcam_core_link POST_BUILD
-      COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_SOURCE_DIR}/python/realcam/${folder}
-      COMMAND ${CMAKE_COMMAND} -E create_symlink $<TARGET_FILE:${target}>
-              ${PROJECT_SOURCE_DIR}/python/realcam/${folder}$<TARGET_FILE_NAME:${target}> VERBATIM)
-  endfunction()
-  realcam_link_into_package(_core "")
-  if(TARGET _pictures)
-    realcam_link_into_package(_pictures "")
-  endif()
+  add_dependencies(realcam_core_link _core)
+  add_custom_command(TARGET realcam_core_link POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -E create_symlink $<TARGET_FILE:_core>
+            ${PROJECT_SOURCE_DIR}/python/realcam/$<TARGET_FILE_NAME:_core> VERBATIM)
 endif()

@@ -33,7 +33,7 @@ endif()
 
 if(REALCAM_APP_SOURCES)
   find_package(CLI11 CONFIG QUIET)
-  realcam_need(CLI11_FOUND "CLI11, reads the command line of the executable" libcli11-dev)
+  realcam_need(CLI11_FOUND "CLI11, reads the command line" libcli11-dev)
 endif()
 
 if(REALCAM_TESTS)
@@ -43,9 +43,14 @@ if(REALCAM_TESTS)
   realcam_need(Boost_FOUND "Boost (headers), many-digit numbers and statistics of the C++ tests" libboost-dev)
 endif()
 
+if(REALCAM_IMAGE_IO_SOURCES)
+  find_package(PNG QUIET)
+  realcam_need(PNG_FOUND "libpng, reads PNG" libpng-dev)
+endif()
+
 # OpenImageIO's own CMake package asks for command-line tools and codecs that nothing here uses, and stops the
 # configuration where they are absent; the header and the library are enough.
-if(REALCAM_IMAGE_IO_SOURCES)
+if(REALCAM_OPENIMAGEIO_SOURCES)
   find_path(OPENIMAGEIO_INCLUDE_DIR OpenImageIO/imageio.h)
   find_library(OPENIMAGEIO_LIBRARY OpenImageIO)
   find_library(OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util)
@@ -59,10 +64,8 @@ if(REALCAM_IMAGE_IO_SOURCES)
       target_link_libraries(realcam_openimageio_library INTERFACE ${OPENIMAGEIO_UTIL_LIBRARY})
     endif()
   endif()
-  find_package(PNG QUIET)
-  realcam_need(PNG_FOUND "libpng, reads PNG" libpng-dev)
-  realcam_need(OPENIMAGEIO_FOUND "OpenImageIO, reads and writes pictures (-DREALCAM_OPENIMAGEIO=OFF does without)"
-    libopenimageio-dev)
+  realcam_need(OPENIMAGEIO_FOUND
+    "OpenImageIO, picture files of the executable (-DREALCAM_OPENIMAGEIO=OFF: no executable)" libopenimageio-dev)
 endif()
 
 if(missing)

@@ -29,6 +29,7 @@ step() {  # step NAME COMMAND...: its output goes to a log, of which the end is 
 
 settings=(-DREALCAM_PYTHON=ON "-DPython_EXECUTABLE=$python" -DREALCAM_WERROR=OFF)
 [[ -e /usr/include/OpenImageIO/imageio.h ]] || settings+=(-DREALCAM_OPENIMAGEIO=OFF)
+[[ -e /usr/include/png.h && -d /usr/include/CLI ]] || settings+=(-DREALCAM_PICTURES=OFF)
 
 bench() {
     "$python" -m realcam bench --json \

@@ -53,6 +53,8 @@ void bind_session(py::module_& m);
 void bind_sensor(py::module_& m);
 void bind_denoiser(py::module_& m);
 void bind_bench(py::module_& m);
+void bind_pictures(py::module_& m);
+void bind_command(py::module_& m);
 
 /// What all functions and classes of the module have in common; the last of all.
 void finish_module(py::module_& m);

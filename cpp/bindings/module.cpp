@@ -33,6 +33,10 @@ PYBIND11_MODULE(_core, m) {
     bind_sensor(m);
     bind_denoiser(m);
     bind_bench(m);
+#if REALCAM_HAS_PICTURES
+    bind_pictures(m);
+    bind_command(m);
+#endif
     finish_module(m);
     watch_exit_and_fork();
 }

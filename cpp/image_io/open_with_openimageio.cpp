@@ -1,55 +1,30 @@
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
-#include <cstring>
 
 #include "open_picture.hpp"
+#include "openimageio.hpp"
 
 namespace realcam::image_io {
 namespace {
 
-using OIIO::ImageInput;
-using OIIO::ImageSpec;
-
-/// The first line of what OpenImageIO says, unless its own formatting of it failed.
-std::string reason(const std::string& said) {
-    const std::string line = said.substr(0, said.find('\n'));
-    return line.empty() || line.find("fixme") != std::string::npos ? "" : " (" + line + ")";
-}
-
 class OpenImageIoPicture final : public OpenPicture {
 public:
-    OpenImageIoPicture(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes) {
-        ImageSpec wishes, spec;
-        wishes.attribute("oiio:UnassociatedAlpha", 1);
-        if (path.empty()) {
-            memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
-            OIIO::Filesystem::IOProxy* proxy = memory_.get();
-            wishes.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        }
-        input_ = ImageInput::create(format);
-        if (!input_) throw Error("OpenImageIO cannot read " + format + reason(OIIO::geterror()));
-        if (!input_->open(path.empty() ? "memory." + format : path, spec, wishes))
-            throw Error(kBroken + reason(input_->geterror()));
-        const ImageSpec& found = input_->spec();
-        if (found.depth > 1 || found.deep) return;  // no picture of flat pixels
+    OpenImageIoPicture(const std::string& format, const std::string& path, std::span<const std::uint8_t> bytes)
+        : is_jpeg_(format == "jpeg"), decoder_(open_decoder(format, path, bytes)) {
+        const EncodedHeader& found = decoder_->header;
+        if (found.depth > 1 || found.is_deep) return;  // no picture of flat pixels
         // OpenImageIO decodes all of them, whichever are asked for: a broken file may claim more than memory holds.
         constexpr int kMostChannels = 64;
-        if (found.nchannels > kMostChannels)
-            throw Error("has " + std::to_string(found.nchannels) + " channels; at most 64 are read");
+        if (found.channels > kMostChannels)
+            throw Error("has " + std::to_string(found.channels) + " channels; at most 64 are read");
         width = found.width;
         height = found.height;
         if (format == "openexr") read_openexr_header(found);
-        channels = std::min(found.nchannels, 4);
-        is_linear = found.format.is_floating_point();
-        is_wide = found.format.size() > 1;
+        channels = std::min(found.channels, 4);
+        is_linear = found.is_floating_point;
+        is_wide = found.bytes_per_value > 1;
         // OpenEXR multiplies colours by alpha, whatever a reader wishes.
         has_associated_alpha = format == "openexr" && found.alpha_channel == 3;
-        for (const OIIO::ParamValue& entry : found.extra_attribs) {
-            const std::string name = entry.name().string();
-            if (name.starts_with("realcam:")) entries.emplace_back(name, entry.get_string());
-        }
+        entries = found.entries;
     }
 
     void read(int count, int stride, std::uint8_t* pixels, const KeepGoing& keep_going) override {
@@ -62,16 +37,14 @@ public:
 private:
     /// The picture is the display window. What of the data window lies outside is cut off, and what it leaves is black.
     /// An environment map, of which a part would mean nothing, is the data window.
-    void read_openexr_header(const ImageSpec& found) {
-        std::array<float, 8> colours{};
-        if (found.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), colours.data())) {
+    void read_openexr_header(const EncodedHeader& found) {
+        if (found.chromaticities) {
             Chromaticities chromaticities{};
-            std::copy(colours.begin(), colours.end(), chromaticities.begin());
+            std::copy(found.chromaticities->begin(), found.chromaticities->end(), chromaticities.begin());
             rec709 = rec709_from(chromaticities);
         }
-        const std::string kind = found.get_string_attribute("textureformat");
-        if (kind == "CubeFace Environment") environment_map = EnvironmentMap::cube;
-        if (kind == "LatLong Environment") environment_map = EnvironmentMap::lat_long;
+        if (found.texture_format == "CubeFace Environment") environment_map = EnvironmentMap::cube;
+        if (found.texture_format == "LatLong Environment") environment_map = EnvironmentMap::lat_long;
         is_windowed_ = environment_map == EnvironmentMap::none &&
                        (found.x != found.full_x || found.y != found.full_y || found.width != found.full_width ||
                         found.height != found.full_height);
@@ -87,57 +60,30 @@ private:
         height = found.full_height;
     }
 
+    /// Rows of the data window, of which those in the picture are copied to the beginning of their pixels.
     template <class Value>
     void read_as(int count, int stride, Value* pixels, const KeepGoing& keep_going) {
-        constexpr int kRows = 64;  // between two looks at keep_going
-        const auto step = static_cast<OIIO::stride_t>(static_cast<std::size_t>(stride) * sizeof(Value));
-        const auto type = OIIO::BaseTypeFromC<Value>::value;
-        const ImageSpec& s = input_->spec();
-        const auto require = [&](bool good) {
-            const std::string said = input_->geterror();
-            if (!good || tells_of_a_cut(said)) throw Error(kBroken + reason(said));
-        };
-        if (is_windowed_) return read_window(count, stride, pixels, keep_going, require);
-        if (s.tile_width > 0) return require(input_->read_image(0, 0, 0, count, type, pixels, step));
-        for (int y = 0; y < s.height; y += kRows) {
+        constexpr std::int64_t kRows = 64;  // between two looks at keep_going
+        const EncodedHeader& s = decoder_->header;
+        const auto size = [](std::int64_t number) { return static_cast<std::size_t>(number); };
+        if (is_windowed_)
+            for (std::size_t i = 0; i < pixel_count(); ++i) std::fill_n(pixels + i * size(stride), count, Value(0));
+        const std::int64_t tile = s.tile_height,
+                           rows = std::min<std::int64_t>(tile > 0 ? (kRows + tile - 1) / tile * tile : kRows, s.height);
+        const int left = is_windowed_ ? s.x - s.full_x : 0, top = is_windowed_ ? s.y - s.full_y : 0;
+        const int first = std::max(0, -left), end = std::min(s.width, width - left);
+        std::vector<Value> read(size(rows) * size(s.width) * size(count));
+        for (std::int64_t y = 0; y < s.height; y += rows) {
             check(keep_going);
-            const std::size_t offset =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(s.width) * static_cast<std::size_t>(stride);
-            require(input_->read_scanlines(0, 0, s.y + y, s.y + std::min(y + kRows, s.height), s.z, 0, count, type,
-                                           pixels + offset, step));
-        }
-    }
-
-    /// Rows of the data window, of which those in the display window are copied.
-    template <class Value, class Require>
-    void read_window(int count, int stride, Value* pixels, const KeepGoing& keep_going, Require&& require) {
-        const ImageSpec& s = input_->spec();
-        const auto type = OIIO::BaseTypeFromC<Value>::value;
-        for (std::size_t i = 0; i < pixel_count(); ++i)
-            std::fill_n(pixels + i * static_cast<std::size_t>(stride), count, Value(0));
-        const bool is_tiled = s.tile_width > 0;
-        const int rows = is_tiled ? s.height : std::min(s.height, 64);
-        std::vector<Value> read(static_cast<std::size_t>(rows) * static_cast<std::size_t>(s.width) *
-                                static_cast<std::size_t>(count));
-        const int first = std::max(s.x, s.full_x), end = std::min(s.x + s.width, s.full_x + s.full_width);
-        for (int y = 0; y < s.height; y += rows) {
-            check(keep_going);
-            const int below = std::min(y + rows, s.height);
-            require(is_tiled ? input_->read_image(0, 0, 0, count, type, read.data())
-                             : input_->read_scanlines(0, 0, s.y + y, s.y + below, s.z, 0, count, type, read.data()));
-            for (int row = y; row < below; ++row) {
-                const int place = s.y + row - s.full_y;
-                if (place < 0 || place >= height) continue;
-                for (int column = first; column < end; ++column) {
-                    const Value* from =
-                        read.data() + (static_cast<std::size_t>(row - y) * static_cast<std::size_t>(s.width) +
-                                       static_cast<std::size_t>(column - s.x)) *
-                                          static_cast<std::size_t>(count);
-                    Value* to = pixels + (static_cast<std::size_t>(place) * static_cast<std::size_t>(width) +
-                                          static_cast<std::size_t>(column - s.full_x)) *
-                                             static_cast<std::size_t>(stride);
+            const auto below = static_cast<int>(std::min<std::int64_t>(y + rows, s.height));
+            const Outcome outcome = decoder_->read(static_cast<int>(y), below, count, read.data());
+            if (!outcome.is_good || tells_of_a_cut(outcome.said)) throw Error(kBroken + reason(outcome.said));
+            for (auto row = static_cast<int>(y); row < below; ++row) {
+                if (top + row < 0 || top + row >= height) continue;
+                const Value* from = read.data() + (size(row - y) * size(s.width) + size(first)) * size(count);
+                Value* to = pixels + (size(top + row) * size(width) + size(left + first)) * size(stride);
+                for (int column = first; column < end; ++column, from += count, to += stride)
                     std::copy_n(from, count, to);
-                }
             }
         }
     }
@@ -145,12 +91,11 @@ private:
     /// Reading continues behind the end of a TIFF's or JPEG's data, with rows of grey or nothing, and only reports it.
     /// For a JPEG it also reports harmless things, such as a few bytes too many.
     bool tells_of_a_cut(const std::string& said) const {
-        if (std::strcmp(input_->format_name(), "jpeg") != 0) return !said.empty();
-        return said.find("Premature end") != std::string::npos;
+        return is_jpeg_ ? said.find("Premature end") != std::string::npos : !said.empty();
     }
 
-    std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;  // outlives the input
-    std::unique_ptr<ImageInput> input_;
+    bool is_jpeg_;
+    std::unique_ptr<PictureDecoder> decoder_;
     bool is_windowed_ = false;  // the data window is another than the display window
 };
 

@@ -47,21 +47,6 @@ bool link_to(std::FILE* file, const std::string& name) {
 
 }  // namespace
 
-class UnfinishedFile::Proxy final : public OIIO::Filesystem::IOFile {
-public:
-    explicit Proxy(std::FILE* file) : IOFile(file, Write) {}
-
-    std::size_t write(const void* data, std::size_t size) override {
-        errno = 0;
-        const std::size_t written = IOFile::write(data, size);
-        if (written != size && error == 0) error = errno != 0 ? errno : EIO;
-        // Encoders that notice print lines of their own, or let it pass; finish() tells it in both cases.
-        return size;
-    }
-
-    int error = 0;
-};
-
 UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(followed(path)) {
     check_target();
     constexpr mode_t kMode = 0666;
@@ -80,18 +65,16 @@ UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), target_(f
     file_ = fdopen(descriptor, "wb");
     // A buffer could be emptied, in vain, by whoever closes the picture, and the error be lost.
     std::setvbuf(file_, nullptr, _IONBF, 0);
-    proxy_ = std::make_unique<Proxy>(file_);
 }
 
 UnfinishedFile::~UnfinishedFile() {
-    proxy_.reset();
     if (!file_) return;
     std::fclose(file_);
     if (!temporary_.empty()) std::remove(temporary_.c_str());
 }
 
-OIIO::Filesystem::IOProxy& UnfinishedFile::proxy() {
-    return *proxy_;
+void UnfinishedFile::remember_failure(int error) {
+    if (failure_ == 0) failure_ = error != 0 ? error : EIO;
 }
 
 void UnfinishedFile::check_target() const {
@@ -113,7 +96,7 @@ void UnfinishedFile::fail(int error) const {
 }
 
 void UnfinishedFile::finish() {
-    if (proxy_->error != 0) fail(proxy_->error);
+    if (failure_ != 0) fail(failure_);
     // Some file systems find out only now that they are full.
     if (fsync(fileno(file_)) != 0) fail(errno);
     // A name that is taken cannot be linked to, but be replaced.
@@ -124,7 +107,6 @@ void UnfinishedFile::finish() {
     }
     if (!temporary_.empty() && std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
     temporary_.clear();
-    proxy_.reset();
     std::fclose(file_);
     file_ = nullptr;
 }

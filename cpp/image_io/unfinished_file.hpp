@@ -1,8 +1,5 @@
 #pragma once
-#include <OpenImageIO/filesystem.h>
-
 #include <cstdio>
-#include <memory>
 #include <string>
 
 namespace realcam::image_io {
@@ -18,15 +15,15 @@ public:
     UnfinishedFile& operator=(const UnfinishedFile&) = delete;
     ~UnfinishedFile();
 
-    /// Where OpenImageIO writes to.
-    OIIO::Filesystem::IOProxy& proxy();
+    /// Where it is written to. It has no buffer.
+    std::FILE* stream() { return file_; }
+    /// A write failed with this errno: finish() will tell.
+    void remember_failure(int error);
 
     /// Gives the file its name. Throws ImageFileError where the system refused that, or a write before.
     void finish();
 
 private:
-    class Proxy;
-
     void check_target() const;
     [[noreturn]] void fail(int error) const;
 
@@ -34,7 +31,7 @@ private:
     std::string target_;  ///< what it is a link to, or itself
     std::string temporary_;  ///< empty where the file has no name yet
     std::FILE* file_ = nullptr;
-    std::unique_ptr<Proxy> proxy_;
+    int failure_ = 0;  ///< errno of the first write that failed
 };
 
 }  // namespace realcam::image_io

@@ -1,5 +1,3 @@
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -10,14 +8,10 @@
 #include "../io/text/json_writer.hpp"
 #include "../io/text/printable.hpp"
 #include "image_file.hpp"
-#include "unfinished_file.hpp"
+#include "openimageio.hpp"
 
 namespace realcam::image_io {
 namespace {
-
-using OIIO::ImageOutput;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
 
 /// Rows that are converted and handed over at a time: a large picture is not held twice.
 constexpr int kRows = 64;
@@ -28,10 +22,6 @@ std::string format_of(const std::string& path) {
     if (suffix == ".png" || suffix == ".exr") return suffix.substr(1);
     throw ImageFileError(path + ": " + (suffix.empty() ? "there is no suffix" : "\"" + suffix + "\" is not written") +
                          "; .png (developed) or .exr (exposure and depth) is wanted");
-}
-
-std::string first_line(const std::string& text) {
-    return text.substr(0, text.find('\n'));
 }
 
 /// What an UnfinishedFile could only name as the system does.
@@ -50,50 +40,47 @@ std::size_t row_values(const PictureView& picture, std::size_t channels) {
     return channels * static_cast<std::size_t>(picture.width);
 }
 
-ImageSpec specification(const PictureView& picture, int channels, TypeDesc type, const io::ImageMetadata& metadata) {
-    ImageSpec spec(picture.width, picture.height, channels, type);
-    spec.attribute("Software", "realcam " REALCAM_VERSION);
-    for (const auto& [name, value] : metadata.entries()) spec.attribute(name, value);
-    return spec;
+EncodedPicture encoded(const std::string& format, int width, int height,
+                       const std::vector<std::pair<std::string, std::string>>& entries) {
+    EncodedPicture picture{format, width, height, {}, {}};
+    picture.attributes.emplace_back("Software", "realcam " REALCAM_VERSION);
+    for (const auto& [name, value] : entries) picture.attributes.emplace_back(name, value);
+    return picture;
 }
 
 /// Writes through `fill(first_row, end_row, buffer)`, some rows at a time.
 template <class Value, class Fill>
-void write_rows(const std::string& path, const std::string& format, const ImageSpec& spec, const KeepGoing& keep_going,
-                Fill&& fill) {
+void write_rows(const std::string& path, const EncodedPicture& picture, const KeepGoing& keep_going, Fill&& fill) {
     UnfinishedFile file(path);
-    const auto check = [&](bool good, const ImageOutput& output) {
-        const std::string why = output.geterror();
-        if (!good || !why.empty()) throw ImageFileError(path + ": cannot be written: " + first_line(why));
+    const auto check = [&](const Outcome& outcome) {
+        if (!outcome.is_good || !outcome.said.empty()) throw Error(first_line(outcome.said));
     };
-    {
-        const auto output = ImageOutput::create(format);
-        if (!output)
-            throw ImageFileError(path + ": OpenImageIO cannot write ." + format + ": " + first_line(OIIO::geterror()));
-        output->set_ioproxy(&file.proxy());
-        check(output->open("picture." + format, spec), *output);
-        // Channels of several types are handed over as the file has them.
-        const TypeDesc type = spec.channelformats.empty() ? TypeDesc(OIIO::BaseTypeFromC<Value>::value) : TypeDesc();
-        std::vector<Value> rows(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels) *
-                                kRows);
-        for (int y = 0; y < spec.height; y += kRows) {
+    try {
+        const auto encoder = open_encoder(picture, file);
+        std::vector<Value> rows(static_cast<std::size_t>(picture.width) *
+                                (picture.channels.empty() ? 3 : picture.channels.size()) * kRows);
+        for (int y = 0; y < picture.height; y += kRows) {
             if (keep_going && !keep_going()) throw Cancelled();
-            const int end = std::min(y + kRows, spec.height);
+            const int end = std::min(y + kRows, picture.height);
             fill(static_cast<std::size_t>(y), static_cast<std::size_t>(end), rows.data());
-            check(output->write_scanlines(y, end, 0, type, rows.data()), *output);
+            check(encoder->write(y, end, rows.data()));
         }
-        check(output->close(), *output);
+        check(encoder->close());
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        throw ImageFileError(path + ": cannot be written: " + error.what());
     }
     file.finish();
 }
 
 void write_png(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata, ToneCurve tone,
                const KeepGoing& keep_going) {
-    ImageSpec spec = specification(picture, 3, TypeDesc::UINT8, metadata);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("realcam:tone", tone == ToneCurve::film ? "film" : "linear");
+    EncodedPicture png = encoded("png", picture.width, picture.height, metadata.entries());
+    png.attributes.emplace_back("oiio:ColorSpace", "sRGB");
+    png.attributes.emplace_back("realcam:tone", tone == ToneCurve::film ? "film" : "linear");
     const std::size_t row = row_values(picture, 3);
-    write_rows<std::uint8_t>(path, "png", spec, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
+    write_rows<std::uint8_t>(path, png, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
         for (std::size_t i = first * row; i < end * row; ++i) {
             const double value = sensor_value(static_cast<double>(picture.exposure[i]), metadata.iso);
             *out++ = srgb_code(apply_tone_curve(tone, value));
@@ -133,46 +120,42 @@ std::string json_of(const IdNames& names) {
     return json.end().finish();
 }
 
-void add_layers(const PictureView& picture, ImageSpec& spec) {
+void add_layers(const PictureView& picture, EncodedPicture& exr) {
     std::string unit = "R, G, B: lux seconds on the film, linear Rec. 709; Z: metres from the film along the axis";
-    spec.channelformats.assign(4, TypeDesc::FLOAT);
     for (const PictureView::Layer& layer : picture.layers) {
         const LayerChannels channels = channels_of(layer.layer);
-        for (const char* name : channels.names) {
-            spec.channelnames.emplace_back(name);
-            spec.channelformats.push_back(info_of(layer.layer).is_number ? TypeDesc::UINT32 : TypeDesc::FLOAT);
-        }
+        for (const char* name : channels.names) exr.channels.push_back({name, info_of(layer.layer).is_number});
         if (channels.names.empty()) continue;
         const std::string first = channels.names[0];
         unit += "; " + first.substr(0, first.find('.')) + ": " + channels.unit;
     }
-    spec.nchannels = static_cast<int>(spec.channelnames.size());
-    if (spec.nchannels == 4) spec.channelformats.clear();
-    spec.attribute("realcam:unit", unit);
-    if (!picture.object_names.empty()) spec.attribute("realcam:objects", json_of(picture.object_names));
-    if (!picture.material_names.empty()) spec.attribute("realcam:materials", json_of(picture.material_names));
+    exr.attributes.emplace_back("realcam:unit", unit);
+    if (!picture.object_names.empty()) exr.attributes.emplace_back("realcam:objects", json_of(picture.object_names));
+    if (!picture.material_names.empty())
+        exr.attributes.emplace_back("realcam:materials", json_of(picture.material_names));
 }
 
 void write_exr(const PictureView& picture, const std::string& path, const io::ImageMetadata& metadata,
                const KeepGoing& keep_going) {
-    ImageSpec spec = specification(picture, 4, TypeDesc::FLOAT, metadata);
-    spec.channelnames = {"R", "G", "B", "Z"};
-    spec.z_channel = 3;
-    spec.attribute("compression", "zip");
-    add_layers(picture, spec);
+    EncodedPicture exr = encoded("exr", picture.width, picture.height, metadata.entries());
+    exr.channels = {{"R"}, {"G"}, {"B"}, {"Z"}};
+    exr.attributes.emplace_back("compression", "zip");
+    add_layers(picture, exr);
     // The standard attributes of OpenEXR, in its units.
-    const auto set = [&](const char* name, double value) { spec.attribute(name, static_cast<float>(value)); };
+    const auto set = [&](const char* name, double value) {
+        exr.attributes.emplace_back(name, static_cast<float>(value));
+    };
     set("ExposureTime", metadata.exposure_time_s);  // expTime
     set("FNumber", metadata.f_number);              // aperture
     set("isoSpeed", metadata.iso);
     set("focus", metadata.focus_distance_m);
     set("effectiveFocalLength", metadata.focal_length_mm);
-    spec.attribute("lensModel", metadata.lens);
-    const float film[2] = {static_cast<float>(metadata.film_width_mm), static_cast<float>(metadata.film_height_mm)};
-    spec.attribute("sensorOverallDimensions", TypeDesc(TypeDesc::FLOAT, TypeDesc::VEC2), film);
+    exr.attributes.emplace_back("lensModel", metadata.lens);
+    exr.attributes.emplace_back("sensorOverallDimensions", std::array{static_cast<float>(metadata.film_width_mm),
+                                                                      static_cast<float>(metadata.film_height_mm)});
     const std::size_t row = row_values(picture, 1);
     // All channels have four bytes, so that numbers lie among the floats.
-    write_rows<float>(path, "exr", spec, keep_going, [&](std::size_t first, std::size_t end, float* out) {
+    write_rows<float>(path, exr, keep_going, [&](std::size_t first, std::size_t end, float* out) {
         for (std::size_t i = first * row; i < end * row; ++i) {
             for (std::size_t c = 0; c < 3; ++c) *out++ = picture.exposure[3 * i + c];
             *out++ = picture.depth[i];
@@ -204,12 +187,10 @@ void write_codes(const std::string& path, int width, int height, const std::uint
     check_name(path);
     if (format_of(path) != "png") throw ImageFileError(path + ": codes are written to .png");
     if (width < 1 || height < 1) throw ImageFileError(path + ": the picture is empty");
-    ImageSpec spec(width, height, 3, TypeDesc::UINT8);
-    spec.attribute("Software", "realcam " REALCAM_VERSION);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    for (const auto& [name, value] : entries) spec.attribute(name, value);
+    EncodedPicture png = encoded("png", width, height, entries);
+    png.attributes.emplace_back("oiio:ColorSpace", "sRGB");
     const std::size_t row = 3 * static_cast<std::size_t>(width);
-    write_rows<std::uint8_t>(path, "png", spec, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
+    write_rows<std::uint8_t>(path, png, keep_going, [&](std::size_t first, std::size_t end, std::uint8_t* out) {
         std::memcpy(out, codes + first * row, (end - first) * row);
     });
 }

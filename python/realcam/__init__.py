@@ -10,6 +10,12 @@ rc.render(scene, camera, spp=64).save("photograph.png")
 
 from typing import TYPE_CHECKING, Any
 
+try:
+    from . import _core as _core
+except ImportError as error:
+    from .import_advice import advised
+
+    raise advised(error) from None
 from ._core import (
     PSF,
     AimedRays,

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _core, denoiser, image_file
+from . import _core, denoiser
 from ._core import Camera, InputError, RenderSettings, RenderStats
 from .files import system_name
 from .pickling import set_checked_state
@@ -123,7 +123,7 @@ class Image:
         """
         if tone not in ("film", "linear"):
             raise InputError(f'unknown tone curve "{tone}"; film or linear is wanted')
-        image_file.pictures().write_picture(system_name(path), self, tone == "film")
+        _core._write_picture(system_name(path), self, tone == "film")
 
     def metadata(self) -> dict[str, str]:
         """Names ("realcam:...") and values of what is written into picture files."""

@@ -1,15 +1,14 @@
-"""Picture files. What reads and writes them is the C++ code that the executable has; it is loaded when it is needed."""
+"""Picture files. What reads and writes them is the C++ code that the executable has."""
 
 from __future__ import annotations
 
 import os
 import warnings
 from collections.abc import Mapping
-from types import ModuleType
 
 import numpy as np
 
-from ._core import ImageFileError
+from . import _core
 from .files import system_name
 
 
@@ -21,29 +20,20 @@ def read_environment(path: str | os.PathLike[str]) -> np.ndarray:
     and may be cube maps. Negative values become 0, with a warning. Raises ImageFileError, also where they are more than
     a twentieth of the light, or a value is none up to 1e20.
     """
-    pixels, messages = pictures().read_environment(system_name(path))
+    pixels, messages = _core._read_environment(system_name(path))
     for message in messages:
         warnings.warn(message, stacklevel=2)
-    return pixels  # type: ignore[no-any-return]
+    return pixels
 
 
 def write_codes(codes: np.ndarray, path: str | os.PathLike[str], entries: Mapping[str, str]) -> None:
     """Writes (H, W, 3) uint8 sRGB as .png with metadata. Raises ImageFileError."""
-    pictures().write_codes(system_name(path), codes, list(entries.items()))
+    _core._write_codes(system_name(path), codes, list(entries.items()))
 
 
 def read_film(path: str | os.PathLike[str]) -> tuple[np.ndarray, dict[str, str]]:
     """The film's exposure in an .exr of realcam's, (H, W, 3) float32 lux seconds, and the "realcam:..." entries of its
     metadata. Raises ImageFileError.
     """
-    exposure, entries = pictures().read_film(system_name(path))
+    exposure, entries = _core._read_film(system_name(path))
     return exposure, dict(entries)
-
-
-def pictures() -> ModuleType:
-    """The extension that knows picture files. Raises ImageFileError where this build has none."""
-    try:
-        from . import _pictures
-    except ImportError as error:
-        raise ImageFileError(f"this build of realcam cannot read and write pictures: {error}") from None
-    return _pictures

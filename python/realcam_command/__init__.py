@@ -10,12 +10,6 @@ from importlib.util import find_spec
 from pathlib import Path
 
 
-def executable() -> Path:
-    """The C++ program of this installation."""
-    # Asked for without importing realcam.
-    return Path(__file__).resolve().parents[1] / "realcam" / "bin" / "realcam"
-
-
 def denoiser_library() -> str:
     """The path of Open Image Denoise: what REALCAM_OIDN names, or what realcam[denoise] brings; empty: neither."""
     named = os.environ.get("REALCAM_OIDN", "")

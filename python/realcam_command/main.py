@@ -6,30 +6,36 @@ import os
 import signal
 import sys
 
-from . import denoiser_library, executable
+from . import denoiser_library
 
-# What the C++ executable does. It comes with the Python package, which runs it, so that the two cannot differ.
-_OF_THE_EXECUTABLE = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
+# What the extension does, with the C++ that the executable has, so that the two cannot differ.
+_IN_CPP = (["render"], ["plan"], ["devices"], ["lens", "info"], ["lens", "list"])
 
 
 def main() -> None:
     """Runs the command line."""
+    # Python's own handler would end an import in a traceback, and would not be called while C++ is at work.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     arguments = sys.argv[1:]
-    if any(arguments[: len(command)] == command for command in _OF_THE_EXECUTABLE):
-        _become_the_executable(arguments)
-    from realcam.cli import run
+    try:
+        if any(arguments[: len(command)] == command for command in _IN_CPP):
+            sys.exit(_run_in_cpp(arguments))
+        from realcam.cli import run
+    except ImportError as error:
+        print(f"realcam: error: {error}", file=sys.stderr)
+        sys.exit(2)
 
     signal.signal(signal.SIGINT, signal.default_int_handler)
     run()
 
 
-def _become_the_executable(arguments: list[str]) -> None:
-    program = executable()
+def _run_in_cpp(arguments: list[str]) -> int:
+    """The exit code."""
+    from realcam import _core
+
     if "--denoise" in arguments and (library := denoiser_library()):
         os.environ["REALCAM_OIDN"] = library
-    try:
-        os.execv(program, ["realcam", *arguments])
-    except OSError as error:
-        print(f"realcam: error: {program}: cannot be run: {error.strerror}", file=sys.stderr)
-        sys.exit(2)
+    if not hasattr(_core, "_run_command"):
+        print("realcam: error: this build of realcam has no picture files, and no such command", file=sys.stderr)
+        return 2
+    return _core._run_command([os.fsencode(word) for word in arguments])

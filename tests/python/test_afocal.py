@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam_command import executable
+
+from .programs import PROGRAM
 
 
 def galilean(film_distance_mm: float | None = 40.0) -> rc.Lens:
@@ -93,7 +94,7 @@ def test_the_command_line_writes_infinite_figures_as_json_that_anyone_reads(tmp_
         pytest.fail(f"{constant} is no JSON")
 
     def info(*options: str) -> str:
-        return subprocess.run([executable(), "lens", "info", path, *options], capture_output=True, text=True).stdout
+        return subprocess.run([*PROGRAM, "lens", "info", path, *options], capture_output=True, text=True).stdout
 
     data = json.loads(info("--json"), parse_constant=no_json)
     assert data["effective_focal_length_mm"] is None

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 import shlex
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,20 +16,21 @@ import typer
 from realcam import cli
 from realcam.cli.examples import EXAMPLES
 from realcam.cli.help_texts import finish_help
-from realcam_command import executable
+
+from .programs import PROGRAM
 
 TREE = typer.main.get_command(cli.app)
 finish_help(TREE)
-OF_THE_EXECUTABLE = ["render", "plan", "devices", "lens list", "lens info"]
+IN_CPP = ["render", "plan", "devices", "lens list", "lens info"]
 QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
 
-pictures = pytest.mark.picture_files  # a build without picture files has no executable
+pictures = pytest.mark.picture_files  # a build without picture files has none of these commands
 
 
 def commands(command: Any = TREE, words: tuple[str, ...] = ()) -> Iterator[str]:
     """All that are Python, and the groups."""
     name = " ".join(words)
-    if name not in OF_THE_EXECUTABLE:
+    if name not in IN_CPP:
         yield name
     for word, below in getattr(command, "commands", {}).items():
         yield from commands(below, (*words, word))
@@ -46,7 +45,7 @@ def said(words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
 
 
 def run(*words: object, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([executable(), *map(str, words)], capture_output=True, text=True, cwd=folder)
+    return subprocess.run([*PROGRAM, *map(str, words)], capture_output=True, text=True, cwd=folder)
 
 
 def refusal(*words: object) -> str:
@@ -70,8 +69,8 @@ def test_help(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
 
 
 @pictures
-@pytest.mark.parametrize("name", OF_THE_EXECUTABLE)
-def test_help_of_the_executable(name: str) -> None:
+@pytest.mark.parametrize("name", IN_CPP)
+def test_help_of_what_is_in_cpp(name: str) -> None:
     text = run(*name.split(), "-h")
     assert text.returncode == 0
     assert run(*name.split(), "--help").stdout == text.stdout
@@ -162,7 +161,7 @@ def test_bench_says_where_the_benchmarks_are(
         ("render scene.glb -o a.png --zzzzzzzzzzzzzz", "unknown option --zzzzzzzzzzzzzz (realcam render --help"),
     ],
 )
-def test_mistyped_words_for_the_executable(words: str, meant: str) -> None:
+def test_mistyped_words_for_what_is_in_cpp(words: str, meant: str) -> None:
     assert meant in refusal(*words.split())
 
 
@@ -298,13 +297,3 @@ def test_a_small_lit_thing_before_nothing_is_no_black_picture(tmp_path: Path) ->
     )
     assert done.returncode == 0, done.stderr
     assert "nearly all" not in done.stderr
-
-
-@pictures
-def test_the_two_programs_say_the_same_of_what_is_the_executables(tmp_path: Path) -> None:
-    """`realcam` of the Python package hands over, options, mistakes and all."""
-    environment = {**os.environ, "PYTHONPATH": str(Path(cli.__file__).parents[2])}
-    for words in (["render", "-h"], ["render", "x.glb", "--outptu", "y.png"]):
-        ours = subprocess.run([sys.executable, "-m", "realcam", *words], capture_output=True, env=environment)
-        theirs = subprocess.run([executable(), *words], capture_output=True)
-        assert (ours.returncode, ours.stdout, ours.stderr) == (theirs.returncode, theirs.stdout, theirs.stderr)

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,9 @@ import pytest
 import realcam as rc
 from frame_scene import frame_scene
 from realcam.denoiser import opened
-from realcam_command import denoiser_library, executable
+from realcam_command import denoiser_library
+
+from .programs import PROGRAM
 
 GUIDES = ("albedo", "normal")
 NOWHERE = "/nowhere/libOpenImageDenoise.so"
@@ -70,8 +73,9 @@ def test_it_is_never_on_by_itself_and_tells(tmp_path: Path) -> None:
     clean = noisy.denoised()
     assert clean.metadata()["realcam:denoiser"].startswith("Open Image Denoise 2.")
     np.testing.assert_array_equal(noisy.pixels, picture(2).pixels)
-    if sys.modules.get("OpenImageIO") or __import__("importlib.util").util.find_spec("realcam._pictures"):
-        oiio = pytest.importorskip("OpenImageIO")
+    if hasattr(rc._core, "_write_picture") and find_spec("OpenImageIO"):
+        import OpenImageIO as oiio
+
         for name in ("a.exr", "a.png"):
             clean.save(tmp_path / name)
             spec = oiio.ImageBuf(str(tmp_path / name)).spec()
@@ -134,10 +138,10 @@ def test_a_denoiser_takes_pictures_of_other_sizes_and_qualities() -> None:
 
 
 def realcam(*words: str, folder: Path, library: str | None = None) -> subprocess.CompletedProcess[str]:
-    """The executable alone, which gets its library by its environment."""
+    """The command, which gets its library by its environment."""
     (folder / "quad.obj").write_text(QUAD)
     environment = {**os.environ, "REALCAM_OIDN": denoiser_library() if library is None else library}
-    command = [str(executable()), "render", "quad.obj", "--resolution", "48x32", "--device", "cpu", *words]
+    command = [*PROGRAM, "render", "quad.obj", "--resolution", "48x32", "--device", "cpu", *words]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment)
 
 

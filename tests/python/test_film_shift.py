@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 import realcam as rc
 from frame_scene import frame_scene
-from realcam_command import executable
 
 from . import scenes
+from .programs import PROGRAM
 
 DEMO = Path(__file__).resolve().parents[2] / "scenes" / "demo.glb"
 
@@ -122,12 +122,12 @@ def test_shot_files_and_the_command_line_shift_the_film(tmp_path: Path) -> None:
     pictures = []
     for name, words in (("shot", [shot]), ("options", [DEMO, "--film", "12x8", "--film-shift", "1.5,-2"])):
         path = tmp_path / f"{name}.exr"
-        command = [executable(), "render", *words, "-o", path, "--resolution", "24x16", "--spp", "1"]
+        command = [*PROGRAM, "render", *words, "-o", path, "--resolution", "24x16", "--spp", "1"]
         subprocess.run([str(word) for word in command], check=True, capture_output=True)
         pictures.append(path.read_bytes())
     assert b"realcam:film_shift_mm" in pictures[0]
     refused = subprocess.run(
-        [str(word) for word in (executable(), "render", DEMO, "-o", tmp_path / "x.png", "--film-shift", "3")],
+        [str(word) for word in (*PROGRAM, "render", DEMO, "-o", tmp_path / "x.png", "--film-shift", "3")],
         capture_output=True, text=True,
     )  # fmt: skip
     assert refused.returncode == 2

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import json
-import os
 import re
 import subprocess
 import sys
@@ -14,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import realcam as rc
-from realcam import _pictures
+from realcam.image_file import read_film
 
 from . import scenes
 
@@ -235,7 +234,7 @@ def test_a_picture_says_what_was_decided(tmp_path: Path) -> None:
         picture = rc.render(scene, camera, spp=1, device="cpu", effects="auto")
     assert picture.metadata()["realcam:plan"] == picture.plan == plan.summary
     picture.save(tmp_path / "picture.exr")
-    written = dict(_pictures.read_film(os.fsencode(tmp_path / "picture.exr"))[1])
+    written = read_film(tmp_path / "picture.exr")[1]
     # All that the file says, but for the version of the library that wrote it.
     assert {name: written[name] for name in picture.metadata()} == picture.metadata()
     assert "realcam:plan" not in rc.render(scene, camera, effects=(), spp=1, device="cpu").metadata()
@@ -337,7 +336,7 @@ def test_explanations_are_printed_and_kept(shot_file: Path, tmp_path: Path) -> N
     shot = rc.Shot.load(shot_file, device="cpu")
     plan = rc.plan(shot.scene, shot.camera, device="cpu")
     assert printed.stdout.startswith(str(plan))
-    assert dict(_pictures.read_film(os.fsencode(out))[1])["realcam:plan"] == plan.summary
+    assert read_film(out)[1]["realcam:plan"] == plan.summary
 
 
 def test_an_unknown_quality_is_said(shot_file: Path) -> None:

@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 import realcam as rc
-from realcam_command import executable
+
+from .programs import PROGRAM
 
 DEFAULTS = rc.RenderSettings()
 # Each setting at least once, other than by default; as words of the constructor.
@@ -144,7 +145,7 @@ def test_shot_files_and_the_command_line_have_the_same_defaults(tmp_path: Path) 
     # But for the samples: who takes one picture waits for its noise, and a program for as many samples each time.
     assert shot.settings == DEFAULTS.with_(spp="auto", noise_codes=2, seconds=60)
     image = shot.render(device="cpu")
-    command = [executable(), "render", "quad.obj", "-o", "a.png", "--json", "--device", "cpu", "--resolution", "6x4"]
+    command = [*PROGRAM, "render", "quad.obj", "-o", "a.png", "--json", "--device", "cpu", "--resolution", "6x4"]
     told = json.loads(subprocess.run(command, capture_output=True, check=True, cwd=tmp_path).stdout)
     for name in ("seed", "max_bounces", "transport", "clamp_cd_m2"):
         assert told[name] == getattr(DEFAULTS, name), name

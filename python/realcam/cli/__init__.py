@@ -1,4 +1,4 @@
-"""The commands that are Python. The package realcam_command hands the others to the C++ executable."""
+"""The commands that are Python. The package realcam_command hands the others to the extension."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .. import __version__
 from .._core import LensFileError, RealcamError, one_line
 from . import bench, cost, demo, lens, sensor, view
 from .help_texts import finish_help
-from .options import add_command_of_the_executable, advice_on
+from .options import add_command_in_cpp, advice_on
 
 # click's, which newer versions of typer bring along under a private name.
 _UsageError: Any = typer.BadParameter.__bases__[0]
@@ -24,10 +24,10 @@ app = typer.Typer(
     rich_markup_mode=None,  # defaults in the help stand in [brackets]
     context_settings={"help_option_names": ["-h", "--help"]},  # of all commands below, too
 )
-add_command_of_the_executable(app, "render", "Photograph a scene through a lens.")
-add_command_of_the_executable(app, "plan", "Say which effects a shot calls for, and why.")
+add_command_in_cpp(app, "render", "Photograph a scene through a lens.")
+add_command_in_cpp(app, "plan", "Say which effects a shot calls for, and why.")
 app.add_typer(lens.app, name="lens")
-add_command_of_the_executable(app, "devices", "List what this machine can render with.")
+add_command_in_cpp(app, "devices", "List what this machine can render with.")
 app.add_typer(sensor.app, name="sensor")
 app.command("expose")(sensor.expose)
 app.command("demo")(demo.demo)

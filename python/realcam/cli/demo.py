@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from realcam_command import denoiser_library, executable
+from realcam_command import denoiser_library
 
 from .._core import InputError, Lens
 
@@ -64,8 +64,11 @@ def demo(
 def _render(shot: Path, spp: int, *rest: Path | str) -> None:
     """`realcam render`. Whatever goes wrong it has said itself; Ctrl-C reaches it too."""
     words = [word if isinstance(word, str) else f"--output={word}" for word in rest]
-    environment = {**os.environ, "REALCAM_OIDN": denoiser_library()}
-    with subprocess.Popen([executable(), "render", shot, "--spp", str(spp), *words], env=environment) as program:
+    # Of this package, and nothing of the same name that is in the current folder.
+    python = [sys.executable, *(["-P"] if sys.version_info >= (3, 11) else []), "-m", "realcam"]
+    paths = os.pathsep.join([str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "PYTHONPATH": paths.rstrip(os.pathsep)}
+    with subprocess.Popen([*python, "render", shot, "--spp", str(spp), *words], env=environment) as program:
         try:
             while True:
                 with suppress(KeyboardInterrupt):

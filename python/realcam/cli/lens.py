@@ -23,8 +23,8 @@ Circle = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null.")]
 
 
-options.add_command_of_the_executable(app, "list", "List the bundled lenses.")
-options.add_command_of_the_executable(app, "info", "Print a lens's table of surfaces and its first-order data.")
+options.add_command_in_cpp(app, "list", "List the bundled lenses.")
+options.add_command_in_cpp(app, "info", "Print a lens's table of surfaces and its first-order data.")
 lens_plots.register(app)
 
 

@@ -11,11 +11,11 @@ import typer
 from .._core import InputError, Lens, LensFileError
 
 
-def add_command_of_the_executable(app: typer.Typer, name: str, help: str) -> None:
-    """Lists a command in the help; realcam_command has handed it to the executable before anybody gets here."""
+def add_command_in_cpp(app: typer.Typer, name: str, help: str) -> None:
+    """Lists a command in the help; realcam_command has handed it to the extension before anybody gets here."""
 
     def command() -> None:
-        raise InputError(f'"{name}" is a command of the executable; options come after it')
+        raise InputError(f'"{name}": options come after the command')
 
     app.command(name, help=help)(command)
 

@@ -1,54 +1,21 @@
-// realcam._pictures: picture files for Python. Apart from _core and imported when the first picture is read or written,
-// because OpenImageIO brings some 200 libraries along.
+// Picture files for Python.
 
-#include <pybind11/functional.h>
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <cstring>
 #include <string>
-#include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "../bindings/unlocked.hpp"
 #include "../image_io/image_file.hpp"
+#include "bindings.hpp"
 
-namespace realcam {
-namespace {
+namespace realcam::bindings {
 
-namespace py = pybind11;
 using namespace py::literals;
 
-using bindings::Unlocked;
-
-/// Hears Ctrl-C, and the end of Python. Called without the interpreter's lock.
-bool no_signal() {
-    bindings::stop_at_exit();
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    return true;
-}
-
-py::object read_texture(const std::string& path, const py::buffer& encoded) {
-    const py::buffer_info bytes = encoded.request();
-    std::optional<io::DecodedImage> image;
-    {
-        const Unlocked unlocked;
-        image = image_io::read_image(
-            path, {static_cast<const std::uint8_t*>(bytes.ptr), static_cast<std::size_t>(bytes.size)}, no_signal);
-    }
-    if (!image) return py::none();
-    const py::array pixels = std::visit(
-        [&](const auto& rgba) -> py::array {
-            using Value = typename std::decay_t<decltype(rgba)>::value_type;
-            return py::array_t<Value>({image->height, image->width, 4}, rgba.data());
-        },
-        image->rgba);
-    return py::make_tuple(pixels, image->is_linear, image->rec709);
-}
+namespace {
 
 /// The pixels, and what the reader put up with.
 py::tuple read_environment(const std::string& path) {
@@ -57,7 +24,7 @@ py::tuple read_environment(const std::string& path) {
     {
         const Unlocked unlocked;
         environment = image_io::read_environment(
-            path, [&](const std::string& warning) { warnings.push_back(warning); }, no_signal);
+            path, [&](const std::string& warning) { warnings.push_back(warning); }, heed_signals);
     }
     py::array_t<float> pixels({environment.height, environment.width, 3});
     std::memcpy(pixels.mutable_data(), environment.pixels.data(), environment.pixels.size() * sizeof(Vec3f));
@@ -120,7 +87,7 @@ void write_picture(const std::string& path, const py::object& image, bool film_t
     metadata.denoiser = member<std::string>(image, "denoiser");
     metadata.plan = member<std::string>(image, "plan");
     const Unlocked unlocked;
-    image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, no_signal);
+    image_io::write_image(picture, path, metadata, film_tone ? ToneCurve::film : ToneCurve::linear, heed_signals);
 }
 
 using Entries = std::vector<std::pair<std::string, std::string>>;
@@ -129,7 +96,7 @@ py::tuple read_film(const std::string& path) {
     image_io::FilmFile film;
     {
         const Unlocked unlocked;
-        film = image_io::read_film(path, no_signal);
+        film = image_io::read_film(path, heed_signals);
     }
     py::array_t<float> exposure({film.height, film.width, 3});
     std::memcpy(exposure.mutable_data(), film.exposure.data(), film.exposure.size() * sizeof(float));
@@ -141,20 +108,17 @@ void write_codes(const std::string& path, const py::array_t<std::uint8_t, py::ar
     if (codes.ndim() != 3 || codes.shape(2) != 3) throw InputError("codes of the shape (H, W, 3) are wanted");
     const Unlocked unlocked;
     image_io::write_codes(path, static_cast<int>(codes.shape(1)), static_cast<int>(codes.shape(0)), codes.data(),
-                          entries, no_signal);
+                          entries, heed_signals);
 }
 
 }  // namespace
-}  // namespace realcam
 
-PYBIND11_MODULE(_pictures, m) {
-    using namespace realcam;
-    m.doc() = "Picture files, through OpenImageIO. Paths are bytes, as os.fsencode makes them.";
-    m.def("read_texture", &read_texture, "path"_a, "encoded"_a);
-    m.def("read_environment", &read_environment, "path"_a);
-    m.def("write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a);
-    m.def("write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
-    m.def("read_film", &read_film, "path"_a);
-    m.def("check_image_path", &image_io::check_image_path, "path"_a);
-    bindings::watch_exit_and_fork();  // of this extension's own work: each counts for itself
+// Paths are bytes, as os.fsencode makes them.
+void bind_pictures(py::module_& m) {
+    m.def("_read_environment", &read_environment, "path"_a);
+    m.def("_write_picture", &write_picture, "path"_a, "image"_a, "film_tone"_a);
+    m.def("_write_codes", &write_codes, "path"_a, "codes"_a, "entries"_a);
+    m.def("_read_film", &read_film, "path"_a);
 }
+
+}  // namespace realcam::bindings

@@ -1,0 +1,68 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <new>
+
+#include "../io/text/one_line.hpp"
+#include "devices.hpp"
+#include "lens_command.hpp"
+#include "lens_words.hpp"
+#include "render_command.hpp"
+#include "usage_error.hpp"
+
+namespace realcam::app {
+namespace {
+
+constexpr int kFailure = 2;
+
+int fail(const std::string& message) {
+    std::fprintf(stderr, "realcam: error: %s\n", io::one_line(message).c_str());
+    return kFailure;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Photographs 3D scenes through real lenses, ray by ray.", "realcam");
+    app.set_version_flag("--version", "realcam " REALCAM_VERSION);
+    app.require_subcommand(1);
+    add_render_command(app);
+    add_plan_command(app);
+    add_lens_command(app);
+    CLI::App* devices = app.add_subcommand("devices", "List the devices that render");
+    const auto as_json = std::make_shared<bool>(false);
+    devices->add_flag("--json", *as_json, "Print JSON");
+    devices->footer("Examples:\n  realcam devices\n  realcam devices --json");
+    devices->callback([as_json] { list_devices(*as_json); });
+    if (argc == 1) {
+        std::fputs(app.help().c_str(), stdout);
+        return 0;
+    }
+    try {
+        app.parse(argc, argv);
+        return std::fflush(stdout) == 0 ? 0 : fail("the standard output cannot be written to");
+    } catch (const CLI::Success& success) {  // --help and --version
+        return app.exit(success);
+    } catch (const CLI::ParseError& error) {
+        return fail(usage_message(app, error));
+    }
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const Interrupted& interrupted) {
+        std::fprintf(stderr, "realcam: stopped%s\n", interrupted.remark.c_str());
+        return 128 + interrupted.signal;
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory");
+    } catch (const io::LensReadError& error) {
+        return fail(error.what() + advice_on(error));
+    } catch (const std::exception& error) {
+        return fail(error.what());
+    }
+}
+
+}  // namespace realcam::app

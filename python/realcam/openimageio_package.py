@@ -1,0 +1,133 @@
+"""What the extension asks of the package OpenImageIO: numbers of files, and nothing of what they mean.
+
+cpp/bindings/openimageio_package.cpp calls this, and cpp/image_io knows what the numbers are.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+try:
+    import OpenImageIO as oiio
+except ImportError as error:
+    raise ImportError(
+        f"picture files need the package OpenImageIO; pip install OpenImageIO brings it ({error})"
+    ) from None
+
+
+_SUFFIXES = {"jpeg": ".jpg", "openexr": ".exr", "tiff": ".tif", "bmp": ".bmp", "targa": ".tga"}
+_LARGEST_NUMBER = 2**24
+_opening = threading.Lock()
+
+
+def _opened(format: str, name: str) -> Any:
+    """The file, read as this format and no other. Raises ValueError, with what OpenImageIO says, where it is none.
+
+    OpenImageIO takes the format from the suffix and then tries all others, some of which crash on broken files. So the
+    file gets a link of the right suffix for as long as it is being opened.
+    """
+    wishes = oiio.ImageSpec()
+    wishes.attribute("oiio:UnassociatedAlpha", 1)
+    with _opening, tempfile.TemporaryDirectory(prefix="realcam-") as folder:
+        link = Path(folder, "picture" + _SUFFIXES[format])
+        link.symlink_to(name)
+        tries_all = oiio.get_int_attribute("try_all_readers", 1)
+        oiio.attribute("try_all_readers", 0)
+        try:
+            opened = oiio.ImageInput.open(str(link), wishes)
+        finally:
+            oiio.attribute("try_all_readers", tries_all)
+        if opened is None:
+            raise ValueError(oiio.geterror().replace(str(link), "picture"))
+    return opened
+
+
+class Decoder:
+    """A picture file whose header is read. Raises ValueError, with what OpenImageIO says, where it is none."""
+
+    def __init__(self, format: str, name: str) -> None:
+        self._input = _opened(format, name)
+        self._spec = self._input.spec()
+
+    @property
+    def header(self) -> dict[str, Any]:
+        """The members of EncodedHeader."""
+        spec = self._spec
+        names = ("x", "y", "width", "height", "depth", "full_x", "full_y", "full_width", "full_height")
+        entries = [attribute.name for attribute in spec.extra_attribs if attribute.name.startswith("realcam:")]
+        return {
+            **{name: getattr(spec, name) for name in (*names, "nchannels", "alpha_channel", "deep")},
+            "bytes_per_value": spec.format.size(),
+            "is_floating_point": spec.format.basetype in (oiio.HALF, oiio.FLOAT, oiio.DOUBLE),
+            "tile_height": spec.tile_height if spec.tile_width > 0 else 0,
+            "chromaticities": spec.getattribute("chromaticities", oiio.TypeDesc("float[8]")),
+            "textureformat": spec.get_string_attribute("textureformat"),
+            "entries": [(name, spec.get_bytes_attribute(name)) for name in entries],
+        }
+
+    def read(self, first: int, end: int, count: int, format: str) -> tuple[np.ndarray | None, str]:
+        """Channels of rows of the data window, or None, and what OpenImageIO says."""
+        spec = self._spec
+        begin, below = spec.y + first, spec.y + end
+        if spec.tile_width > 0:
+            columns = (spec.x, spec.x + spec.width)
+            pixels = self._input.read_tiles(0, 0, *columns, begin, below, spec.z, spec.z + 1, 0, count, format)
+        else:
+            pixels = self._input.read_scanlines(0, 0, begin, below, spec.z, 0, count, format)
+        return pixels, self._input.geterror()
+
+
+class Encoder:
+    """A picture that is being written. Raises OSError, with the reason, where it cannot be."""
+
+    def __init__(
+        self,
+        format: str,
+        name: str,
+        width: int,
+        height: int,
+        channels: Sequence[tuple[str, bool]],
+        attributes: Sequence[tuple[str, str | float | Sequence[float]]],
+    ) -> None:
+        self._width = width
+        self._numbers = [is_number for _, is_number in channels]
+        # Channels of several types are handed over in one, which holds the values of both.
+        type_name = "double" if any(self._numbers) else "float" if channels else "uint8"
+        spec = oiio.ImageSpec(width, height, len(channels) or 3, type_name)
+        if channels:
+            spec.channelnames = tuple(channel for channel, _ in channels)
+            spec.z_channel = spec.channelnames.index("Z") if "Z" in spec.channelnames else -1
+        if any(self._numbers):
+            spec.channelformats = tuple(oiio.TypeDesc("uint" if number else "float") for number in self._numbers)
+        for key, value in attributes:
+            if isinstance(value, (str, float)):
+                spec.attribute(key, value)
+            else:
+                spec.attribute(key, oiio.TypeDesc(oiio.FLOAT, oiio.VEC2), tuple(value))
+        output = oiio.ImageOutput.create(format)
+        if output is None:
+            raise OSError(f"OpenImageIO cannot write .{format}: {oiio.geterror()}")
+        if not output.open(name, spec):
+            raise OSError(output.geterror())
+        self._output = output
+
+    def write(self, first: int, end: int, rows: memoryview) -> tuple[bool, str]:
+        """Rows of codes, or of four bytes for each channel."""
+        shape = (end - first, self._width, -1)
+        pixels = np.frombuffer(rows, np.float32 if self._numbers else np.uint8).reshape(shape)
+        if any(self._numbers):
+            whole = np.frombuffer(rows, np.uint32).reshape(shape)
+            if whole[..., self._numbers].max() > _LARGEST_NUMBER:
+                return False, f"a layer has numbers above {_LARGEST_NUMBER}"
+            # OpenImageIO takes 1 for the largest of whole numbers, and computes with 24 bits.
+            pixels = np.where(self._numbers, whole / float(2**32 - 1), pixels)
+        return self._output.write_scanlines(first, end, 0, pixels), self._output.geterror()
+
+    def close(self) -> tuple[bool, str]:
+        return self._output.close(), self._output.geterror()

@@ -1,0 +1,19 @@
+"""The command line, as the executable and as the command of the Python package."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+from realcam import _core
+
+PYTHON = [sys.executable, "-m", "realcam"]
+# CMake builds it beside the folder of the extension; an installed package has none.
+_BUILT = Path(_core.__file__).resolve().parents[1] / "realcam"
+EXECUTABLE = [str(_BUILT)] if _BUILT.is_file() else []
+
+# The executable starts sooner. Both run the same C++.
+PROGRAM = EXECUTABLE or PYTHON
+
+wants_executable = pytest.mark.skipif(not EXECUTABLE, reason="the executable is not built")
