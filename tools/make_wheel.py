@@ -15,7 +15,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PLATFORM = "manylinux_2_34_x86_64"
-COMMON_LICENCES = re.compile(rb"/usr/share/common-licenses/[\w.+-]*[\w+]")
+# Debian's files refer to it. They name the GPL, too: for the packaging, and for files that are no part of the library.
+APACHE = Path("/usr/share/common-licenses/Apache-2.0")
 
 
 def main() -> None:
@@ -67,7 +68,8 @@ def licences_of(library: str) -> list[Path]:
     local = Path("/usr/local/share/licenses", library.partition(".so")[0])
     if local.is_dir():  # tools/wheel_libraries.sh
         return sorted(local.iterdir())
-    found = next((line.split()[-1] for line in run("ldconfig", "-p").splitlines() if library in line), None)
+    name = library.partition(".so")[0]
+    found = next((line.split()[-1] for line in run("ldconfig", "-p").splitlines() if f"\t{name}.so" in line), None)
     if found is None:
         sys.exit(f"{library}: ldconfig knows no such library; whose licence it has cannot be told")
     path = Path(found).resolve()
@@ -78,8 +80,7 @@ def licences_of(library: str) -> list[Path]:
     else:
         owned = run("rpm", "--query", "--file", path, "--queryformat", "%{NAME}").strip()
         own = sorted(Path("/usr/share/licenses", owned).iterdir())
-    common = {match.decode() for licence in own for match in COMMON_LICENCES.findall(licence.read_bytes())}
-    return [*own, *map(Path, sorted(common))]
+    return [*own, *([APACHE] if any(str(APACHE) in licence.read_text() for licence in own) else [])]
 
 
 if __name__ == "__main__":
