@@ -7,6 +7,7 @@
 
 #include "../io/text/one_line.hpp"
 #include "devices.hpp"
+#include "help.hpp"
 #include "lens_command.hpp"
 #include "lens_words.hpp"
 #include "render_command.hpp"
@@ -22,18 +23,41 @@ int fail(const std::string& message) {
     return kFailure;
 }
 
-int run(int argc, char** argv) {
-    CLI::App app("Photographs 3D scenes through real lenses, ray by ray.", "realcam");
-    app.set_version_flag("--version", "realcam " REALCAM_VERSION);
+/// CLI11's objects cannot be copied or moved.
+void set_up(CLI::App& app) {
+    app.name("realcam");
+    app.description("Photographs 3D scenes through real lenses.");
+    app.option_defaults()->disable_flag_override();
+    set_help(app);
+    app.set_version_flag("--version", "realcam " REALCAM_VERSION, "Print the version");
     app.require_subcommand(1);
     add_render_command(app);
     add_plan_command(app);
     add_lens_command(app);
-    CLI::App* devices = app.add_subcommand("devices", "List the devices that render");
+    CLI::App* devices = app.add_subcommand("devices", "List what this machine can render with.");
     const auto as_json = std::make_shared<bool>(false);
     devices->add_flag("--json", *as_json, "Print JSON");
-    devices->footer("Examples:\n  realcam devices\n  realcam devices --json");
+    set_examples(*devices, {"realcam devices", "realcam devices --json"});
     devices->callback([as_json] { list_devices(*as_json); });
+}
+
+void list(const CLI::App& command, std::vector<std::string> words, std::vector<ListedCommand>& listed) {
+    const std::vector<const CLI::App*> below = command.get_subcommands({});
+    for (const CLI::App* one : below) {
+        words.push_back(one->get_name());
+        list(*one, words, listed);
+        words.pop_back();
+    }
+    if (!below.empty()) return;
+    ListedCommand& entry = listed.emplace_back(ListedCommand{words, command.get_description(), {}});
+    for (const CLI::Option* option : command.get_options())
+        if (option != command.get_help_ptr())
+            entry.options.push_back({names_of(*option), type_of(*option), option->get_description()});
+}
+
+int run(int argc, char** argv) {
+    CLI::App app;
+    set_up(app);
     if (argc == 1) {
         std::fputs(app.help().c_str(), stdout);
         return 0;
@@ -49,6 +73,14 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
+
+std::vector<ListedCommand> listed_commands() {
+    CLI::App app;
+    set_up(app);
+    std::vector<ListedCommand> listed;
+    list(app, {}, listed);
+    return listed;
+}
 
 int run_command_line(int argc, char** argv) {
     try {

@@ -7,6 +7,7 @@
 #include "../io/text/json_writer.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/zoom.hpp"
+#include "help.hpp"
 #include "lens_report.hpp"
 #include "lens_words.hpp"
 #include "values.hpp"
@@ -45,29 +46,31 @@ void run_list(bool as_json) {
 }  // namespace
 
 void add_lens_command(CLI::App& app) {
-    CLI::App* lens = app.add_subcommand("lens", "Look at lenses");
+    CLI::App* lens = app.add_subcommand("lens", "Look at lenses.");
     lens->require_subcommand(1);
 
-    CLI::App* info = lens->add_subcommand("info", "Print a lens's table of surfaces and its first-order data");
+    CLI::App* info = lens->add_subcommand("info", "Print a lens's table of surfaces and its first-order data.");
     const auto options = std::make_shared<InfoOptions>();
-    info->add_option("lens", options->lens,
+    info->add_option("LENS", options->lens,
                      "A bundled lens, or a lens file: .toml, .zmx, .seq, .len, .dat, .json, .roa")
         ->required()
-        ->type_name("NAME");
+        ->type_name("LENS");
     info->add_option("--f-number", options->f_number, "Close the diaphragm to f/N")->type_name("N");
     info->add_option("--focus", options->focus, "Focus on an object plane this far from the film, or inf")
         ->type_name("METRES");
     add_lens_options(*info, options->file);
     info->add_flag("--json", options->as_json, "Print JSON; null stands for infinite, and for the radius of a plane");
-    info->footer(
-        "Examples:\n  realcam lens info tessar-50mm\n  realcam lens info double-gauss-50mm --f-number 8 --focus 2\n"
-        "  realcam lens info my-lens.zmx --json");
+    set_examples(*info, {
+                            "realcam lens info tessar-50mm",
+                            "realcam lens info double-gauss-50mm --f-number 8 --focus 2",
+                            "realcam lens info my-lens.zmx --json",
+                        });
     info->callback([options] { run_info(*options); });
 
-    CLI::App* list = lens->add_subcommand("list", "Name the bundled lenses");
+    CLI::App* list = lens->add_subcommand("list", "List the bundled lenses.");
     const auto list_as_json = std::make_shared<bool>(false);
     list->add_flag("--json", *list_as_json, "Print JSON");
-    list->footer("Examples:\n  realcam lens list\n  realcam lens list --json");
+    set_examples(*list, {"realcam lens list", "realcam lens list --json"});
     list->callback([list_as_json] { run_list(*list_as_json); });
 }
 

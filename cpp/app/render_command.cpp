@@ -19,6 +19,7 @@
 #include "../render/take_picture.hpp"
 #include "../shot/shot.hpp"
 #include "exposure_notice.hpp"
+#include "help.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "plan_json.hpp"
@@ -234,28 +235,32 @@ private:
 }  // namespace
 
 void add_render_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("render", "Photograph a scene through a lens");
+    CLI::App* command = app.add_subcommand("render", "Photograph a scene through a lens.");
     const auto words = std::make_shared<RenderWords>();
     add_render_options(*command, *words);
-    command->footer(
-        "Examples:\n  realcam render scene.glb -o picture.png\n"
-        "  realcam render scene.glb -o picture.png -o film.exr --lens tessar-50mm --f-number 5.6 --focus 2.5\n"
-        "  realcam render scene.obj -o picture.png --position 0,1.5,4 --look-at 0,1,0 --exposure-time 1/125 --iso 400\n"
-        "  realcam render shot.toml -o picture.png --noise-codes 1 --seconds 300 --json\n"
-        "  realcam render shot.toml -o picture.png --spp 16 --denoise");
+    set_examples(
+        *command,
+        {
+            "realcam render scene.glb -o picture.png",
+            "realcam render scene.glb -o picture.png -o film.exr --lens tessar-50mm --f-number 5.6 --focus 2.5",
+            "realcam render scene.obj -o picture.png --position 0,1.5,4 --look-at 0,1,0 "
+            "--exposure-time 1/125 --iso 400",
+            "realcam render shot.toml -o picture.png --noise-codes 1 --seconds 300 --json",
+            "realcam render shot.toml -o picture.png --spp 16 --denoise",
+        });
     command->callback([words] { Run{*words}.photograph(); });
 }
 
 void add_plan_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("plan", "Say which effects a shot calls for, and why");
+    CLI::App* command = app.add_subcommand("plan", "Say which effects a shot calls for, and why.");
     const auto words = std::make_shared<RenderWords>();
     const auto as_json = std::make_shared<bool>(false);
     add_shot_options(*command, *words);
     command->add_flag("--json", *as_json, "Print JSON");
-    command->footer(
-        "Examples:\n  realcam plan shot.toml\n  realcam plan scene.glb --lens tessar-50mm --f-number 16 --quality "
-        "draft "
-        "--json");
+    set_examples(*command, {
+                               "realcam plan shot.toml",
+                               "realcam plan scene.glb --lens tessar-50mm --f-number 16 --quality draft --json",
+                           });
     command->callback([=] { Run{*words}.plan(*as_json); });
 }
 

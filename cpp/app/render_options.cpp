@@ -95,7 +95,7 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
         command.add_option_function<std::string>(name, keep, help)->type_name(type)->check(not_empty);
     };
     command
-        .add_option("scene", words.scene,
+        .add_option("SCENE", words.scene,
                     "The scene: .obj (with .mtl), .gltf, .glb or .ply; or a shot file: .toml, whose values hold for "
                     "all options that are not given")
         ->type_name("SCENE")
@@ -105,7 +105,7 @@ void add_shot_options(CLI::App& command, RenderWords& words) {
     option("--lens",
            "Bundled lens (`realcam lens list`), or a lens file: .toml, .zmx, .seq, .len, .dat, .json, .roa "
            "[double-gauss-50mm]",
-           "NAME", [](Request& r, Text, Text w) {
+           "LENS", [](Request& r, Text, Text w) {
                r.lens = w;
                r.zoom.clear();  // a position of the shot file's lens
            });

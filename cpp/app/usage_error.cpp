@@ -1,6 +1,10 @@
 #include "usage_error.hpp"
 
+#include <array>
+#include <utility>
+
 #include "../io/text/nearest_names.hpp"
+#include "help.hpp"
 
 namespace realcam::app {
 namespace {
@@ -9,11 +13,6 @@ namespace {
 const CLI::App& typed_command(const CLI::App& app) {
     const std::vector<CLI::App*> typed = app.get_subcommands();
     return typed.empty() ? app : typed_command(*typed.back());
-}
-
-std::string path_of(const CLI::App& command) {
-    const CLI::App* parent = command.get_parent();
-    return (parent ? path_of(*parent) + ' ' : "") + command.get_name();
 }
 
 /// Long names: who mistypes one letter means anything.
@@ -36,6 +35,24 @@ std::string with_commas(const std::vector<std::string>& names) {
     return text;
 }
 
+/// CLI11's own words, but for those that the commands in Python say otherwise.
+std::string said(const CLI::ParseError& error) {
+    const std::string words = error.what();
+    constexpr std::array<std::pair<const char*, const char*>, 3> kInPlaceOf{{
+        {": At Most 1 required but received ", " is given more than once"},
+        {": 1 required ", " wants a value"},
+        {" was given a disallowed flag override", " takes no value"},
+    }};
+    for (const auto& [of_cli11, ours] : kInPlaceOf) {
+        const std::size_t at = words.find(of_cli11);
+        if (at == std::string::npos) continue;
+        // Where a flag has a value, its name comes without dashes.
+        const std::string dashes = words[0] == '-' ? "" : at == 1 ? "-" : "--";
+        return dashes + words.substr(0, at) + ours;
+    }
+    return words;
+}
+
 std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error) {
     const std::vector<std::string> left = command.remaining(), commands = command_names(command);
     // Before what is missing: a misspelt option is missing, too.
@@ -47,9 +64,8 @@ std::string what_is_wrong(const CLI::App& command, const CLI::ParseError& error)
     if (!commands.empty() && !left.empty())
         return "unknown command \"" + left.front() + '"' + io::did_you_mean(left.front(), commands);
     if (!commands.empty()) return "a command is missing; " + with_commas(commands) + " are known";
-    const std::string words = error.what();
-    const std::size_t twice = words.find(": At Most 1 required but received ");
-    return twice == std::string::npos ? words : words.substr(0, twice) + " is given more than once";
+    if (!left.empty()) return "unexpected argument \"" + left.front() + '"';
+    return said(error);
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ void bind_session(py::module_& m);
 void bind_sensor(py::module_& m);
 void bind_denoiser(py::module_& m);
 void bind_bench(py::module_& m);
+void bind_help(py::module_& m);
 void bind_pictures(py::module_& m);
 void bind_command(py::module_& m);
 

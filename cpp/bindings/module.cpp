@@ -33,6 +33,7 @@ PYBIND11_MODULE(_core, m) {
     bind_sensor(m);
     bind_denoiser(m);
     bind_bench(m);
+    bind_help(m);
 #if REALCAM_HAS_PICTURES
     bind_pictures(m);
     bind_command(m);

@@ -69,7 +69,7 @@ expect_files(${files})
 
 expect(0 "render.*lens.*devices")
 expect(2 "a command is missing; info, list are known" lens)
-expect(2 "scene is required" render)
+expect(2 "SCENE is required" render)
 expect(2 "output is required" render quad.obj)
 expect(2 "unknown option --foo \\(" render quad.obj -o x.png --foo)
 expect(2 "unknown option --exposur-time \\(did you mean \"--exposure-time\"" render quad.obj --exposur-time=1/50)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 import shlex
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,12 +17,15 @@ import pytest
 import typer
 from realcam import cli
 from realcam.cli.examples import EXAMPLES
-from realcam.cli.help_texts import finish_help
+from realcam.cli.help_texts import finish
 
 from .programs import PROGRAM
 
+# As the script that pip installs calls it.
+PYTHON_COMMAND = [sys.executable, "-c", "from realcam_command.main import main; main()"]
+
 TREE = typer.main.get_command(cli.app)
-finish_help(TREE)
+finish(TREE)
 IN_CPP = ["render", "plan", "devices", "lens list", "lens info"]
 QUAD = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
 
@@ -64,7 +69,7 @@ def test_help(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Capture
     assert not re.search(r"<\w+(\[|>| range)", text), "a type of Python"
     assert not re.search(r"\w\.\.\.$", text, re.M), "a line that was cut off"
     has_examples = name in EXAMPLES
-    assert ("\n  Examples:\n    realcam " in text) == has_examples
+    assert ("\nExamples:\n  realcam " in text) == has_examples
     assert has_examples or name in ("", "lens", "sensor")
 
 
@@ -96,18 +101,20 @@ def test_examples_are_command_lines(name: str, example: str) -> None:
 @pytest.mark.parametrize(
     "words, meant",
     [
-        ("rendr scene.glb", "Did you mean 'render'"),
-        ("lens drow", "Did you mean 'draw'"),
-        ("lens lst", "Did you mean 'list'"),
-        ("lens draw tessar-50mm --f-numbr 8", r"--f-numbr \(did you mean --f-number\?\) \(realcam lens draw --help"),
-        ("lens photo tessar-50mm --exposur-time 1/50", "did you mean --exposure-time"),
-        ("cost shot.toml --devise cpu", "did you mean --device"),
-        ("lens", "a command is missing; list, info, .* are known"),
+        (
+            "expse film.exr",
+            r'command "expse" \(did you mean "expose"\?\) \(realcam --help lists the commands\)',
+        ),
+        ("lens drow", r'unknown command "drow" \(did you mean "draw"'),
+        ("lens draw tessar-50mm --f-numbr 8", r'--f-numbr \(did you mean "--f-number"\?\) \(realcam lens draw --help'),
+        ("lens photo tessar-50mm --exposur-time 1/50", 'did you mean "--exposure-time"'),
+        ("cost shot.toml --devise cpu", 'did you mean "--device"'),
+        ("lens", "a command is missing; .*draw, photo.* are known"),
         ("sensor", "a command is missing; list, info are known"),
-        ("lens draw", r"Missing argument .*realcam lens draw --help lists the options"),
-        ("bench --threads many", "--threads"),
-        ("lens plot mtf-feild tessar-50mm", r'unknown plot "mtf-feild" \(did you mean mtf-field'),
-        ("bench lens-ray", r"did you mean lens-rays"),
+        ("lens draw", r"LENS is required \(realcam lens draw --help lists the options"),
+        ("bench --threads many", '--threads: "many" is not a whole number'),
+        ("lens plot mtf-feild tessar-50mm", r'unknown plot "mtf-feild" \(did you mean "mtf" or "mtf-field"'),
+        ("bench lens-ray", 'or "lens-rays"'),
         ("lens photo tessar-50mm --iso -3", "--iso: a positive number is wanted"),
         ("lens plot mtf tessar-50mm -o mtf.txt", r"\.json or \.csv is wanted"),
     ],
@@ -119,6 +126,74 @@ def test_mistyped_words(
     assert (code, output, errors.count("\n")) == (2, "", 1)
     assert errors.startswith("realcam: error: ")
     assert re.search(meant, errors), errors
+
+
+@pictures
+@pytest.mark.parametrize("name", IN_CPP)
+def test_help_has_one_form(name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """What Python would print of a command in C++ is what C++ prints, but for groups of options."""
+    text = said([*name.split(), "--help"], monkeypatch, capsys)[1]
+    printed = run(*name.split(), "--help").stdout.partition("\nExamples:\n")[0]
+
+    def paragraphs(page: str) -> list[str]:
+        """One for each option, argument and heading; which column texts begin in depends on the names in a group."""
+        lines = re.sub(r"\n {4,}", " ", page).replace(" [required]", "").splitlines()
+        return sorted({" ".join(line.split()) for line in lines} - {"Camera:", "Scene:", "Picture:", ""})
+
+    assert paragraphs(text) == paragraphs(printed)
+
+
+@pictures
+@pytest.mark.parametrize(
+    "words",
+    [
+        "",
+        "tessar-50mm more",
+        "tessar-50mm more and more",
+        "tessar-50mm --forc",
+        "tessar-50mm --zzzzzzzzzzzzz",
+        "tessar-50mm --json=3",
+        "tessar-50mm --focus",
+        "tessar-50mm --focus near",
+        "tessar-50mm --zoom wide --zoom tele",
+        "tesar-50mm",
+        "zzzzzzzz",
+        "gone.toml",
+        "tessar-50mm --zoom wide",
+        "tessar-50mm --f-number 1",
+    ],
+)
+def test_mistakes_are_told_in_the_same_words(
+    words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By a command in Python, and by one in C++ with the same options."""
+    code, output, errors = said(["lens", "photo", *words.split()], monkeypatch, capsys)
+    assert (code, output, errors.count("\n")) == (2, "", 1)
+    assert errors.replace("lens photo", "lens info") == refusal("lens", "info", *words.split())
+
+
+@pytest.mark.parametrize(
+    ("typed", "wanted"),
+    [
+        ("realcam re", {"render"}),
+        ("realcam lens in", {"info"}),
+        ("realcam lens info tessar", {"tessar-50mm"}),
+        ("realcam lens photo tessar-50mm --exp", {"--exposure-time"}),
+        ("realcam render scene.glb --lens tessar", {"tessar-50mm"}),
+        ("realcam render scene.glb --environment-s", {"--environment-scale"}),
+        ("realcam plan shot.toml --device c", {"cpu"}),
+        ("realcam expose film.exr --sensor sony-imx071-c", {"sony-imx071-color"}),
+        ("realcam render sce", set()),  # bash completes names of files
+    ],
+)
+@pictures
+def test_a_shell_completes(typed: str, wanted: set[str]) -> None:
+    words = typed.split(" ")
+    shell = {"_REALCAM_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": str(len(words) - 1)}
+    done = subprocess.run(PYTHON_COMMAND, capture_output=True, text=True, env={**os.environ, **shell})
+    assert (done.returncode, done.stderr) == (0, "")
+    found = set(done.stdout.split())
+    assert found - {"cuda", "cuda:0", "cuda:1"} == wanted
 
 
 def test_bench_says_where_the_benchmarks_are(
@@ -141,7 +216,6 @@ def test_bench_says_where_the_benchmarks_are(
         ("render scene.glb --outptu a.png", 'option --outptu (did you mean "--output"'),
         ("render --f-numbr 8", '(did you mean "--f-number"'),
         ("render scene.glb", "--output is required (realcam render --help lists the options)"),
-        ("lens info tessar-50mm --jsn", '(did you mean "--json"'),
         ("rendr", 'unknown command "rendr" (did you mean "render"'),
         ("lens lst", 'unknown command "lst" (did you mean "list"'),
         ("render quad.obj -o a.png --spp 4 --noise 0.1", "say how far --spp auto goes; the number of samples is given"),

@@ -19,13 +19,13 @@ def bench(
         Optional[list[str]],  # noqa: UP045
         typer.Argument(
             help="lens-rays, lens-setup, pass-share, camera-models, frame, sensor; gpu-lens-rays, gpu-hits, gpu-paths, "
-            "gpu-frames, gpu-objects [all].",
+            "gpu-frames, gpu-objects [all]",
             metavar="BENCHMARK",
             show_default=False,
         ),
     ] = None,
-    threads: Annotated[int, typer.Option(metavar="N", help="0: all.", min=0, max=4096)] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit.")] = False,
+    threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="As JSON, with machine and commit")] = False,
 ) -> None:
     """Measure rays through the lens, pupil set-up, sampling efficiency, a frame and a sensor on this machine."""
     folder = Path(__file__).resolve().parents[3] / "benchmarks"

@@ -10,31 +10,37 @@ from rich.progress import Progress
 
 from .._core import InputError
 from ..shot import Shot
+from .completions import completion_of
 
 
 def cost(
-    shot: Annotated[Path, typer.Argument(help="A shot file, .toml.", metavar="SHOT")],
+    shot: Annotated[Path, typer.Argument(help="A shot file, .toml", metavar="SHOT")],
     figure: Annotated[
         Optional[list[Path]],  # noqa: UP045
         typer.Option(
             "--figure",
             "-o",
             metavar="FILE",
-            help="Error over time as .svg, or as .html with the table; may be repeated.",
+            help="Error over time as .svg, or as .html with the table; may be repeated",
         ),
     ] = None,
-    size: Annotated[int, typer.Option(metavar="PIXELS", help="Pixels of the longer side.", min=8, max=4096)] = 320,
+    size: Annotated[int, typer.Option(metavar="PIXELS", help="Pixels of the longer side", min=8, max=4096)] = 320,
     most_spp: Annotated[
-        int, typer.Option(metavar="N", help="Each level is taken with 1, 4, 16, ... samples.", min=4)
+        int, typer.Option(metavar="N", help="Each level is taken with 1, 4, 16, ... samples", min=4)
     ] = 256,
     reference_spp: Annotated[
-        int, typer.Option(metavar="N", help="Samples of what they are compared with.", min=16)
+        int, typer.Option(metavar="N", help="Samples of what they are compared with", min=16)
     ] = 4096,
     device: Annotated[
-        str, typer.Option(metavar="DEVICE", help="auto (a GPU if there is one), cpu, cuda, or cuda:1.")
+        str,
+        typer.Option(
+            metavar="DEVICE",
+            help="auto (a GPU if there is one), cpu, cuda, or cuda:1",
+            autocompletion=completion_of("DEVICE"),
+        ),
     ] = "auto",
-    threads: Annotated[int, typer.Option(metavar="N", help="0: all.", min=0, max=4096)] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
     """Take a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects."""
     from ..accuracy import accuracy_cost  # brings matplotlib, which other commands need not load

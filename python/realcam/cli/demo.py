@@ -19,15 +19,15 @@ from .._core import InputError, Lens
 def demo(
     output: Annotated[
         Path,
-        typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the pictures; made where it is missing."),
+        typer.Option("--output", "-o", metavar="FOLDER", help="Folder for the pictures; made where it is missing"),
     ] = Path("realcam-demo"),
     spp: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Samples per pixel; 24 if denoised, 48 if not.", min=1, max=2**24),
+        typer.Option(metavar="N", help="Samples per pixel; 24 if denoised, 48 if not", min=1, max=2**24),
     ] = None,
     denoise: Annotated[
         bool | None,
-        typer.Option(help="Take the noise from the pictures; done where realcam[denoise] is installed."),
+        typer.Option(help="Take the noise from the pictures; done where realcam[denoise] is installed"),
     ] = None,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""

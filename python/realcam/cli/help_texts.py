@@ -1,17 +1,23 @@
-"""`--help` as realcam has it: examples at the end of each command, and no types of Python."""
+"""`--help` of the commands in Python, in the form that those in C++ have."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
 from typing import Any
 
 import typer
 
+from .._core import _help_text
 from .examples import EXAMPLES
+from .usage_message import check_usage
+
+Section = tuple[str, list[tuple[str, str]]]
 
 
-def finish_help(command: Any, words: tuple[str, ...] = ()) -> None:
-    """Finishes the help of a command as typer makes it, and of all below it. `words`: those that call it, without the
-    program's name."""
+def finish(command: Any, words: tuple[str, ...] = ()) -> None:
+    """Finishes a command as typer makes it, and all below it. `words`: those that call it, without the program's
+    name."""
     for parameter in command.params:
         # What an option or argument does not name is called as it is itself, and not by the name of a type.
         if parameter.metavar is None and not getattr(parameter, "is_flag", False):
@@ -19,11 +25,29 @@ def finish_help(command: Any, words: tuple[str, ...] = ()) -> None:
         # An argument's line would have its type behind its name, which says enough.
         if isinstance(parameter, typer.core.TyperArgument):
             parameter.display_type_rich = lambda ctx: None  # type: ignore[method-assign]
-    if command.help:  # which click would cut off in a list of commands
-        command.short_help = " ".join(command.help.split("\n\n")[0].split())
-    examples = EXAMPLES.get(" ".join(words))
-    if examples:
-        # The mark keeps the lines from being made one paragraph.
-        command.epilog = "\b\nExamples:\n" + "\n".join(f"  {example}" for example in examples)
+    check_usage(command)
+    examples = list(EXAMPLES.get(" ".join(words), ()))
+    command.get_help = lambda context: _help_text(
+        # Some versions of typer put an argument that is required in braces.
+        " ".join([context.command_path, *(piece.strip("{}") for piece in command.collect_usage_pieces(context))]),
+        command.help,
+        list(_sections(command, context)),
+        examples,
+    ).rstrip("\n")
     for name, below in getattr(command, "commands", {}).items():
-        finish_help(below, (*words, name))
+        finish(below, (*words, name))
+
+
+def _sections(command: Any, context: Any) -> Iterator[Section]:
+    for title, kind in (("Arguments", "argument"), ("Options", "option")):
+        parameters = [parameter for parameter in command.get_params(context) if parameter.param_type_name == kind]
+        records = [parameter.get_help_record(context) for parameter in parameters]
+        yield title, [(names, _as_in_cpp(text)) for names, text in filter(None, records)]
+    # The first paragraph.
+    commands = getattr(command, "commands", {})
+    yield "Commands", [(name, below.help.partition("\n\n")[0]) for name, below in commands.items()]
+
+
+def _as_in_cpp(text: str) -> str:
+    """What stands if an option is left out is in brackets; that this is so needs no word."""
+    return re.sub(r"\s+\[default: ", " [", text.removesuffix("."))

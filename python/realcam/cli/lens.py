@@ -11,20 +11,22 @@ import typer
 
 from .._core import InputError
 from . import lens_figures, lens_options, lens_plots, options
+from .commands_in_cpp import add_command_in_cpp
+from .completions import completion_of
 
 app = typer.Typer(help="Look at lenses.", rich_markup_mode=None)
 
 Circle = Annotated[
     Optional[float],  # noqa: UP045
     typer.Option(
-        "--circle-of-confusion", metavar="MM", help="Largest blur that is sharp, in mm [the film's diagonal / 1500]."
+        "--circle-of-confusion", metavar="MM", help="Largest blur that is sharp, in mm [the film's diagonal / 1500]"
     ),
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infinite or does not exist is null")]
 
 
-options.add_command_in_cpp(app, "list", "List the bundled lenses.")
-options.add_command_in_cpp(app, "info", "Print a lens's table of surfaces and its first-order data.")
+add_command_in_cpp(app, "lens", "list")
+add_command_in_cpp(app, "lens", "info")
 lens_plots.register(app)
 
 
@@ -32,7 +34,7 @@ lens_plots.register(app)
 def draw(
     name: lens_options.LensName,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .svg, .png or .pdf file [LENS.svg, here].")
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="A .svg, .png or .pdf file [LENS.svg, here]")
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,
@@ -43,13 +45,13 @@ def draw(
     wavelengths: lens_options.Wavelengths = None,
     radius_colours: lens_options.RadiusColours = False,
     marks: lens_options.Marks = False,
-    insets: Annotated[bool, typer.Option(help="Show the rays at the film magnified.")] = True,
+    insets: Annotated[bool, typer.Option(help="Show the rays at the film magnified")] = True,
     states: Annotated[
         str,
         typer.Option(
             metavar="WHICH",
             help="rows: zoom positions, or farthest and nearest focus, one below the other; ghost: the nearest "
-            "focus as outlines in the same drawing; one: as --focus says.",
+            "focus as outlines in the same drawing; one: as --focus says",
         ),
     ] = "one",
     theme: lens_options.ThemeName = "light",
@@ -120,9 +122,9 @@ def photo(
     circle: Circle = None,
     exposure_time: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option("--exposure-time", metavar="TIME", help="In seconds, 1/125 or 0.008: also print exposure values."),
+        typer.Option("--exposure-time", metavar="TIME", help="In seconds, 1/125 or 0.008: also print exposure values"),
     ] = None,
-    iso: Annotated[float, typer.Option("--iso", metavar="ISO", help="Sensitivity, for exposure values.")] = 100.0,
+    iso: Annotated[float, typer.Option("--iso", metavar="ISO", help="Sensitivity, for exposure values")] = 100.0,
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
@@ -150,10 +152,10 @@ def photo(
 @app.command("compare")
 def compare(
     first: lens_options.LensName,
-    second: Annotated[str, typer.Argument(help="Another one.", metavar="LENS")],
+    second: Annotated[str, typer.Argument(help="Another one", metavar="LENS", autocompletion=completion_of("LENS"))],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .png or .pdf."),
+        typer.Option("--output", "-o", metavar="FILE", help="Also draw both at one scale: .svg, .png or .pdf"),
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,
@@ -163,7 +165,7 @@ def compare(
         typer.Option(
             "--mtf",
             metavar="PER_MM",
-            help="Also the MTF at these frequencies, in periods per mm: 10,30. Takes seconds.",
+            help="Also the MTF at these frequencies, in periods per mm: 10,30. Takes seconds",
         ),
     ] = None,
     wavelengths: lens_options.Wavelengths = None,
@@ -217,7 +219,7 @@ def compare(
 @app.command("convert")
 def convert(
     name: lens_options.LensName,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx or .seq file.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx or .seq file")],
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
@@ -233,12 +235,14 @@ def convert(
 def gallery(
     names: Annotated[
         Optional[list[str]],  # noqa: UP045
-        typer.Argument(help="Lenses, bundled or files [all that are bundled].", metavar="LENS"),
+        typer.Argument(
+            help="Lenses, bundled or files [all that are bundled]", metavar="LENS", autocompletion=completion_of("LENS")
+        ),
     ] = None,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .svg or .pdf file.")] = Path(
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .png, .svg or .pdf file")] = Path(
         "lenses.png"
     ),
-    columns: Annotated[int, typer.Option(metavar="N", help="Drawings side by side.", min=1, max=50)] = 6,
+    columns: Annotated[int, typer.Option(metavar="N", help="Drawings side by side", min=1, max=50)] = 6,
     theme: lens_options.ThemeName = "light",
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,

@@ -9,74 +9,80 @@ import typer
 
 from .._core import InputError
 from . import options
+from .completions import completion_of
 
 LensName = Annotated[
-    str, typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS")
+    str,
+    typer.Argument(
+        help="A bundled lens (see `realcam lens list`) or a lens file",
+        metavar="LENS",
+        autocompletion=completion_of("LENS"),
+    ),
 ]
 FNumber = Annotated[
     Optional[float],  # noqa: UP045
-    typer.Option("--f-number", metavar="N", help="Close the diaphragm to this f-number."),
+    typer.Option("--f-number", metavar="N", help="Close the diaphragm to this f-number"),
 ]
 Focus = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--focus", metavar="METRES", help="Object plane to film in metres, or inf."),
+    typer.Option("--focus", metavar="METRES", help="Object plane to film in metres, or inf"),
 ]
 Zoom = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--zoom", metavar="NAME", help="Zoom position, by its name in `realcam lens info`."),
+    typer.Option("--zoom", metavar="NAME", help="Zoom position, by its name in `realcam lens info`"),
 ]
 Glasses = Annotated[
     Optional[list[str]],  # noqa: UP045
     typer.Option(
         "--glass",
         help="A glass that the lens's file names and no catalogue has, or several: NAME=n_d,V_d or NAME=schott:F4; "
-        "may be repeated.",
+        "may be repeated",
         metavar="NAME=N,V",
     ),
 ]
 Force = Annotated[
-    bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it.")
+    bool, typer.Option("--force", help="Leave out what the lens's file has that there is no model of, and name it")
 ]
 PbrtThickness = Annotated[
     Optional[str],  # noqa: UP045
     typer.Option(
         "--pbrt-thickness",
-        help="Where a thickness in a .dat file stands: after or before the surface of its row [by the first row].",
+        help="Where a thickness in a .dat file stands: after or before the surface of its row [by the first row]",
         metavar="WHERE",
     ),
 ]
 
-Rays = Annotated[int, typer.Option(metavar="N", help="Rays of each bundle.", min=0, max=101)]
+Rays = Annotated[int, typer.Option(metavar="N", help="Rays of each bundle", min=0, max=101)]
 RaysFrom = Annotated[
     str,
     typer.Option(
-        "--rays-from", metavar="WHERE", help="object: bundles of points of it; film: what points of the film send out."
+        "--rays-from", metavar="WHERE", help="object: bundles of points of it; film: what points of the film send out"
     ),
 ]
 Fields = Annotated[
     str,
     typer.Option(
-        "--fields", metavar="SHARES", help="Places in the field, as shares of the height of the film's corner."
+        "--fields", metavar="SHARES", help="Places in the field, as shares of the height of the film's corner"
     ),
 ]
 FieldsDeg = Annotated[
     Optional[str],  # noqa: UP045
     typer.Option(
-        "--fields-deg", metavar="DEGREES", help="Places in the field as angles before the lens, in degrees, instead."
+        "--fields-deg", metavar="DEGREES", help="Places in the field as angles before the lens, in degrees, instead"
     ),
 ]
 Wavelengths = Annotated[
     Optional[str],  # noqa: UP045
-    typer.Option("--wavelengths", metavar="NM", help="Of the rays, in nm: 486,588,656 [the lens's]."),
+    typer.Option("--wavelengths", metavar="NM", help="Of the rays, in nm: 486,588,656 [the lens's]"),
 ]
 RadiusColours = Annotated[
-    bool, typer.Option("--radius-colours", help="Faces by the sign of their radius: blue positive, red negative.")
+    bool, typer.Option("--radius-colours", help="Faces by the sign of their radius: blue positive, red negative")
 ]
 Marks = Annotated[
-    bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F').")
+    bool, typer.Option("--marks", help="Mark pupils (EP, XP), principal planes (H, H') and focal points (F, F')")
 ]
-ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="light or dark.")]
-Width = Annotated[int, typer.Option("--width", metavar="PIXELS", help="Of the picture, in pixels.", min=200, max=20000)]
+ThemeName = Annotated[str, typer.Option("--theme", metavar="NAME", help="light or dark")]
+Width = Annotated[int, typer.Option("--width", metavar="PIXELS", help="Of the picture, in pixels", min=200, max=20000)]
 
 
 SUFFIXES = (".toml", ".zmx", ".seq", ".len", ".dat", ".json", ".roa")  # of lens files

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from .._core import InputError
 from . import lens_options, options
+from .completions import completion_of
 
 ObjectDistance = Annotated[
     Optional[str],  # noqa: UP045
     typer.Option(
         "--object-distance",
         metavar="METRES",
-        help="Object plane to front vertex in metres, or inf [the plane in focus].",
+        help="Object plane to front vertex in metres, or inf [the plane in focus]",
     ),
 ]
 Fields = Annotated[
@@ -26,13 +27,13 @@ Fields = Annotated[
     typer.Option(
         "--fields-deg",
         metavar="DEGREES",
-        help="Field angles in degrees, with commas between [up to the film's corner].",
+        help="Field angles in degrees, with commas between [up to the film's corner]",
     ),
 ]
 Wavelengths = Annotated[
     Optional[str],  # noqa: UP045
     typer.Option(
-        "--wavelengths", metavar="NM", help="In nm, with commas between [F line, the design wavelength, C line]."
+        "--wavelengths", metavar="NM", help="In nm, with commas between [F line, the design wavelength, C line]"
     ),
 ]
 
@@ -44,15 +45,19 @@ def register(app: typer.Typer) -> None:
 
 
 def plot(
-    kind: Annotated[str, typer.Argument(help="What to plot: one of those above.", metavar="KIND")],
+    kind: Annotated[str, typer.Argument(help="What to plot: one of those above", metavar="KIND")],
     name: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Argument(help="A bundled lens (see `realcam lens list`) or a lens file.", metavar="LENS"),
+        typer.Argument(
+            help="A bundled lens (see `realcam lens list`) or a lens file",
+            metavar="LENS",
+            autocompletion=completion_of("LENS"),
+        ),
     ] = None,
     output: Annotated[
         Optional[list[Path]],  # noqa: UP045
         typer.Option(
-            "--output", "-o", metavar="FILE", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated."
+            "--output", "-o", metavar="FILE", help=".svg, .png or .pdf; .json or .csv for the numbers. May be repeated"
         ),
     ] = None,
     f_number: lens_options.FNumber = None,
@@ -68,7 +73,7 @@ def plot(
         typer.Option(
             "--frequencies",
             metavar="PER_MM",
-            help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest.",
+            help="Of MTF, in periods per mm, with commas between; of `mtf`, the highest",
         ),
     ] = None,
     method: Annotated[
@@ -76,13 +81,13 @@ def plot(
         typer.Option(
             "--method",
             metavar="NAME",
-            help="mtf, mtf-field, mtf-focus: diffraction or geometric (rays alone). psf: direct, fft or geometric.",
+            help="mtf, mtf-field, mtf-focus: diffraction or geometric (rays alone). psf: direct, fft or geometric",
         ),
     ] = None,
     object_distance: ObjectDistance = None,
     theme: lens_options.ThemeName = "light",
-    size: Annotated[str, typer.Option("--size", metavar="NAME", help="small or large.")] = "large",
-    as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON.")] = False,
+    size: Annotated[str, typer.Option("--size", metavar="NAME", help="small or large")] = "large",
+    as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON")] = False,
 ) -> None:
     """Plot one thing about a lens, or write its numbers.
 
@@ -133,7 +138,7 @@ def report(
     name: lens_options.LensName,
     output: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option("--output", "-o", metavar="FILE", help="A .pdf or .html file [LENS.pdf, here]."),
+        typer.Option("--output", "-o", metavar="FILE", help="A .pdf or .html file [LENS.pdf, here]"),
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,

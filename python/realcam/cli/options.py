@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Sequence
 
-import typer
-
-from .._core import InputError, Lens, LensFileError
+from .._core import InputError, Lens, LensFileError, _did_you_mean
 
 
-def add_command_in_cpp(app: typer.Typer, name: str, help: str) -> None:
-    """Lists a command in the help; realcam_command has handed it to the extension before anybody gets here."""
-
-    def command() -> None:
-        raise InputError(f'"{name}": options come after the command')
-
-    app.command(name, help=help)(command)
-
-
-def number(text: str, what: str) -> float:
+def number(text: str, what: str, wanted: str = "a number") -> float:
     """A number, or inf. Raises InputError."""
     try:
         value = float(text)
     except ValueError:
         value = math.nan
     if math.isnan(value):
-        raise InputError(f'{what}: "{text}" is not a number')
+        raise InputError(f'{what}: "{text}" is not {wanted}')
     return value
 
 
@@ -36,9 +24,7 @@ def check_known(word: str, known: Iterable[str], what: str) -> None:
     names = list(known)
     if word in names:
         return
-    near = difflib.get_close_matches(word, names)
-    meant = f" (did you mean {' or '.join(near)}?)" if near else ""
-    raise InputError(f'unknown {what} "{word:.40}"{meant}; one of {", ".join(names)} is wanted')
+    raise InputError(f'unknown {what} "{word:.40}"{_did_you_mean(word, names)}; one of {", ".join(names)} is wanted')
 
 
 def glasses(texts: Sequence[str]) -> dict[str, tuple[float, float] | float | str]:
@@ -85,7 +71,7 @@ def lens(
     if f_number is not None:
         result = result.stopped_down(f_number)
     if focus is not None:
-        result = result.focused(number(focus, "--focus"))
+        result = result.focused(number(focus, "--focus", "a number of metres or inf"))
     return result
 
 

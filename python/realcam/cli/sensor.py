@@ -11,11 +11,17 @@ import numpy as np
 import typer
 
 from .._core import Film, InputError, Sensor, sensor_names
+from .completions import completion_of
 
 app = typer.Typer(help="Look at sensors.", rich_markup_mode=None)
 
 SensorName = Annotated[
-    str, typer.Argument(help="A bundled sensor (see `realcam sensor list`) or a sensor file.", metavar="SENSOR")
+    str,
+    typer.Argument(
+        help="A bundled sensor (see `realcam sensor list`) or a sensor file",
+        metavar="SENSOR",
+        autocompletion=completion_of("SENSOR"),
+    ),
 ]
 
 
@@ -58,26 +64,29 @@ def info(name: SensorName) -> None:
 
 
 def expose(
-    film: Annotated[Path, typer.Argument(help="The film's exposure: an .exr of `realcam render`.", metavar="FILM")],
+    film: Annotated[Path, typer.Argument(help="The film's exposure: an .exr of `realcam render`", metavar="FILM")],
     output: Annotated[
         list[Path],
-        typer.Option("--output", "-o", metavar="FILE", help="Raw as .dng or .npy, developed as .png; may be repeated."),
+        typer.Option("--output", "-o", metavar="FILE", help="Raw as .dng or .npy, developed as .png; may be repeated"),
     ],
     sensor: Annotated[
         str,
-        typer.Option("--sensor", metavar="SENSOR", help="A bundled sensor (`realcam sensor list`) or a sensor file."),
+        typer.Option(
+            "--sensor",
+            metavar="SENSOR",
+            help="A bundled sensor (`realcam sensor list`) or a sensor file",
+            autocompletion=completion_of("SENSOR"),
+        ),
     ] = "ideal",
-    iso: Annotated[Optional[float], typer.Option("--iso", metavar="ISO", help="Sensitivity [the picture's].")] = None,  # noqa: UP045
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the noise of this exposure.", min=0, max=2**32 - 1)] = 0,
-    serial: Annotated[int, typer.Option(metavar="N", help="Of what a sensor has for ever.", min=0, max=2**32 - 1)] = 0,
+    iso: Annotated[Optional[float], typer.Option("--iso", metavar="ISO", help="Sensitivity [the picture's]")] = None,  # noqa: UP045
+    seed: Annotated[int, typer.Option(metavar="N", help="Of the noise of this exposure", min=0, max=2**32 - 1)] = 0,
+    serial: Annotated[int, typer.Option(metavar="N", help="Of what a sensor has for ever", min=0, max=2**32 - 1)] = 0,
     temperature: Annotated[
         Optional[float],  # noqa: UP045
-        typer.Option("--temperature", metavar="CELSIUS", help="Degrees Celsius [that of the sensor's dark current]."),
+        typer.Option("--temperature", metavar="CELSIUS", help="Degrees Celsius [that of the sensor's dark current]"),
     ] = None,
-    tone: Annotated[
-        str, typer.Option(metavar="CURVE", help="Tone curve of .png: linear (clipped) or film.")
-    ] = "linear",
-    demosaic: Annotated[str, typer.Option(metavar="NAME", help="Of .png: menon, malvar or bilinear.")] = "menon",
+    tone: Annotated[str, typer.Option(metavar="CURVE", help="Tone curve of .png: linear (clipped) or film")] = "linear",
+    demosaic: Annotated[str, typer.Option(metavar="NAME", help="Of .png: menon, malvar or bilinear")] = "menon",
 ) -> None:
     """Expose a sensor to a film: raw numbers with the sensor's noise, and a picture developed from them."""
     from ..demosaicing import METHODS

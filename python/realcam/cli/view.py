@@ -8,25 +8,33 @@ from typing import Annotated
 import typer
 
 from .._core import InputError
+from .completions import completion_of
 from .demo import scenes_folder
 
 
 def view(
     shot: Annotated[
-        Path | None, typer.Argument(help="Shot file or scene file; the demo if left out.", show_default=False)
+        Path | None, typer.Argument(help="Shot file or scene file; the demo if left out", show_default=False)
     ] = None,
     folder: Annotated[
         list[Path] | None,
-        typer.Option(help="Folder that the page may read and write, besides the current one.", show_default=False),
+        typer.Option(help="Folder that the page may read and write, besides the current one", show_default=False),
     ] = None,
-    host: Annotated[str, typer.Option(help="Address to serve at.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to serve at.", min=1, max=65535)] = 8080,
+    host: Annotated[str, typer.Option(help="Address to serve at")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port to serve at", min=1, max=65535)] = 8080,
     allow_network: Annotated[
-        bool, typer.Option("--allow-network", help="Serve at an address that other machines reach; makes a token.")
+        bool, typer.Option("--allow-network", help="Serve at an address that other machines reach; makes a token")
     ] = False,
-    token: Annotated[str, typer.Option(help="The token that pages have to give.", show_default=False)] = "",
-    device: Annotated[str, typer.Option(help="auto, cpu, cuda, cuda:1 ...; see `realcam devices`.")] = "auto",
-    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
+    token: Annotated[str, typer.Option(help="The token that pages have to give", show_default=False)] = "",
+    device: Annotated[
+        str,
+        typer.Option(
+            metavar="DEVICE",
+            help="auto, cpu, cuda, cuda:1 ...; see `realcam devices`",
+            autocompletion=completion_of("DEVICE"),
+        ),
+    ] = "auto",
+    browser: Annotated[bool, typer.Option(help="Open the browser")] = True,
 ) -> None:
     """Photograph a scene in the browser: turn the rings, edit the lens, and see the picture follow."""
     try:

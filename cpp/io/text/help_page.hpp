@@ -1,0 +1,24 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace realcam::io {
+
+/// What --help tells of a command.
+struct HelpPage {
+    struct Section {
+        std::string title;
+        std::vector<std::pair<std::string, std::string>> rows;  ///< an option or a command, and what it is for
+    };
+
+    std::string usage;  ///< "realcam lens info [OPTIONS] LENS"
+    std::string description;  ///< paragraphs with an empty line between them
+    std::vector<Section> sections;
+    std::vector<std::string> examples;  ///< command lines
+};
+
+/// The page in lines of at most 80 columns. Words that are longer have a line of their own.
+std::string text_of(const HelpPage& page);
+
+}  // namespace realcam::io

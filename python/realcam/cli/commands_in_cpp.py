@@ -1,0 +1,49 @@
+"""The commands in C++, as the command line of Python lists and completes them."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import cache
+from typing import Annotated, Any, Optional
+
+import typer
+
+from .. import _core
+from .._core import InputError
+from .completions import completion_of
+
+
+@cache
+def _listed() -> dict[tuple[str, ...], tuple[str, list[tuple[list[str], str, str]]]]:
+    """Description and options of each, by its words. None where the extension is built without them."""
+    listed = getattr(_core, "_listed_commands", list)
+    return {tuple(words): (description, options) for words, description, options in listed()}
+
+
+def add_command_in_cpp(app: typer.Typer, *words: str) -> None:
+    """Lists a command in the help, and completes its options in a shell. realcam_command has handed the command to the
+    extension before anybody calls it here."""
+    if words not in _listed():
+        return
+    description, options = _listed()[words]
+
+    def command(**_: Any) -> None:
+        raise InputError(f'"{" ".join(words)}": options come after the command')
+
+    parameters = [_parameter(i, *option) for i, option in enumerate(options)]
+    command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    command.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    app.command(words[-1], help=description)(command)
+
+
+def _parameter(number: int, names: list[str], metavar: str, help: str) -> inspect.Parameter:
+    declare: Callable[..., Any] = typer.Option if names else typer.Argument
+    settings = {"help": help, **({"metavar": metavar, "autocompletion": completion_of(metavar)} if metavar else {})}
+    kind = Optional[str] if metavar else bool  # noqa: UP045
+    return inspect.Parameter(
+        f"option_{number}",
+        inspect.Parameter.KEYWORD_ONLY,
+        default=inspect.Parameter.empty if not names else None if metavar else False,
+        annotation=Annotated[kind, declare(*names, **settings)],
+    )

@@ -1,0 +1,78 @@
+"""What is wrong with a command line, in the words that the commands in C++ have for it."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import typer
+
+from .._core import _did_you_mean
+
+# click's, which newer versions of typer bring along under a private name.
+UsageError: Any = typer.BadParameter.__bases__[0]
+
+
+def check_usage(command: Any) -> None:
+    """Has a command raise UsageError where an option stands twice that counts once, of which click takes the last, and
+    has its errors know the command and the word that is wrong."""
+    parse = command.parse_args
+
+    def parse_strictly(context: Any, words: list[str]) -> Any:
+        given: dict[str, Any] = {}
+        try:
+            given, _, order = command.make_parser(context).parse_args(args=list(words))
+            for parameter in order:
+                if order.count(parameter) > 1 and not parameter.multiple and not getattr(parameter, "is_flag", True):
+                    raise UsageError(f"{max(parameter.opts, key=len)} is given more than once")
+            return parse(context, words)
+        except UsageError as error:
+            error.ctx = error.ctx or context
+            if parameter := getattr(error, "param", None):
+                error.word = given.get(parameter.name)
+            raise
+
+    command.parse_args = parse_strictly
+
+
+def usage_message(error: Any) -> str:
+    """What is wrong, what was meant, and where the options stand. `error`: a UsageError of click."""
+    context = error.ctx
+    commands = getattr(context.command, "commands", None) if context else None
+    where = f"{context.command_path if context else 'realcam'} --help lists the {'commands' if commands else 'options'}"
+    return f"{_what_is_wrong(error, commands)} ({where})"
+
+
+def _what_is_wrong(error: Any, commands: dict[str, Any] | None) -> str:
+    said: str = error.message.rstrip(".")
+    if option := getattr(error, "option_name", None):
+        if said.startswith("No such option"):
+            return f"unknown option {option}{_did_you_mean(_plain(option), _options_of(error.ctx))}"
+        return f"{option} {'wants a value' if 'requires' in said else 'takes no value'}"
+    if parameter := getattr(error, "param", None):
+        name = max(parameter.opts, key=len) if parameter.param_type_name == "option" else parameter.metavar
+        if not said:  # what is missing has no message
+            return f"{name} is required"
+        # The words of typer have changed with its versions.
+        if "number" in said or "float" in said or "integer" in said:
+            return f'{name}: "{error.word}" is not a {"whole " * ("integer" in said)}number'
+        return f"{name}: {said}"
+    if commands and (unknown := re.match(r"No such command '(.*?)'", said)):
+        return f'unknown command "{unknown[1]}"{_did_you_mean(_plain(unknown[1]), list(commands))}'
+    if commands:
+        return f"a command is missing; {', '.join(commands)} are known"
+    if extra := re.match(r"Got unexpected extra argument\S* \((\S*).*\)", said):
+        return f'unexpected argument "{extra[1]}"'
+    return said
+
+
+def _options_of(context: Any) -> list[str]:
+    """Long names: who mistypes one letter means anything."""
+    parameters = context.command.get_params(context) if context else []
+    names = (name for parameter in parameters for name in (*parameter.opts, *parameter.secondary_opts))
+    return [name for name in names if name.startswith("--")]
+
+
+def _plain(word: str) -> str:
+    """Without the bytes that are no UTF-8."""
+    return word.encode(errors="replace").decode()
