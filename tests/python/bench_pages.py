@@ -60,16 +60,7 @@ def launched(driver: Any) -> Iterator[Any]:
     started.close()
 
 
-# `realcam`, whose last argument are settings of the server for which it has no options.
-_PROGRAM = """
-import json, sys
-from functools import partial
-from realcam.viewer import server
-from realcam_command.main import main
-
-server.ServerSettings = partial(server.ServerSettings, **json.loads(sys.argv.pop()))
-main()
-"""
+_PROGRAM = f"import sys; sys.path.append({str(Path(__file__).parent)!r}); import bench_server; bench_server.run()"
 # A picture takes a sixteenth of the samples that it takes for users, and windows that pages have left are soon closed.
 _SETTINGS = {"noise_codes": 4.0, "most_windows": 4}
 
@@ -92,7 +83,10 @@ class Server:
         return self.log.read_text()
 
     def start(self) -> None:
-        command = [sys.executable, "-c", _PROGRAM, "view", self.shot.name, "--no-browser", "--port", str(self.port)]
+        program = (
+            f"import sys; sys.path.append({str(Path(__file__).parent)!r}); import bench_server; bench_server.run()"
+        )
+        command = [sys.executable, "-c", program, "view", self.shot.name, "--no-browser", "--port", str(self.port)]
         # NiceGUI has a mode for tests that are run within it, which this variable turns on.
         environment = {name: value for name, value in os.environ.items() if name != "PYTEST_CURRENT_TEST"}
         # Appended to, so that a server that is started anew hides no traceback of the first.
@@ -155,6 +149,32 @@ class Server:
         ]
 
 
+# The serials of the pictures that were asked for last. By then the page has sent all that it sends by and by: what the
+# mouse does, once for each picture that the browser draws, and what a ring or a number does, each 100 ms at most. Of
+# timers the one that was set later and for longer ends later.
+_ASKED = """
+async () => {
+    await new Promise(requestAnimationFrame);
+    await new Promise((done) => setTimeout(done, 110));
+    const key = [...realcamStreams.keys()][0].split("/").pop();
+    return (await fetch(`/tests/asked/${key}`)).json();
+}
+"""
+# The canvas, if it shows these pictures and they are done.
+_SHOWN = """
+(asked) => {
+    const { shown } = [...realcamStreams.values()][0];
+    for (const [slot, serial] of Object.entries(asked))
+        if (!(shown[slot]?.is_final && shown[slot].serial >= serial)) return null;
+    const c = document.querySelector(".rc-canvas");
+    const data = c.getContext("2d").getImageData(0, 0, c.width, c.height).data;
+    let text = "";
+    for (let i = 0; i < data.length; i += 8192) text += String.fromCharCode(...data.subarray(i, i + 8192));
+    return [c.width, c.height, btoa(text)];
+}
+"""
+
+
 class BenchPage:
     """A window on a server. Refuses to be left with an exception in the page's scripts."""
 
@@ -183,6 +203,10 @@ class BenchPage:
 
     def open(self, url: str) -> None:
         self.page.goto(url)
+        self.until_there()
+
+    def until_there(self) -> None:
+        """Until the page that is being loaded shows its first picture."""
         until(lambda: (self.status, self.complaints), lambda seen: "pixels" in seen[0], "no picture comes")
 
     def close(self) -> None:
@@ -206,25 +230,17 @@ class BenchPage:
         return (found.text_content() or "") if found.count() else ""
 
     def picture(self) -> np.ndarray:
-        """The pixels of the canvas, (H, W, 3) codes."""
-        width, height, content = self.page.evaluate(
-            """() => {
-                const c = document.querySelector('.rc-canvas');
-                const data = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
-                let text = '';
-                for (let i = 0; i < data.length; i += 8192) text += String.fromCharCode(...data.subarray(i, i + 8192));
-                return [c.width, c.height, btoa(text)];
-            }"""
+        """The picture of all that was done on this page before, as soon as nothing will be added: (H, W, 3) codes."""
+        asked = self.page.evaluate(_ASKED)
+        width, height, content = until(
+            lambda: self.page.evaluate(_SHOWN, asked), bool, f"the picture ({self.status}) of {asked} does not come"
         )
         return np.frombuffer(base64.b64decode(content), np.uint8).reshape(height, width, 4)[..., :3]
 
-    def until_picture(self, is_right: Callable[[np.ndarray], object], what: str) -> np.ndarray:
-        """The picture as soon as it is right and done."""
-
-        def seen() -> tuple[np.ndarray, str]:
-            return self.picture(), self.status
-
-        return until(seen, lambda s: s[1].endswith("done") and is_right(s[0]), what)[0]
+    def shown(self) -> np.ndarray:
+        """What the canvas shows now, perhaps of a picture that is not done: (H, W, 3) codes."""
+        width, height, content = self.page.evaluate(_SHOWN, {})
+        return np.frombuffer(base64.b64decode(content), np.uint8).reshape(height, width, 4)[..., :3]
 
     def figure(self, name: str) -> float:
         text = self.text(name).split()[0]
@@ -254,6 +270,11 @@ class BenchPage:
         option = self.page.locator(".q-menu .q-item").filter(has_text=re.compile(rf"^\s*{re.escape(text)}\s*$"))
         option.click()
         self.page.locator(".q-menu").wait_for(state="detached")
+
+    def choose_lens(self, name: str) -> None:
+        """One of the list of bundled lenses."""
+        self.test_id("lens").fill(name)
+        self.page.locator(".q-menu .q-item").get_by_text(name, exact=True).click()
 
     def choose_what_to_save(self, what: str) -> None:
         """Waits for the name that the server then proposes: it would replace one that is filled in before it."""

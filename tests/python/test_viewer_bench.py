@@ -57,7 +57,7 @@ class Told:
         def frames() -> list[Any]:
             return [frame for s, frame in self.frames if s == slot]
 
-        wanted = self.bench._loops[slot]._serial
+        wanted = self.bench.asked[slot]
         self.until(lambda: frames() and frames()[-1].is_final and frames()[-1].serial >= wanted)
         return frames()[-1]
 

@@ -144,7 +144,7 @@ def test_a_picture_that_is_being_refined_is_saved_as_it_is_or_not(bench: BenchPa
 
 def test_a_picture_is_downloaded(bench: BenchPage, server: Server, tmp_path: Path) -> None:
     oiio = pytest.importorskip("OpenImageIO")
-    bench.until_picture(lambda p: True, "the picture")
+    bench.picture()
     for suffix in ("png", "jpg", "jpeg", "exr", "dng"):
         name = f"mine.{suffix}"
         with bench.page.expect_download() as asked:

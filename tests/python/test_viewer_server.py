@@ -25,10 +25,6 @@ from .bench_pages import CHROMIUM, BenchPage, Server, fetch, until  # noqa: E402
 pytestmark = [pytest.mark.picture_files, pytest.mark.skipif(CHROMIUM is None, reason="no chromium")]
 
 
-def done(bench: BenchPage) -> None:
-    until(lambda: bench.status, lambda text: text.endswith("done"), "the picture is not done")
-
-
 def stream_path(bench: BenchPage) -> str:
     return str(bench.page.evaluate("[...window.realcamStreams.keys()][0]"))
 
@@ -39,21 +35,20 @@ def stream(server: Server, path: str, **options: object) -> websockets.ClientCon
 
 
 def test_two_windows_do_not_disturb_each_other(browser: playwright.Browser, server: Server, bench: BenchPage) -> None:
-    done(bench)
-    before, focal = bench.picture(), bench.figure("effective_focal_length_mm")
+    before, focal = bench.picture().mean(), bench.figure("effective_focal_length_mm")
     other = BenchPage(browser, server.url)
     try:
         other.edit(0, "radius_mm", "27")
         other.turn("shutter", "ArrowRight", 6)
         until(lambda: other.figure("effective_focal_length_mm"), lambda f: f != focal, "edited")
-        other.until_picture(lambda p: p.mean() > 1.2 * before.mean(), "brighter")
+        assert other.picture().mean() > 1.2 * before
         assert bench.figure("effective_focal_length_mm") == focal
-        assert bench.picture().mean() == pytest.approx(before.mean(), rel=0.02)
+        assert bench.picture().mean() == pytest.approx(before, rel=0.02)
         assert bench.text("shutter-text") == "Shutter 1/50 s"
     finally:
         other.close()
     bench.turn("shutter", "ArrowRight", 3)  # and lives on when the other has gone
-    bench.until_picture(lambda p: p.mean() > 1.1 * before.mean(), "brighter")
+    assert bench.picture().mean() > 1.1 * before
 
 
 MALFORMED = [
@@ -85,7 +80,7 @@ def test_malformed_messages_end_the_connection_and_no_more(bench: BenchPage, ser
         assert end.value.rcvd.code in (1008, 1009), message[:80]
     bench.page.evaluate("() => { const s = [...window.realcamStreams.values()][0]; delete s.connect; s.connect(); }")
     until(lambda: bench.page.locator(".rc-lost").count(), lambda count: count == 0, "the page comes back")
-    done(bench)
+    bench.picture()
     assert server.process.poll() is None
 
 
@@ -117,7 +112,8 @@ def test_a_page_can_be_loaded_again_and_again(bench: BenchPage, server: Server) 
     for _ in range(6):
         bench.page.goto(server.url)
         assert not bench.page.get_by_text("Too many windows").is_visible()
-    done(bench)
+    bench.until_there()
+    bench.picture()
 
 
 def test_what_cannot_be_is_told_on_the_page(bench: BenchPage) -> None:
@@ -217,7 +213,7 @@ def test_a_token_is_wanted_from_other_machines(browser: playwright.Browser, tmp_
             pass
         bench = BenchPage(browser, f"{server.url}?token=a-token-of-the-test")
         try:
-            done(bench)
+            bench.picture()
         finally:
             bench.close()
     finally:
@@ -227,7 +223,7 @@ def test_a_token_is_wanted_from_other_machines(browser: playwright.Browser, tmp_
 
 def test_a_dead_connection_does_not_keep_the_frames(bench: BenchPage, server: Server) -> None:
     """A link that breaks without a word leaves the server with a socket that acknowledges nothing."""
-    done(bench)
+    before = bench.picture().astype(int)
     bench.page.evaluate("window.first = [...realcamStreams.values()][0].socket")
     with stream(server, stream_path(bench)) as dead:
         dead.recv(timeout=30)  # takes over, and never acknowledges
@@ -238,13 +234,12 @@ def test_a_dead_connection_does_not_keep_the_frames(bench: BenchPage, server: Se
             lambda state: state == 1,
             "back",
         )
-        before = bench.picture().astype(int)
         bench.send({"type": "orbit", "x": 0.2, "y": 0})
-        bench.until_picture(lambda p: np.abs(p - before).mean() > 10, "moved")
+        assert np.abs(bench.picture() - before).mean() > 10
 
 
 def test_rest_costs_nothing(server: Server, bench: BenchPage) -> None:
-    done(bench)
+    bench.picture()
     time.sleep(3)  # plots, depth of field
     used = []
     for _ in range(5):
@@ -261,16 +256,15 @@ def test_a_server_that_dies_and_comes_again(browser: playwright.Browser, tmp_pat
     server = Server(bench_shots.write_panels_shot(tmp_path))
     bench = BenchPage(browser, server.url)
     try:
-        done(bench)
+        before = bench.picture().astype(int)
         server.kill()
         bench.page.get_by_text("Connection lost").first.wait_for()
-        assert bench.picture().mean() > 10  # the last picture stays
-        server.start()
-        until(lambda: bench.page.locator(".rc-lost").count(), lambda count: count == 0, "the page comes back")
-        done(bench)
-        before = bench.picture().astype(int)
+        assert (bench.shown() == before).all()  # the last picture stays
+        with bench.page.expect_navigation():  # the server does not know the window, and the page loads itself again
+            server.start()
+        bench.until_there()
         bench.send({"type": "orbit", "x": 0.2, "y": 0})
-        bench.until_picture(lambda p: np.abs(p - before).mean() > 10, "moved")
+        assert np.abs(bench.picture() - before).mean() > 10
         bench.complaints.clear()  # the browser says of each try that nobody answered
     finally:
         bench.close()
@@ -325,7 +319,7 @@ def test_a_slow_link_shows_the_newest_frame_and_recovers(browser: playwright.Bro
         return bench.page.evaluate("window.seenFrames")
 
     try:
-        done(bench)
+        bench.picture()
         bench.page.evaluate(
             """() => {
                 window.seenFrames = [];
@@ -403,7 +397,7 @@ def test_hundreds_of_random_edits_and_moves(browser: playwright.Browser, tmp_pat
     chance = random.Random(15)
     memory = []
     try:
-        done(bench)
+        bench.picture()
         for k in range(400):
             bench.send(random_message(chance))
             if k % 5 == 4:

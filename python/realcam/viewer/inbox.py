@@ -46,6 +46,10 @@ class Inbox:
         self._characters -= characters
         return message
 
+    def __len__(self) -> int:
+        """How many wait."""
+        return len(self._waiting)
+
     def clear(self) -> None:
         self._waiting.clear()
         self._characters = 0

@@ -48,7 +48,6 @@ class LensBench:
         self.hovered: tuple[float, float] | None = None
         self.comparison = Comparison()
         self._lock = threading.Lock()  # of controls, which the picture's thread changes, too
-        self._serial = 0  # of the picture that was asked for last
         self._frame: Frame | None = None
         self._loops = {"a": self._new_loop("a")}
         self._follow_ups = FollowUps(shot, device, self.listeners)
@@ -247,16 +246,21 @@ class LensBench:
         return self._loops[slot].image(GUIDES).result().denoised(device=self._device)
 
     @property
+    def asked(self) -> dict[str, int]:
+        """The serials of the pictures that were asked for last, by their slots. On the thread of the user's actions."""
+        return {slot: loop.serial for slot, loop in self._loops.items()}
+
+    @property
     def is_refined(self) -> bool:
         """Whether the picture has the noise that is asked for, or as many samples as a picture may have."""
         frame = self._frame
-        return frame is not None and frame.is_final and frame.serial >= self._serial
+        return frame is not None and frame.is_final and frame.serial >= self._loops["a"].serial
 
     @property
     def progress(self) -> str:
         """How far the picture is on its way there, in words."""
         frame = self._frame
-        if frame is None or frame.serial < self._serial:
+        if frame is None or frame.serial < self._loops["a"].serial:
             return "it has just begun"
         samples = f"{frame.samples} sample{'' if frame.samples == 1 else 's'} per pixel"
         if frame.noise_codes is None:
@@ -344,7 +348,7 @@ class LensBench:
         )
 
     def _photograph(self) -> None:
-        self._serial = self._loops["a"].submit(self._request(self.controls))
+        self._loops["a"].submit(self._request(self.controls))
         try:
             other = self.comparison.beside(self.controls)
             if other is not None:

@@ -90,6 +90,11 @@ class PictureLoop:
         return serial
 
     @property
+    def serial(self) -> int:
+        """Of the newest request."""
+        return self._serial
+
+    @property
     def jpeg_quality(self) -> int:
         return self._encoder.quality
 

@@ -41,7 +41,7 @@ class PictureStream:
         self._frames: dict[str, Frame] = {}
         self._texts: dict[str, str] = {}
         self._news = asyncio.Event()
-        self._inbox = Inbox()  #: outlives a connection that is lost
+        self.inbox = Inbox()  #: outlives a connection that is lost
         self._serving: list[asyncio.Task[None]] = []  #: of the newest connection
         self._sent: tuple[str, float] | None = None  #: the frame that is not acknowledged, and when it was sent
         self._sent_frame: Frame | None = None  #: the last one
@@ -70,7 +70,7 @@ class PictureStream:
             for task in done:
                 error = None if task.cancelled() else task.exception()
                 if isinstance(error, BadMessage):
-                    self._inbox.clear()
+                    self.inbox.clear()
                     await socket.close(1008, str(error)[:100])
                 elif error and not isinstance(error, WebSocketDisconnect | RuntimeError):
                     raise error
@@ -92,11 +92,11 @@ class PictureStream:
             if text.startswith("ack "):
                 self._acknowledge(text[4:])
             else:
-                self._inbox.put(parsed(text), len(text))
+                self.inbox.put(parsed(text), len(text))
 
     async def _work(self) -> None:
         while True:
-            message = await self._inbox.next()
+            message = await self.inbox.next()
             try:
                 # Shielded, because what waits for its turn would be given up with the connection.
                 await asyncio.shield(self._loop.run_in_executor(self._executor, perform, message, self._bench))

@@ -11,6 +11,7 @@ class Stream {
     this.latest = new Map(); // for components that are mounted later
     this.wait = FIRST_WAIT_MS;
     this.framesShown = 0;
+    this.shown = {}; // headers of the frames that the page shows, by their slots
     this.isNew = true;
     this.on("state", ({ state }) => sessionStorage.setItem(KEPT, JSON.stringify(state)));
     this.connect();
@@ -68,6 +69,7 @@ class Stream {
       if (this.socket.readyState === WebSocket.OPEN) this.socket.send(`ack ${header.slot} ${header.serial}`);
     }
     this.framesShown += 1;
+    this.shown[header.slot] = header;
     this.tell("frame", { header, bitmap });
   }
 

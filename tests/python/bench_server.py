@@ -1,0 +1,46 @@
+"""`realcam view` as the tests start it (bench_pages.Server): with settings for which it has no options, and one more
+address, which tells when all that a page has asked for is done.
+
+A module of its own, so that the server's own processes, which are begun anew, import none of it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from functools import partial
+
+from nicegui import app
+from realcam.viewer import server
+from realcam.viewer.windows import Windows
+from realcam_command.main import main
+
+_opened: list[Windows] = []
+
+
+class _TestedWindows(Windows):
+    def __init__(self, most: int) -> None:
+        super().__init__(most)
+        _opened.append(self)
+
+
+@app.get("/tests/asked/{key}")
+async def asked(key: str) -> dict[str, int]:
+    """The serials of the pictures that a window has asked for last, by their slots."""
+    window = _opened[0].get(key)
+    assert window is not None
+    # What the page has sent before this came by other sockets. Each of the loop's turns takes it a step on its way to
+    # the thread of the window's actions: from the socket over a protocol's parser, its queue and a task or two.
+    for _ in range(50):
+        await asyncio.sleep(0)
+    while len(window.stream.inbox):
+        await asyncio.sleep(0.01)
+    return await window.do(lambda: window.bench.asked)
+
+
+def run() -> None:
+    """The last argument of the command line are fields of ServerSettings, as JSON."""
+    server.ServerSettings = partial(server.ServerSettings, **json.loads(sys.argv.pop()))  # type: ignore[misc, assignment]
+    server.Windows = _TestedWindows  # type: ignore[misc]
+    main()
