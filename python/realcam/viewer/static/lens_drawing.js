@@ -152,7 +152,11 @@ export default {
   },
   methods: {
     show(view) {
+      const cell = document.activeElement;
+      const isMarked = cell?.dataset.cell && cell.selectionEnd - cell.selectionStart === cell.value.length;
+      if (this.typed?.isSent) this.typed = null;
       this.view = Object.freeze(view); // Vue need not watch each of its points
+      if (isMarked) this.$nextTick(() => cell.select()); // what is typed next is to replace its new value, too
       if (this.chosen !== null && this.chosen >= view.surfaces.length) this.chosen = null;
       if (this.held) return; // the scale stays while something is dragged
       this.dragged = null;
@@ -192,7 +196,7 @@ export default {
       this.stream.send({ type, ...more });
     },
     edit(surface, field, text) {
-      this.typed = null;
+      this.typed = { cell: `${surface}-${field}`, text, isSent: true }; // until the lens comes that it makes
       const isNumber = field !== "glass" && text.trim() !== "" && !Number.isNaN(Number(text));
       this.send("edit", { surface, field, value: isNumber ? Number(text) : text });
     },
