@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from .measurement import write_run
+
 FOLDERS_OF_LAWS = {"architecture", "truth"}
 # ruff: noqa: SIM905
 LAWS = frozenset(
@@ -27,6 +29,11 @@ def tier_of(path: Path) -> str:
     if name.startswith("viewer_"):
         return "browser"
     return "laws" if path.parent.name in FOLDERS_OF_LAWS or name in LAWS else "pictures"
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if not hasattr(config, "workerinput"):  # once, and not in each of pytest-xdist's processes
+        write_run()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

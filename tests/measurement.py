@@ -26,20 +26,29 @@ class Measurement:
     unit: str
 
 
-def _write(measurement: Measurement, kind: str) -> None:
+def _write(kind: str, fields: dict[str, object]) -> None:
     path = os.environ.get("REALCAM_MEASUREMENTS")
     if path:
         with Path(path).open("a", encoding="utf-8") as file:
-            file.write(json.dumps({"kind": kind, **asdict(measurement)}) + "\n")
+            file.write(json.dumps({"kind": kind, **fields}) + "\n")
+
+
+def write_run() -> None:
+    """Says what the measurements of this file are of: machine, commit and date."""
+    if "REALCAM_MEASUREMENTS" in os.environ:
+        from machine import machine  # of benchmarks/, a folder that pytest knows
+
+        of = machine()
+        _write("run", {key: of[key] for key in ("commit", "date", "processor", "devices")})
 
 
 def hold(measurement: Measurement) -> None:
     """Assert that the worst error stays within the limit. A nan does not."""
-    _write(measurement, "held")
+    _write("held", asdict(measurement))
     assert measurement.worst <= measurement.limit, measurement
 
 
 def breaks(measurement: Measurement) -> None:
     """Assert that a deliberately broken copy of a routine goes past the limit: the test that holds it can fail."""
-    _write(measurement, "broken")
+    _write("broken", asdict(measurement))
     assert not measurement.worst <= measurement.limit, measurement

@@ -55,22 +55,37 @@ class Figure:
         return worst / limit
 
 
-def read(path: Path) -> list[Figure]:
-    """All lines of a file of measurements. Raises MeasurementError for one that is none, or that does not hold."""
+@dataclass(frozen=True)
+class Run:
+    """What measurements are of."""
+
+    commit: str
+    date: str
+    processor: str
+    devices: tuple[str, ...]
+
+
+def read(path: Path) -> tuple[list[Figure], list[Run]]:
+    """All of a file of measurements. Raises MeasurementError for a line that is none, or that does not hold."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except OSError as error:
         raise MeasurementError(f"{path}: {error.strerror}") from error
-    figures = [_figure(line, f"{path}:{number}") for number, line in enumerate(lines, 1)]
+    found = [_entry(line, f"{path}:{number}") for number, line in enumerate(lines, 1)]
+    figures, runs = [e for e in found if isinstance(e, Figure)], [e for e in found if isinstance(e, Run)]
     if not figures:
         raise MeasurementError(f"{path}: no measurements; tests write them where REALCAM_MEASUREMENTS names a file")
-    return figures
+    if not runs:
+        raise MeasurementError(f"{path}: of which machine is not said; pytest writes a line of it when it starts")
+    return figures, list(dict.fromkeys(runs))
 
 
-def _figure(line: str, place: str) -> Figure:
+def _entry(line: str, place: str) -> Figure | Run:
     try:
         fields = json.loads(line)
         kind = fields.pop("kind")
+        if kind == "run":
+            return Run(**{**fields, "devices": tuple(fields["devices"])})
         m = Measurement(**fields)
     except (ValueError, TypeError, AttributeError, KeyError) as error:
         raise MeasurementError(f"{place}: not a measurement: {error}") from error
@@ -81,7 +96,7 @@ def _figure(line: str, place: str) -> Figure:
     if m.section not in SECTIONS:
         raise MeasurementError(f'{place}: unknown section "{m.section}"; the page has {", ".join(SECTIONS)}')
     if kind not in ("held", "broken"):
-        raise MeasurementError(f'{place}: unknown kind "{kind}"; held or broken is wanted')
+        raise MeasurementError(f'{place}: unknown kind "{kind}"; held, broken or run is wanted')
     figure = Figure(m, kind == "broken")
     if figure.within == figure.broken:
         problem = "broken by intent, but within its limit" if figure.broken else "past its limit"
@@ -91,7 +106,7 @@ def _figure(line: str, place: str) -> Figure:
 
 
 def grouped(figures: Iterable[Figure]) -> list[Figure]:
-    """One figure for all runs of a test that differ in their parameters alone: the nearest to its limit."""
+    """One figure for all that differ in their test's parameters, machine and commit alone: the nearest to its limit."""
     groups: dict[tuple[object, ...], list[Figure]] = {}
     for figure in figures:
         m = figure.measurement

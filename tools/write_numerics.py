@@ -2,11 +2,13 @@
 """Write docs/generated/numerics.md and its plot from what the tests measured.
 
     ./run numerics
-    python tools/write_numerics.py build/dev/measurements.jsonl [--page docs/generated/numerics.md] [--lens NAME ...]
+    python tools/write_numerics.py MEASUREMENTS... [--page docs/generated/numerics.md] [--lens NAME ...]
 
 The tests append their figures, a line of JSON each, to the file that the environment variable REALCAM_MEASUREMENTS
-names. The page is written only where all of them hold: one past its limit, or a broken routine that stays within one,
-is an error. The plot is measured anew, with the rays of tests/truth/test_float32_error.py.
+names. Files of several machines make one page, because no machine has all backends and instruction sets. Of a case that
+several have, the figure nearest to its limit counts. The page is written only where all of them hold: one past its
+limit, or a broken routine that stays within one, is an error. The plot is measured anew, with the rays of
+tests/truth/test_float32_error.py.
 """
 
 from __future__ import annotations
@@ -14,19 +16,14 @@ from __future__ import annotations
 import argparse
 import html
 import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import measurements
 import numerics_plot
 import realcam as rc
-from measurements import Figure
+from measurements import Figure, Run
 from tabulate import tabulate
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-
-from machine import machine
 
 PAGE = Path(__file__).parents[1] / "docs" / "generated" / "numerics.md"
 PLOT = Path("images") / "float32-error.png"
@@ -146,19 +143,19 @@ def broken_table(figures: list[Figure]) -> str:
     return table(["broken routine", "number type", "error", "limit", "unit", "tried", "section"], rows)
 
 
-def run_text(figures: list[Figure]) -> str:
-    at = machine()
+def run_text(figures: list[Figure], runs: list[Run]) -> str:
     nearest = max((f for f in figures if not f.broken), key=lambda f: f.share_of_limit)
     return (
-        f"This run: commit {at['commit']}, {at['date']}, {at['processor']}, {'; '.join(at['devices'])}. "
-        f"{sum(f.runs for f in figures)} measurements; nearest to its limit, at {nearest.share_of_limit:.0%}, is "
-        f"*{escaped(nearest.measurement.what)}*.\n"
+        "The figures are of these runs:\n\n"
+        + "".join(f"- commit {r.commit}, {r.date}, {r.processor}, {'; '.join(r.devices)}\n" for r in runs)
+        + f"\nThere are {sum(f.runs for f in figures)} measurements. Nearest to its limit, at "
+        f"{nearest.share_of_limit:.0%}, is *{escaped(nearest.measurement.what)}*.\n"
     )
 
 
-def page(figures: list[Figure], plot_text: str) -> str:
+def page(figures: list[Figure], runs: list[Run], plot_text: str) -> str:
     figures = measurements.grouped(figures)
-    parts = [INTRODUCTION, run_text(figures)]
+    parts = [INTRODUCTION, run_text(figures, runs)]
     for section in measurements.SECTIONS:
         held = [f for f in figures if f.measurement.section == section and not f.broken]
         if held:
@@ -171,16 +168,18 @@ def page(figures: list[Figure], plot_text: str) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("measurements", type=Path, help="what the tests wrote")
+    parser.add_argument("measurements", type=Path, nargs="+", help="what the tests wrote, a file for each machine")
     parser.add_argument("--page", type=Path, default=PAGE, help="the plot goes into images/ beside it")
     parser.add_argument("--lens", action="append", help="plot this one only; may be repeated")
     options = parser.parse_args()
     try:
-        figures = measurements.read(options.measurements)
+        read = [measurements.read(path) for path in options.measurements]
     except measurements.MeasurementError as error:
         raise SystemExit(f"write_numerics: {error}") from error
+    figures = [figure for of_file, _ in read for figure in of_file]
+    runs = list(dict.fromkeys(run for _, of_file in read for run in of_file))
     count = numerics_plot.save_error_plot(options.lens or rc.lens_names(), options.page.parent / PLOT)
-    options.page.write_text(page(figures, PLOT_TEXT.format(plot=PLOT.as_posix(), count=count)), encoding="utf-8")
+    options.page.write_text(page(figures, runs, PLOT_TEXT.format(plot=PLOT.as_posix(), count=count)), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -25,18 +25,20 @@ LINE = {
     "limit": 4.0,
     "unit": "ulp",
 }
+RUN = {"kind": "run", "commit": "abc", "date": "2026-11-20", "processor": "a CPU", "devices": ["Embree v4"]}
 
 
-def measurement_file(folder: Path, *lines: dict | str) -> Path:
-    path = folder / "measurements.jsonl"
-    texts = (line if isinstance(line, str) else json.dumps(LINE | line) for line in lines)
+def measurement_file(
+    folder: Path, *lines: dict | str, name: str = "measurements.jsonl", run: dict[str, object] = RUN
+) -> Path:
+    path = folder / name
+    texts = (line if isinstance(line, str) else json.dumps(LINE | line) for line in (*lines, json.dumps(run)))
     path.write_text("".join(text + "\n" for text in texts), encoding="utf-8")
     return path
 
 
-def write_page(folder: Path, *lines: dict | str) -> subprocess.CompletedProcess[str]:
-    path = measurement_file(folder, *lines)
-    command = [sys.executable, ROOT / "tools/write_numerics.py", path, "--page", folder / "page.md"]
+def write_page(folder: Path, *files: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, ROOT / "tools/write_numerics.py", *files, "--page", folder / "page.md"]
     return subprocess.run([*command, "--lens", "singlet-100mm"], capture_output=True, text=True)
 
 
@@ -54,7 +56,7 @@ def cells(page: str, case: str) -> list[str]:
 
 def test_page(tmp_path: Path) -> None:
     sphere = {"what": "sphere", "limit": 8}
-    run = write_page(
+    file = measurement_file(
         tmp_path,
         {"section": "Bundled lenses", "what": "image points", "number_type": "float32", "worst": 1e-7},
         {"worst": 0.25},
@@ -69,6 +71,7 @@ def test_page(tmp_path: Path) -> None:
         '{"kind": "broken", "section": "Sums", "what": "no sum", "tried": "a sum", "backend": "core", '
         '"number_type": "float32", "worst": NaN, "limit": 1e-07, "unit": "relative"}',
     )
+    run = write_page(tmp_path, file)
     assert run.returncode == 0, run.stderr
     page = (tmp_path / "page.md").read_text(encoding="utf-8")
     assert [line[3:] for line in page.splitlines() if line.startswith("## ")] == [
@@ -91,8 +94,25 @@ def test_page(tmp_path: Path) -> None:
     assert (tmp_path / "images/float32-error.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_page_of_two_machines(tmp_path: Path) -> None:
+    """Each has backends that the other lacks; of what both have, the figure nearest to its limit counts."""
+    both = {"worst": 1.0}, {"worst": 3.0, "tried": "900 rays"}
+    gpu = RUN | {"commit": "def", "devices": ["CUDA"]}
+    of_cpu, of_gpu = (
+        measurement_file(tmp_path, line, {"what": "sphere", "backend": backend}, name=f"{backend}.jsonl", run=run)
+        for line, backend, run in zip(both, ("Embree v4", "CUDA"), (RUN, gpu), strict=True)
+    )
+    done = write_page(tmp_path, of_cpu, of_gpu)
+    assert done.returncode == 0, done.stderr
+    page = (tmp_path / "page.md").read_text(encoding="utf-8")
+    assert "\n- commit abc, 2026-11-20, a CPU, Embree v4\n- commit def, 2026-11-20, a CPU, CUDA\n" in page
+    assert cells(page, "plane")[1:] == ["3 ≤ 4", "ulp", "900 rays, the worst of 2"]
+    assert "float64, CUDA · Embree v4" in page
+    assert "4 measurements" in page
+
+
 def test_no_page_where_a_figure_does_not_hold(tmp_path: Path) -> None:
-    run = write_page(tmp_path, {}, {"worst": 5})
+    run = write_page(tmp_path, measurement_file(tmp_path, {}, {"worst": 5}))
     assert run.returncode != 0
     assert "measurements.jsonl:2: past its limit: plane (float64, core): 5, limit 4 ulp" in run.stderr
     assert "Traceback" not in run.stderr
@@ -104,11 +124,12 @@ def test_no_page_where_a_figure_does_not_hold(tmp_path: Path) -> None:
     [
         ({"worst": float("nan")}, "past its limit"),
         ({"kind": "broken"}, "broken by intent, but within its limit"),
-        ({"kind": "seen"}, 'unknown kind "seen"; held or broken is wanted'),
+        ({"kind": "seen"}, 'unknown kind "seen"; held, broken or run is wanted'),
         ({"section": "Surface"}, 'unknown section "Surface"; the page has Surfaces, Rays,'),
         ({"worst": "0.5"}, "worst cannot be '0.5'"),
         ({"unit": None}, "unit cannot be None"),
         ({"colour": "red"}, "not a measurement: .*colour"),
+        ('{"kind": "run", "commit": "abc"}', "not a measurement: 'devices'"),
         ("{}", "not a measurement: 'kind'"),
         ("[]", "not a measurement"),
         ("worst 3", "not a measurement"),
@@ -122,6 +143,9 @@ def test_broken_input(tool: ModuleType, tmp_path: Path, line: dict | str, told: 
 def test_no_input(tool: ModuleType, tmp_path: Path) -> None:
     with pytest.raises(tool.measurements.MeasurementError, match="no measurements; tests write them where"):
         tool.measurements.read(measurement_file(tmp_path))
+    (tmp_path / "nameless.jsonl").write_text(json.dumps(LINE) + "\n")
+    with pytest.raises(tool.measurements.MeasurementError, match="of which machine is not said"):
+        tool.measurements.read(tmp_path / "nameless.jsonl")
     with pytest.raises(tool.measurements.MeasurementError, match="No such file"):
         tool.measurements.read(tmp_path / "nothing.jsonl")
 
