@@ -98,17 +98,17 @@ def psf_of_prysm(lens: rc.Lens, field: float, psf: rc.PSF, cells: int = 448) -> 
 )
 def test_real_lenses_agree_with_prysm(name: str, f_number: float) -> None:
     lens, worst = rc.Lens.load(name).stopped_down(f_number), 0.0
-    for field in (0.0, 7.0, 14.0):
+    for field in (0.0, 14.0):
         psf = lens.psf(field, object_distance_m=FAR)
         error = np.abs(psf_of_prysm(lens, field, psf) - psf.values).max() / psf.values.max()
         worst = max(worst, float(error))
-    truth(f"PSF of {name} at f/{f_number:g} against prysm's propagation", "0, 7, 14 degrees", worst, 1e-3)
+    truth(f"PSF of {name} at f/{f_number:g} against prysm's propagation", "0 and 14 degrees", worst, 1e-3)
 
 
 def test_both_sums_agree() -> None:
     cases: list[tuple[str, float, float | None]] = [
         ("double-gauss-50mm", 0, None),
-        ("double-gauss-50mm", 15, None),  # cut by two rims
+        ("tessar-50mm", 18, None),  # of which two rims let 0.6 pass
         ("double-gauss-50mm", 15, 8),
         ("mirror-telephoto-500mm", 1.5, None),  # obstructed
         ("phone-4mm", 20, None),  # aspheres, open up to their rims

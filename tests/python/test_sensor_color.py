@@ -14,6 +14,7 @@ import pytest
 import realcam as rc
 
 from .sensors import film_of
+from .test_command_line import said
 
 SIDE = 48  # pixels of a patch
 pytest.importorskip("colour_demosaicing", reason="colour-demosaicing comes with the dev extra")
@@ -253,26 +254,23 @@ def test_darktable_opens_the_dng(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.picture_files
-def test_the_command_takes_a_film_to_raw(tmp_path: Path) -> None:
-    import os
-    import sys
-
+def test_the_command_takes_a_film_to_raw(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     rawpy = pytest.importorskip("rawpy", reason="rawpy comes with the dev extra")
     oiio = pytest.importorskip("OpenImageIO", reason="OpenImageIO comes with the dev extra")
     film = chart_film(200)
     film.save(tmp_path / "film.exr")
-    root = Path(__file__).resolve().parents[2]
+    monkeypatch.chdir(tmp_path)
 
-    def run(*words: object) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "realcam", *map(str, words)]
-        environment = {**os.environ, "PYTHONPATH": str(root / "python")}
-        return subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment, check=False)
+    def realcam(*words: str) -> tuple[int, str, str]:
+        return said(list(words), monkeypatch, capsys)
 
-    options = ["--sensor", "sony-imx071-color", "--seed", 2, "-o", "a.dng", "-o", "a.png", "-o", "a.npy"]
-    done = run("expose", "film.exr", *options)
-    assert done.returncode == 0, done.stderr
-    assert "sony-imx071-color, ISO 200" in done.stdout
-    assert "assumed: " in done.stdout
+    options = ["--sensor", "sony-imx071-color", "--seed", "2", "-o", "a.dng", "-o", "a.png", "-o", "a.npy"]
+    code, output, errors = realcam("expose", "film.exr", *options)
+    assert code == 0, errors
+    assert "sony-imx071-color, ISO 200" in output
+    assert "assumed: " in output
     raw = rc.Sensor.load("sony-imx071-color").expose(film, seed=2)
     assert np.array_equal(np.load(tmp_path / "a.npy"), raw.mosaic)
     with rawpy.imread(str(tmp_path / "a.dng")) as file:
@@ -289,13 +287,13 @@ def test_the_command_takes_a_film_to_raw(tmp_path: Path) -> None:
         (["film.exr", "-o", "x.dng", "-o", "x.png", "--tone", "magic"], '"magic" is unknown; linear, film is wanted'),
         (["film.exr", "-o", "film.exr"], "is the film itself"),
     ):
-        failed = run("expose", *words)
-        assert failed.returncode == 2
-        assert why in failed.stderr
-        assert failed.stderr.count("\n") == 1 + ("expose" in failed.stderr and "pixels of" in failed.stderr)
+        code, _, errors = realcam("expose", *words)
+        assert code == 2
+        assert why in errors
+        assert errors.count("\n") == 1 + ("expose" in errors and "pixels of" in errors)
     assert not list(tmp_path.glob("x.*"))
-    listed = run("sensor", "list")
-    assert all(name in listed.stdout for name in rc.sensor_names())
-    told = run("sensor", "info", "sony-imx900-mono")
-    assert "9458 e" in told.stdout
-    assert "FRAMOS" in told.stdout
+    listed = realcam("sensor", "list")[1]
+    assert all(name in listed for name in rc.sensor_names())
+    told = realcam("sensor", "info", "sony-imx900-mono")[1]
+    assert "9458 e" in told
+    assert "FRAMOS" in told

@@ -96,7 +96,7 @@ def test_a_long_call_hears_ctrl_c(what: str) -> None:
     """Within one second; leaving Python takes another half at most on a busy machine."""
     code = textwrap.dedent(LONG_CALLS[what])
     with started(f'room(); print("ready", flush=True)\n{code}') as process:
-        time.sleep(1)
+        time.sleep(0.6)
         process.send_signal(signal.SIGINT)
         start = time.monotonic()
         _, errors = process.communicate(timeout=60)
@@ -175,15 +175,14 @@ def test_python_ends_cleanly_while_a_daemon_thread_works(what: str) -> None:
             while True:
                 {AT_WORK[what]}
         threading.Thread(target=work, daemon=True).start()
-        time.sleep(0.7)
+        time.sleep(0.4)
         """
-    for _ in range(2):
-        process = child(code)
-        start = time.monotonic()
-        _, errors = process.communicate(timeout=60)
-        assert process.returncode == 0, errors
-        assert "terminate" not in errors
-        assert time.monotonic() - start < 6  # a second of import and sleep, and the end of what is under way
+    process = child(code)
+    start = time.monotonic()
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, errors
+    assert "terminate" not in errors
+    assert time.monotonic() - start < 6  # a second of import and sleep, and the end of what is under way
 
 
 @pytest.mark.parametrize("kept", ["live", "frame"])
@@ -349,7 +348,7 @@ def test_no_thread_to_be_had_is_told() -> None:
             print(error, flush=True)
         """
     answers = []
-    for room in (2, 8, 10, 12, 14, 16):
+    for room in (2, 9, 12, 16):
         process = child(code.format(room=room))
         out, errors = process.communicate(timeout=60)
         assert process.returncode == 0, errors

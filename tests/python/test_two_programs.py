@@ -14,6 +14,8 @@ import realcam as rc
 
 from .programs import EXECUTABLE, PROGRAM, PYTHON, wants_executable
 
+from .test_command_line import said
+
 oiio = pytest.importorskip("OpenImageIO")
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -250,11 +252,12 @@ def test_the_commands_print_the_same(folder: Path, words: list[str | bytes]) -> 
     ],
     ids=str,
 )
-def test_mistakes_end_in_one_line_of_one_style(folder: Path, words: list[str]) -> None:
+def test_mistakes_end_in_one_line_of_one_style(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Also of the commands that are Python."""
-    result = run(PYTHON, *words, folder=folder)
-    assert result.returncode == 2
-    assert result.stdout == b""
-    lines = result.stderr.decode().splitlines()
+    code, output, errors = said(words, monkeypatch, capsys)
+    assert (code, output) == (2, "")
+    lines = errors.splitlines()
     assert len(lines) == 1
     assert lines[0].startswith("realcam: error: ")

@@ -47,7 +47,7 @@ def has_plot(bench: BenchPage) -> bool:
 
 @pytest.fixture
 def own(tmp_path: Path) -> Server:
-    server = Server(bench_shots.write_panels_shot(tmp_path, width=480))
+    server = Server(bench_shots.write_panels_shot(tmp_path, width=240))
     yield server
     server.stop()
     assert server.complaints() == [], server.complaints()
