@@ -63,13 +63,35 @@ def kept_page(browser: Any) -> Iterator[BenchPage]:
     page.context.close()  # each test has checked it; the server may be gone by now
 
 
+@pytest.fixture(scope="session")
+def first_state(server: Server) -> dict[str, Any]:
+    """Of a bench that shows the server's shot."""
+    from realcam.viewer.bench_state import state_of
+    from realcam.viewer.camera_controls import CameraControls
+    from realcam.viewer.effect_switches import Switches
+
+    shot = rc.Shot.load(server.shot)
+    return state_of(CameraControls.of(shot.camera), Switches.of_shot(shot.settings.effects).of)
+
+
 @pytest.fixture
-def bench(kept_page: BenchPage, server: Server) -> Iterator[BenchPage]:
-    """A page of it, with a window of its own on the server."""
-    kept_page.open_anew(server.url)
+def bench(
+    kept_page: BenchPage, server: Server, first_state: dict[str, Any], request: pytest.FixtureRequest
+) -> Iterator[BenchPage]:
+    """A page of it, with a window of its own on the server; for tests marked camera_alone perhaps that of the test
+    before, with camera, lens and effects as at first."""
+    is_shared = request.node.get_closest_marker("camera_alone") is not None
+    if is_shared and kept_page.first_look:
+        kept_page.bring_back(first_state)
+    else:
+        kept_page.open_anew(server.url)
+    first_look, kept_page.first_look = kept_page.first_look, None
+    failed = request.session.testsfailed
     yield kept_page
     kept_page.check()
     assert server.complaints() == [], server.complaints()
+    if is_shared and request.session.testsfailed == failed:
+        kept_page.first_look = first_look
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:

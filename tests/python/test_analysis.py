@@ -335,7 +335,7 @@ def test_commands(tmp_path: Path, realcam: Callable[..., tuple[int, str, str]]) 
     code, text, errors = realcam("plot", "mtf", *fisheye, "--json")
     assert code == 0, errors
     assert json.loads(text)["method"] == "geometric"
-    _, text, errors = realcam("plot", "psf", "tessar-50mm", "--method", "fft", "--json")
+    _, text, errors = realcam("plot", "psf", "tessar-50mm", "--f-number", "8", "--method", "fft", "--json")
     assert json.loads(text)["method"] == "fft", errors
 
 

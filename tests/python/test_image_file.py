@@ -175,8 +175,8 @@ def test_a_signal_while_a_picture_is_written_leaves_nothing(tmp_path: Path, suff
     # Noise takes seconds to compress.
     save = """
 rng = np.random.default_rng(1)
-object.__setattr__(picture, "pixels", rng.random((4000, 6000, 3), dtype=np.float32))
-object.__setattr__(picture, "depth", rng.random((4000, 6000), dtype=np.float32))
+object.__setattr__(picture, "pixels", rng.random((3000, 4000, 3), dtype=np.float32))
+object.__setattr__(picture, "depth", rng.random((3000, 4000), dtype=np.float32))
 print("saving", flush=True)
 picture.save(sys.argv[1])
 """

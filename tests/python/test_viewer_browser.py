@@ -28,6 +28,7 @@ def sharp(picture: np.ndarray) -> tuple[float, float, float]:
 # The camera.
 
 
+@pytest.mark.camera_alone
 def test_closing_the_aperture_deepens_the_sharp_zone(bench: BenchPage) -> None:
     near, middle, far = sharp(bench.picture())
     assert middle > 1.7 * max(near, far)
@@ -43,6 +44,7 @@ def test_closing_the_aperture_deepens_the_sharp_zone(bench: BenchPage) -> None:
     assert "automatic" in text
 
 
+@pytest.mark.camera_alone
 def test_a_click_sharpens_its_point(bench: BenchPage) -> None:
     for u, metres in ((1 / 6, "0.6"), (5 / 6, "20"), (1 / 2, "1.2")):
         bench.click_picture(u, 0.5)
@@ -50,12 +52,14 @@ def test_a_click_sharpens_its_point(bench: BenchPage) -> None:
         bench.until_text("focus-text", lambda text, metres=metres: re.fullmatch(rf"Focus {metres}\S* m", text))
 
 
+@pytest.mark.camera_alone
 def test_focus_by_its_ring(bench: BenchPage) -> None:
     bench.turn("focus", "PageUp", 10)  # by forty steps each
     assert np.argmax(sharp(bench.picture())) == 2  # far
     bench.until_text("focus-text", lambda text: "∞" in text)
 
 
+@pytest.mark.camera_alone
 def test_shutter_and_iso_brighten(bench: BenchPage) -> None:
     before = bench.picture().mean()
     bench.turn("shutter", "ArrowRight", 3)
@@ -93,6 +97,7 @@ def test_metering_by_a_click(bench: BenchPage) -> None:
     assert bench.picture().mean() > 50
 
 
+@pytest.mark.camera_alone
 def test_camera_models(bench: BenchPage) -> None:
     bench.choose("camera model", "pinhole")
     everywhere = sharp(bench.picture())
@@ -118,6 +123,7 @@ def test_resolution_and_noise(bench: BenchPage) -> None:
     assert bench.status.startswith("320 × 213")
 
 
+@pytest.mark.camera_alone
 def test_zoom_positions(bench: BenchPage) -> None:
     bench.choose_lens("zoom-25-50mm")
     until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - 25.5) < 0.5, "the zoom is chosen")
@@ -130,6 +136,7 @@ def test_zoom_positions(bench: BenchPage) -> None:
     assert np.abs(bench.picture() - wide).mean() > 10
 
 
+@pytest.mark.camera_alone
 def test_the_list_of_lenses(bench: BenchPage) -> None:
     bench.choose_lens("tessar-50mm")
     until(lambda: bench.figure("f_number"), lambda f: abs(f - 2.8) < 0.05, "the Tessar")
@@ -247,6 +254,7 @@ def test_an_edited_radius_has_the_focal_length_of_lens_info(bench: BenchPage, se
     assert shown == pytest.approx(lens_info(server.shot.parent / "edited.toml"), abs=0.006)
 
 
+@pytest.mark.camera_alone
 def test_an_impossible_edit_and_back(bench: BenchPage) -> None:
     before = bench.picture()
     figure = bench.figure("effective_focal_length_mm")
@@ -263,6 +271,7 @@ def test_an_impossible_edit_and_back(bench: BenchPage) -> None:
     assert bench.page.locator(".rc-table tr.rc-bad").count() == 0
 
 
+@pytest.mark.camera_alone
 def test_what_is_being_typed_stays_while_the_lens_changes(bench: BenchPage) -> None:
     cell = bench.cell(0, "radius_mm")
     cell.fill("27.")
@@ -283,6 +292,7 @@ HOLD_LENSES = """
 """
 
 
+@pytest.mark.camera_alone
 def test_what_was_entered_stays_until_the_server_has_answered(bench: BenchPage) -> None:
     """And what is typed then replaces what is marked, although the answer draws the cell anew."""
     cell = bench.cell(0, "thickness_mm")
@@ -303,6 +313,7 @@ def test_what_was_entered_stays_until_the_server_has_answered(bench: BenchPage) 
     until(cell.input_value, lambda value: value == "4.2", "undone")
 
 
+@pytest.mark.camera_alone
 def test_what_cannot_be_stays_to_be_mended_until_its_cell_is_left(bench: BenchPage) -> None:
     cell = bench.cell(2, "radius_mm")
     before = cell.input_value()
@@ -313,6 +324,7 @@ def test_what_cannot_be_stays_to_be_mended_until_its_cell_is_left(bench: BenchPa
     until(cell.input_value, lambda value: value == before, "as the lens has it")
 
 
+@pytest.mark.camera_alone
 def test_undo_and_redo(bench: BenchPage) -> None:
     undo, redo = (bench.page.get_by_role("button", name=name) for name in ("Undo", "Redo"))
     assert undo.is_disabled()
@@ -328,6 +340,7 @@ def test_undo_and_redo(bench: BenchPage) -> None:
     until(redo.is_disabled, bool, "nothing to redo")
 
 
+@pytest.mark.camera_alone
 def test_the_film_is_in_the_drawing(bench: BenchPage) -> None:
     """However far it is behind the glass."""
     for name in ("telephoto-200mm-inner-focus", "singlet-100mm", "phone-4mm"):
@@ -340,6 +353,7 @@ def test_the_film_is_in_the_drawing(bench: BenchPage) -> None:
         assert film["y"] + film["height"] <= drawing["y"] + drawing["height"] + 1
 
 
+@pytest.mark.camera_alone
 def test_aspheric_coefficients_are_shown_whole(bench: BenchPage) -> None:
     bench.page.get_by_role("button", name="Gallery").click()
     bench.page.get_by_role("button", name="phone-4mm", exact=True).click()
@@ -351,6 +365,7 @@ def test_aspheric_coefficients_are_shown_whole(bench: BenchPage) -> None:
     assert any("e-" in value for value in values)
 
 
+@pytest.mark.camera_alone
 def test_blades_and_film_are_chosen(bench: BenchPage) -> None:
     bench.test_id("blades").fill("6")
     bench.test_id("blades").press("Enter")
@@ -372,6 +387,7 @@ def test_blades_and_film_are_chosen(bench: BenchPage) -> None:
     assert bench.picture().shape[:2] == (60, 120)
 
 
+@pytest.mark.camera_alone
 def test_dragging_in_the_drawing(bench: BenchPage) -> None:
     for field in ("radius_mm", "thickness_mm", "semi_diameter_mm"):
         drag(bench, field)
@@ -401,6 +417,7 @@ def drag(bench: BenchPage, field: str) -> None:
     until(lambda: bench.cell(changed, field).input_value(), lambda value: value == before, "undone")
 
 
+@pytest.mark.camera_alone
 def test_surfaces_are_inserted_and_deleted(bench: BenchPage) -> None:
     rows = bench.page.locator(".rc-table tbody tr")
     count = rows.count()
@@ -412,6 +429,7 @@ def test_surfaces_are_inserted_and_deleted(bench: BenchPage) -> None:
     until(rows.count, lambda now: now == count + 2, "undone")
 
 
+@pytest.mark.camera_alone
 def test_switching_an_effect_off_removes_it(bench: BenchPage) -> None:
     """The colours of a single lens, whose focal length is another for each."""
     bench.choose_lens("singlet-100mm")
@@ -428,6 +446,7 @@ def test_switching_an_effect_off_removes_it(bench: BenchPage) -> None:
     assert colour(bench.picture()) < grey + 1
 
 
+@pytest.mark.camera_alone
 def test_rays_of_the_point_under_the_mouse(bench: BenchPage) -> None:
     def rays() -> str:
         return str(bench.page.locator(".rc-rays-1").evaluate_all("g => g.map(e => e.innerHTML)"))
@@ -664,6 +683,7 @@ def test_a_click_soon_after_a_movement_focuses(browser: playwright.Browser, tmp_
     assert server.complaints() == []
 
 
+@pytest.mark.camera_alone
 def test_the_mouse_moves_the_camera(bench: BenchPage) -> None:
     before = bench.picture().astype(int)
     box = bench.canvas.bounding_box()
@@ -694,6 +714,7 @@ def test_a_narrow_window_and_both_themes(bench: BenchPage) -> None:
     assert colours[0] != colours[1]
 
 
+@pytest.mark.camera_alone
 def test_undo_and_redo_by_keys(bench: BenchPage) -> None:
     before = bench.figure("effective_focal_length_mm")
     bench.edit(0, "radius_mm", "27.5")
