@@ -1,5 +1,5 @@
-"""`realcam view` as the tests start it (bench_pages.Server): with settings for which it has no options, and one more
-address, which tells when all that a page has asked for is done.
+"""`realcam view` as the tests start it (bench_pages.Server): with settings for which it has no options, and with
+addresses that tell when all that a page has asked for is done, and that close its window.
 
 A module of its own, so that the server's own processes, which are begun anew, import none of it.
 """
@@ -37,6 +37,14 @@ async def asked(key: str) -> dict[str, int]:
     while len(window.stream.inbox):
         await asyncio.sleep(0.01)
     return await window.do(lambda: window.bench.asked)
+
+
+@app.get("/tests/left/{key}")
+async def left(key: str) -> None:
+    """Closes the window of a page that has gone. It would refine its picture for half a minute yet."""
+    window = _opened[0].get(key)
+    if window is not None:
+        _opened[0]._close(window)
 
 
 def run() -> None:

@@ -245,7 +245,7 @@ def test_python_ends_cleanly_while_a_daemon_thread_is_at_a_picture(what: str, tm
     (tmp_path / "shot.toml").write_text(SHOT)
     code = f"""
         os.chdir({str(tmp_path)!r})
-        image = rc.render(room(), camera.replace(film=rc.Film(36, 24, (1500, 1000))), effects=(), spp=1, device="cpu")
+        image = rc.render(room(), camera.replace(film=rc.Film(36, 24, (900, 600))), effects=(), spp=1, device="cpu")
         image.save("a.exr")
         once = threading.Event()
         def work():

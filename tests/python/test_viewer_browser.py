@@ -654,33 +654,29 @@ def test_the_keyboard_alone(bench: BenchPage) -> None:
     bench.until_text("shutter-text", lambda text: text != "Shutter 1/5 s")
 
 
-def test_a_click_soon_after_a_movement_focuses(browser: playwright.Browser, tmp_path: Path) -> None:
+@pytest.mark.camera_alone
+def test_a_click_soon_after_a_movement_focuses(bench: BenchPage) -> None:
     """While the first frame of all pixels is taken, which here takes a second or more."""
-    server = Server(bench_shots.write_panels_shot(tmp_path, width=1920, more="max_bounces = 8\n"))
-    bench = BenchPage(browser, server.url)
-    try:
-        for wait_s, u, distance in ((0.3, 1 / 6, 0.6), (0.9, 5 / 6, 20.0)):
-            box = bench.canvas.bounding_box()
-            x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-            bench.page.mouse.move(x, y)
-            bench.page.mouse.down()
-            for step in range(8):
-                bench.page.mouse.move(x + 3 * (step % 2), y + step)
-                time.sleep(0.02)
-            bench.page.mouse.move(x, y)
-            bench.page.mouse.up()
-            time.sleep(wait_s)
-            bench.click_picture(u, 0.5)
+    bench.choose("resolution", "1920 pixels across")
+    until(lambda: bench.shown().shape[1], lambda width: width == 1920, "the size")
+    for wait_s, u, distance in ((0.3, 1 / 6, 0.6), (0.9, 5 / 6, 20.0)):
+        box = bench.canvas.bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        bench.page.mouse.move(x, y)
+        bench.page.mouse.down()
+        for step in range(8):
+            bench.page.mouse.move(x + 3 * (step % 2), y + step)
+            time.sleep(0.02)
+        bench.page.mouse.move(x, y)
+        bench.page.mouse.up()
+        time.sleep(wait_s)
+        bench.click_picture(u, 0.5)
 
-            def is_near(text: str, wanted: float = distance) -> bool:
-                return abs(float(text.split()[1]) - wanted) < 0.1 * wanted
+        def is_near(text: str, wanted: float = distance) -> bool:
+            return abs(float(text.split()[1]) - wanted) < 0.1 * wanted
 
-            bench.until_text("focus-text", is_near)
-            assert bench.test_id("problem").count() == bench.test_id("picture-problem").count() == 0
-    finally:
-        bench.close()
-        server.stop()
-    assert server.complaints() == []
+        bench.until_text("focus-text", is_near)
+        assert bench.test_id("problem").count() == bench.test_id("picture-problem").count() == 0
 
 
 @pytest.mark.camera_alone

@@ -151,14 +151,14 @@ def test_a_port_in_use_is_told_in_one_line(tmp_path: Path) -> None:
     assert "in use" in ended.stderr
 
 
-def test_as_many_windows_as_may_be_however_fast_they_are_asked_for(own: Server) -> None:
+def test_as_many_windows_as_may_be_however_fast_they_are_asked_for(server: Server) -> None:
     from concurrent.futures import ThreadPoolExecutor
 
-    before = threads(own)
+    before = threads(server)
     with ThreadPoolExecutor(60) as pool:
-        list(pool.map(lambda _: fetch(own.url, 120), range(60)))
+        list(pool.map(lambda _: fetch(server.url, 120), range(60)))
     # A window has ten and the backend's; 60 of them had 600 more.
-    assert threads(own) - before < 16 * 16
+    assert threads(server) - before < 16 * 16
 
 
 def test_what_is_no_event_of_a_page_is_one_line_of_the_log(server: Server) -> None:
