@@ -1,0 +1,66 @@
+"""The table of the lens, while somebody types into it."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("nicegui")
+pytest.importorskip("playwright.sync_api")
+
+from .bench_pages import CHROMIUM, BenchPage, until
+
+pytestmark = [
+    pytest.mark.picture_files,
+    pytest.mark.skipif(CHROMIUM is None, reason="no chromium"),
+    pytest.mark.camera_alone,
+]
+
+
+def test_what_is_being_typed_stays_while_the_lens_changes(bench: BenchPage) -> None:
+    cell = bench.cell(0, "radius_mm")
+    cell.fill("27.")
+    bench.send({"type": "edit", "surface": 1, "field": "thickness_mm", "value": 0.2})
+    until(lambda: bench.cell(1, "thickness_mm").input_value(), lambda v: v == "0.2", "another surface")
+    assert cell.input_value() == "27."
+    cell.press_sequentially("5")
+    cell.press("Enter")
+    until(lambda: bench.cell(0, "radius_mm").input_value(), lambda v: v == "27.5", "edited")
+
+
+HOLD_LENSES = """
+() => {
+    const stream = [...realcamStreams.values()][0], tell = stream.tell.bind(stream), held = [];
+    stream.tell = (type, message) => (type === "lens" ? held.push(message) : tell(type, message));
+    window.releaseLenses = () => { delete stream.tell; held.forEach((view) => tell("lens", view)); };
+}
+"""
+
+
+def test_what_was_entered_stays_until_the_server_has_answered(bench: BenchPage) -> None:
+    """And what is typed then replaces what is marked, although the answer draws the cell anew."""
+    cell = bench.cell(0, "thickness_mm")
+    bench.page.evaluate(HOLD_LENSES)
+    cell.fill("4.20")
+    cell.press("Enter")
+    bench.page.wait_for_timeout(100)
+    assert cell.input_value() == "4.20"
+    bench.picture()  # by now the answer is there
+    cell.press("Control+a")
+    bench.page.evaluate("releaseLenses()")
+    until(cell.input_value, lambda value: value == "4.2", "as the table writes it")
+    cell.press_sequentially("4.5")
+    assert cell.input_value() == "4.5"
+    cell.press("Enter")
+    until(bench.page.get_by_role("button", name="Undo").is_enabled, bool, "edited")
+    bench.page.get_by_role("button", name="Undo").click()
+    until(cell.input_value, lambda value: value == "4.2", "undone")
+
+
+def test_what_cannot_be_stays_to_be_mended_until_its_cell_is_left(bench: BenchPage) -> None:
+    cell = bench.cell(2, "radius_mm")
+    before = cell.input_value()
+    bench.edit(2, "radius_mm", "1")
+    bench.test_id("problem").wait_for()
+    assert cell.input_value() == "1"
+    cell.press("Tab")
+    until(cell.input_value, lambda value: value == before, "as the lens has it")
