@@ -223,6 +223,8 @@ class BenchPage:
     def until_there(self) -> None:
         """Until the page that is being loaded shows its first picture."""
         until(lambda: (self.status, self.complaints), lambda seen: "pixels" in seen[0], "no picture comes")
+        # Until it has drawn a page once, a browser heeds no mouse on it.
+        self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def close(self) -> None:
         self.context.close()

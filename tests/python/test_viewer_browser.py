@@ -398,6 +398,7 @@ def test_rays_of_the_point_under_the_mouse(bench: BenchPage) -> None:
     def rays() -> str:
         return str(bench.page.locator(".rc-rays-1").evaluate_all("g => g.map(e => e.innerHTML)"))
 
+    bench.picture()
     before = rays()
     box = bench.canvas.bounding_box()
     bench.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
