@@ -13,7 +13,6 @@ import pytest
 import realcam as rc
 
 from .programs import EXECUTABLE, PROGRAM, PYTHON, wants_executable
-
 from .test_command_line import said
 
 oiio = pytest.importorskip("OpenImageIO")

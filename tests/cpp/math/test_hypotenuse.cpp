@@ -24,8 +24,8 @@ double error_ulp(Number x, Number y) {
 }  // namespace
 
 TEST_CASE("hypotenuse is rounded as well as the C library's") {
-    // Half a unit is a perfect rounding. The wider number's own three roundings add 2^-11 of each; of single numbers the
-    // squares are exact, and 2^-29 of the sum and the root are lost.
+    // Half a unit is a perfect rounding. The wider number's own three roundings add 2^-11 of each; of single numbers
+    // the squares are exact, and 2^-29 of the sum and the root are lost.
     double worst = 0, worst_single = 0;
     std::mt19937 random(1);
     const auto draw = [&](double most) { return std::uniform_real_distribution<>(-most, most)(random); };
