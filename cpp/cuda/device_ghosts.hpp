@@ -8,6 +8,7 @@
 #include "device_arrays.hpp"
 #include "device_scene.hpp"
 #include "ghost_kernels.hpp"
+#include "stop_flag.hpp"
 
 namespace realcam {
 
@@ -42,8 +43,9 @@ public:
         blocks_done_.clear(stream);
     }
 
-    /// Starts to take the samples that belong to so many of each pixel.
-    void add(const DeviceScene& scene, const CameraView& camera, const volatile int* stop, const SampleRange& range,
+    /// Starts to take the samples that belong to so many of each pixel. Of many there are so many launches that those
+    /// which do nothing after a stop would take minutes, too.
+    void add(const DeviceScene& scene, const CameraView& camera, const StopFlag& stop, const SampleRange& range,
              const PathSettings& settings, CudaStream& stream) {
         if (sums_.size() == 0) return;
         constexpr std::uint64_t kLaunch = 1 << 14;
@@ -51,9 +53,9 @@ public:
         const auto launch = view_.light == GhostLight::of_objects ? launch_gather_ghosts
                             : view_.light == GhostLight::direct   ? launch_trace_lights
                                                                   : launch_splat_ghosts;
-        for (std::uint64_t block = blocks.first; block < blocks.end; block += kLaunch)
-            launch({scene.view(), scene.bvh(), camera, view_, stop, sums_.data(), films_, blocks_done_.data(), block,
-                    static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, settings,
+        for (std::uint64_t block = blocks.first; block < blocks.end && !stop.is_raised(); block += kLaunch)
+            launch({scene.view(), scene.bvh(), camera, view_, stop.data(), sums_.data(), films_, blocks_done_.data(),
+                    block, static_cast<std::uint32_t>(std::min(kLaunch, blocks.end - block)), range.seed, settings,
                     units_per_lux_},
                    stream);
     }

@@ -102,7 +102,7 @@ void DeviceRenderer::clear_splats(int width, int height, int films) {
 
 void DeviceRenderer::splat(const SampleRange& range, const PathSettings& settings) {
     const CurrentDevice current(ordinal_);
-    for (DeviceGhosts& light : splats_) light.add(scene_, camera_, stop_.data(), range, settings, stream_);
+    for (DeviceGhosts& light : splats_) light.add(scene_, camera_, stop_, range, settings, stream_);
 }
 
 DeviceRenderer::SplatsOnHost DeviceRenderer::download_splats() {

@@ -237,27 +237,32 @@ private:
         const PathSettings path = settings.path();
         constexpr std::uint64_t kVisit = 64;
         const std::uint64_t count = blocks.end - blocks.first;
-        arena(settings).execute([&] {
-            tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, [&](std::uint64_t visit) {
-                realcam_ghosts job{};
-                job.scene_view = &scene;
-                job.camera_view = &camera_view_;
-                job.ghost_view = &ghosts;
-                job.embree_scene = scene_->handle();
-                job.first_block = blocks.first + visit * kVisit;
-                job.block_count = std::min(kVisit, count - visit * kVisit);
-                job.seed = range.seed;
-                job.path_settings = &path;
-                job.units_per_lux = film.units_per_lux;
-                job.stopped = &is_raised;
-                job.stop = &stop_.flag();
-                job.sums = film.sums.data();
-                job.films = film.films;
-                kernels().splat_ghosts(&job);
-                for (std::size_t k = 0; k < film.blocks.size(); ++k)
-                    std::atomic_ref(film.blocks[k]) += job.blocks_done[k];
-            });
-        });
+        // Of many samples there are so many visits that passing over them would take minutes, too.
+        tbb::task_group_context group;
+        const auto visit_blocks = [&](std::uint64_t visit) {
+            if (is_stopped()) {
+                group.cancel_group_execution();
+                return;
+            }
+            realcam_ghosts job{};
+            job.scene_view = &scene;
+            job.camera_view = &camera_view_;
+            job.ghost_view = &ghosts;
+            job.embree_scene = scene_->handle();
+            job.first_block = blocks.first + visit * kVisit;
+            job.block_count = std::min(kVisit, count - visit * kVisit);
+            job.seed = range.seed;
+            job.path_settings = &path;
+            job.units_per_lux = film.units_per_lux;
+            job.stopped = &is_raised;
+            job.stop = &stop_.flag();
+            job.sums = film.sums.data();
+            job.films = film.films;
+            kernels().splat_ghosts(&job);
+            for (std::size_t k = 0; k < film.blocks.size(); ++k) std::atomic_ref(film.blocks[k]) += job.blocks_done[k];
+        };
+        arena(settings).execute(
+            [&] { tbb::parallel_for(std::uint64_t{0}, (count + kVisit - 1) / kVisit, visit_blocks, group); });
     }
 
     SplattedLight splatted() const {

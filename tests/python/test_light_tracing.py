@@ -6,6 +6,8 @@ What is right is a closed form, rays in double precision, and samples of pixels 
 from __future__ import annotations
 
 import math
+import threading
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -240,3 +242,16 @@ def test_noise_falls_where_lamps_are_out_of_focus_and_nowhere_rises(case: str, s
         return float(np.var([photograph(scene, at, tracing, device, spp=16, seed=s) for s in range(24)], axis=0).sum())
 
     assert variance("weighted") <= share * variance("off")
+
+
+def test_a_stop_ends_the_samples_of_lamps_too(device: str) -> None:
+    """Passing over those that a picture of 2^24 samples has left takes most of a minute."""
+    wide = camera(film=rc.Film(24, 16, (1920, 1280)), position=(0, 0, 0))
+    session = rc.Session(CASES["a hundred"][0](), wide, device=device, max_bounces=0, effects=())
+    stop = threading.Timer(0.5, session.cancel)
+    stop.start()
+    begin = time.monotonic()
+    with pytest.raises(rc.Cancelled):
+        session.add(1 << 24)
+    assert time.monotonic() - begin < 15
+    stop.join()
