@@ -1,7 +1,8 @@
 """Builds the site of the documentation: ./run docs, or python docs/site/build.py -o FOLDER
 
 Sphinx reads build/docs/source, where the pages stand beside each other as they do in the repository, so that links
-between them hold. What is made by programs (tutorials, the API) stands there, too.
+between them hold. What is made by programs (tutorials, the API, pages of
+lenses and effects) stands there, too.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import api_pages
+import effect_pages
+import lens_pages
 from sphinx.cmd.build import main as sphinx
 
 HERE = Path(__file__).resolve().parent
@@ -64,6 +67,8 @@ def main() -> int:
     arguments = parser.parse_args()
     lay_out(PAGES)
     timed("API", lambda: api_pages.write(PAGES / "api"))
+    timed("lenses", lambda: lens_pages.write(PAGES / "gallery"))
+    timed("effects", lambda: effect_pages.write(PAGES / "effects"))
     words = ["-W", "--keep-going", "-q", "-b", "html", "-c", HERE, "-d", WORK / "doctrees", PAGES, arguments.output]
     status = sphinx([str(word) for word in words])
     if status == 0:

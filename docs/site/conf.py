@@ -17,7 +17,7 @@ root_doc = "index"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 include_patterns = [
-    "*.md", "docs/**", "benchmarks/**", "lenses/**", "sensors/**", "tutorials/**", "api/**",
+    "*.md", "docs/**", "benchmarks/**", "lenses/**", "sensors/**", "tutorials/**", "api/**", "gallery/**", "effects/**",
 ]  # fmt: skip
 exclude_patterns = ["tutorial_sources"]
 # Otherwise sought beside the pages.
@@ -32,6 +32,7 @@ html_theme = "furo"
 html_title = "realcam"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_js_files = [("slider.js", {"defer": "defer"})]
 html_show_sourcelink = False
 html_copy_source = False
 

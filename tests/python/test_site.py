@@ -12,8 +12,10 @@ from fnmatch import fnmatch
 from pathlib import Path
 from types import ModuleType
 
+import matplotlib.image
 import pytest
 import realcam as rc
+from realcam.denoiser import opened
 
 ROOT = Path(__file__).resolve().parents[2]
 SITE = ROOT / "docs" / "site"
@@ -45,7 +47,7 @@ def test_every_page_is_reached() -> None:
     pages = {page for page in pages if not page.startswith((".github/", "docs/site/", "benchmarks/"))}
     reached = entries((SITE / "index.md").read_text(encoding="utf-8"))
     assert {page for page in pages if not any(fnmatch(page, entry) for entry in reached)} == set()
-    made = ("api/", "tutorials/")
+    made = ("api/", "tutorials/", "gallery/", "effects/")
     strange = {entry for entry in reached if "*" not in entry and not entry.startswith(made)} - pages
     assert strange == set()
 
@@ -55,3 +57,66 @@ def test_every_public_name_is_in_the_api(monkeypatch: pytest.MonkeyPatch) -> Non
     names = [name for group in groups.values() for name in group]
     assert len(names) == len(set(names))
     assert set(names) == set(rc.__all__) - {"__version__", "analysis"}
+
+
+def links(page: Path) -> set[str]:
+    return set(re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")))
+
+
+def missing_links(folder: Path) -> set[str]:
+    """Of the pages of a folder that the site lays beside `docs`: neither beside them nor in the repository."""
+    targets = {target for page in folder.glob("*.md") for target in links(page)}
+    return {target for target in targets if not (folder / target).is_file() and not (SITE.parent / target).is_file()}
+
+
+@pytest.fixture
+def denoiser() -> None:
+    try:
+        opened("cpu")
+    except rc.InputError:
+        pytest.skip("photographs are denoised, and the extra realcam[denoise] is not installed")
+
+
+@pytest.mark.slow
+def test_pages_of_lenses_are_complete(monkeypatch: pytest.MonkeyPatch, denoiser: None, tmp_path: Path) -> None:
+    tomlkit = pytest.importorskip("tomlkit", reason="lens files are read without realcam")
+    pages, pictures = module_of("lens_pages", monkeypatch), module_of("lens_pictures", monkeypatch)
+    monkeypatch.setattr(pages, "lens_pictures", pictures)
+    monkeypatch.setattr(pictures, "LONGER_SIDE_PX", 48)
+    monkeypatch.setattr(pictures, "SAMPLES", 1)
+    (tmp_path / "gone.md").write_text("of a lens that is no longer there")
+    names = ("tessar-50mm", "fisheye-6mm-220deg")
+    pages.write(tmp_path, names)
+    assert {page.stem for page in tmp_path.glob("*.md")} == {"index", *names}
+    assert missing_links(tmp_path) == set()
+    assert {f"{name}.md" for name in names} <= links(tmp_path / "index.md")
+    for name in names:
+        surfaces = tomlkit.parse((ROOT / "lenses" / f"{name}.toml").read_text(encoding="utf-8")).unwrap()["surface"]
+        text = (tmp_path / f"{name}.md").read_text(encoding="utf-8")
+        rows = re.findall(r"^\| \d+ \|.*", text, re.MULTILINE)
+        assert len(rows) == len(surfaces)
+        for row, surface in zip(rows, surfaces, strict=True):
+            if "radius_of_curvature_mm" in surface:
+                assert float(row.split("|")[3]) == pytest.approx(
+                    surface["radius_of_curvature_mm"], rel=1e-5
+                )  # six digits are shown
+        assert {"## Figures", "## Contrast", "## Prescription"} <= set(text.splitlines())
+    # What is younger than its sources is kept.
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    pages.write(tmp_path, names)
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.slow
+def test_a_page_of_an_effect_is_complete(monkeypatch: pytest.MonkeyPatch, denoiser: None, tmp_path: Path) -> None:
+    pages, pictures = module_of("effect_pages", monkeypatch), module_of("effect_pictures", monkeypatch)
+    assert set(pictures.PAIRS) == {effect.name for effect in rc.effects()}
+    monkeypatch.setattr(pages, "effect_pictures", pictures)
+    monkeypatch.setattr(pictures, "SIZE", (48, 32))
+    pages.write(tmp_path, ["coatings"])
+    assert {page.stem for page in tmp_path.glob("*.md")} == {"index", "coatings"}
+    assert missing_links(tmp_path) == set()
+    assert {"coatings-without.png", "coatings-with.png", "../docs/coatings.md"} <= links(tmp_path / "coatings.md")
+    without, with_effect = (matplotlib.image.imread(tmp_path / f"coatings-{end}.png") for end in ("without", "with"))
+    # Ten surfaces of bare glass take a tenth of the light and more.
+    assert with_effect.mean() < without.mean()
