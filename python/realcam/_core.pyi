@@ -6,6 +6,7 @@ from types import EllipsisType
 from typing import Any, ClassVar, Generic, Literal, NamedTuple, Protocol, TypeAlias, TypedDict, final, overload
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 from typing_extensions import Self, TypeVar, Unpack
 
@@ -482,6 +483,22 @@ class Lens(_Value):
     @property
     def zoom_position(self) -> str | None: ...
     def zoomed(self, position: str | int) -> Lens: ...
+    def draw(
+        self,
+        rays: int = 7,
+        *,
+        rays_from: str = "object",
+        fields: Sequence[float] = (0.0, 0.7, 1.0),
+        fields_deg: Sequence[float] | None = None,
+        wavelengths_nm: Sequence[float] | None = None,
+        object_distance_m: float | None = None,
+        radius_colours: bool = False,
+        marks: bool = False,
+        insets: bool = True,
+        ghost: Lens | None = None,
+        theme: str = "light",
+        width_px: int = 1600,
+    ) -> Figure: ...
     def first_order(self, wavelength_nm: float | None = None) -> FirstOrder: ...
     def focused(self, focus_distance_m: float) -> Lens: ...
     def stopped_down(self, f_number: float) -> Lens: ...

@@ -12,6 +12,7 @@ import numpy as np
 
 from ._core import InputError, __version__
 from .files import write_whole
+from .short_text import ShortText
 
 # EXIF's LightSource. Any other light has no number.
 LIGHT_SOURCES = {"": 21, "D65": 21, "D50": 23, "A": 17, "FL2": 14}
@@ -25,8 +26,8 @@ SATURATION_OVER_WHITE = 0.018 * 78
 ASCII, BYTE, SHORT, LONG, RATIONAL, SRATIONAL = "s", "B", "H", "I", "2I", "2i"
 
 
-@dataclass(frozen=True)
-class ColorFilters:
+@dataclass(frozen=True, repr=False)
+class ColorFilters(ShortText):
     """What a mosaic has where its pixels see through filters of red, green and blue.
 
     array: of two rows of two pixels from the top left, as "RGGB". illuminant: named as in LIGHT_SOURCES, or another.
@@ -40,8 +41,8 @@ class ColorFilters:
     d50_from_balanced: np.ndarray
 
 
-@dataclass(frozen=True)
-class Negative:
+@dataclass(frozen=True, repr=False)
+class Negative(ShortText):
     """A mosaic, (H, W) uint16, with what raw developers need; filters: None where all pixels see alike."""
 
     mosaic: np.ndarray

@@ -18,7 +18,49 @@ from .drawing.style import Style
 from .drawing.themes import theme_named
 from .figure_files import check_figure_target, save_figure
 
-__all__ = ["draw_cross_section", "draw_states", "save_cross_section", "save_states", "states_of"]
+__all__ = ["draw_cross_section", "draw_states", "lens_figure", "save_cross_section", "save_states", "states_of"]
+
+
+def lens_figure(
+    lens: Lens,
+    rays: int = 7,
+    *,
+    rays_from: str = "object",
+    fields: Sequence[float] = (0.0, 0.7, 1.0),
+    fields_deg: Sequence[float] | None = None,
+    wavelengths_nm: Sequence[float] | None = None,
+    object_distance_m: float | None = None,
+    radius_colours: bool = False,
+    marks: bool = False,
+    insets: bool = True,
+    ghost: Lens | None = None,
+    theme: str = "light",
+    width_px: int = 1600,
+) -> Figure:
+    """The meridional section of a lens; the film is on the right.
+
+    rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section takes them.
+    radius_colours: faces in blue where the radius of curvature is positive, in red where it is negative.
+    marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
+    insets: the rays of each field where they meet the film, magnified.
+    ghost: the lens in another state, of which the glass that stands elsewhere is drawn as outlines.
+    theme: "light" or "dark". width_px: of the picture.
+    Raises InputError where no light passes the lens or what is asked makes no sense.
+    """
+    style = Style(theme_named(theme), radius_colours, marks)
+    section = cross_section(
+        lens,
+        rays=rays,
+        rays_from=rays_from,
+        fields=fields,
+        fields_deg=fields_deg,
+        wavelengths_nm=wavelengths_nm,
+        object_distance_m=object_distance_m,
+    )
+    other = None if ghost is None else cross_section(ghost, rays=0)
+    row = Row(lens.title or lens.name, _data_of(lens, section), section, other)
+    # Rays that were sent from one point of the film meet in it, whatever the lens does.
+    return figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
 
 
 def save_cross_section(
@@ -38,31 +80,23 @@ def save_cross_section(
     theme: str = "light",
     width_px: int = 1600,
 ) -> None:
-    """Writes the meridional section of a lens as .svg, .png or .pdf; the film is on the right.
-
-    rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section takes them.
-    radius_colours: faces in blue where the radius of curvature is positive, in red where it is negative.
-    marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
-    insets: the rays of each field where they meet the film, magnified.
-    ghost: the lens in another state, of which the glass that stands elsewhere is drawn as outlines.
-    theme: "light" or "dark". width_px: of the picture.
-    Raises ImageFileError, and InputError where no light passes the lens or what is asked makes no sense.
-    """
+    """Writes lens_figure as .svg, .png or .pdf. Raises ImageFileError and InputError."""
     target = check_figure_target(path)
-    style = Style(theme_named(theme), radius_colours, marks)
-    section = cross_section(
+    figure = lens_figure(
         lens,
-        rays=rays,
+        rays,
         rays_from=rays_from,
         fields=fields,
         fields_deg=fields_deg,
         wavelengths_nm=wavelengths_nm,
         object_distance_m=object_distance_m,
+        radius_colours=radius_colours,
+        marks=marks,
+        insets=insets,
+        ghost=ghost,
+        theme=theme,
+        width_px=width_px,
     )
-    other = None if ghost is None else cross_section(ghost, rays=0)
-    row = Row(lens.title or lens.name, _data_of(lens, section), section, other)
-    # Rays that were sent from one point of the film meet in it, whatever the lens does.
-    figure = figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
     save_figure(figure, target, dpi=width_px / figure.get_figwidth())
 
 
@@ -81,7 +115,7 @@ def draw_cross_section(
     ghost: Lens | None = None,
     theme: str = "light",
 ) -> CrossSection:
-    """Draws the same on axes of one's own, without insets, and returns the arrays behind it."""
+    """Draws a cross-section on axes of one's own, without insets, and returns the arrays behind it."""
     style = Style(theme_named(theme), radius_colours, marks)
     section = cross_section(
         lens,

@@ -13,9 +13,17 @@ from matplotlib.figure import Figure
 from . import files
 from ._core import ImageFileError
 
+NOTEBOOK_DPI = 100
 FORMATS = (".svg", ".png", ".pdf")
 _SETTINGS: Any = {"svg.fonttype": "none", "pdf.fonttype": 42}  # text stays text
 _WITHOUT_DATE: dict[str, dict[str, None]] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
+
+
+class ShownFigure(Figure):
+    """A figure that a notebook shows as a cell's result, whether matplotlib's own display is set up there or not."""
+
+    def _repr_png_(self) -> bytes:
+        return figure_bytes(self, ".png", NOTEBOOK_DPI)
 
 
 def check_figure_target(path: str | os.PathLike[str]) -> Path:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _core, denoiser
+from . import _core, denoiser, notebook
 from ._core import Camera, InputError, RenderSettings, RenderStats
 from .files import system_name
 from .pickling import set_checked_state
@@ -95,6 +95,9 @@ class Image:
             f"<realcam.Image {width} x {height} pixels of {self.spp} samples{denoised}{layers}, "
             f"taken with {self.camera!r:.60}>"
         )
+
+    def _repr_png_(self) -> bytes:
+        return notebook.picture_png(self.pixels, self.camera.iso)
 
     def developed(self, tone: str = "film", iso: float | None = None) -> np.ndarray:
         """(H, W, 3) uint8 sRGB at the camera's sensitivity, or another one.

@@ -35,7 +35,11 @@ def stub_parameters(node: ast.FunctionDef) -> list[Parameter]:
 
 
 def documented_parameters(function: object) -> list[Parameter]:
-    """From the first line of the docstring, where pybind11 writes the signature in Python's own syntax."""
+    """From the first line of the docstring, where pybind11 writes the signature in Python's own syntax; of what Python
+    adds to a class, from the function itself."""
+    if inspect.isfunction(function):
+        parameters = inspect.signature(function).parameters.values()
+        return [(p.name, p.kind is p.KEYWORD_ONLY, p.default is not p.empty) for p in parameters]
     line = (inspect.getdoc(function) or "").splitlines()[0]
     # Defaults are written as their repr, which need not be Python: lenses, infinity.
     line = re.sub(r"<[^<>]*>", "None", line)

@@ -13,6 +13,7 @@ plane in focus of the lens as it stands.
 """
 
 from ..figure_files import save_figure
+from . import notebook as notebook  # adds what notebooks show
 from .bokeh import Bokeh, bokeh, plot_bokeh
 from .distortion import (
     Distortion,

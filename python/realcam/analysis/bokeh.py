@@ -10,11 +10,12 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
+from ..short_text import ShortText
 from .fields import Bundles, Doubles, three_fields, wavelengths_of
 
 
-@dataclass(frozen=True)
-class Bokeh:
+@dataclass(frozen=True, repr=False)
+class Bokeh(ShortText):
     """fields_deg: (F,); object_distance_m: object plane to front vertex.
     values_per_mm2: (F, W, N, N), light of each colour on the film, shares of it per mm^2, rows from the lowest y;
     about the middle of what the design wavelength lights. pitch_mm: from one point to the next, of all pictures.

@@ -9,14 +9,15 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
+from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, bundles_of, fields_of
 
 PROJECTIONS = ("tangent", "angle")
 
 
-@dataclass(frozen=True)
-class Distortion:
+@dataclass(frozen=True, repr=False)
+class Distortion(ShortText):
     """fields_deg: (F,); real_mm, paraxial_mm: (F,), heights of the chief ray on the film.
     percent: (F,), 100 (real / paraxial - 1); on the axis its limit, 0.
     projection: what the paraxial height is proportional to: "tangent" or "angle" (f-theta).
@@ -29,8 +30,8 @@ class Distortion:
     projection: str
 
 
-@dataclass(frozen=True)
-class DistortionGrid:
+@dataclass(frozen=True, repr=False)
+class DistortionGrid(ShortText):
     """A plane grid of even squares across the axis, as it appears on the film.
 
     ideal_mm, real_mm: (N, N, 2), crossings of the grid's lines by the paraxial and by the real lens; real ones are nan

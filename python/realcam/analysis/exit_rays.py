@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .._core import Lens, RayStatus
+from ..short_text import ShortText
 from .fields import Doubles
 
 
-@dataclass(frozen=True)
-class ExitRays:
+@dataclass(frozen=True, repr=False)
+class ExitRays(ShortText):
     """points_mm: (N, 2), on the film, from the axis; nan where no ray passes.
     slopes: (N, 2), dx/dz and dy/dz behind the lens.
     cosines: (N, 2), direction cosines x and y.

@@ -9,12 +9,13 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
+from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, light_of
 
 
-@dataclass(frozen=True)
-class FieldCurves:
+@dataclass(frozen=True, repr=False)
+class FieldCurves(ShortText):
     """fields_deg: (F,); wavelengths_nm: (W,).
     tangential_mm, sagittal_mm: (W, F), foci of real rays close to the chief ray, along the axis, behind the film.
     petzval_mm: (F,), Petzval's surface of the design wavelength, to third order; nan for an afocal lens, and from 90

@@ -9,14 +9,15 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import Lens, RayStatus
+from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, bundles_of, fields_of
 
 SPOKES, STEPS, HALVINGS = 96, 26, 26
 
 
-@dataclass(frozen=True)
-class FilmPupils:
+@dataclass(frozen=True, repr=False)
+class FilmPupils(ShortText):
     """What the lens lets pass to points of the film, where the chief rays of F fields land.
 
     fields_deg: (F,); film_mm: (F,), heights of the points.

@@ -9,12 +9,13 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import Lens
+from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, light_of
 
 
-@dataclass(frozen=True)
-class LateralColour:
+@dataclass(frozen=True, repr=False)
+class LateralColour(ShortText):
     """fields_deg: (F,); wavelengths_nm: (W,).
     shift_mm: (W, F), height of the chief ray on the film less that of the design wavelength.
     airy_radius_mm: (F,), along y, of the design wavelength.

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens, RayBundle
+from ..short_text import ShortText
 from . import style
 from .fields import (
     Bundles,
@@ -26,8 +27,8 @@ from .pupil_function import lines_of, pupil_function, transfer, transfer_limit
 METHODS = ("diffraction", "geometric")
 
 
-@dataclass(frozen=True)
-class Mtf:
+@dataclass(frozen=True, repr=False)
+class Mtf(ShortText):
     """Contrast, 0 to 1.
 
     fields_deg: (F,); frequencies_per_mm: (K,), periods per mm on the film; defocus_mm: (D,), planes behind the film.

@@ -9,12 +9,13 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import PSF, Lens
+from ..short_text import ShortText
 from . import style
 from .fields import Doubles, numbers_of
 
 
-@dataclass(frozen=True)
-class PointSpread:
+@dataclass(frozen=True, repr=False)
+class PointSpread(ShortText):
     """values: (size, size), share of the light per um^2, rows from the lowest y. centre_mm: of x_um = y_um = 0 on the
     film. strehl: nan for the method "geometric"."""
 

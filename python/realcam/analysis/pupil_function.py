@@ -10,6 +10,7 @@ import numpy as np
 import scipy.linalg
 
 from .._core import InputError, RayBundle
+from ..short_text import ShortText
 from .fields import Bundles, Doubles
 
 # Degrees of the polynomials that are tried, with the spokes and nodes of the rays that they are fitted to.
@@ -24,8 +25,8 @@ class UnevenWavefrontError(InputError):
     """No polynomial follows the wavefront: there is no transfer function, but that of rays alone."""
 
 
-@dataclass(frozen=True)
-class PupilFunction:
+@dataclass(frozen=True, repr=False)
+class PupilFunction(ShortText):
     """Amplitude and path over slopes (RayBundle.slopes), as polynomials of Chebyshev's in slopes scaled to -1 ... 1.
 
     phase, tilt, amplitude: (K, K), coefficients by powers of x and y: of the path in radians, of the change of the path
@@ -100,8 +101,8 @@ def fit_pupil(bundle: RayBundle, degree: int) -> PupilFunction:
     )
 
 
-@dataclass(frozen=True)
-class Lines:
+@dataclass(frozen=True, repr=False)
+class Lines(ShortText):
     """Lines along one direction across a pupil, at the nodes of Chebyshev's second kind, where a round edge makes their
     lengths smooth.
 

@@ -9,13 +9,14 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import Lens
+from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays
 from .fields import Bundles, Doubles, light_of
 
 
-@dataclass(frozen=True)
-class RayFan:
+@dataclass(frozen=True, repr=False)
+class RayFan(ShortText):
     """Transverse ray aberrations on the film, from where the chief ray of the design wavelength lands.
 
     fields_deg: (F,); wavelengths_nm: (W,); pupil: (P,), shares of the stop's radius.

@@ -8,14 +8,15 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._core import Lens
+from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, bundles_of, field_angles_deg
 
 NAMES = ("spherical", "coma", "astigmatism", "Petzval", "distortion", "axial colour", "lateral colour")
 
 
-@dataclass(frozen=True)
-class SeidelBars:
+@dataclass(frozen=True, repr=False)
+class SeidelBars(ShortText):
     """names: of the 7 aberrations. surfaces: (S,), their indices in `lens.surfaces`, from 0.
     sums_mm: (S, 7), Seidel's sums S_I to S_V and of colour C_I and C_II.
     waves: (S, 7), coefficients of the wavefront at the edge of pupil and field: S_I / 8, S_II / 2, S_III / 2,

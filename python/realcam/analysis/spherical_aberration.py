@@ -9,13 +9,14 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import Lens
+from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays
 from .fields import Doubles, wavelengths_of
 
 
-@dataclass(frozen=True)
-class LongitudinalAberration:
+@dataclass(frozen=True, repr=False)
+class LongitudinalAberration(ShortText):
     """wavelengths_nm: (W,); pupil: (P,), heights in the stop as shares of its radius, from the axis.
     focus_mm: (W, P), where the ray crosses the axis, behind the film; the first of each colour is the paraxial focus.
       nan where no ray passes.

@@ -9,13 +9,14 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
+from ..short_text import ShortText
 from . import style
 from .exit_rays import exit_rays, hexapolar
 from .fields import Bundles, Doubles, light_of, numbers_of
 
 
-@dataclass(frozen=True)
-class SpotDiagram:
+@dataclass(frozen=True, repr=False)
+class SpotDiagram(ShortText):
     """Spots of F fields, W colours and D planes.
 
     defocus_mm: (D,), of the planes, behind the film.

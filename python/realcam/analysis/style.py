@@ -14,6 +14,7 @@ from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
 from ..drawing.themes import theme_named
+from ..figure_files import ShownFigure
 from .fields import texts_of
 
 SIZES_IN = {"small": (4.2, 3.0), "large": (8.0, 5.6)}
@@ -81,7 +82,7 @@ def text_colour() -> str:
 
 
 def new_figure(width_in: float, height_in: float) -> matplotlib.figure.Figure:
-    return matplotlib.figure.Figure(figsize=(width_in, height_in), layout="constrained")
+    return ShownFigure(figsize=(width_in, height_in), layout="constrained")
 
 
 def coloured(wavelengths_nm: NDArray[np.float64]) -> list[tuple[str, str]]:

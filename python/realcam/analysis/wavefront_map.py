@@ -8,12 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._core import Lens
+from ..short_text import ShortText
 from . import style
 from .fields import Doubles
 
 
-@dataclass(frozen=True)
-class WavefrontMap:
+@dataclass(frozen=True, repr=False)
+class WavefrontMap(ShortText):
     """map_waves: (N, N), rows from the lowest y of the stop, columns from the lowest x, over the square about the stop;
     nan where no ray passes. Positive where the wavefront is ahead of the sphere about the chief ray's film point.
     """

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens
+from ..short_text import ShortText
 from . import style
 from .fields import Doubles
 
@@ -62,8 +63,8 @@ def term(n: int, m: int, x: Doubles, y: Doubles) -> Doubles:
     return result
 
 
-@dataclass(frozen=True)
-class ZernikeFit:
+@dataclass(frozen=True, repr=False)
+class ZernikeFit(ShortText):
     """order: "noll" or "fringe"; indices: (K,), its j; nm: K pairs (n, m), m < 0 for sine; names: K words.
     coefficients_waves: (K,), of polynomials that are orthonormal on the unit circle: over a pupil that fills the circle
       the square of each is its share of the mean square. Fringe coefficients of programs whose polynomials are 1 at the

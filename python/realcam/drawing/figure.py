@@ -10,6 +10,7 @@ import matplotlib
 import matplotlib.figure
 
 from .._core import InputError
+from ..figure_files import ShownFigure
 from .draw import Extent, draw_section, extent_of, prepare_axes
 from .inset import draw_inset, shown_in_insets
 from .section import CrossSection
@@ -37,7 +38,7 @@ def figure_of(
     if not 200 <= width_px <= 20000:
         raise InputError("the width of a drawing must be 200 to 20000 pixels")
     layout = _Layout(rows, style, min(max(width_px / 160, 5.0), 10.0), insets, align)
-    figure = matplotlib.figure.Figure(figsize=(layout.width, layout.height), facecolor=style.theme.page)
+    figure = ShownFigure(figsize=(layout.width, layout.height), facecolor=style.theme.page)
     top = layout.height
     for index, row in enumerate(rows):
         top -= layout.title_height(index)

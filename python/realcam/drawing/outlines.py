@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Lens, Surface
+from ..short_text import ShortText
 
 Points = NDArray[np.float64]
 
 _HALF_PROFILE = 40  # points from the axis to the rim, denser towards it, where a steep face turns most
 
 
-@dataclass(frozen=True)
-class Face:
+@dataclass(frozen=True, repr=False)
+class Face(ShortText):
     """A refracting or reflecting face, from its lower rim to its upper one; with a hole, in two parts."""
 
     surface: int  #: index in Lens.surfaces
@@ -28,8 +29,8 @@ class Face:
     parts: tuple[Points, ...]
 
 
-@dataclass(frozen=True)
-class Element:
+@dataclass(frozen=True, repr=False)
+class Element(ShortText):
     """One piece of glass between two faces; with a hole, in two parts. Cemented elements share the points of a face."""
 
     front: int  #: index of the surface that light meets first
@@ -49,8 +50,8 @@ class Blocker:
     obstruction_mm: float  #: semi-diameter that is blocked in the middle; 0: none
 
 
-@dataclass(frozen=True)
-class Crossing:
+@dataclass(frozen=True, repr=False)
+class Crossing(ShortText):
     """Two faces that reach into each other: nobody can make such a lens."""
 
     first: int

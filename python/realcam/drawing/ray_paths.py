@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 
 from .._core import Lens, RayStatus
 from ..fields import Field
+from ..short_text import ShortText
 
 Array = NDArray[np.float64]
 
 _PUPIL = np.column_stack([np.zeros(401), np.linspace(-1, 1, 401)])
 
 
-@dataclass(frozen=True)
-class RayBundle:
+@dataclass(frozen=True, repr=False)
+class RayBundle(ShortText):
     """Rays of one place in the field and one wavelength, in the meridional plane. Lens frame."""
 
     field: Field

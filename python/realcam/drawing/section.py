@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 from .._core import InputError, Lens
 from ..fields import Field, fields_at, fields_of_angles
+from ..short_text import ShortText
 from .marks import FocusGroup, Mark, focus_group_of, marks_of
 from .outlines import Blocker, Crossing, Element, Face, blockers_of, crossings_of, elements_of, faces_of
 from .ray_paths import RayBundle, bundles_from_film, bundles_from_object
 
 
-@dataclass(frozen=True)
-class CrossSection:
+@dataclass(frozen=True, repr=False)
+class CrossSection(ShortText):
     """A lens cut along its axis. Outlines are (N, 2) arrays of (z, y), paths (N, 3) of (x, y, z); mm, lens frame."""
 
     lens: Lens

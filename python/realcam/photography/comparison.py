@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from .._core import Lens
 from ..drawing.outlines import elements_of
 from ..fields import Field, fields_at
+from ..short_text import ShortText
 from .figures import PhotographicFigures, photographic_figures
 
 
-@dataclass(frozen=True)
-class FieldFigures:
+@dataclass(frozen=True, repr=False)
+class FieldFigures(ShortText):
     """How sharp a lens is at one place in its field, in the plane in focus."""
 
     field: Field
@@ -24,8 +25,8 @@ class FieldFigures:
     mtf_sagittal: NDArray[np.float64] | None
 
 
-@dataclass(frozen=True)
-class LensSummary:
+@dataclass(frozen=True, repr=False)
+class LensSummary(ShortText):
     """What two lenses are compared by."""
 
     lens: Lens

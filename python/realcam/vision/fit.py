@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import Camera, InputError
+from ..notebook import table_html
 from . import conventions
 from .models import RadialModel, distortion_coefficients, model_named
 
@@ -19,7 +20,7 @@ LEAST_LIGHT = (
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CameraModelFit:
     """A camera model that stands for a camera.
 
@@ -39,6 +40,25 @@ class CameraModelFit:
     pixels: Array
     residuals: Array
     largest_angle_deg: float
+
+    def __repr__(self) -> str:
+        return (
+            f"<realcam.CameraModelFit {self.model} of {self.camera!r:.60}, {self.rms_px:.3g} px RMS, "
+            f"{self.max_px:.3g} px at most, up to {self.largest_angle_deg:.4g} degrees>"
+        )
+
+    def _repr_html_(self) -> str:
+        K = self.camera_matrix
+        rows = [
+            ("model", self.model),
+            ("camera", repr(self.camera)),
+            ("fx, fy", f"{K[0, 0]:.6g}, {K[1, 1]:.6g} px"),
+            ("cx, cy", f"{K[0, 2]:.6g}, {K[1, 2]:.6g} px"),
+            *((f"k{index}", f"{value:.6g}") for index, value in enumerate(self.coefficients, 1)),
+            ("residuals", f"{self.rms_px:.3g} px RMS, {self.max_px:.3g} px at most, at {len(self.pixels)} places"),
+            ("largest angle", f"{self.largest_angle_deg:.4g}°"),
+        ]
+        return table_html(rows)
 
     @property
     def rms_px(self) -> float:

@@ -1,0 +1,114 @@
+"""What notebooks show of lenses, pictures and plans, and Lens.draw."""
+
+from __future__ import annotations
+
+import html
+import io
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._core import InputError, Lens, Plan, develop
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LONGEST_SIDE_PX = 1200
+
+
+def draw(
+    self: Lens,
+    rays: int = 7,
+    *,
+    rays_from: str = "object",
+    fields: Sequence[float] = (0.0, 0.7, 1.0),
+    fields_deg: Sequence[float] | None = None,
+    wavelengths_nm: Sequence[float] | None = None,
+    object_distance_m: float | None = None,
+    radius_colours: bool = False,
+    marks: bool = False,
+    insets: bool = True,
+    ghost: Lens | None = None,
+    theme: str = "light",
+    width_px: int = 1600,
+) -> Figure:
+    """The cross-section with rays, as a figure of matplotlib that a notebook shows.
+
+    The arguments are those of realcam.draw.lens_figure, and save_cross_section of that module writes it to a file.
+    Raises InputError where no light passes the lens or what is asked makes no sense.
+    """
+    from .draw import lens_figure  # which loads matplotlib
+
+    return lens_figure(
+        self,
+        rays,
+        rays_from=rays_from,
+        fields=fields,
+        fields_deg=fields_deg,
+        wavelengths_nm=wavelengths_nm,
+        object_distance_m=object_distance_m,
+        radius_colours=radius_colours,
+        marks=marks,
+        insets=insets,
+        ghost=ghost,
+        theme=theme,
+        width_px=width_px,
+    )
+
+
+def lens_png(lens: Lens) -> bytes | None:
+    """None, which leaves the lens's text, where it cannot be drawn, as no light passes it."""
+    from .figure_files import NOTEBOOK_DPI, figure_bytes
+
+    try:
+        return figure_bytes(draw(lens), ".png", NOTEBOOK_DPI)
+    except InputError:
+        return None
+
+
+def picture_png(exposure: NDArray[np.float32], iso: float) -> bytes:
+    """Of (H, W, 3) lux seconds, developed, with fewer pixels where there are more than a page shows."""
+    import matplotlib.image
+
+    step = -(-max(exposure.shape) // LONGEST_SIDE_PX)
+    height, width = exposure.shape[0] // step * step, exposure.shape[1] // step * step
+    blocks = exposure[:height, :width].reshape(height // step, step, width // step, step, 3)
+    file = io.BytesIO()
+    matplotlib.image.imsave(file, develop(blocks.mean(axis=(1, 3)), iso, "film"), format="png")
+    return file.getvalue()
+
+
+def plan_html(plan: Plan) -> str:
+    rows = [
+        (
+            decision.effect,
+            "kept" if decision.is_kept else "left out",
+            f"{decision.size:.3g} {decision.unit}",
+            f"{decision.threshold:.3g} {decision.unit}",
+            "" if decision.time_share is None else f"{100 * decision.time_share:+.0f} %",
+            decision.reason,
+        )
+        for decision in plan.decisions
+    ]
+    table = table_html(rows, ("effect", "", "size", "threshold", "time", "because"))
+    return f"<p>camera model {html.escape(plan.model)}, {html.escape(plan.summary)}</p>{table}"
+
+
+def table_html(rows: Iterable[Sequence[str]], head: Sequence[str] = ()) -> str:
+    def line(cells: Sequence[str], tag: str) -> str:
+        return "".join(f'<{tag} style="text-align: left">{html.escape(cell)}</{tag}>' for cell in cells)
+
+    body = "".join(f"<tr>{line(row, 'td')}</tr>" for row in rows)
+    top = f"<thead><tr>{line(head, 'th')}</tr></thead>" if head else ""
+    return f"<table>{top}<tbody>{body}</tbody></table>"
+
+
+# The classes are the extension's, whose file _core.pyi has the names that users call.
+for _type, _name, _function in (
+    (Lens, "draw", draw),
+    (Lens, "_repr_png_", lens_png),
+    (Plan, "_repr_html_", plan_html),
+):
+    setattr(_type, _name, _function)
