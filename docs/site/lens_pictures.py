@@ -33,13 +33,16 @@ def camera_for(lens: rc.Lens, shot: rc.Shot) -> rc.Camera:
     scale = LONGER_SIDE_PX / max(width, height)
     camera = rc.Camera(lens, film=rc.Film(width, height, (round(scale * width), round(scale * height))))
     angle_deg = min(camera.field_of_view_deg.horizontal, WIDEST_DEG)
+    data = lens.first_order()
+    # Angles are seen from the entrance pupil, but distances count from the film.
+    pupil_mm = data.entrance_pupil_position_mm
+    behind_pupil_m = 1e-3 * (lens.film_position_mm - pupil_mm) if math.isfinite(pupil_mm) else 0.0
+    before_pupil_m = max(HALF_WIDTH_M / math.tan(math.radians(angle_deg / 2)), NEAREST_M)
     # From film to subject it is at least four focal lengths, for a thin lens that shows it life-size.
-    focal_length_m = 1e-3 * abs(lens.first_order().effective_focal_length_mm)
-    distance_m = max(
-        HALF_WIDTH_M / math.tan(math.radians(angle_deg / 2)), NEAREST_M, lens.nearest_focus_m, 5 * focal_length_m
-    )
+    least_m = max(lens.nearest_focus_m, 5e-3 * abs(data.effective_focal_length_mm))
+    distance_m = max(before_pupil_m + behind_pupil_m, least_m)
     # Exposure goes with the square of the f-number; the lens is wide open.
-    stops = lens.first_order().f_number / shot.camera.lens.first_order().f_number
+    stops = data.f_number / shot.camera.lens.first_order().f_number
     return camera.replace(
         lens=lens.focused(distance_m),
         position=tuple(subject + distance_m * away),
