@@ -22,9 +22,8 @@ std::vector<CudaDevice> cuda_devices() {
     return {};
 }
 std::string why_no_cuda_device() {
-    return "this build of realcam has no CUDA backend: the device \"cpu\" works, and a build from the source with nvcc "
-           "has "
-           "GPUs, too";
+    return "this build of realcam has no CUDA backend: the device \"cpu\" works, and a build from the source with "
+           "nvcc has GPUs, too";
 }
 CudaDevice cuda_device(int) {
     fail();
