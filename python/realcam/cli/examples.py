@@ -31,6 +31,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "demo": ("realcam demo -o pictures --spp 200",),
     "bench": ("realcam bench lens-rays frame --json",),
     "cost": ("realcam cost shot.toml -o cost.html",),
+    "compare": (
+        "realcam compare shot.toml --vary f_number=2,4,8 -o sheet.png",
+        "realcam compare shot.toml --vary lens=wide-24mm,double-gauss-50mm,sonnar-180mm -o sheet.png",
+    ),
     "view": (
         "realcam view",
         "realcam view shot.toml --port 8081 --no-browser",

@@ -1,0 +1,52 @@
+"""Pictures on one labelled sheet, with matplotlib."""
+
+from __future__ import annotations
+
+import math
+import os
+import textwrap
+from collections.abc import Sequence
+
+from ._core import InputError
+from .analysis.style import new_figure, themed
+from .figure_files import check_figure_target, save_figure
+from .image import Image
+
+DPI = 160
+FONT_PT = 7.0
+
+
+def save_sheet(
+    pictures: Sequence[tuple[str, Image]],
+    path: str | os.PathLike[str],
+    columns: int = 3,
+    *,
+    tone: str = "film",
+    theme: str = "light",
+) -> None:
+    """Writes (label, image) pairs as .png, .svg or .pdf, pixel by pixel where they are as wide as each other.
+
+    Raises ImageFileError, and InputError for no pictures, no columns or an unknown theme.
+    """
+    target = check_figure_target(path)
+    if not pictures or columns < 1:
+        raise InputError("a sheet needs at least one picture and one column")
+    columns = min(columns, len(pictures))
+    rows = math.ceil(len(pictures) / columns)
+    width, height = (max(size) / DPI for size in zip(*(image.depth.shape[::-1] for _, image in pictures), strict=True))
+    letters = max(8, int(width * 72 / (0.6 * FONT_PT)))  # of average width
+    labels = ["\n".join(textwrap.wrap(label, letters)) for label, _ in pictures]
+    gap, line = 0.12, 0.1 + 1.3 * FONT_PT / 72 * (1 + max(label.count("\n") for label in labels))
+    size = columns * (width + gap) + gap, rows * (height + line + gap) + gap
+    with themed(theme, FONT_PT):
+        figure = new_figure(*size)
+        figure.set_layout_engine("none")
+        for index, (label, (_, image)) in enumerate(zip(labels, pictures, strict=True)):
+            row, column = divmod(index, columns)
+            left, bottom = gap + column * (width + gap), size[1] - (row + 1) * (height + line + gap) + line
+            axes = figure.add_axes((left / size[0], bottom / size[1], width / size[0], height / size[1]))
+            axes.imshow(image.developed(tone), interpolation="nearest")
+            axes.set_axis_off()
+            # Names of lenses are text, and a dollar sign in one begins no formula.
+            figure.text(left / size[0], (bottom - 0.06) / size[1], label, va="top", parse_math=False)
+    save_figure(figure, target, dpi=DPI)
