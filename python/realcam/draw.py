@@ -14,90 +14,18 @@ from ._core import InputError, Lens
 from .drawing.draw import draw_section, extent_of, prepare_axes
 from .drawing.figure import Row, figure_of
 from .drawing.section import CrossSection, cross_section
-from .drawing.style import Style
+from .drawing.style import Style, data_of
 from .drawing.themes import theme_named
 from .figure_files import check_figure_target, save_figure
 
-__all__ = ["draw_cross_section", "draw_states", "lens_figure", "save_cross_section", "save_states", "states_of"]
+__all__ = ["draw_cross_section", "draw_states", "save_cross_section", "save_states", "states_of"]
 
 
-def lens_figure(
-    lens: Lens,
-    rays: int = 7,
-    *,
-    rays_from: str = "object",
-    fields: Sequence[float] = (0.0, 0.7, 1.0),
-    fields_deg: Sequence[float] | None = None,
-    wavelengths_nm: Sequence[float] | None = None,
-    object_distance_m: float | None = None,
-    radius_colours: bool = False,
-    marks: bool = False,
-    insets: bool = True,
-    ghost: Lens | None = None,
-    theme: str = "light",
-    width_px: int = 1600,
-) -> Figure:
-    """The meridional section of a lens; the film is on the right.
-
-    rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section takes them.
-    radius_colours: faces in blue where the radius of curvature is positive, in red where it is negative.
-    marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
-    insets: the rays of each field where they meet the film, magnified.
-    ghost: the lens in another state, of which the glass that stands elsewhere is drawn as outlines.
-    theme: "light" or "dark". width_px: of the picture.
-    Raises InputError where no light passes the lens or what is asked makes no sense.
-    """
-    style = Style(theme_named(theme), radius_colours, marks)
-    section = cross_section(
-        lens,
-        rays=rays,
-        rays_from=rays_from,
-        fields=fields,
-        fields_deg=fields_deg,
-        wavelengths_nm=wavelengths_nm,
-        object_distance_m=object_distance_m,
-    )
-    other = None if ghost is None else cross_section(ghost, rays=0)
-    row = Row(lens.title or lens.name, _data_of(lens, section), section, other)
-    # Rays that were sent from one point of the film meet in it, whatever the lens does.
-    return figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
-
-
-def save_cross_section(
-    lens: Lens,
-    path: str | os.PathLike[str],
-    rays: int = 7,
-    *,
-    rays_from: str = "object",
-    fields: Sequence[float] = (0.0, 0.7, 1.0),
-    fields_deg: Sequence[float] | None = None,
-    wavelengths_nm: Sequence[float] | None = None,
-    object_distance_m: float | None = None,
-    radius_colours: bool = False,
-    marks: bool = False,
-    insets: bool = True,
-    ghost: Lens | None = None,
-    theme: str = "light",
-    width_px: int = 1600,
-) -> None:
-    """Writes lens_figure as .svg, .png or .pdf. Raises ImageFileError and InputError."""
+def save_cross_section(lens: Lens, path: str | os.PathLike[str], rays: int = 7, **options: Any) -> None:
+    """Writes Lens.draw, with the options of that, as .svg, .png or .pdf. Raises ImageFileError and InputError."""
     target = check_figure_target(path)
-    figure = lens_figure(
-        lens,
-        rays,
-        rays_from=rays_from,
-        fields=fields,
-        fields_deg=fields_deg,
-        wavelengths_nm=wavelengths_nm,
-        object_distance_m=object_distance_m,
-        radius_colours=radius_colours,
-        marks=marks,
-        insets=insets,
-        ghost=ghost,
-        theme=theme,
-        width_px=width_px,
-    )
-    save_figure(figure, target, dpi=width_px / figure.get_figwidth())
+    figure = lens.draw(rays, **options)
+    save_figure(figure, target, dpi=figure.dpi)
 
 
 def draw_cross_section(
@@ -130,7 +58,7 @@ def draw_cross_section(
     prepare_axes(axes, extent_of(section, style), style)
     draw_section(section, axes, style, ghost=other)
     # Titles are text, and a dollar sign in one begins no formula.
-    title = f"{lens.title or lens.name}   {_data_of(lens, section)}"
+    title = f"{lens.title or lens.name}   {data_of(lens, section)}"
     axes.set_title("".join(c for c in title if c.isprintable()), parse_math=False, color=style.theme.text)
     return section
 
@@ -158,7 +86,7 @@ def draw_states(
     rows = []
     for name, lens in states:
         section = cross_section(lens, rays=rays, rays_from=rays_from, fields=fields, wavelengths_nm=wavelengths_nm)
-        rows.append(Row(name, _data_of(lens, section), section))
+        rows.append(Row(name, data_of(lens, section), section))
     return figure_of(rows, style, width_px=width_px, insets=insets and rays_from == "object", align="film")
 
 
@@ -190,7 +118,7 @@ def save_states(
         theme=theme,
         width_px=width_px,
     )
-    save_figure(figure, target, dpi=width_px / figure.get_figwidth())
+    save_figure(figure, target, dpi=figure.dpi)
 
 
 def states_of(lens: Lens) -> list[tuple[str, Lens]]:
@@ -203,17 +131,3 @@ def states_of(lens: Lens) -> list[tuple[str, Lens]]:
     if lens.nearest_focus_m > 0:
         states.append((f"{name}, focused at {lens.nearest_focus_m:.4g} m", lens.focused(lens.nearest_focus_m)))
     return states
-
-
-def _data_of(lens: Lens, section: CrossSection) -> str:
-    data = lens.first_order()
-    words = [f"f = {data.effective_focal_length_mm:.4g} mm"]
-    is_far = math.isinf(lens.focus_distance_m)
-    # An f-number is one of the lens at infinity, and a group that has moved makes another lens.
-    if is_far or lens.focus_group is None:
-        words.append(f"f/{data.f_number:.3g}")
-    if not is_far:
-        words.append(f"focused at {lens.focus_distance_m:.4g} m")
-    if len(section.wavelengths_nm) == 1:
-        words.append(f"{section.wavelengths_nm[0]:.4g} nm")
-    return ", ".join(words) + ("   * asphere" if any(face.is_asphere for face in section.faces) else "")

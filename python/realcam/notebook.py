@@ -11,6 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._core import InputError, Lens, Plan, develop
+from .drawing import cross_section
+from .drawing.style import Style, data_of
+from .drawing.themes import theme_named
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,28 +37,32 @@ def draw(
     theme: str = "light",
     width_px: int = 1600,
 ) -> Figure:
-    """The cross-section with rays, as a figure of matplotlib that a notebook shows.
+    """The meridional section with rays, as a figure of matplotlib that a notebook shows; the film is on the right.
 
-    The arguments are those of realcam.draw.lens_figure, and save_cross_section of that module writes it to a file.
+    rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section takes them.
+    radius_colours: faces in blue where the radius of curvature is positive, in red where it is negative.
+    marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
+    insets: the rays of each field where they meet the film, magnified.
+    ghost: the lens in another state, of which the glass that stands elsewhere is drawn as outlines.
+    theme: "light" or "dark". width_px: of the picture. realcam.draw.save_cross_section writes it to a file.
     Raises InputError where no light passes the lens or what is asked makes no sense.
     """
-    from .draw import lens_figure  # which loads matplotlib
+    from .drawing.figure import Row, figure_of  # which load matplotlib
 
-    return lens_figure(
+    style = Style(theme_named(theme), radius_colours, marks)
+    section = cross_section(
         self,
-        rays,
+        rays=rays,
         rays_from=rays_from,
         fields=fields,
         fields_deg=fields_deg,
         wavelengths_nm=wavelengths_nm,
         object_distance_m=object_distance_m,
-        radius_colours=radius_colours,
-        marks=marks,
-        insets=insets,
-        ghost=ghost,
-        theme=theme,
-        width_px=width_px,
     )
+    other = None if ghost is None else cross_section(ghost, rays=0)
+    row = Row(self.title or self.name, data_of(self, section), section, other)
+    # Rays that were sent from one point of the film meet in it, whatever the lens does.
+    return figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")
 
 
 def lens_png(lens: Lens) -> bytes | None:

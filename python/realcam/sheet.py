@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import textwrap
 from collections.abc import Sequence
 
@@ -35,7 +36,7 @@ def save_sheet(
     rows = math.ceil(len(pictures) / columns)
     width, height = (max(size) / DPI for size in zip(*(image.depth.shape[::-1] for _, image in pictures), strict=True))
     letters = max(8, int(width * 72 / (0.6 * FONT_PT)))  # of average width
-    labels = ["\n".join(textwrap.wrap(label, letters)) for label, _ in pictures]
+    labels = [_wrapped(label, letters) for label, _ in pictures]
     gap, line = 0.12, 0.1 + 1.3 * FONT_PT / 72 * (1 + max(label.count("\n") for label in labels))
     size = columns * (width + gap) + gap, rows * (height + line + gap) + gap
     with themed(theme, FONT_PT):
@@ -50,3 +51,9 @@ def save_sheet(
             # Names of lenses are text, and a dollar sign in one begins no formula.
             figure.text(left / size[0], (bottom - 0.06) / size[1], label, va="top", parse_math=False)
     save_figure(figure, target, dpi=DPI)
+
+
+def _wrapped(label: str, letters: int) -> str:
+    """In lines that end with a comma, as long as a phrase between commas is no longer than a line."""
+    phrases = re.sub("(?<!,) ", "\N{NO-BREAK SPACE}", label)
+    return "\n".join(textwrap.wrap(phrases, letters, break_on_hyphens=False))

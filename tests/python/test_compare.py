@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import subprocess
 import sys
@@ -11,7 +12,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 import realcam as rc
-from realcam.sheet import save_sheet
+from realcam.sheet import _wrapped, save_sheet
 from realcam.variations import variations
 
 from .scenes import quad, scene_of
@@ -127,3 +128,24 @@ def test_the_command_says_what_is_wrong_in_one_line(options: list[str], words: s
     assert words in run.stderr
     assert len(run.stderr.splitlines()) == 1
     assert not (tmp_path / "sheet.png").exists()
+
+
+def test_the_command_writes_the_sheet_and_says_what_was_taken(tmp_path: Path) -> None:
+    (tmp_path / "quad.obj").write_text("v -1 -1 -3\nv 1 -1 -3\nv 1 1 -4\nv -1 1 -4\nf 1 2 3 4\n")
+    (tmp_path / "shot.toml").write_text('format = 1\nscene = "quad.obj"\nlens = "tessar-50mm"\nfocus_m = 3.0\n')
+    words = ["--vary", "f_number=4,8", "--size", "24", "--noise-codes", "20", "--seconds", "5", "--json"]
+    command = [sys.executable, "-m", "realcam", "compare", tmp_path / "shot.toml", "-o", tmp_path / "sheet.png"]
+    run = subprocess.run([*command, *words], capture_output=True, text=True, check=True)
+    rows = json.loads(run.stdout)
+    assert [row["label"] for row in rows] == ["f/4", "f/8"]
+    assert rows[1]["exposure_time_s"] == pytest.approx(4 * rows[0]["exposure_time_s"], rel=1e-3)
+    assert matplotlib.image.imread(tmp_path / "sheet.png").shape[1] > 2 * 24
+
+
+def test_labels_break_after_commas() -> None:
+    """Between a number and its unit, or within the name of a lens, a line ends only where a phrase is too long."""
+    lines = _wrapped("double-gauss-50mm, 50.4 mm, f/2.1, from 1.05 m", 36).split("\n")
+    assert [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines] == [
+        "double-gauss-50mm, 50.4 mm, f/2.1,",
+        "from 1.05 m",
+    ]

@@ -13,7 +13,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 import realcam as rc
-import realcam.draw
+import realcam.notebook
 from realcam.analysis import KINDS, Bundles, notebook
 from realcam.analysis.kinds import Asked
 
@@ -87,7 +87,7 @@ def test_a_lens_that_cannot_be_drawn_is_shown_as_text(monkeypatch: pytest.Monkey
     def refuse(*words: Any, **options: Any) -> None:
         raise rc.InputError("no light passes the lens")
 
-    monkeypatch.setattr(realcam.draw, "lens_figure", refuse)
+    monkeypatch.setattr(realcam.notebook, "cross_section", refuse)
     assert LENS._repr_png_() is None  # type: ignore[attr-defined]
 
 

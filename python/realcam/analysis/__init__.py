@@ -15,6 +15,7 @@ plane in focus of the lens as it stands.
 from ..figure_files import save_figure
 from . import notebook as notebook  # adds what notebooks show
 from .bokeh import Bokeh, bokeh, plot_bokeh
+from .depth_over_focus import DepthOverFocus, depth_over_focus, plot_depth_over_focus
 from .distortion import (
     Distortion,
     DistortionGrid,
@@ -53,6 +54,7 @@ __all__ = [
     "KINDS",
     "Bokeh",
     "Bundles",
+    "DepthOverFocus",
     "Distortion",
     "DistortionGrid",
     "FieldCurves",
@@ -69,6 +71,7 @@ __all__ = [
     "as_json",
     "bokeh",
     "default_frequencies_per_mm",
+    "depth_over_focus",
     "distortion",
     "distortion_grid",
     "field_angles_deg",
@@ -82,6 +85,7 @@ __all__ = [
     "mtf_over_frequency",
     "mtf_through_focus",
     "plot_bokeh",
+    "plot_depth_over_focus",
     "plot_distortion",
     "plot_distortion_grid",
     "plot_field_curves",

@@ -12,13 +12,15 @@ from matplotlib.axes import Axes
 
 from .._core import InputError, Lens
 from . import style
-from .bokeh import bokeh, plot_bokeh
-from .distortion import distortion, distortion_grid, plot_distortion, plot_distortion_grid
-from .field_curves import field_curves, plot_field_curves
+from .bokeh import Bokeh, bokeh, plot_bokeh
+from .depth_over_focus import DepthOverFocus, depth_over_focus, plot_depth_over_focus
+from .distortion import Distortion, DistortionGrid, distortion, distortion_grid, plot_distortion, plot_distortion_grid
+from .field_curves import FieldCurves, field_curves, plot_field_curves
 from .fields import Bundles, Doubles, field_angles_deg
-from .film_pupil import film_pupils, plot_pupil_shapes, plot_relative_illumination
-from .lateral_colour import lateral_colour, plot_lateral_colour
+from .film_pupil import FilmPupils, film_pupils, plot_pupil_shapes, plot_relative_illumination
+from .lateral_colour import LateralColour, lateral_colour, plot_lateral_colour
 from .mtf import (
+    Mtf,
     mtf_over_field,
     mtf_over_frequency,
     mtf_through_focus,
@@ -26,13 +28,13 @@ from .mtf import (
     plot_mtf_over_frequency,
     plot_mtf_through_focus,
 )
-from .point_spread import plot_point_spread, point_spread
-from .ray_fan import plot_ray_fan, ray_fan
-from .seidel_bars import plot_seidel_bars, seidel_bars
-from .spherical_aberration import longitudinal_aberration, plot_longitudinal_aberration
-from .spot_diagram import half_side_mm, plot_spot_diagram, spot_diagram
-from .wavefront_map import plot_wavefront_map, wavefront_map
-from .zernike import plot_zernike_fit, zernike_fit
+from .point_spread import PointSpread, plot_point_spread, point_spread
+from .ray_fan import RayFan, plot_ray_fan, ray_fan
+from .seidel_bars import SeidelBars, plot_seidel_bars, seidel_bars
+from .spherical_aberration import LongitudinalAberration, longitudinal_aberration, plot_longitudinal_aberration
+from .spot_diagram import SpotDiagram, half_side_mm, plot_spot_diagram, spot_diagram
+from .wavefront_map import WavefrontMap, plot_wavefront_map, wavefront_map
+from .zernike import ZernikeFit, plot_zernike_fit, zernike_fit
 
 
 @dataclass(frozen=True)
@@ -77,9 +79,11 @@ class Asked:
 
 @dataclass(frozen=True)
 class Kind:
-    """help: one line. compute: the data. axes: rows and columns of axes that the data wants. plot: on all of them."""
+    """help: one line. data: what compute makes. shape: rows and columns of axes that the data wants. plot: on all of
+    them."""
 
     help: str
+    data: type
     compute: Callable[[Asked], Any]
     shape: Callable[[Any], tuple[int, int]]
     plot: Callable[[Any, np.ndarray], None]
@@ -149,37 +153,50 @@ KINDS_WITH_METHODS = ("mtf", "mtf-field", "mtf-focus", "psf")
 KINDS: dict[str, Kind] = {
     "ray-fan": Kind(
         "where rays land, by where they cross the stop",
+        RayFan,
         lambda a: ray_fan(a.lens, **a.curves),
         lambda data: (2, len(data.fields_deg)),
         _plot_fans,
     ),
-    "spot": Kind("where rays land", lambda a: spot_diagram(a.lens, **a.curves), _spots_shape, _plot_spots, True),
-    "spot-through-focus": Kind("spots on planes beside the film", _through_focus, _spots_shape, _plot_spots, True),
+    "spot": Kind(
+        "where rays land", SpotDiagram, lambda a: spot_diagram(a.lens, **a.curves), _spots_shape, _plot_spots, True
+    ),
+    "spot-through-focus": Kind(
+        "spots on planes beside the film", SpotDiagram, _through_focus, _spots_shape, _plot_spots, True
+    ),
     "longitudinal": Kind(
         "where rays from the axis come back to it, by colour",
+        LongitudinalAberration,
         lambda a: longitudinal_aberration(a.lens, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
         **_single(plot_longitudinal_aberration),
     ),
     "field-curves": Kind(
         "tangential and sagittal focus over the field",
+        FieldCurves,
         lambda a: field_curves(a.lens, **a.curves),
         **_single(plot_field_curves),
     ),
     "distortion": Kind(
         "the chief ray against the paraxial one",
+        Distortion,
         lambda a: distortion(a.lens, a.fields_deg, **_design_only(a)),
         **_single(plot_distortion),
     ),
     "distortion-grid": Kind(
         "a grid of squares as it appears on the film",
+        DistortionGrid,
         lambda a: distortion_grid(a.lens, **_design_only(a)),
         **_single(plot_distortion_grid),
     ),
     "lateral-colour": Kind(
-        "the image's size by colour", lambda a: lateral_colour(a.lens, **a.curves), **_single(plot_lateral_colour)
+        "the image's size by colour",
+        LateralColour,
+        lambda a: lateral_colour(a.lens, **a.curves),
+        **_single(plot_lateral_colour),
     ),
     "seidel": Kind(
         "third-order aberrations by surface",
+        SeidelBars,
         lambda a: seidel_bars(
             a.lens,
             None if a.fields_deg is None else a.one_field(1),
@@ -190,16 +207,19 @@ KINDS: dict[str, Kind] = {
     ),
     "wavefront": Kind(
         "optical path differences over the stop",
+        WavefrontMap,
         lambda a: wavefront_map(a.lens, a.one_field(0), **a.one),
         **_single(plot_wavefront_map),
     ),
     "zernike": Kind(
         "the wavefront as Zernike polynomials, in Noll's order",
+        ZernikeFit,
         lambda a: zernike_fit(a.lens, a.one_field(0), **a.one),
         **_single(plot_zernike_fit),
     ),
     "psf": Kind(
         "the light of a point on the film, with diffraction",
+        PointSpread,
         lambda a: point_spread(
             a.lens,
             a.one_field(0),
@@ -210,28 +230,41 @@ KINDS: dict[str, Kind] = {
         ),
         **_single(plot_point_spread),
     ),
-    "mtf": Kind("contrast over frequency", lambda a: _mtf(a, mtf_over_frequency), **_single(plot_mtf_over_frequency)),
-    "mtf-field": Kind("contrast over the field", lambda a: _mtf(a, mtf_over_field), **_single(plot_mtf_over_field)),
+    "mtf": Kind(
+        "contrast over frequency", Mtf, lambda a: _mtf(a, mtf_over_frequency), **_single(plot_mtf_over_frequency)
+    ),
+    "mtf-field": Kind(
+        "contrast over the field", Mtf, lambda a: _mtf(a, mtf_over_field), **_single(plot_mtf_over_field)
+    ),
     "mtf-focus": Kind(
-        "contrast through focus", lambda a: _mtf(a, mtf_through_focus), **_single(plot_mtf_through_focus)
+        "contrast through focus", Mtf, lambda a: _mtf(a, mtf_through_focus), **_single(plot_mtf_through_focus)
     ),
     "relative-illumination": Kind(
         "the light of an even field on the film",
+        FilmPupils,
         lambda a: film_pupils(a.lens, a.fields_deg, **_design_only(a)),
         **_single(plot_relative_illumination),
     ),
     "pupil": Kind(
         "the pupil's outline over the field: cat's eyes",
+        FilmPupils,
         lambda a: film_pupils(a.lens, a.fields_deg, samples=5, **_design_only(a)),
         **_single(plot_pupil_shapes),
         height=0.5,
     ),
     "bokeh": Kind(
         "points out of focus",
+        Bokeh,
         lambda a: bokeh(a.lens, a.fields_deg, a.wavelengths_nm, object_distance_m=a.bundles.object_distance_m),
         lambda data: (1, len(data.fields_deg)),
         _plot_bokeh,
         True,
+    ),
+    "depth-of-field": Kind(
+        "what is sharp over the distance in focus, by aperture",
+        DepthOverFocus,
+        lambda a: depth_over_focus(a.lens),
+        **_single(plot_depth_over_focus),
     ),
 }
 

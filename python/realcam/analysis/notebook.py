@@ -6,37 +6,12 @@ from collections.abc import Callable
 from typing import Any
 
 from ..figure_files import NOTEBOOK_DPI, figure_bytes
-from .bokeh import Bokeh
-from .distortion import Distortion, DistortionGrid
-from .field_curves import FieldCurves
-from .film_pupil import FilmPupils
-from .kinds import plot_figure
-from .lateral_colour import LateralColour
+from .kinds import KINDS, plot_figure
 from .mtf import Mtf
-from .point_spread import PointSpread
-from .ray_fan import RayFan
-from .seidel_bars import SeidelBars
-from .spherical_aberration import LongitudinalAberration
-from .spot_diagram import SpotDiagram
-from .wavefront_map import WavefrontMap
-from .zernike import ZernikeFit
 
-KIND_OF: dict[type, str] = {
-    Bokeh: "bokeh",
-    Distortion: "distortion",
-    DistortionGrid: "distortion-grid",
-    FieldCurves: "field-curves",
-    FilmPupils: "relative-illumination",
-    LateralColour: "lateral-colour",
-    LongitudinalAberration: "longitudinal",
-    Mtf: "mtf",
-    PointSpread: "psf",
-    RayFan: "ray-fan",
-    SeidelBars: "seidel",
-    SpotDiagram: "spot",
-    WavefrontMap: "wavefront",
-    ZernikeFit: "zernike",
-}
+KIND_OF: dict[type, str] = {}
+for _name, _kind in KINDS.items():
+    KIND_OF.setdefault(_kind.data, _name)  # the first plot of several
 
 
 def kind_of(data: Any) -> str:

@@ -10,7 +10,9 @@ import matplotlib
 import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.image import AxesImage
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from ..drawing.themes import theme_named
@@ -116,3 +118,10 @@ def colour_bar(axes: Axes, picture: AxesImage, label: str) -> None:
     bar = figure.colorbar(picture, ax=axes, shrink=0.8)
     bar.set_label(label)
     bar.outline.set_visible(False)
+
+
+def plain_decades(axis: Axis) -> None:
+    """Ticks at 1, 2 and 5 of each decade, as numbers without powers."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())

@@ -3,41 +3,49 @@
 from __future__ import annotations
 
 import json
+import warnings
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import Progress
 
 from .._core import Camera, InputError
+from ..progress import progress_bar
 from ..shot import Shot
 from ..variations import Variation, variations
+from . import lens_options
+from .completions import completion_of
 
 
 def compare(
-    shot: Annotated[Path, typer.Argument(help="A shot file, .toml.", metavar="SHOT")],
+    shot: Annotated[Path, typer.Argument(help="A shot file, .toml", metavar="SHOT")],
     vary: Annotated[
         str,
         typer.Option(metavar="NAME=VALUE,...", help="f_number=2,4,8, lens=NAME,... (or files), or zoom=POSITION,..."),
     ],
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The sheet, as .png, .svg or .pdf.")],
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="The sheet, as .png, .svg or .pdf")],
     size: Annotated[
-        int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture.", min=8, max=4096)
+        int, typer.Option(metavar="PIXELS", help="Pixels of the longer side of each picture", min=8, max=4096)
     ] = 480,
-    columns: Annotated[int, typer.Option(metavar="N", help="Pictures in a row.", min=1, max=100)] = 3,
+    columns: Annotated[int, typer.Option(metavar="N", help="Pictures in a row", min=1, max=100)] = 3,
     noise_codes: Annotated[
-        float, typer.Option(metavar="CODES", help="Noise of each picture, of 255 codes.", min=0.1, max=50)
+        float, typer.Option(metavar="CODES", help="Noise of each picture, of 255 codes", min=0.1, max=50)
     ] = 2.0,
     seconds: Annotated[
-        float, typer.Option(metavar="S", help="The most for each picture; one that ends sooner is told.", min=0.1)
+        float, typer.Option(metavar="S", help="The most for each picture; one that ends sooner is told", min=0.1)
     ] = 60.0,
-    denoise: Annotated[bool, typer.Option("--denoise", help="Remove the noise (realcam[denoise]).")] = False,
-    theme: Annotated[str, typer.Option(metavar="THEME", help="light or dark.")] = "light",
+    denoise: Annotated[bool, typer.Option("--denoise", help="Remove the noise (realcam[denoise])")] = False,
+    theme: lens_options.ThemeName = "light",
     device: Annotated[
-        str, typer.Option(metavar="DEVICE", help="auto (a GPU if there is one), cpu, cuda, or cuda:1.")
+        str,
+        typer.Option(
+            metavar="DEVICE",
+            help="auto (a GPU if there is one), cpu, cuda, or cuda:1",
+            autocompletion=completion_of("DEVICE"),
+        ),
     ] = "auto",
-    threads: Annotated[int, typer.Option(metavar="N", help="0: all.", min=0, max=4096)] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
     """Take a shot several times with the same framing, brightness and noise, and put the pictures on one sheet."""
     from ..drawing.themes import theme_named
@@ -54,19 +62,14 @@ def compare(
     if denoise:
         settings = settings.with_(layers=("albedo", "normal"))
     pictures = []
-    found = variations(described, name, values.split(","))
-    with Progress(transient=True) as bar:
-        for variation in found:
-            task = bar.add_task(variation.label, total=1.0)
-            taken = Shot(described.scene, sized(variation, size), settings, described.tone)
-
-            def show(done: float, task: object = task) -> None:
-                bar.update(task, completed=done)  # type: ignore[arg-type]
-
-            image = taken.render(device=device, threads=threads, progress=show)
-            if denoise:
-                image = image.denoised()
-            pictures.append((variation.label, image))
+    for variation in variations(described, name, values.split(",")):
+        taken = Shot(described.scene, sized(variation, size), settings, described.tone)
+        with warnings.catch_warnings(record=True) as caught, progress_bar(variation.label) as bar:
+            warnings.simplefilter("always")
+            image = taken.render(device=device, threads=threads, progress=bar)
+        for warning in caught:
+            warnings.warn(f"{variation.label}: {warning.message}", stacklevel=1)
+        pictures.append((variation.label, image.denoised() if denoise else image))
     save_sheet(pictures, output, columns, tone=described.tone, theme=theme)
     if as_json:
         rows = [
@@ -91,5 +94,5 @@ def compare(
 def sized(variation: Variation, longer_side_px: int) -> Camera:
     camera = variation.shot.camera
     scale = longer_side_px / max(camera.film.resolution)
-    resolution = tuple(max(1, round(scale * side)) for side in camera.film.resolution)
-    return camera.replace(film=camera.film.replace(resolution=resolution))
+    width, height = (max(1, round(scale * side)) for side in camera.film.resolution)
+    return camera.replace(film=camera.film.replace(resolution=(width, height)))

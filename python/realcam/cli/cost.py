@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
-from rich.progress import Progress
 
 from .._core import InputError
+from ..progress import progress_bar
 from ..shot import Shot
 from .completions import completion_of
 
@@ -49,8 +49,7 @@ def cost(
         if path.suffix.lower() not in (".svg", ".html"):
             raise InputError(f"{path}: unknown suffix; .svg or .html is wanted")
     described = Shot.load(shot, device=device)
-    with Progress(transient=True) as bar:
-        task = bar.add_task("measuring", total=1.0)
+    with progress_bar("measuring") as bar:
         result = accuracy_cost(
             described.scene,
             described.camera,
@@ -61,7 +60,7 @@ def cost(
             size=size,
             most_spp=most_spp,
             reference_spp=reference_spp,
-            progress=lambda done: bar.update(task, completed=done),
+            progress=bar,
         )
     typer.echo(result.json() if as_json else str(result), nl=as_json)
     for path in figure or []:

@@ -92,7 +92,8 @@ def plot(
     """Plot one thing about a lens, or write its numbers.
 
     KIND: ray-fan, spot, spot-through-focus, longitudinal, field-curves, distortion, distortion-grid, lateral-colour,
-    seidel, wavefront, zernike, psf, mtf, mtf-field, mtf-focus, relative-illumination, pupil, bokeh.
+    seidel, wavefront, zernike, psf, mtf, mtf-field, mtf-focus, relative-illumination, pupil, bokeh,
+    depth-of-field.
     """
     from .. import analysis  # brings matplotlib, which other commands need not load
     from ..analysis import kinds, numbers

@@ -38,7 +38,8 @@ def figure_of(
     if not 200 <= width_px <= 20000:
         raise InputError("the width of a drawing must be 200 to 20000 pixels")
     layout = _Layout(rows, style, min(max(width_px / 160, 5.0), 10.0), insets, align)
-    figure = ShownFigure(figsize=(layout.width, layout.height), facecolor=style.theme.page)
+    size = (layout.width, layout.height)
+    figure = ShownFigure(figsize=size, dpi=width_px / layout.width, facecolor=style.theme.page)
     top = layout.height
     for index, row in enumerate(rows):
         top -= layout.title_height(index)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from .._core import Lens
 from .ray_paths import RayBundle
 from .section import CrossSection
 from .themes import LIGHT, Theme, colours_of_wavelengths
@@ -35,3 +37,18 @@ def legend_of_wavelengths(section: CrossSection, theme: Theme) -> Sequence[tuple
         return ()
     colours = colours_of_wavelengths(wavelengths, theme)
     return [(f"{wavelength:.4g} nm", colour) for wavelength, colour in zip(wavelengths, colours, strict=True)]
+
+
+def data_of(lens: Lens, section: CrossSection) -> str:
+    """Focal length, f-number and focus, as the line below the title of a drawing has them."""
+    data = lens.first_order()
+    words = [f"f = {data.effective_focal_length_mm:.4g} mm"]
+    is_far = math.isinf(lens.focus_distance_m)
+    # An f-number is one of the lens at infinity, and a group that has moved makes another lens.
+    if is_far or lens.focus_group is None:
+        words.append(f"f/{data.f_number:.3g}")
+    if not is_far:
+        words.append(f"focused at {lens.focus_distance_m:.4g} m")
+    if len(section.wavelengths_nm) == 1:
+        words.append(f"{section.wavelengths_nm[0]:.4g} nm")
+    return ", ".join(words) + ("   * asphere" if any(face.is_asphere for face in section.faces) else "")

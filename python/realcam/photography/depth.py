@@ -64,20 +64,25 @@ def depth_of_field(lens: Lens, circle_of_confusion_mm: float | None = None) -> D
     circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm
     if not (circle > 0 and math.isfinite(circle)):
         raise InputError("the circle of confusion must be a positive length")
+    real, formula = sharp_ranges(lens, circle)
     thin = ThinLens.of(lens)
-    near, far = thin.sharp_range_mm(circle)
     return DepthOfField(
         circle_of_confusion_mm=circle,
         focus_distance_m=lens.focus_distance_m,
         blur_in_focus_mm=blur_diameter_mm(lens),
-        real=_real_range(lens, thin, circle),
-        formula=SharpRange(
-            (near + thin.film_from_principal_plane_mm) / 1000, (far + thin.film_from_principal_plane_mm) / 1000
-        ),
+        real=real,
+        formula=formula,
         real_hyperfocal_m=_real_hyperfocal(lens, thin, circle),
         formula_hyperfocal_m=(thin.hyperfocal_mm(circle) + thin.film_from_principal_plane_mm) / 1000,
         approximate_depth_m=thin.approximate_depth_mm(circle) / 1000,
     )
+
+
+def sharp_ranges(lens: Lens, circle_mm: float) -> tuple[SharpRange, SharpRange]:
+    """What blurs at most the circle of confusion: by real rays, and by the formula. Raises InputError."""
+    thin = ThinLens.of(lens)
+    near, far = (distance + thin.film_from_principal_plane_mm for distance in thin.sharp_range_mm(circle_mm))
+    return _real_range(lens, thin, circle_mm), SharpRange(near / 1000, far / 1000)
 
 
 def _round(lens: Lens) -> Lens:

@@ -1,0 +1,119 @@
+"""Depth of field over the distance in focus, at several apertures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from .._core import InputError, Lens
+from ..photography.depth import sharp_ranges
+from ..photography.formulas import ThinLens, at_infinity
+from ..short_text import ShortText
+from . import style
+from .fields import Doubles, numbers_of
+
+
+@dataclass(frozen=True, repr=False)
+class DepthOverFocus(ShortText):
+    """What is sharp when a lens is focused at one distance after the other. Distances are from the film, in metres.
+
+    focus_m: (D,); f_numbers: (N,), as engraved.
+    near_m, far_m: (N, D), by real rays. Both are nan where the lens cannot be focused, or blurs more than the circle of
+      confusion by its aberrations alone. far_m is inf where infinity is sharp.
+    formula_near_m, formula_far_m: (N, D), of a thin lens with the same focal length and f-number.
+    circle_of_confusion_mm: the largest blur that counts as sharp.
+    """
+
+    focus_m: Doubles
+    f_numbers: Doubles
+    near_m: Doubles
+    far_m: Doubles
+    formula_near_m: Doubles
+    formula_far_m: Doubles
+    circle_of_confusion_mm: float
+
+
+def depth_over_focus(
+    lens: Lens,
+    f_numbers: ArrayLike | None = None,
+    focus_m: ArrayLike | None = None,
+    *,
+    samples: int = 21,
+    circle_of_confusion_mm: float | None = None,
+) -> DepthOverFocus:
+    """Depth of field at each aperture and distance, on the axis, as realcam.depth_of_field finds it.
+
+    f_numbers: None is that of the lens as it stands, and two and four stops more. focus_m: None is `samples` distances
+    in even ratios, from the nearest focus, or twelve focal lengths, to the hyperfocal distance of the widest aperture.
+    circle_of_confusion_mm: None is the film's diagonal / 1500. Raises InputError, also where the lens can be focused at
+    none of the distances.
+    """
+    open_f_number = float(at_infinity(lens).first_order().f_number)
+    stops = open_f_number * np.array([1.0, 2.0, 4.0]) if f_numbers is None else numbers_of(f_numbers, "f_numbers")
+    lenses = [lens if stop == open_f_number else lens.stopped_down(float(stop)) for stop in stops]
+    circle = math.hypot(*lens.film_mm) / 1500 if circle_of_confusion_mm is None else circle_of_confusion_mm
+    if focus_m is None:
+        thin = ThinLens.of(lenses[int(np.argmin(stops))])
+        nearest = max(lens.nearest_focus_m, 12e-3 * thin.focal_length_mm)
+        places: Doubles = np.geomspace(nearest, max(1e-3 * thin.hyperfocal_mm(circle), 4 * nearest), samples)
+    else:
+        places = numbers_of(focus_m, "focus_m")
+    result = np.full((4, len(stops), len(places)), np.nan)
+    for n, stopped in enumerate(lenses):
+        for d, place in enumerate(places):
+            try:
+                focused = stopped.focused(float(place))
+            except InputError:  # nearer or farther than the lens can
+                continue
+            real, formula = sharp_ranges(focused, circle)
+            result[:, n, d] = real.near_m, real.far_m, formula.near_m, formula.far_m
+    if np.isnan(result[2:]).all():
+        raise InputError(f'lens "{lens.name}" can be focused at none of these distances')
+    return DepthOverFocus(places, stops, result[0], result[1], result[2], result[3], circle)
+
+
+def plot_depth_over_focus(data: DepthOverFocus, axes: Axes) -> None:
+    """Bands by real rays, and dashed lines by the formula; what is sharp to infinity ends at the top."""
+    finite = data.formula_far_m[np.isfinite(data.formula_far_m)]
+    top = 3 * float(max(data.focus_m.max(), np.median(finite) if len(finite) else 0.0))
+    fine = np.geomspace(data.focus_m.min(), data.focus_m.max(), 400)
+    # From the smallest aperture, whose band is the widest, to the largest.
+    for n in np.argsort(-data.f_numbers):
+        colour = style.field_colour(int(n))
+        near, far = (np.minimum(_between(data.focus_m, edge[n], fine), 2 * top) for edge in (data.near_m, data.far_m))
+        axes.fill_between(fine, near, far, color=colour, alpha=0.25, linewidth=0)
+        axes.plot(fine, near, color=colour, label=f"f/{data.f_numbers[n]:.3g}")
+        axes.plot(fine, far, color=colour)
+        for edge in (data.formula_near_m[n], data.formula_far_m[n]):
+            axes.plot(fine, np.minimum(_between(data.focus_m, edge, fine), 2 * top), "--", color=colour, linewidth=0.8)
+    axes.plot(data.focus_m, data.focus_m, color=style.GREY, linewidth=0.8, label="in focus")
+    axes.plot([], [], "--", color=style.GREY, linewidth=0.8, label="by formula")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(float(data.focus_m.min()), float(data.focus_m.max()))
+    axes.set_ylim(float(np.nanmin(data.formula_near_m)), top)
+    for axis in (axes.xaxis, axes.yaxis):
+        style.plain_decades(axis)
+    axes.set_xlabel("focused at / m")
+    axes.set_ylabel("sharp from and to / m")
+    axes.set_title(f"depth of field, blur up to {1000 * data.circle_of_confusion_mm:.3g} µm")
+    style.legend_beside(axes)
+
+
+def _between(focus_m: Doubles, edge_m: Doubles, fine_m: Doubles) -> Doubles:
+    """The edge of what is sharp between the distances that are known. Inverse distances are nearly straight over each
+    other, also where the edge goes beyond infinity."""
+    order = np.argsort(-focus_m)
+    places, inverse = 1 / focus_m[order], 1 / edge_m[order]
+    known = np.flatnonzero(inverse > 0)[:2]  # next to infinity
+    if len(known) == 2:
+        slope, start = np.polyfit(places[known], inverse[known], 1)
+        inverse = np.where(inverse == 0, np.minimum(start + slope * places, 0), inverse)
+    found = np.interp(1 / fine_m, places, inverse)
+    with np.errstate(divide="ignore"):
+        edges: Doubles = np.where(found <= 0, np.inf, 1 / found)
+    return edges
