@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from . import files
 from ._core import ImageFileError
@@ -35,13 +36,21 @@ def check_figure_target(path: str | os.PathLike[str]) -> Path:
     return target
 
 
-def figure_bytes(figure: Figure, suffix: str, dpi: float = 160, salt: str = "realcam") -> bytes:
-    """What a file of that suffix holds. salt: another one for each drawing of one page, where ids have to differ."""
+def figure_bytes(
+    figure: Figure, suffix: str, dpi: float = 160, salt: str = "realcam", crop: Bbox | None = None
+) -> bytes:
+    """What a file of that suffix holds. salt: another one for each drawing of one page, where ids have to differ.
+    crop: the part that is kept, in inches; None is all."""
     kind = suffix.lower()
     drawing = io.BytesIO()
     with matplotlib.rc_context({**_SETTINGS, "svg.hashsalt": salt}):
         figure.savefig(
-            drawing, format=kind[1:], dpi=dpi, facecolor=figure.get_facecolor(), metadata=_WITHOUT_DATE[kind]
+            drawing,
+            format=kind[1:],
+            dpi=dpi,
+            bbox_inches=crop,
+            facecolor=figure.get_facecolor(),
+            metadata=_WITHOUT_DATE[kind],
         )
     return drawing.getvalue()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,13 +14,15 @@ import pytest
 import realcam as rc
 import scipy.special
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from realcam.analysis import kinds, report
+from realcam.analysis import kinds
+from realcam.analysis.report_plots import ReportPlots
+from realcam.drawing.themes import LIGHT
 
 from .test_command_line import said
 
 analysis = rc.analysis
 LENS = rc.Lens.load("double-gauss-50mm").stopped_down(4)
-REPORT_PAGES = report.report_pages
+REPORT_PAGES = ReportPlots.pages
 SMALL = {"spot-through-focus": {"fields_deg": np.array([0.0, 10.0])}}
 
 
@@ -114,6 +117,16 @@ def test_curves_over_the_field_have_no_corners() -> None:
         curve, fine = (np.atleast_2d(getattr(data, name))[0] for data in (drawn, many))
         between = np.interp(many.fields_deg, drawn.fields_deg, curve)
         assert np.abs(between - fine).max() < 0.01 * np.ptp(fine), name
+
+
+def test_contrast_has_no_corners() -> None:
+    """Between its points the contrast over frequency bends the most at its zeros."""
+    lens = rc.Lens.load("tessar-50mm")
+    light = analysis.Bundles(lens)
+    drawn = analysis.mtf_over_frequency(lens, bundles=light)
+    many = analysis.mtf_over_frequency(lens, samples=4 * (len(drawn.frequencies_per_mm) - 1) + 1, bundles=light)
+    between = [np.interp(many.frequencies_per_mm, drawn.frequencies_per_mm, curve) for curve in drawn.tangential[0]]
+    assert np.abs(between - many.tangential[0]).max() < 0.01
 
 
 def test_the_object_is_in_the_plane_in_focus() -> None:
@@ -251,6 +264,17 @@ def test_zernike_orders_and_norm(order: str, table: list[tuple[int, int]]) -> No
         analysis.fit_zernike(places, value, order="ansi")
 
 
+def test_zernike_polynomials_have_their_names() -> None:
+    """As J. C. Wyant and K. Creath list them (Applied Optics and Optical Engineering XI, 1992, table III)."""
+    fit = analysis.zernike_fit(LENS, order="fringe", terms=25)
+    names = dict(zip(fit.indices.tolist(), fit.names, strict=True))
+    assert names[4] == "defocus"
+    assert (names[5], names[6]) == ("astigmatism 0°", "astigmatism 45°")
+    assert (names[7], names[9]) == ("coma x", "spherical")
+    assert (names[12], names[14], names[16]) == ("secondary astigmatism 0°", "secondary coma x", "secondary spherical")
+    assert (names[23], names[25]) == ("tertiary coma x", "tertiary spherical")
+
+
 def test_lateral_and_axial_colour_are_the_lens_s_own() -> None:
     data = analysis.lateral_colour(LENS, [20.0])
     for shift, nm in zip(data.shift_mm[:, 0], data.wavelengths_nm, strict=True):
@@ -285,20 +309,20 @@ def test_numbers_are_written(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["fisheye-6mm-220deg", "mirror-telephoto-500mm", "singlet-100mm"])
 def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = []
+    made: list[tuple[str, matplotlib.figure.Figure]] = []
 
-    def report_pages(*asked: object) -> tuple[list[matplotlib.figure.Figure], object]:
-        made.append(REPORT_PAGES(*asked))
-        return made[-1]
+    def pages_of(plots: ReportPlots) -> list[tuple[str, matplotlib.figure.Figure]]:
+        made.extend(REPORT_PAGES(plots))
+        return made
 
-    monkeypatch.setattr(report, "report_pages", report_pages)
+    monkeypatch.setattr(ReportPlots, "pages", pages_of)
     analysis.save_report(rc.Lens.load(name), tmp_path / "r.html", wavelengths_nm=[546.0], theme="dark")
     text = (tmp_path / "r.html").read_text(encoding="utf-8")
-    assert text.count("<svg") == 3
+    assert text.count("<svg") == 4
     assert "http://" not in text.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
         "http://creativecommons.org", ""
     ), "all that it shows is in it"
-    pages = made[0][0]
+    pages = [page for _, page in made]
     assert [len(page.axes) > 4 for page in pages] == [True] * 3
     if name != "fisheye-6mm-220deg":
         return
@@ -311,6 +335,38 @@ def test_reports_of_unlike_lenses(name: str, tmp_path: Path, monkeypatch: pytest
     assert len(reasons) == 1
     axes, text = reasons[0]
     assert text.get_window_extent(renderer).width < 1.3 * axes.bbox.width
+
+
+def test_a_report_begins_with_the_lens(tmp_path: Path) -> None:
+    lens = rc.Lens.load("tessar-50mm")
+    analysis.save_report(lens, tmp_path / "r.html")
+    text = (tmp_path / "r.html").read_text(encoding="utf-8")
+    before = text[: text.index("<h2>Rays")]
+    table = re.search(r'<table class="surfaces">.*?<tbody>(.*)</tbody>', before, re.DOTALL)
+    assert table
+    rows = [re.findall("<td[^>]*>(.*?)</td>", row) for row in table[1].strip().splitlines()]
+    assert len(rows) == len(lens.surfaces) + 1
+    assert [row[2] for row in rows[:3]] == ["19.655", "plane", "-35.52"]  # of the patent, halved
+    third = lens.seidel(analysis.field_angles_deg(lens, 1.0)[0])
+    sums = 1e3 * np.concatenate([third.seidel_mm.sum(axis=0), third.colour_mm.sum(axis=0)])
+    np.testing.assert_allclose([float(cell) for cell in rows[-1][6:]], sums, atol=0.0501)  # one digit
+    assert "angle of view" in before
+    assert lens.source in before
+
+
+def test_a_report_follows_the_browser_and_prints_light(tmp_path: Path) -> None:
+    analysis.save_report(LENS, tmp_path / "r.html")
+    analysis.save_report(LENS, tmp_path / "dark.html", theme="dark")
+    both, dark = ((tmp_path / name).read_text(encoding="utf-8") for name in ("r.html", "dark.html"))
+    assert "prefers-color-scheme: dark" in both
+    assert "prefers-color-scheme" not in dark
+    for page in (both, dark):
+        assert f"--page: {LIGHT.page}" in page[page.index("@media print") :]
+        drawn = page[page.index("<h1>") :]
+        for colour in (LIGHT.text, LIGHT.page, LIGHT.glass, LIGHT.grid):
+            assert colour not in drawn, "a dark page would show it as it is"
+    with pytest.raises(rc.InputError, match="theme"):
+        analysis.save_report(LENS, tmp_path / "r.html", theme="pink")
 
 
 @pytest.fixture

@@ -216,6 +216,7 @@ KINDS: dict[str, Kind] = {
         ZernikeFit,
         lambda a: zernike_fit(a.lens, a.one_field(0), **a.one),
         **_single(plot_zernike_fit),
+        height=1.1,
     ),
     "psf": Kind(
         "the light of a point on the film, with diffraction",

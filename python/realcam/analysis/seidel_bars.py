@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,6 +45,17 @@ def seidel_bars(
     sums = np.column_stack([table.seidel_mm, table.colour_mm])
     shares = np.array([1 / 8, 1 / 2, 1 / 2, 1 / 4, 1 / 2, 1 / 2, 1])
     return SeidelBars(field, NAMES, np.arange(len(sums)), sums, 1e6 / table.wavelength_nm * shares * sums)
+
+
+SYMBOLS = ("S_I", "S_II", "S_III", "S_IV", "S_V", "C_I", "C_II")
+
+
+def seidel_table(data: SeidelBars) -> list[tuple[str, ...]]:
+    """Seidel's sums in µm as text: a row of seven for each surface, and at the end their sums."""
+    rows = np.concatenate([data.sums_mm, data.sums_mm.sum(axis=0)[None]])
+    # As many digits for all, so that columns can be compared at a glance.
+    digits = int(np.clip(4 - math.floor(math.log10(max(1e3 * float(np.abs(rows).max()), 1e-3))), 0, 4))
+    return [tuple(f"{round(1e3 * value, digits) + 0.0:.{digits}f}" for value in row) for row in rows]
 
 
 def plot_seidel_bars(data: SeidelBars, axes: Axes) -> None:

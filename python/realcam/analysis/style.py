@@ -44,8 +44,8 @@ def field_colour(number: int) -> str:
 @contextmanager
 def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
     """Figures that are made within have the theme's page, text and lines. Raises InputError for an unknown theme."""
-    page, text = theme_named(theme).page, theme_named(theme).text
-    grid = "#d5d5d5" if theme == "light" else "#3c4148"
+    colours = theme_named(theme)
+    page, text = colours.page, colours.text
     settings: Any = {
         "figure.facecolor": page,
         "savefig.facecolor": page,
@@ -55,7 +55,7 @@ def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
         "text.color": text,
         "xtick.color": text,
         "ytick.color": text,
-        "grid.color": grid,
+        "grid.color": colours.grid,
         "grid.linewidth": 0.5,
         "axes.linewidth": 0.6,
         "lines.linewidth": 1.1,
@@ -81,6 +81,10 @@ def themed(theme: str = "light", font_size: float = 8.0) -> Iterator[None]:
 def text_colour() -> str:
     """The text colour of the theme in force, for lines without a colour of their own."""
     return str(matplotlib.rcParams["text.color"])
+
+
+def tick_size_pt() -> float:
+    return float(matplotlib.rcParams["ytick.labelsize"])
 
 
 def new_figure(width_in: float, height_in: float) -> matplotlib.figure.Figure:

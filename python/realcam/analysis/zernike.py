@@ -15,22 +15,26 @@ from . import style
 from .fields import Doubles
 
 ORDERS = ("noll", "fringe")
-NAMES = {
-    (0, 0): "piston",
-    (1, 1): "tilt x",
-    (1, -1): "tilt y",
-    (2, 0): "defocus",
-    (2, 2): "astigmatism 0°",
-    (2, -2): "astigmatism 45°",
-    (3, 1): "coma x",
-    (3, -1): "coma y",
-    (3, 3): "trefoil x",
-    (3, -3): "trefoil y",
-    (4, 0): "spherical",
-    (4, 2): "secondary astigmatism 0°",
-    (4, -2): "secondary astigmatism 45°",
-    (6, 0): "secondary spherical",
-}
+_FIRST = {(0, 0): "piston", (1, 1): "tilt x", (1, -1): "tilt y", (2, 0): "defocus"}
+_FAMILIES = ("spherical", "coma", "astigmatism", "trefoil", "tetrafoil", "pentafoil", "hexafoil", "heptafoil")
+_ORDINALS = ("", "secondary ", "tertiary ", "quaternary ")
+
+
+def name_of(n: int, m: int) -> str:
+    """What a polynomial is called; "n, m" where it has no name."""
+    if (n, m) in _FIRST:
+        return _FIRST[n, m]
+    # Those of the first and second power, tilt and defocus, come before coma and spherical aberration.
+    ordinal = (n - abs(m)) // 2 - max(2 - abs(m), 0)
+    if abs(m) >= len(_FAMILIES) or ordinal >= len(_ORDINALS):
+        return f"{n}, {m:+d}"
+    if m == 0:
+        way = ""
+    elif m % 2:
+        way = " x" if m > 0 else " y"
+    else:
+        way = " 0°" if m > 0 else f" {90 / -m:g}°"
+    return f"{_ORDINALS[ordinal]}{_FAMILIES[abs(m)]}{way}"
 
 
 def noll(j: int) -> tuple[int, int]:
@@ -121,7 +125,7 @@ def fit_zernike(
     residuals = np.full(len(values), np.nan)
     residuals[there] = values[there] - basis @ coefficients
     left = float(np.sqrt(np.sum(share[there] * residuals[there] ** 2) / np.sum(share[there])))
-    names = tuple(NAMES.get(pair, f"{pair[0]}, {pair[1]:+d}") for pair in nm)
+    names = tuple(name_of(*pair) for pair in nm)
     return ZernikeFit(order, np.arange(1, terms + 1), nm, names, coefficients, left, places, residuals)
 
 
@@ -142,12 +146,21 @@ def zernike_fit(
 
 
 def plot_zernike_fit(fit: ZernikeFit, axes: Axes) -> None:
-    """Bars of the coefficients, without piston."""
-    shown = slice(1, None)
-    axes.bar(fit.indices[shown], fit.coefficients_waves[shown], color=style.BLUE, linewidth=0)
-    style.zero_lines(axes, x=False)
-    axes.set_xlabel(f"{'Noll' if fit.order == 'noll' else 'fringe'} index")
-    axes.set_ylabel("coefficient / waves RMS")
-    field = "" if math.isnan(fit.field_deg) else f"{fit.field_deg:.3g}°, "
-    axes.set_title(f"{field}Zernike polynomials, {fit.residual_waves:.2g} waves left")
-    axes.grid(visible=False, axis="x")
+    """Bars of the coefficients beside the polynomials' names, without piston; the largest, as many as there is room
+    for."""
+    height_pt = 72 * axes.get_window_extent().height / axes.figure.dpi
+    room = max(int(height_pt / (1.15 * style.tick_size_pt())), 1)
+    size = np.abs(fit.coefficients_waves[1:])
+    chosen = np.sort(1 + np.argsort(-size)[:room])
+    places = np.arange(len(chosen))
+    axes.barh(places, fit.coefficients_waves[chosen], color=style.BLUE, linewidth=0)
+    style.zero_lines(axes, y=False)
+    axes.set_yticks(places, [f"{fit.names[k]}  {fit.indices[k]}" for k in chosen])
+    axes.set_ylim(len(chosen) - 0.4, -0.6)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylabel(f"{'Noll' if fit.order == 'noll' else 'fringe'} index")
+    axes.set_xlabel(f"coefficient / waves RMS; {fit.residual_waves:.2g} are left")
+    field = "" if math.isnan(fit.field_deg) else f" at {fit.field_deg:.3g}°"
+    largest = "" if len(chosen) == len(size) else f", the {len(chosen)} largest"
+    axes.set_title(f"Zernike polynomials{field}{largest}")
+    axes.grid(visible=False, axis="y")

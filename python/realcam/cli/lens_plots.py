@@ -150,9 +150,12 @@ def report(
     fields: Fields = None,
     wavelengths: Wavelengths = None,
     object_distance: ObjectDistance = None,
-    theme: lens_options.ThemeName = "light",
+    theme: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option("--theme", metavar="NAME", help="light or dark [light; of .html as the browser is set]"),
+    ] = None,
 ) -> None:
-    """Write all about a lens on three pages: rays, contrast and colour, waves and light."""
+    """Write all about a lens on four pages: the lens, rays, contrast and colour, waves and light."""
     from ..analysis import save_report
 
     lens = options.lens(name, focus, f_number, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness)

@@ -16,6 +16,7 @@ class Theme:
     page: str
     text: str
     faint: str  #: lines that should not catch the eye
+    grid: str
     glass: str
     edge: str
     positive: str  #: faces whose centre of curvature lies on the film's side
@@ -29,6 +30,7 @@ LIGHT = Theme(
     page="#ffffff",
     text="#1b1f24",
     faint="#8a929c",
+    grid="#d5d5d5",
     glass="#dbe8f3",
     edge="#33607f",
     positive="#1757c8",
@@ -41,6 +43,7 @@ DARK = Theme(
     page="#14181d",
     text="#e6e9ec",
     faint="#7f8994",
+    grid="#3c4148",
     glass="#223a4e",
     edge="#8db9da",
     positive="#6ea3ff",

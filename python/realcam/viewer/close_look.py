@@ -23,7 +23,6 @@ PLOTS = {
     "relative-illumination": ("Relative illumination", "How dark the picture becomes towards its corner."),
     "pupil": ("Pupil shapes", "The outline of the light as the film sees it: cat's eyes towards the corner."),
 }
-_GRID = "#d5d5d5"  # of the light theme's plots
 _OF_ONE_FIELD = ("spot", "ray-fan", "mtf")
 
 
@@ -48,4 +47,4 @@ def plot_svg(look: Look) -> str:
     figure.savefig(content, format="svg", facecolor="none", transparent=True)
     svg = content.getvalue()
     # The page may be light or dark, and change while the plot is shown.
-    return svg[svg.index("<svg") :].replace(LIGHT.text, "currentColor").replace(_GRID, "var(--rc-grid)")
+    return svg[svg.index("<svg") :].replace(LIGHT.text, "currentColor").replace(LIGHT.grid, "var(--rc-grid)")

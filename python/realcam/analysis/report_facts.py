@@ -1,0 +1,62 @@
+"""What a report says in words and tables: the lens as it stands, its prescription, and Seidel's sums."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import lens_tables
+from .._core import InputError
+from .fields import Bundles, Doubles
+from .seidel_bars import SYMBOLS, seidel_bars, seidel_table
+
+WIDEST_DEG = 60.0  # of the third order
+
+
+@dataclass(frozen=True)
+class ReportFacts:
+    """columns: of the table; the first are the prescription's. rows: of each surface, and of the sums."""
+
+    title: str
+    source: str
+    figures: list[tuple[str, str]]
+    columns: tuple[str, ...]
+    prescription_columns: int
+    rows: list[tuple[str, ...]]
+    note: str
+
+
+def facts_of(source: Bundles, fields: Doubles, colours: Doubles) -> ReportFacts:
+    lens = source.lens
+    columns: tuple[str, ...] = lens_tables.PRESCRIPTION
+    rows = list(lens_tables.prescription(lens))
+    count = len(columns)
+    note = "The last thickness is the distance to the film. A positive radius has its centre on the film's side."
+    try:
+        third = seidel_bars(
+            lens,
+            min(float(np.abs(fields).max()), WIDEST_DEG),
+            object_distance_m=source.object_distance_m,
+            bundles=source,
+        )
+        columns = (*columns, *SYMBOLS)
+        sums = seidel_table(third)
+        rows = [row + by_surface for row, by_surface in zip(rows, sums, strict=False)]
+        rows.append(("", "sum", *[""] * (count - 2), *sums[-1]))
+        note += f" Seidel's sums, and those of colour, are in µm for a field of {third.field_deg:.3g}°."
+    except InputError as error:
+        note += f" There are no Seidel sums: {error}."
+    figures = [
+        *lens_tables.first_order(lens),
+        ("fields", ", ".join(f"{field:.3g}°" for field in fields)),
+        ("wavelengths", ", ".join(f"{nm:.5g}" for nm in colours) + " nm"),
+    ]
+    return ReportFacts(
+        printable(lens.title or lens.name or "lens"), printable(lens.source), figures, columns, count, rows, note
+    )
+
+
+def printable(text: str) -> str:
+    """Titles are text from files: characters that do not print are left out."""
+    return "".join(c for c in text if c.isprintable())

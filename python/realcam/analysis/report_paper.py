@@ -1,0 +1,115 @@
+"""A report as .pdf: the lens on the first page, and plots on the others."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..draw import draw_cross_section
+from .fields import Bundles, Doubles
+from .report_facts import ReportFacts
+from .report_plots import PAGE_IN, ReportPlots
+from .style import GREY
+
+LEFT, RIGHT = 0.04, 0.96
+# Inches of the columns, by what stands in them; those of Seidel's sums share the rest.
+PRESCRIPTION_IN = (0.25, 0.85, 0.72, 0.74, 1.05, 0.62)
+
+
+def pdf_of(facts: ReportFacts, plots: ReportPlots, theme: str) -> bytes:
+    """In the theme in force, which has this name."""
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    content = io.BytesIO()
+    with PdfPages(content, metadata={"CreationDate": None}) as pdf:
+        pdf.savefig(lens_page(facts, plots.source, plots.fields, theme), dpi=200)
+        for subject, page in plots.pages():
+            _head(page, facts.title, subject)
+            pdf.savefig(page, dpi=200)
+    return content.getvalue()
+
+
+def lens_page(facts: ReportFacts, source: Bundles, fields: Doubles, theme: str) -> Figure:
+    figure = Figure(figsize=PAGE_IN)
+    _head(figure, facts.title, "The lens")
+    below = 0.944
+    for line in textwrap.wrap(facts.source, 150)[:2]:
+        figure.text(LEFT, below, line, fontsize=6, va="top", color=GREY, parse_math=False)
+        below -= 0.0095
+    axes = figure.add_axes((0.085, 0.665, 0.875, below - 0.015 - 0.665))
+    draw_cross_section(
+        source.lens, axes, fields_deg=fields.tolist(), object_distance_m=source.object_distance_m, theme=theme
+    )
+    axes.set_title("")
+    axes.grid(visible=False)
+    below = _draw_figures(figure, facts.figures, 0.615)
+    _draw_table(figure, facts, below - 0.02)
+    return figure
+
+
+def _head(figure: Figure, title: str, subject: str) -> None:
+    figure.text(LEFT, 0.968, title, fontsize=13, weight="bold", parse_math=False)
+    figure.text(LEFT, 0.951, subject, fontsize=10)
+
+
+def _draw_figures(figure: Figure, figures: list[tuple[str, str]], top: float) -> float:
+    """In two columns. Returns where they end."""
+    half, line = -(-len(figures) // 2), 0.0125
+    for index, (name, text) in enumerate(figures):
+        column, row = divmod(index, half)
+        left, y = LEFT + 0.46 * column, top - line * row
+        figure.text(left, y, name, va="top", color=GREY)
+        figure.text(left + 0.13, y, text, va="top", parse_math=False)
+    return top - line * half
+
+
+def _draw_table(figure: Figure, facts: ReportFacts, top: float) -> None:
+    """Smaller where there are many surfaces, so that all are on the page."""
+    bottom = 0.04
+    line = min(0.0145, (top - bottom) / (len(facts.rows) + 2.5))
+    size = min(6.5, 72 * PAGE_IN[1] * line / 1.45)
+    edges = _edges(facts)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0, 1)
+    y = top
+    _draw_row(axes, edges, y, [_as_math(name) for name in facts.columns], size, facts.prescription_columns)
+    axes.plot((LEFT, RIGHT), (y - 0.75 * line, y - 0.75 * line), color=GREY, linewidth=0.6)
+    for row in facts.rows:
+        y -= line
+        if row[1] == "sum":
+            axes.plot((LEFT, RIGHT), (y + 0.3 * line, y + 0.3 * line), color=GREY, linewidth=0.6)
+        _draw_row(axes, edges, y - 0.2 * line, row, size, facts.prescription_columns)
+    note = textwrap.fill(facts.note, 190)
+    figure.text(LEFT, y - 1.6 * line, note, fontsize=6, va="top", color=GREY, parse_math=False)
+
+
+def _edges(facts: ReportFacts) -> list[float]:
+    """The columns' ends on the right, as shares of the page's width."""
+    widths = list(PRESCRIPTION_IN)
+    sums = len(facts.columns) - facts.prescription_columns
+    if sums:
+        widths += [((RIGHT - LEFT) * PAGE_IN[0] - sum(widths)) / sums] * sums
+    edges = [LEFT + widths[0] / PAGE_IN[0]]
+    for width in widths[1:]:
+        edges.append(edges[-1] + width / PAGE_IN[0])
+    return edges
+
+
+def _draw_row(
+    axes: Axes, edges: list[float], y: float, cells: list[str] | tuple[str, ...], size: float, prescription: int
+) -> None:
+    for k, (cell, edge) in enumerate(zip(cells, edges, strict=True)):
+        is_text = prescription > k and k in (1, 4)  # kind and glass
+        x = edges[k - 1] + 0.012 if is_text else edge
+        axes.text(x, y, cell, fontsize=size, va="center", ha="left" if is_text else "right", parse_math="$" in cell)
+
+
+def _as_math(name: str) -> str:
+    """S_I as it is printed."""
+    letter, underscore, index = name.partition("_")
+    return f"${letter}_\\mathrm{{{index}}}$" if underscore and len(letter) == 1 else name.replace("n_d", "$n_d$")

@@ -1,0 +1,191 @@
+"""The plots of a report: rays, contrast and colour, waves and light."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import matplotlib
+import matplotlib.figure
+import matplotlib.ticker
+import numpy as np
+from matplotlib.axes import Axes
+
+from .._core import InputError
+from .bokeh import bokeh, plot_bokeh
+from .distortion import distortion, distortion_grid, plot_distortion, plot_distortion_grid
+from .field_curves import field_curves, plot_field_curves
+from .fields import Bundles, Doubles, field_angles_deg
+from .film_pupil import film_pupils, plot_pupil_shapes, plot_relative_illumination
+from .lateral_colour import lateral_colour, plot_lateral_colour
+from .mtf import (
+    Mtf,
+    mtf_over_field,
+    mtf_over_frequency,
+    mtf_through_focus,
+    plot_mtf_over_field,
+    plot_mtf_over_frequency,
+    plot_mtf_through_focus,
+)
+from .point_spread import plot_point_spread, point_spread
+from .pupil_function import UnevenWavefrontError
+from .ray_fan import plot_ray_fan, ray_fan
+from .seidel_bars import plot_seidel_bars, seidel_bars
+from .spherical_aberration import longitudinal_aberration, plot_longitudinal_aberration
+from .spot_diagram import plot_spot_diagram, spot_diagram
+from .wavefront_map import plot_wavefront_map, wavefront_map
+from .zernike import plot_zernike_fit, zernike_fit
+
+PAGE_IN = (8.27, 11.69)
+PLOTS_TOP = 0.94
+SIDE = {"left": 0.085, "right": 0.975}
+
+
+class ReportPlots:
+    """The plots, on a figure for each subject, in the theme in force."""
+
+    def __init__(self, source: Bundles, fields: Doubles, colours: Doubles) -> None:
+        self.lens, self.source, self.fields, self.colours = source.lens, source, fields, colours
+        self.mtf_method = "diffraction"
+        self.common: dict[str, Any] = {"object_distance_m": source.object_distance_m, "bundles": source}
+        self.three: dict[str, Any] = {**self.common, "fields_deg": fields, "wavelengths_nm": colours}
+        # One set of fields for all curves over the field.
+        top = float(np.abs(fields).max())
+        self.scan: Doubles = field_angles_deg(self.lens, np.linspace(0, 1, 51), source)
+        if not math.isclose(self.scan[-1], top, rel_tol=1e-3):
+            self.scan = np.linspace(0, top, 51)
+        self.over_field: dict[str, Any] = {**self.common, "fields_deg": self.scan}
+        # These need chief rays alone, which cost little.
+        fine = np.interp(np.linspace(0, 50, 101), np.arange(51), self.scan)
+        self.chief_rays: dict[str, Any] = {**self.common, "fields_deg": fine}
+
+    def pages(self) -> list[tuple[str, matplotlib.figure.Figure]]:
+        """Subjects and their figures, of PAGE_IN; what is above PLOTS_TOP is left to headings."""
+        # Titles keep their place: matplotlib would look for it around all ticks, which takes a sixth of the time.
+        with matplotlib.rc_context({"axes.titley": 1.02}):
+            pages = [
+                ("Rays", self.rays()),
+                ("Contrast and colour", self.contrast()),
+                ("Waves and light", self.light()),
+            ]
+        for axes in (axes for _, page in pages for axes in page.axes):
+            for axis in (axes.xaxis, axes.yaxis):
+                locator = axis.get_major_locator()
+                if isinstance(locator, matplotlib.ticker.MaxNLocator):
+                    locator.set_params(nbins=5)
+        return pages
+
+    def rays(self) -> matplotlib.figure.Figure:
+        figure = matplotlib.figure.Figure(figsize=PAGE_IN)
+        grid = figure.add_gridspec(4, 3, top=0.9, bottom=0.05, hspace=0.42, wspace=0.34, **SIDE)
+        fans = ray_fan(self.lens, samples=45, **self.three)
+        spots = spot_diagram(self.lens, rings=7, **self.three)
+        for f in range(3):
+            plot_ray_fan(fans, figure.add_subplot(grid[0, f]), f)
+            plot_ray_fan(fans, figure.add_subplot(grid[1, f]), f, sagittal=True)
+            plot_spot_diagram(spots, figure.add_subplot(grid[2, f]), f)
+        handles, labels = figure.axes[2].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="upper right", ncols=4, bbox_to_anchor=(0.975, 0.938), markerscale=3)
+        self._try(figure, grid[3, 0], self._longitudinal, plot_longitudinal_aberration)
+        self._try(figure, grid[3, 1], lambda: field_curves(self.lens, **self.chief_rays), plot_field_curves)
+        self._try(figure, grid[3, 2], lambda: distortion(self.lens, **self.chief_rays), plot_distortion)
+        return figure
+
+    def contrast(self) -> matplotlib.figure.Figure:
+        figure = matplotlib.figure.Figure(figsize=PAGE_IN)
+        grid = figure.add_gridspec(3, 2, top=0.91, bottom=0.095, hspace=0.3, wspace=0.5, left=0.085, right=0.86)
+        over = {**self.over_field, "wavelengths_nm": self.colours}
+        for place, compute, plot in (
+            (grid[0, 0], lambda: self._mtf(mtf_over_frequency, **self.three), plot_mtf_over_frequency),
+            (grid[0, 1], lambda: self._mtf(mtf_through_focus, **self.three), plot_mtf_through_focus),
+            (grid[1, 0], lambda: self._mtf(mtf_over_field, **over), plot_mtf_over_field),
+            (grid[1, 1], lambda: lateral_colour(self.lens, **{**over, **self.chief_rays}), plot_lateral_colour),
+            (grid[2, :], self._seidel, plot_seidel_bars),
+        ):
+            self._try(figure, place, compute, plot)
+        return figure
+
+    def light(self) -> matplotlib.figure.Figure:
+        figure = matplotlib.figure.Figure(figsize=PAGE_IN)
+        grid = figure.add_gridspec(4, 3, top=0.92, bottom=0.05, hspace=0.4, wspace=0.5, left=0.085, right=0.95)
+        distance = self.source.object_distance_m
+        for f, field in enumerate(self.fields):
+            self._try(
+                figure,
+                grid[0, f],
+                partial(wavefront_map, self.lens, float(field), samples=64, object_distance_m=distance),
+                plot_wavefront_map,
+            )
+            self._try(figure, grid[1, f], partial(self._psf, float(field)), plot_point_spread)
+        self._try(
+            figure, grid[2, :2], lambda: film_pupils(self.lens, self.scan[::10], **self.common), plot_pupil_shapes
+        )
+        self._try(
+            figure,
+            grid[2, 2],
+            lambda: film_pupils(self.lens, self.scan[::2], **self.common),
+            plot_relative_illumination,
+        )
+        self._try(
+            figure,
+            grid[3, 0].subgridspec(1, 2, width_ratios=(0.45, 0.55), wspace=0)[1],  # beside names
+            lambda: zernike_fit(self.lens, float(self.fields[1]), samples=24, object_distance_m=distance),
+            plot_zernike_fit,
+        )
+        self._try(figure, grid[3, 1], lambda: distortion_grid(self.lens, **self.common), plot_distortion_grid)
+        self._try(
+            figure,
+            grid[3, 2],
+            lambda: bokeh(self.lens, self.fields[1:2], self.colours, rays=100000, size=72),
+            plot_bokeh,
+        )
+        return figure
+
+    @staticmethod
+    def _try(
+        figure: matplotlib.figure.Figure, place: Any, compute: Callable[[], Any], plot: Callable[[Any, Axes], None]
+    ) -> None:
+        """What this lens cannot have has the reason in its place, and the rest is shown."""
+        axes = figure.add_subplot(place)
+        try:
+            plot(compute(), axes)
+        except InputError as error:
+            axes.set_axis_off()
+            # In lines of the place's width: matplotlib's own wrap is by the page. A letter is about half its size wide.
+            width_in = axes.get_position().width * figure.get_size_inches()[0]
+            letters = max(int(72 * width_in / (0.55 * matplotlib.rcParams["font.size"])), 12)
+            reason = textwrap.fill(str(error), letters)
+            axes.text(0.5, 0.5, reason, ha="center", va="center", parse_math=False)
+
+    def _longitudinal(self) -> Any:
+        return longitudinal_aberration(
+            self.lens, self.colours, samples=25, object_distance_m=self.source.object_distance_m
+        )
+
+    def _seidel(self) -> Any:
+        return seidel_bars(self.lens, min(float(np.abs(self.fields).max()), 60.0), **self.common)
+
+    def _mtf(self, compute: Callable[..., Mtf], **given: Any) -> Mtf:
+        """MTF, by rays alone on all of the page where the wavefront of a field is too uneven for a transfer
+        function."""
+        try:
+            return compute(self.lens, method=self.mtf_method, **given)
+        except UnevenWavefrontError:
+            self.mtf_method = "geometric"
+            return compute(self.lens, method=self.mtf_method, **given)
+
+    def _psf(self, field: float) -> Any:
+        """The point spread function, by rays alone where waves would take seconds because the spot is wide."""
+        bundle = self.source.at(field, self.lens.wavelength_nm)
+        spot = float(np.ptp(bundle.points_mm, axis=0).max())
+        detail = 1e-6 * bundle.wavelength_nm / float(np.ptp(bundle.edge_slopes.reshape(-1, 2), axis=0).max())
+        distance = self.source.object_distance_m
+        if spot > 60 * detail:
+            pitch = 1e3 * 1.3 * spot / 64
+            return point_spread(
+                self.lens, field, method="geometric", size=64, pitch_um=pitch, object_distance_m=distance
+            )
+        return point_spread(self.lens, field, size=64, object_distance_m=distance)

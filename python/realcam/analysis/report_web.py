@@ -1,0 +1,128 @@
+"""A report as one page of HTML, which follows the reader's choice of a light or a dark page and prints on paper."""
+
+from __future__ import annotations
+
+import html
+import re
+from dataclasses import fields
+
+import matplotlib
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+from ..drawing.themes import LIGHT, THEMES, Theme
+from ..figure_files import figure_bytes
+from .report_facts import ReportFacts
+from .report_plots import PAGE_IN, PLOTS_TOP, ReportPlots
+
+STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 66rem; margin: 2rem auto; padding: 0 1rem;
+  background: var(--page); color: var(--text); }
+h1 { margin-bottom: 0.2rem; } h1 + p { margin-top: 0; color: var(--faint); }
+h2 { margin: 2.5rem 0 0.5rem; }
+svg { width: 100%; height: auto; }
+table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
+th, td { padding: 0.15rem 0.5rem; text-align: right; white-space: nowrap; }
+th { font-weight: 600; } thead th { border-bottom: 1px solid var(--faint); }
+tbody tr:hover { background: var(--grid); }
+.figures th, .figures td, .surfaces .text { text-align: left; }
+.figures td { white-space: normal; }
+.figures th { font-weight: normal; color: var(--faint); padding-left: 0; }
+.surfaces .sum td { border-top: 1px solid var(--faint); }
+.wide { overflow-x: auto; }
+.note { color: var(--faint); font-size: 0.85rem; }
+@page { size: A4; margin: 12mm; }
+@media print {
+  body { font-size: 9pt; max-width: none; margin: 0; padding: 0; }
+  section + section { break-before: page; }
+  h2 { margin-top: 1rem; break-after: avoid; }
+  section + section h2 { margin-top: 0; }
+  svg, tr { break-inside: avoid; } thead { display: table-header-group; }
+  section > svg { max-height: 255mm; }
+  table, .note { font-size: 7pt; } th, td { padding: 0.05rem 0.3rem; }
+  .wide { overflow: visible; }
+}
+"""
+
+
+def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
+    """theme: None follows the browser's setting. Figures are those of the light theme, in force here, whose colours
+    become the page's variables."""
+    with matplotlib.rc_context({"axes.grid": False}):
+        drawing = _svg(plots.source.lens.draw(
+        fields_deg=plots.fields.tolist(), object_distance_m=plots.source.object_distance_m
+    ), "lens")  # fmt: skip
+    sections = "\n".join(
+        f"<section>\n<h2>{html.escape(subject)}</h2>\n"
+        f"{_svg(page, f'{number}', Bbox.from_bounds(0, 0, PAGE_IN[0], PLOTS_TOP * PAGE_IN[1]))}\n</section>"
+        for number, (subject, page) in enumerate(plots.pages())
+    )
+    title, source = html.escape(facts.title), html.escape(facts.source)
+    figures = "\n".join(
+        f"<tr><th scope='row'>{html.escape(name)}</th><td>{html.escape(text)}</td></tr>" for name, text in facts.figures
+    )
+    return f"""<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>{title}</title>
+<style>
+{_variables(theme)}{STYLE}</style>
+<h1>{title}</h1>
+<p>{source}</p>
+<section>
+{drawing}
+<table class="figures">
+{figures}
+</table>
+<h2>Prescription{" and Seidel's sums" if len(facts.columns) > facts.prescription_columns else ""}</h2>
+<div class="wide">
+{_surfaces(facts)}
+</div>
+<p class="note">{html.escape(facts.note)}</p>
+</section>
+{sections}
+</html>
+""".encode()
+
+
+def _surfaces(facts: ReportFacts) -> str:
+    def cells(row: tuple[str, ...], opened: str, closed: str) -> str:
+        made = []
+        for k, cell in enumerate(row):
+            is_text = k < facts.prescription_columns and k in (1, 4)  # kind and glass
+            with_index = re.sub("_([A-Zd]+)", r"<sub>\1</sub>", html.escape(cell))
+            made.append(f"<{opened}{' class=text' if is_text else ''}>{with_index}</{closed}>")
+        return "".join(made)
+
+    rows = "\n".join(
+        f"<tr{' class=sum' if row[1] == 'sum' else ''}>{cells(row, 'td', 'td')}</tr>" for row in facts.rows
+    )
+    head = f"<thead><tr>{cells(facts.columns, 'th scope=col', 'th')}</tr></thead>"
+    return f'<table class="surfaces">\n{head}\n<tbody>\n{rows}\n</tbody>\n</table>'
+
+
+def _svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
+    text = figure_bytes(figure, ".svg", dpi=130, salt=f"realcam-{salt}", crop=crop).decode()
+    text = text[text.index("<svg") :]
+    for name, colour in _colours(LIGHT).items():
+        text = text.replace(colour, f"var(--{name})")
+    return text
+
+
+def _colours(theme: Theme) -> dict[str, str]:
+    """Colours of a theme by the names of the page's variables."""
+    single = {field.name: getattr(theme, field.name) for field in fields(theme) if field.name != "rays"}
+    return {**single, **{f"ray-{number}": colour for number, colour in enumerate(theme.rays)}}
+
+
+def _variables(theme: str | None) -> str:
+    def declared(name: str) -> str:
+        words = "; ".join(f"--{variable}: {colour}" for variable, colour in _colours(THEMES[name]).items())
+        return f":root {{ color-scheme: {name}; {words} }}"
+
+    chosen = declared(theme or "light") + "\n"
+    if theme is None:
+        chosen += f"@media (prefers-color-scheme: dark) {{ {declared('dark')} }}\n"
+    # Paper is light.
+    return f"{chosen}@media print {{ {declared('light')} }}"
