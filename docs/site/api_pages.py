@@ -58,4 +58,8 @@ def write(folder: Path) -> None:
             for name, title in MODULES.items()
         ),
     ]
-    write_text(folder / "index.rst", "\n".join(parts))
+    text = "\n".join(parts)
+    for page in folder.glob("*.rst"):  # of names that are no longer there
+        if page.stem != "index" and f"   {page.stem}\n" not in text:
+            page.unlink()
+    write_text(folder / "index.rst", text)

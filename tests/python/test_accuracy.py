@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import realcam as rc
 from realcam.accuracy import AccuracyCost, Measured
+from realcam.accuracy.figure import _apart
 from realcam.accuracy.image_space_blur import diffused, gathered
 
 from . import scenes
@@ -113,6 +114,8 @@ def test_the_figure_is_one_file(cost: AccuracyCost, tmp_path: Path) -> None:
     text = "".join(drawing.itertext())
     assert "seconds of samples" in text
     assert "polynomial lens" in text
+    for rung in (*cost.rungs, *cost.samplings):
+        assert (f"{rung.name}: recommended" in text) == rung.is_recommended
     cost.figure(tmp_path / "a.html")
     page = (tmp_path / "a.html").read_text()
     assert "<svg" in page
@@ -122,6 +125,15 @@ def test_the_figure_is_one_file(cost: AccuracyCost, tmp_path: Path) -> None:
     ).replace("https://matplotlib.org", "")
     with pytest.raises(rc.ImageFileError, match=r"unknown suffix; \.svg or \.html is wanted"):
         cost.figure(tmp_path / "a.png")
+
+
+@pytest.mark.parametrize("places", [[0.1, 0.11, 0.12, 0.9], [0.5] * 6, [0.9, 0.99, 1.0], [0.2, 0.8]])
+def test_names_of_lines_keep_apart(places: list[float]) -> None:
+    moved = _apart(np.array(places), 0.05)
+    assert np.diff(moved).min() >= 0.05 - 1e-12
+    assert moved[-1] <= 1
+    # Alone, a name stays where its line ends.
+    assert all(m == p for m, p in zip(moved, places, strict=True) if sum(abs(p - q) < 0.3 for q in places) == 1)
 
 
 def test_an_interrupted_ladder_keeps_what_is_done() -> None:

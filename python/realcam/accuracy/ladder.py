@@ -186,4 +186,6 @@ def _climb(
         bias_codes=math.sqrt(max(0.0, bias2)),
         noise_codes=math.sqrt(noise2),
         difference=np.abs(mean - reference.codes).mean(axis=2),
+        group=level.group,
+        is_recommended=level.is_recommended,
     )

@@ -26,7 +26,7 @@ class Rung:
 
     bias_codes: what of the error is no noise, root mean square; noise_codes: of a picture of the most samples.
     lens_share, scene_share, other_share: of the time. difference: (H, W) of the best picture to the reference, mean of
-    the channels' absolute differences, codes.
+    the channels' absolute differences, codes. group, is_recommended: as those of Level.
     """
 
     name: str
@@ -40,6 +40,8 @@ class Rung:
     bias_codes: float
     noise_codes: float
     difference: np.ndarray = field(repr=False, compare=False)
+    group: str
+    is_recommended: bool
 
     def seconds_to(self, rmse: float) -> float:
         """Seconds until the error is so small, between the pictures on a logarithmic scale; inf: never."""

@@ -23,6 +23,7 @@ class Level:
 
     model, effects, pupil_sampling, light_tracing: of render; blur: what is done to the picture afterwards;
     is_stratified: else each sample has random numbers of its own, whatever the others of its pixel have.
+    group: of levels that are alike, by which figures colour them; is_recommended: what is taken where nobody chooses.
     """
 
     name: str
@@ -32,6 +33,8 @@ class Level:
     light_tracing: str = "weighted"
     is_stratified: bool = True
     blur: Blur | None = field(default=None, compare=False)
+    group: str = "lens, surface by surface"
+    is_recommended: bool = False
 
     def image(self, scene: Scene, camera: Camera, spp: int, seed: int, **settings: object) -> tuple[Image, float]:
         """The picture, and the seconds of its samples and of what is done to them."""
@@ -87,32 +90,34 @@ def known_effects(camera: Camera) -> tuple[str, ...]:
 
 def ways_to_sample() -> list[Level]:
     """The same picture, every surface of the lens, by other samples."""
+    random, others, outline = "random samples", "other pupils", "fitted outline"
     by_pixels = [
-        Level("rear element, random", pupil_sampling="rear_element", is_stratified=False),
-        Level("rear element", pupil_sampling="rear_element"),
-        Level("exit pupil", pupil_sampling="exit_pupil"),
-        Level("pixel pupil", pupil_sampling="pixel"),
-        Level("fitted outline, random", is_stratified=False),
-        Level("fitted outline"),
+        Level("rear element, random", pupil_sampling="rear_element", is_stratified=False, group=random),
+        Level("rear element", pupil_sampling="rear_element", group=others),
+        Level("exit pupil", pupil_sampling="exit_pupil", group=others),
+        Level("pixel pupil", pupil_sampling="pixel", group=others),
+        Level("fitted outline, random", is_stratified=False, group=random),
+        Level("fitted outline", group=outline),
     ]
-    return [*(replace(level, light_tracing="off") for level in by_pixels), Level("fitted outline, lights traced")]
+    traced = Level("fitted outline, lights traced", group=outline, is_recommended=True)
+    return [*(replace(level, light_tracing="off") for level in by_pixels), traced]
 
 
 def levels_of(scene: Scene, camera: Camera, effects: tuple[str, ...], **settings: object) -> list[Level]:
     """The levels from the crudest to the best; the last has `effects`, which are those of the reference."""
     levels = [
-        Level("pinhole, gather filter", "pinhole", blur=_gather),
-        Level("pinhole, heat diffusion", "pinhole", blur=_diffuse),
-        Level("pinhole", "pinhole"),
-        Level("thin lens", "thin"),
-        Level("thin lens, distortion and vignetting", "mapped"),
-        Level("thick lens", "thick"),
+        Level("pinhole, gather filter", "pinhole", blur=_gather, group="blur of a sharp picture"),
+        Level("pinhole, heat diffusion", "pinhole", blur=_diffuse, group="blur of a sharp picture"),
+        Level("pinhole", "pinhole", group="ideal lens"),
+        Level("thin lens", "thin", group="ideal lens"),
+        Level("thin lens, distortion and vignetting", "mapped", group="ideal lens"),
+        Level("thick lens", "thick", group="ideal lens"),
         Level("polynomial lens", "polynomial"),
         Level("full lens"),
         Level("full lens, double precision", "full_double"),
     ]
     for count in range(1, len(effects) + 1):
-        levels.append(Level(f"+ {effects[count - 1]}", effects=effects[:count]))
+        levels.append(Level(f"+ {effects[count - 1]}", effects=effects[:count], group="with effects"))
     decided = plan(scene, camera, **settings)  # type: ignore[arg-type]
-    levels.append(Level("planned", decided.model, tuple(decided.effects)))
+    levels.append(Level("planned", decided.model, tuple(decided.effects), group="with effects", is_recommended=True))
     return levels

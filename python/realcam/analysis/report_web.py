@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import html
 import re
-from dataclasses import fields
 
 import matplotlib
-from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from ..drawing.themes import LIGHT, THEMES, Theme
-from ..figure_files import figure_bytes
+from ..drawing.web_page import colour_variables, inline_svg
 from .report_facts import ReportFacts
 from .report_plots import PAGE_IN, PLOTS_TOP, ReportPlots
 
@@ -49,12 +46,12 @@ def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
     """theme: None follows the browser's setting. Figures are those of the light theme, in force here, whose colours
     become the page's variables."""
     with matplotlib.rc_context({"axes.grid": False}):
-        drawing = _svg(plots.source.lens.draw(
+        drawing = inline_svg(plots.source.lens.draw(
         fields_deg=plots.fields.tolist(), object_distance_m=plots.source.object_distance_m
     ), "lens")  # fmt: skip
     sections = "\n".join(
         f"<section>\n<h2>{html.escape(subject)}</h2>\n"
-        f"{_svg(page, f'{number}', Bbox.from_bounds(0, 0, PAGE_IN[0], PLOTS_TOP * PAGE_IN[1]))}\n</section>"
+        f"{inline_svg(page, f'{number}', Bbox.from_bounds(0, 0, PAGE_IN[0], PLOTS_TOP * PAGE_IN[1]))}\n</section>"
         for number, (subject, page) in enumerate(plots.pages())
     )
     title, source = html.escape(facts.title), html.escape(facts.source)
@@ -67,7 +64,7 @@ def page_of(facts: ReportFacts, plots: ReportPlots, theme: str | None) -> bytes:
 <meta name="viewport" content="width=device-width">
 <title>{title}</title>
 <style>
-{_variables(theme)}{STYLE}</style>
+{colour_variables(theme)}{STYLE}</style>
 <h1>{title}</h1>
 <p>{source}</p>
 <section>
@@ -100,29 +97,3 @@ def _surfaces(facts: ReportFacts) -> str:
     )
     head = f"<thead><tr>{cells(facts.columns, 'th scope=col', 'th')}</tr></thead>"
     return f'<table class="surfaces">\n{head}\n<tbody>\n{rows}\n</tbody>\n</table>'
-
-
-def _svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
-    text = figure_bytes(figure, ".svg", dpi=130, salt=f"realcam-{salt}", crop=crop).decode()
-    text = text[text.index("<svg") :]
-    for name, colour in _colours(LIGHT).items():
-        text = text.replace(colour, f"var(--{name})")
-    return text
-
-
-def _colours(theme: Theme) -> dict[str, str]:
-    """Colours of a theme by the names of the page's variables."""
-    single = {field.name: getattr(theme, field.name) for field in fields(theme) if field.name != "rays"}
-    return {**single, **{f"ray-{number}": colour for number, colour in enumerate(theme.rays)}}
-
-
-def _variables(theme: str | None) -> str:
-    def declared(name: str) -> str:
-        words = "; ".join(f"--{variable}: {colour}" for variable, colour in _colours(THEMES[name]).items())
-        return f":root {{ color-scheme: {name}; {words} }}"
-
-    chosen = declared(theme or "light") + "\n"
-    if theme is None:
-        chosen += f"@media (prefers-color-scheme: dark) {{ {declared('dark')} }}\n"
-    # Paper is light.
-    return f"{chosen}@media print {{ {declared('light')} }}"

@@ -1,0 +1,40 @@
+"""Figures of matplotlib within pages of HTML, which are light or dark as their readers want."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+from ..figure_files import figure_bytes
+from .themes import LIGHT, THEMES, Theme
+
+
+def inline_svg(figure: Figure, salt: str, crop: Bbox | None = None) -> str:
+    """An <svg> in which the colours of the light theme are variables of the page. salt, crop: as figure_bytes has
+    them."""
+    text = figure_bytes(figure, ".svg", dpi=130, salt=f"realcam-{salt}", crop=crop).decode()
+    text = text[text.index("<svg") :]
+    for name, colour in _colours(LIGHT).items():
+        text = text.replace(colour, f"var(--{name})")
+    return text
+
+
+def colour_variables(theme: str | None) -> str:
+    """CSS that gives the variables their values, and paper the light ones. theme: None follows the browser."""
+    light, dark = (_declared(name) for name in ("light", "dark"))
+    screen = light if theme is None else _declared(theme)
+    following = f"@media (prefers-color-scheme: dark) {{ {dark} }}\n" if theme is None else ""
+    return f"{screen}\n{following}@media print {{ {light} }}"
+
+
+def _declared(theme: str) -> str:
+    values = "; ".join(f"--{name}: {colour}" for name, colour in _colours(THEMES[theme]).items())
+    return f":root {{ color-scheme: {theme}; {values} }}"
+
+
+def _colours(theme: Theme) -> dict[str, str]:
+    """By the names of the page's variables."""
+    single = {field.name: getattr(theme, field.name) for field in fields(theme) if field.name != "rays"}
+    return {**single, **{f"ray-{number}": colour for number, colour in enumerate(theme.rays)}}
