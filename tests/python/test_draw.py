@@ -8,12 +8,14 @@ import os
 import re
 import struct
 import time
+from itertools import combinations
 from pathlib import Path
 
 import matplotlib.figure
 import numpy as np
 import pytest
 import realcam as rc
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from realcam import cli
 from realcam.draw import draw_cross_section, draw_states, save_cross_section, save_states, states_of
 from realcam.drawing.inset import draw_inset
@@ -256,6 +258,19 @@ def test_pupils_and_planes_are_marked_where_they_are(tmp_path: Path) -> None:
     assert {"EP", "XP", "H", "H'", "F", "F'"} <= set(words_in(tmp_path / "near.svg").split())
     save_cross_section(rc.Lens.load("mirror-telephoto-500mm"), tmp_path / "far.svg", marks=True)
     assert "outside: H at -1543 mm" in words_in(tmp_path / "far.svg")
+
+
+@pytest.mark.parametrize("name", ["heliar-100mm", "angulon-210mm", "phone-4mm", "achromat-75mm", "landscape-100mm"])
+@pytest.mark.parametrize("width_px", [700, 1600])
+def test_labels_of_pupils_and_planes_do_not_lie_on_each_other(name: str, width_px: int) -> None:
+    figure = rc.Lens.load(name).draw(marks=True, width_px=width_px)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    labels = [text for text in figure.axes[0].texts if re.fullmatch("EP|XP|H'?|F'?", text.get_text())]
+    assert len(labels) >= 4
+    boxes = [text.get_window_extent(canvas.get_renderer()) for text in labels]
+    for a, b in combinations(boxes, 2):
+        assert min(a.x1, b.x1) <= max(a.x0, b.x0) + 1 or min(a.y1, b.y1) <= max(a.y0, b.y0) + 1
 
 
 def test_faces_that_cross_are_drawn_as_an_error() -> None:

@@ -15,6 +15,7 @@ from .report_plots import PAGE_IN, ReportPlots
 from .style import GREY
 
 LEFT, RIGHT = 0.04, 0.96
+QUIET = 0.7  # of the ink of text that stays in the background
 # Inches of the columns, by what stands in them; those of Seidel's sums share the rest.
 PRESCRIPTION_IN = (0.25, 0.85, 0.72, 0.74, 1.05, 0.62)
 
@@ -37,7 +38,7 @@ def lens_page(facts: ReportFacts, source: Bundles, fields: Doubles, theme: str) 
     _head(figure, facts.title, "The lens")
     below = 0.944
     for line in textwrap.wrap(facts.source, 150)[:2]:
-        figure.text(LEFT, below, line, fontsize=6, va="top", color=GREY, parse_math=False)
+        figure.text(LEFT, below, line, fontsize=6, va="top", alpha=QUIET, parse_math=False)
         below -= 0.0095
     axes = figure.add_axes((0.085, 0.665, 0.875, below - 0.015 - 0.665))
     draw_cross_section(
@@ -61,7 +62,7 @@ def _draw_figures(figure: Figure, figures: list[tuple[str, str]], top: float) ->
     for index, (name, text) in enumerate(figures):
         column, row = divmod(index, half)
         left, y = LEFT + 0.46 * column, top - line * row
-        figure.text(left, y, name, va="top", color=GREY)
+        figure.text(left, y, name, va="top", alpha=QUIET)
         figure.text(left + 0.13, y, text, va="top", parse_math=False)
     return top - line * half
 
@@ -85,7 +86,7 @@ def _draw_table(figure: Figure, facts: ReportFacts, top: float) -> None:
             axes.plot((LEFT, RIGHT), (y + 0.3 * line, y + 0.3 * line), color=GREY, linewidth=0.6)
         _draw_row(axes, edges, y - 0.2 * line, row, size, facts.prescription_columns)
     note = textwrap.fill(facts.note, 190)
-    figure.text(LEFT, y - 1.6 * line, note, fontsize=6, va="top", color=GREY, parse_math=False)
+    figure.text(LEFT, y - 1.6 * line, note, fontsize=6, va="top", alpha=QUIET, parse_math=False)
 
 
 def _edges(facts: ReportFacts) -> list[float]:

@@ -15,7 +15,7 @@ from .report_plots import PAGE_IN, PLOTS_TOP, ReportPlots
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 66rem; margin: 2rem auto; padding: 0 1rem;
   background: var(--page); color: var(--text); }
-h1 { margin-bottom: 0.2rem; } h1 + p { margin-top: 0; color: var(--faint); }
+h1 { margin-bottom: 0.2rem; } h1 + p { margin-top: 0; color: var(--quiet); }
 h2 { margin: 2.5rem 0 0.5rem; }
 svg { width: 100%; height: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
@@ -24,10 +24,10 @@ th { font-weight: 600; } thead th { border-bottom: 1px solid var(--faint); }
 tbody tr:hover { background: var(--grid); }
 .figures th, .figures td, .surfaces .text { text-align: left; }
 .figures td { white-space: normal; }
-.figures th { font-weight: normal; color: var(--faint); padding-left: 0; }
+.figures th { font-weight: normal; color: var(--quiet); padding-left: 0; }
 .surfaces .sum td { border-top: 1px solid var(--faint); }
 .wide { overflow-x: auto; }
-.note { color: var(--faint); font-size: 0.85rem; }
+.note { color: var(--quiet); font-size: 0.85rem; }
 @page { size: A4; margin: 12mm; }
 @media print {
   body { font-size: 9pt; max-width: none; margin: 0; padding: 0; }

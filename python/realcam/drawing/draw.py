@@ -51,7 +51,8 @@ def extent_of(section: CrossSection, style: Style) -> Extent:
         y_low = min([y_low, *(-mark.semi_diameter_mm for mark in near)])
     air = 0.04 * max(z_high - z_low, y_high - y_low)
     above = 3.2 * air if section.focus_group else air
-    return Extent(z_low - air, z_high + air, y_low - air, y_high + above)
+    below = 2.6 * air if style.marks else air  # for the principal planes' labels, and a line on what lies outside
+    return Extent(z_low - air, z_high + air, y_low - below, y_high + above)
 
 
 def draw_section(

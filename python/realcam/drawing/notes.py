@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -16,26 +18,44 @@ def draw_marks(section: CrossSection, axes: Axes, style: Style, shift: float) ->
     shown = [mark for mark in section.marks if low <= mark.z_mm + shift <= high]
     outside = [mark for mark in section.marks if mark not in shown]
     tall = 1.06 * max(face.parts[-1][-1, 1] for face in section.faces)
+    places = []
     for mark in shown:
         z = mark.z_mm + shift
         if mark.kind == "pupil":
             axes.plot([z] * 2, [-mark.semi_diameter_mm, mark.semi_diameter_mm], color=theme.text, linewidth=1,
                       linestyle=(0, (4, 2)), zorder=6, marker="_", markersize=7)  # fmt: skip
-            _label(axes, mark, z, mark.semi_diameter_mm, 4, style)
+            places.append((z, mark.semi_diameter_mm, 4))
         elif mark.kind == "principal plane":
             axes.plot([z] * 2, [-tall, tall], color=theme.text, linewidth=0.9, linestyle=(0, (6, 2, 1, 2)), zorder=6)
-            _label(axes, mark, z, -tall, -3, style)
+            places.append((z, -tall, -3))
         else:
             axes.plot([z], [0], "o", color=theme.text, markersize=4, zorder=6)
-            _label(axes, mark, z, 0, -5, style)
+            places.append((z, 0, -5))
+    for mark, place, side in zip(shown, places, _sides(axes, style, places), strict=True):
+        _label(axes, mark, *place, side, style)
     if outside:
         text = "outside: " + ", ".join(f"{mark.label} at {mark.z_mm:.4g} mm" for mark in outside)
         axes.text(0.01, 0.01, text, transform=axes.transAxes, fontsize=0.85 * style.font_pt, color=theme.text, zorder=7)
 
 
-def _label(axes: Axes, mark: Mark, z: float, y: float, points_up: float, style: Style) -> None:
+def _sides(axes: Axes, style: Style, places: list[tuple[float, float, int]]) -> list[str]:
+    """How labels stand over their places: of two that would lie on each other, one to the left, the other to the
+    right."""
+    axes.apply_aspect()  # which moves the axes' limits
+    figure = axes.get_figure()
+    assert figure is not None
+    points = 72 / figure.dpi * axes.transData.transform(np.array([place[:2] for place in places]).reshape(-1, 2))
+    sides = ["center"] * len(places)
+    for i, j in combinations(range(len(places)), 2):
+        z, y = points[j] - points[i]
+        if places[i][2] == places[j][2] and abs(z) < 2.2 * style.font_pt and abs(y) < 1.4 * style.font_pt:
+            sides[i], sides[j] = ("right", "left") if z >= 0 else ("left", "right")
+    return sides
+
+
+def _label(axes: Axes, mark: Mark, z: float, y: float, points_up: float, side: str, style: Style) -> None:
     axes.annotate(
-        mark.label, (z, y), (0, points_up), textcoords="offset points", ha="center",
+        mark.label, (z, y), ({"left": 2, "right": -2}.get(side, 0), points_up), textcoords="offset points", ha=side,
         va="bottom" if points_up > 0 else "top", fontsize=style.font_pt, color=style.theme.text, zorder=7,
         bbox={"facecolor": style.theme.page, "edgecolor": "none", "alpha": 0.7, "pad": 0.5},
     )  # fmt: skip

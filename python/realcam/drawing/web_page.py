@@ -26,7 +26,9 @@ def colour_variables(theme: str | None) -> str:
     light, dark = (_declared(name) for name in ("light", "dark"))
     screen = light if theme is None else _declared(theme)
     following = f"@media (prefers-color-scheme: dark) {{ {dark} }}\n" if theme is None else ""
-    return f"{screen}\n{following}@media print {{ {light} }}"
+    # Text that stays in the background, but can still be read.
+    quiet = ":root { --quiet: color-mix(in srgb, var(--text) 70%, var(--page)); }"
+    return f"{screen}\n{following}@media print {{ {light} }}\n{quiet}"
 
 
 def _declared(theme: str) -> str:
