@@ -21,11 +21,17 @@ CELL_INCHES = (2.6, 2.0)
 
 
 def save_gallery(
-    path: str | os.PathLike[str], lenses: Sequence[Lens] | None = None, columns: int = 6, *, theme: str = "light"
+    path: str | os.PathLike[str],
+    lenses: Sequence[Lens] | None = None,
+    columns: int = 6,
+    *,
+    theme: str = "light",
+    titles: bool = True,
 ) -> None:
-    """Writes cross-sections of lenses, each with name, focal length in mm and f-number, as .png, .svg or .pdf.
+    """Writes cross-sections of lenses as .png, .svg or .pdf.
 
     lenses: the bundled ones, by name, if None. columns: of the grid; its rows follow. theme: light or dark.
+    titles: name, focal length in mm and f-number above each.
     Each drawing has its own scale. A film far behind the glass is left out, so that the glass is large enough to see.
     Raises ImageFileError for a name that cannot be written, InputError for no lenses, no columns or an
     unknown theme.
@@ -46,6 +52,8 @@ def save_gallery(
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     for lens, axes in zip(lenses, grid, strict=False):
         _draw_cell(lens, axes, style)
+        if titles:
+            _write_title(lens, axes, style)
     for axes in grid[len(lenses) :]:
         axes.set_axis_off()
     save_figure(figure, target, dpi=150)
@@ -55,6 +63,13 @@ def _draw_cell(lens: Lens, axes: Axes, style: Style) -> None:
     section = replace(cross_section(lens), focus_group=None)  # its note is wider than a cell
     prepare_axes(axes, extent_of(section, style), style)
     draw_section(section, axes, style)
+    left, right, half_height = _window(lens)
+    axes.set_xlim(left, right)
+    axes.set_ylim(-half_height, half_height)
+    axes.set_axis_off()
+
+
+def _write_title(lens: Lens, axes: Axes, style: Style) -> None:
     data = lens.first_order()
     # Names are text, and a dollar sign in one begins no formula.
     name = "".join(c for c in lens.name if c.isprintable())
@@ -64,10 +79,6 @@ def _draw_cell(lens: Lens, axes: Axes, style: Style) -> None:
         color=style.theme.text,
         parse_math=False,
     )
-    left, right, half_height = _window(lens)
-    axes.set_xlim(left, right)
-    axes.set_ylim(-half_height, half_height)
-    axes.set_axis_off()
 
 
 def _window(lens: Lens) -> tuple[float, float, float]:

@@ -300,6 +300,77 @@ def test_the_film_is_in_the_drawing(bench: BenchPage) -> None:
         assert film["y"] + film["height"] <= drawing["y"] + drawing["height"] + 1
 
 
+def names_in(gallery: object) -> set[str]:
+    return set(gallery.locator("li button").evaluate_all("all => all.map((b) => b.ariaLabel)"))
+
+
+@pytest.mark.camera_alone
+def test_lenses_are_found_in_the_gallery(bench: BenchPage) -> None:
+    bench.page.get_by_role("button", name="Gallery").click()
+    gallery = bench.test_id("gallery")
+    assert names_in(gallery) == set(rc.lens_names())
+    bench.test_id("gallery-search").fill("50mm GAUSS")
+    assert names_in(gallery) == {"double-gauss-50mm", "double-gauss-50mm-fast"}
+    bench.test_id("gallery-f-number").select_option("f/1.4 or faster")
+    assert names_in(gallery) == {"double-gauss-50mm-fast"}  # f/1.45
+    bench.test_id("gallery-search").fill("")
+    bench.test_id("gallery-f-number").select_option("any")
+    for choice, option, wanted in (
+        ("kind", "zoom", {name for name in rc.lens_names() if rc.Lens.load(name).zoom_positions}),
+        ("focal-length", "from 135 mm", {n for n in rc.lens_names() if focal_length_mm(n) >= 135}),
+        ("year", "until 1949", {"angulon-210mm", "biotar-50mm", "heliar-100mm", "planar-50mm-1897", "sonnar-50mm"}),
+    ):
+        bench.test_id(f"gallery-{choice}").select_option(option)
+        assert names_in(gallery) == wanted
+        assert bench.text("gallery-count") == f"{len(wanted)} of {len(rc.lens_names())}"
+        bench.test_id(f"gallery-{choice}").select_option("any")
+    bench.test_id("gallery-search").fill("no such lens")
+    assert gallery.get_by_text("No lens is like that.").is_visible()
+    bench.page.keyboard.press("Escape")
+    assert not gallery.is_visible()
+    before = bench.picture().astype(int)
+    bench.page.get_by_role("button", name="Gallery").click()
+    bench.test_id("gallery-search").fill("telephoto-250mm")
+    bench.page.get_by_role("button", name="telephoto-250mm", exact=True).click()
+    assert not gallery.is_visible()
+    until(lambda: bench.figure("effective_focal_length_mm"), lambda f: abs(f - 250) < 5, "the lens is chosen")
+    assert np.abs(bench.picture() - before).mean() > 10
+    bench.page.get_by_role("button", name="Gallery").click()
+    bench.test_id("gallery-search").fill("")
+    gallery.get_by_role("button", name="Close").click()
+    assert not gallery.is_visible()
+
+
+def focal_length_mm(name: str) -> float:
+    return float(rc.Lens.load(name).first_order().effective_focal_length_mm)
+
+
+@pytest.mark.camera_alone
+def test_the_question_mark_shows_mouse_and_keys(bench: BenchPage) -> None:
+    table = bench.test_id("help")
+    bench.page.keyboard.press("?")
+    assert table.is_visible()
+    assert "aperture ring" in table.inner_text()
+    bench.page.keyboard.press("Escape")
+    assert not table.is_visible()
+    bench.page.get_by_role("button", name="Mouse and keys").click()
+    assert table.is_visible()
+    table.get_by_role("button", name="Close").click()
+    bench.cell(0, "radius_mm").press("?")  # what is typed there is a number, or no number
+    assert not table.is_visible()
+
+
+def test_the_rings_stand_beside_the_picture(bench: BenchPage) -> None:
+    """In a window of 900 pixels, in which all of a ring and of the picture can be seen at once."""
+    bench.page.set_viewport_size({"width": 900, "height": 800})
+    assert bench.page.evaluate("document.documentElement.scrollWidth") <= 900
+    picture, ring = bench.canvas.bounding_box(), bench.test_id("iso").bounding_box()
+    assert picture["x"] + picture["width"] <= ring["x"]
+    assert ring["x"] + ring["width"] <= 900
+    for box in (picture, ring):
+        assert box["y"] + box["height"] <= 800
+
+
 @pytest.mark.camera_alone
 def test_aspheric_coefficients_are_shown_whole(bench: BenchPage) -> None:
     bench.page.get_by_role("button", name="Gallery").click()

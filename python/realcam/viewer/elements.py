@@ -11,6 +11,7 @@ from nicegui.events import GenericEventArguments
 
 from .._core import effects, glass_names
 from .effect_switches import EFFECTS
+from .lens_cards import lens_cards
 
 
 class PictureCanvas(Element, component="static/picture_canvas.js"):
@@ -28,6 +29,18 @@ class LensDrawing(Element, component="static/lens_drawing.js"):
         super().__init__()
         self._props["path"] = path
         self._props["glasses"] = glass_names()
+
+
+class LensGallery(Element, component="static/lens_gallery.js"):
+    """A button, and the bundled lenses in a dialog that it opens. Emits "chosen" with the name of one."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._props["lenses"] = lens_cards()
+
+
+class HelpDialog(Element, component="static/help_dialog.js"):
+    """A button, and what mouse and keys do in a dialog that it opens."""
 
 
 class RingSlider(Element, component="static/ring.js"):

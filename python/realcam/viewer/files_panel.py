@@ -14,7 +14,7 @@ from .._core import InputError, Lens, LensFileError, RealcamError, lens_names
 from ..gallery import save_gallery
 from .access import Folders
 from .comparison import COMPARISONS, NOTHING
-from .elements import show_choice
+from .elements import LensGallery, show_choice
 from .lens_reading import lens_from
 from .save_panel import SavePanel
 from .shot_source import ShotSource
@@ -32,7 +32,7 @@ def lens_preview(name: str) -> str:
         raise LensFileError(f'there is no bundled lens "{name:.40}"')
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "lens.svg"
-        save_gallery(path, [Lens.load(name)], columns=1)
+        save_gallery(path, [Lens.load(name)], columns=1, titles=False)
         svg = path.read_text(encoding="utf-8")
     return svg
 
@@ -49,9 +49,7 @@ class FilesPanel:
                 self._lens = ui.select(lens_names(), label="Lens", with_input=True).classes("grow")
                 self._lens.props('data-testid="lens"').on("update:model-value", self._choose)
                 self._lens.tooltip("One of the bundled lenses")
-                # Its colour is that of the page's accents: the server's would be too dark on the dark page.
-                gallery = ui.button("Gallery", on_click=self._open_gallery, color=None)
-                gallery.props("flat no-caps").classes("rc-flat")
+                LensGallery().on("chosen", self._choose_card)
             self._compare = ui.select(list(COMPARISONS), label="Compare with", value=NOTHING).classes("w-full")
             self._compare.props('data-testid="compare"').on("update:model-value", self._compare_with)
             self._compare.tooltip("A second picture behind a wipe")
@@ -81,6 +79,11 @@ class FilesPanel:
     async def _choose(self) -> None:
         if self._lens.value in lens_names():
             await self._run(lambda: self._bench.set_lens(Lens.load(self._lens.value)))
+
+    async def _choose_card(self, event: events.GenericEventArguments) -> None:
+        name = event.args
+        if name in lens_names():
+            await self._run(lambda: self._bench.set_lens(Lens.load(name)))
 
     async def _compare_with(self) -> None:
         what = self._compare.value
@@ -112,15 +115,3 @@ class FilesPanel:
     def _say(self, text: str, is_problem: bool = False) -> None:
         self._said.set_text(text)
         self._said.classes(add="rc-problem" if is_problem else "", remove="" if is_problem else "rc-problem")
-
-    def _open_gallery(self) -> None:
-        async def choose(name: str) -> None:
-            dialog.close()
-            await self._run(lambda: self._bench.set_lens(Lens.load(name)))
-
-        with ui.dialog() as dialog, ui.card().classes("max-w-5xl"), ui.row().classes("rc-gallery"):
-            for name in lens_names():
-                with ui.button(on_click=lambda name=name: choose(name)).props("flat no-caps"):
-                    preview = ui.element("img").props(f'src="/realcam-lenses/{name}.svg" alt="{name}" loading="lazy"')
-                    preview.props('width="190" height="146"')  # or the buttons would move while the previews come
-        dialog.open()

@@ -14,7 +14,7 @@ from .._core import RealcamError
 from .access import Folders
 from .camera_panel import CameraPanel
 from .comparison import NOTHING
-from .elements import CostPanel, LensDrawing, PictureCanvas
+from .elements import CostPanel, HelpDialog, LensDrawing, PictureCanvas
 from .files_panel import FilesPanel
 from .plots_panel import PlotsPanel
 from .server_loop import call_on_loop
@@ -41,6 +41,7 @@ def build_page(client: Client, window: Window, folders: Folders, source: ShotSou
         again = ui.button("Start again", color=None).props("flat no-caps dense").classes("rc-flat")
         again.on("click", js_handler="() => [...window.realcamStreams.values()][0].startAgain()")
         again.tooltip("Camera, lens and effects as the shot file has them")
+        HelpDialog()
         ui.toggle({None: "Auto", False: "Light", True: "Dark"}, value=None).bind_value_to(dark, "value").props(
             'dense no-caps aria-label="Colours of the page" data-testid="theme"'
         )

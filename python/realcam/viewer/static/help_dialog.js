@@ -1,0 +1,47 @@
+// What mouse and keys do: by its button, and by the key "?".
+
+const ROWS = [
+  ["drag, arrow keys", "the camera goes around what it looks at"],
+  ["Shift or right button and drag, Shift and arrow keys", "sideways"],
+  ["wheel, + and -", "nearer, farther"],
+  ["click, F", "focus there; F in the middle"],
+  ["click with Meter, M", "expose so that the spot becomes middle grey; M in the middle"],
+  ["[ and ]", "aperture ring, a third of a stop a step"],
+  [", and .", "exposure time"],
+  ["I and Shift I", "ISO"],
+  ["Ctrl Z, Ctrl Y", "take back a change of the lens, and do it again"],
+  ["drag a dot in the drawing", "rim, radius of curvature or place of the face that was clicked"],
+  ["Tab", "to the next control; the arrow keys turn a ring"],
+  ["?", "this table; Esc closes it"],
+];
+
+export default {
+  template: `
+<button type="button" class="rc-flat rc-link" aria-label="Mouse and keys" title="Mouse and keys (?)" @click="open">?</button>
+<dialog ref="dialog" class="rc-dialog rc-help" aria-labelledby="rc-help-title" data-testid="help">
+  <div class="rc-dialog-head">
+    <h2 id="rc-help-title">Mouse and keys</h2>
+    <button type="button" class="rc-close" aria-label="Close" title="Close (Esc)" @click="$refs.dialog.close()">×</button>
+  </div>
+  <table><tbody><tr v-for="[keys, what] in rows" :key="keys"><th scope="row">{{ keys }}</th><td>{{ what }}</td></tr></tbody></table>
+  <p class="rc-note">Keys of the camera are for the picture: click it, or go to it by Tab.</p>
+</dialog>`,
+  data: () => ({ rows: ROWS }),
+  mounted() {
+    window.addEventListener("keydown", this.key);
+  },
+  unmounted() {
+    window.removeEventListener("keydown", this.key);
+  },
+  methods: {
+    open() {
+      this.$refs.dialog.showModal();
+    },
+    key(event) {
+      const isTyping = event.target.matches?.("input:not([type=range], [type=radio], [type=checkbox]), select, textarea");
+      if (event.key !== "?" || isTyping || document.querySelector("dialog[open]")) return;
+      this.open();
+      event.preventDefault();
+    },
+  },
+};
