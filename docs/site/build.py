@@ -15,6 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import api_pages
+import cpp_pages
 import effect_pages
 import lens_pages
 from sphinx.cmd.build import main as sphinx
@@ -67,6 +68,7 @@ def main() -> int:
     arguments = parser.parse_args()
     lay_out(PAGES)
     timed("API", lambda: api_pages.write(PAGES / "api"))
+    timed("C++", lambda: cpp_pages.write(PAGES / "cpp-api"))
     timed("lenses", lambda: lens_pages.write(PAGES / "gallery"))
     timed("effects", lambda: effect_pages.write(PAGES / "effects"))
     words = ["-W", "--keep-going", "-q", "-b", "html", "-c", HERE, "-d", WORK / "doctrees", PAGES, arguments.output]

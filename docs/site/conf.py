@@ -17,7 +17,8 @@ root_doc = "index"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx_gallery.gen_gallery"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 include_patterns = [
-    "*.md", "docs/**", "benchmarks/**", "lenses/**", "sensors/**", "tutorials/**", "api/**", "gallery/**", "effects/**",
+    "*.md", "docs/**", "benchmarks/**", "lenses/**", "sensors/**", "tutorials/**", "api/**", "cpp-api/**", "gallery/**",
+    "effects/**",
 ]  # fmt: skip
 exclude_patterns = ["tutorial_sources"]
 # Otherwise sought beside the pages.

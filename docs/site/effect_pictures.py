@@ -83,18 +83,28 @@ def lamp_shot(candela: float) -> rc.Shot:
 
 
 def ghosts() -> Pair:
-    shot = lamp_shot(250)
+    shot = lamp_shot(120)
     return Pair(
-        shot.scene, shot.camera, (), ("ghosts",), "The demo shot with two lamps that shine into a bare lens.", spp=128
-    )
+        shot.scene, shot.camera, (), ("ghosts",),
+        "The demo shot with two lamps that shine into a bare lens. Each pair of surfaces makes a disc or a star of a "
+        "lamp, and all together a veil.",
+        spp=384,
+    )  # fmt: skip
 
 
 def film_reflection() -> Pair:
-    shot = lamp_shot(3000)
+    """Through a lens whose last surfaces make large patches of what the film reflects."""
+    shot = lamp_shot(2000)
+    lens, now = rc.Lens.load("double-gauss-50mm-fast"), shot.camera.lens
+    stops = lens.first_order().f_number / now.first_order().f_number
+    camera = shot.camera.replace(
+        lens=lens.focused(now.focus_distance_m), exposure_time_s=shot.camera.exposure_time_s * stops**2
+    )
     return Pair(
-        shot.scene, shot.camera, (), ("film_reflection",),
-        "The demo shot with two strong lamps. The film reflects a twentieth, and a surface of the lens returns it.",
-        spp=64, page="ghosts",
+        shot.scene, camera, (), ("film_reflection",),
+        "The demo shot with two strong lamps. The film reflects a twentieth of their light, and surfaces of the lens "
+        "return it: as bright patches on the other side of the middle, and as a veil.",
+        spp=128, page="ghosts",
     )  # fmt: skip
 
 
@@ -103,7 +113,7 @@ def diffraction() -> Pair:
     camera = rc.Camera(lens, film=rc.Film(24, 16, SIZE), exposure_time_s=1.0, iso=400)
     return Pair(
         night(), camera, (), ("diffraction",),
-        "Three lamps before a board, at f/16 with six blades.", spp=256, is_denoised=False,  # thin rays stay
+        "Three lamps before a board, at f/16 with six blades.", spp=512, is_denoised=False,  # thin rays stay
     )  # fmt: skip
 
 

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 from typing import Any
 
 import numpy as np
 
 from ._core import FieldOfView, Lens
+
+
+def json_text(value: Any) -> str:
+    return json.dumps(json_value(value), indent=2, ensure_ascii=False)
 
 
 def json_value(value: Any) -> Any:

@@ -10,11 +10,11 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 
 @contextmanager
-def progress_bar(title: str) -> Iterator[Callable[[float], bool]]:
+def progress_bar(title: str, is_shown: bool = True) -> Iterator[Callable[[float], bool]]:
     """A function to call with the share done, 0 to 1."""
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bars:
+    with Progress(*columns, console=console, transient=True, disable=not (is_shown and console.is_terminal)) as bars:
         task = bars.add_task(title, total=1.0)
 
         def report(done: float) -> bool:

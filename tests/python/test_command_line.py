@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import realcam as rc
 import typer
 from realcam import cli
 from realcam.cli.examples import EXAMPLES
@@ -371,3 +372,45 @@ def test_a_small_lit_thing_before_nothing_is_no_black_picture(tmp_path: Path) ->
     )
     assert done.returncode == 0, done.stderr
     assert "nearly all" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["lens", "draw", "tessar-50mm", "-o", "a.svg"],
+        ["lens", "plot", "distortion", "tessar-50mm", "-o", "a.svg", "-o", "a.csv"],
+        ["lens", "convert", "tessar-50mm", "-o", "a.toml"],
+        ["lens", "gallery", "tessar-50mm", "-o", "a.svg"],
+    ],
+)
+def test_quiet_commands_say_nothing(
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, text, errors = said(words, monkeypatch, capsys)
+    assert (code, text, errors) == (0, "".join(f"wrote {file}\n" for file in words if file.startswith("a.")), "")
+    for option in ("-q", "--quiet"):
+        assert said([*words, option], monkeypatch, capsys) == (0, "", "")
+
+
+def test_sensors_as_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    listed = json.loads(said(["sensor", "list", "--json"], monkeypatch, capsys)[1])
+    assert [sensor["name"] for sensor in listed] == rc.sensor_names()
+    sensor = rc.Sensor.load("sony-imx071-color")
+    told = json.loads(said(["sensor", "info", sensor.name, "--json"], monkeypatch, capsys)[1])
+    assert told["gain_dn_per_e"] == sensor.gain_dn_per_e
+    assert tuple(told["resolution"]) == sensor.resolution
+    assert told["iso_range"] == list(sensor.iso_range())
+    ideal = json.loads(said(["sensor", "info", "ideal", "--json"], monkeypatch, capsys)[1])
+    assert ideal["iso_range"] is None  # any
+
+
+def test_all_commands_that_write_can_be_quiet() -> None:
+    """`render` and `bench` are told apart: the one is C++, the other's output is what it is for."""
+    for name in sorted(commands()):
+        command: Any = TREE
+        for word in name.split():
+            command = command.commands[word]
+        options = {option for parameter in command.params for option in parameter.opts}
+        if "--output" in options and name not in IN_CPP and name != "lens compare":
+            assert "--quiet" in options, name

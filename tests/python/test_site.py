@@ -47,7 +47,7 @@ def test_every_page_is_reached() -> None:
     pages = {page for page in pages if not page.startswith((".github/", "docs/site/", "benchmarks/"))}
     reached = entries((SITE / "index.md").read_text(encoding="utf-8"))
     assert {page for page in pages if not any(fnmatch(page, entry) for entry in reached)} == set()
-    made = ("api/", "tutorials/", "gallery/", "effects/")
+    made = ("api/", "cpp-api/", "tutorials/", "gallery/", "effects/")
     strange = {entry for entry in reached if "*" not in entry and not entry.startswith(made)} - pages
     assert strange == set()
 
@@ -57,6 +57,79 @@ def test_every_public_name_is_in_the_api(monkeypatch: pytest.MonkeyPatch) -> Non
     names = [name for group in groups.values() for name in group]
     assert len(names) == len(set(names))
     assert set(names) == set(rc.__all__) - {"__version__", "analysis"}
+
+
+HEADER = """#pragma once
+namespace REALCAM_NAMESPACE {
+
+/// A lens, in mm.
+/// Has `surfaces`.
+struct Lens {
+    int surfaces = 3;       ///< from 0
+    Range range{1, 2};
+    explicit Lens(int count) : surfaces(count), range{} { check(count); }
+    REALCAM_INLINE double f() const { return count_ > 0 ? 1.0 / count_ : 0.0; }
+    Lens& operator+=(const Lens& other) {
+        surfaces += other.surfaces;
+        return *this;
+    }
+    struct Part {
+        int first() const { return 1; }
+    };
+
+private:
+    int count_ = 0;
+};
+
+namespace lens_detail {
+/// Not for users.
+int hidden();
+}  // namespace lens_detail
+
+int without_a_comment();
+
+/// Throws InputError; text with "{".
+template <class T, int N = 3>
+inline T focus(const Lens& lens, T metres = T(1)) {
+    for (int i = 0; i < N; ++i) metres += "}"[0];
+    return metres;
+}
+
+/// In mm.
+inline constexpr double kFilm[] = {36, 24};
+
+}  // namespace REALCAM_NAMESPACE
+"""
+
+
+def test_headers_of_cpp_are_read_as_they_stand(monkeypatch: pytest.MonkeyPatch) -> None:
+    lens, focus, film = module_of("cpp_pages", monkeypatch).items_of(HEADER)
+    assert (lens.name, lens.text) == ("Lens", "A lens, in mm.\nHas `surfaces`.")
+    words = " ".join(lens.declaration.split())
+    assert words == (
+        "struct Lens { int surfaces = 3; ///< from 0 Range range{1, 2}; explicit Lens(int count); "
+        "double f() const; Lens& operator+=(const Lens& other); struct Part { int first() const; }; };"
+    )
+    assert " ".join(focus.declaration.split()) == (
+        "template <class T, int N = 3> inline T focus(const Lens& lens, T metres = T(1));"
+    )
+    assert focus.name == "focus"
+    assert (film.name, film.declaration) == ("kFilm", "inline constexpr double kFilm[] = {36, 24};")
+
+
+def test_the_api_of_cpp_has_all_folders_of_the_core(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    cpp_pages = module_of("cpp_pages", monkeypatch)
+    cpp_pages.write(tmp_path)
+    folders = {path.parent.relative_to(ROOT / "cpp") for path in (ROOT / "cpp" / "optics").rglob("*.hpp")}
+    assert {str(folder) for folder in folders} <= set(cpp_pages.folders())
+    text = (tmp_path / "realcam-optics-lens.md").read_text(encoding="utf-8")
+    assert "LensSystem focused(const LensSystem& lens, double focus_distance);" in text
+    for page in tmp_path.glob("*.md"):
+        for block in re.findall(r"^```cpp\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE):
+            code = re.sub(r"//.*", "", block)
+            assert code.count("{") == code.count("}"), block
+            assert code.count("(") == code.count(")"), block
+            assert not re.search(r"\breturn\b", code), block
 
 
 def links(page: Path) -> set[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import warnings
 from pathlib import Path
 from typing import Annotated
@@ -10,10 +9,11 @@ from typing import Annotated
 import typer
 
 from .._core import Camera, InputError
+from ..json_values import json_text
 from ..progress import progress_bar
 from ..shot import Shot
 from ..variations import Variation, variations
-from . import lens_options
+from . import lens_options, options
 from .completions import completion_of
 
 
@@ -45,7 +45,8 @@ def compare(
         ),
     ] = "auto",
     threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    as_json: options.AsJson = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Take a shot several times with the same framing, brightness and noise, and put the pictures on one sheet."""
     from ..drawing.themes import theme_named
@@ -64,7 +65,7 @@ def compare(
     pictures = []
     for variation in variations(described, name, values.split(",")):
         taken = Shot(described.scene, sized(variation, size), settings, described.tone)
-        with warnings.catch_warnings(record=True) as caught, progress_bar(variation.label) as bar:
+        with warnings.catch_warnings(record=True) as caught, progress_bar(variation.label, is_shown=not quiet) as bar:
             warnings.simplefilter("always")
             image = taken.render(device=device, threads=threads, progress=bar)
         for warning in caught:
@@ -85,10 +86,11 @@ def compare(
             }
             for label, image in pictures
         ]
-        typer.echo(json.dumps(rows, indent=1))
-    else:
+        typer.echo(json_text(rows))
+    elif not quiet:
         for label, image in pictures:
             typer.echo(f"{label}, {image.camera.exposure_time_s:.3g} s, {image.spp} samples")
+        options.say_written(output)
 
 
 def sized(variation: Variation, longer_side_px: int) -> Camera:

@@ -10,6 +10,7 @@ import typer
 from .._core import InputError
 from ..progress import progress_bar
 from ..shot import Shot
+from . import options
 from .completions import completion_of
 
 
@@ -40,7 +41,8 @@ def cost(
         ),
     ] = "auto",
     threads: Annotated[int, typer.Option(metavar="N", help="0: all", min=0, max=4096)] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    as_json: options.AsJson = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Take a shot at all levels of simulation, from a blurred pinhole picture to every surface with all effects."""
     from ..accuracy import accuracy_cost  # brings matplotlib, which other commands need not load
@@ -49,7 +51,7 @@ def cost(
         if path.suffix.lower() not in (".svg", ".html"):
             raise InputError(f"{path}: unknown suffix; .svg or .html is wanted")
     described = Shot.load(shot, device=device)
-    with progress_bar("measuring") as bar:
+    with progress_bar("measuring", is_shown=not quiet) as bar:
         result = accuracy_cost(
             described.scene,
             described.camera,
@@ -62,7 +64,8 @@ def cost(
             reference_spp=reference_spp,
             progress=bar,
         )
-    typer.echo(result.json() if as_json else str(result), nl=as_json)
+    if as_json or not quiet:
+        typer.echo(result.json() if as_json else str(result), nl=as_json)
     for path in figure or []:
         result.figure(path)
     if result.missing:

@@ -14,6 +14,7 @@ import typer
 from realcam_command import denoiser_library
 
 from .._core import InputError, Lens
+from . import options
 
 
 def demo(
@@ -29,6 +30,7 @@ def demo(
         bool | None,
         typer.Option(help="Take the noise from the pictures; done where realcam[denoise] is installed"),
     ] = None,
+    quiet: options.Quiet = False,
 ) -> None:
     """Photograph the demo scene through a double Gauss, and once more through an ideal thin lens."""
     from ..draw import save_cross_section  # brings matplotlib, which other commands need not load
@@ -44,8 +46,8 @@ def demo(
     except OSError as error:
         raise InputError(f"{output}: the folder cannot be made: {error.strerror}") from None
     try:
-        _render(shot, samples, output / "demo.png", output / "demo.exr", *words)
-        _render(shot, max(1, samples // 4), output / "demo-thin-lens.png", "--model", "thin", *words)
+        _render(shot, samples, quiet, output / "demo.png", output / "demo.exr", *words)
+        _render(shot, max(1, samples // 4), quiet, output / "demo-thin-lens.png", "--model", "thin", *words)
         # As the demo's camera has it: wide open and focused near.
         save_cross_section(Lens.load("double-gauss-50mm").focused(1.05), output / "lens.png")
     finally:
@@ -58,17 +60,19 @@ def demo(
         ("demo-thin-lens.png", "the same through an ideal lens: no vignetting, no aberrations"),
         ("lens.png", "the lens and its rays"),
     ):
-        typer.echo(f"{output / name}: {what}")
+        if not quiet:
+            typer.echo(f"{output / name}: {what}")
 
 
-def _render(shot: Path, spp: int, *rest: Path | str) -> None:
+def _render(shot: Path, spp: int, quiet: bool, *rest: Path | str) -> None:
     """`realcam render`. Whatever goes wrong it has said itself; Ctrl-C reaches it too."""
     words = [word if isinstance(word, str) else f"--output={word}" for word in rest]
     # Of this package, and nothing of the same name that is in the current folder.
     python = [sys.executable, *(["-P"] if sys.version_info >= (3, 11) else []), "-m", "realcam"]
     paths = os.pathsep.join([str(Path(__file__).resolve().parents[2]), os.environ.get("PYTHONPATH", "")])
     environment = {**os.environ, "PYTHONPATH": paths.rstrip(os.pathsep)}
-    with subprocess.Popen([*python, "render", shot, "--spp", str(spp), *words], env=environment) as program:
+    command = [*python, "render", str(shot), "--spp", str(spp), *words]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL if quiet else None) as program:
         try:
             while True:
                 with suppress(KeyboardInterrupt):

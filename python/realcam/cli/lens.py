@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
 from typing import Annotated, Optional
 
 import typer
 
 from .._core import InputError
+from ..json_values import json_text
 from . import lens_figures, lens_options, lens_plots, options
 from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
@@ -60,6 +60,7 @@ def draw(
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
     pbrt_thickness: lens_options.PbrtThickness = None,
+    quiet: options.Quiet = False,
 ) -> None:
     """Write the cross-section of a lens, with rays from the object in focus."""
     from ..draw import save_cross_section, save_states, states_of
@@ -111,7 +112,7 @@ def draw(
             theme=theme,
             width_px=width,
         )
-    typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")
+    options.say_written(target, quiet)
 
 
 @app.command("photo")
@@ -144,7 +145,7 @@ def photo(
         iso=iso,
     )
     if as_json:
-        typer.echo(lens_figures.as_json(figures))
+        typer.echo(json_text(figures))
         return
     lens_figures.print_columns([lens.title or lens.name], [lens_figures.photo_rows(figures)])
 
@@ -196,7 +197,7 @@ def compare(
         lens_summary(lens, mtf_frequencies_per_mm=frequencies, circle_of_confusion_mm=circle) for lens in lenses
     ]
     if as_json:
-        typer.echo(lens_figures.as_json(summaries))
+        typer.echo(json_text(summaries))
     else:
         rows = [lens_figures.summary_rows(summary) for summary in summaries]
         lens_figures.print_columns([lens.title or lens.name for lens in lenses], rows)
@@ -212,8 +213,7 @@ def compare(
             theme=theme,
             width_px=width,
         )
-        if not as_json:
-            typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")
+        options.say_written(output, quiet=as_json)
 
 
 @app.command("convert")
@@ -224,11 +224,12 @@ def convert(
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
     pbrt_thickness: lens_options.PbrtThickness = None,
+    quiet: options.Quiet = False,
 ) -> None:
     """Write a lens as a file of realcam (.toml), Zemax (.zmx) or CODE V (.seq)."""
     lens_options.check_not_the_lens(output, name)
     options.lens(name, zoom=zoom, glass=glass, force=force, pbrt_thickness=pbrt_thickness).save(output)
-    typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")
+    options.say_written(output, quiet)
 
 
 @app.command("gallery")
@@ -247,6 +248,7 @@ def gallery(
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,
     pbrt_thickness: lens_options.PbrtThickness = None,
+    quiet: options.Quiet = False,
 ) -> None:
     """Write a contact sheet: the cross-sections of all bundled lenses, or of those named."""
     from ..gallery import save_gallery
@@ -256,4 +258,4 @@ def gallery(
         options.lens(name, glass=glass, force=force, pbrt_thickness=pbrt_thickness) for name in names or []
     ]  # fmt: skip
     save_gallery(output, lenses or None, columns, theme=theme)
-    typer.echo(f"wrote {os.fsencode(output).decode(errors='replace')}")
+    options.say_written(output, quiet)

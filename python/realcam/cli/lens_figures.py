@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import math
-from typing import Any
 
 import typer
 
 from .._core import FieldOfView
-from ..json_values import json_value
 from ..photography import DepthOfField, LensSummary, PhotographicFigures, SharpRange
 
 Rows = list[tuple[str, str]]
-
-
-def as_json(value: Any) -> str:
-    """Numbers that are not finite become null, as in the executable's JSON."""
-    return json.dumps(json_value(value), indent=2, ensure_ascii=False)
 
 
 def photo_rows(figures: PhotographicFigures) -> Rows:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated, Optional
 
@@ -88,6 +87,7 @@ def plot(
     theme: lens_options.ThemeName = "light",
     size: Annotated[str, typer.Option("--size", metavar="NAME", help="small or large")] = "large",
     as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON")] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Plot one thing about a lens, or write its numbers.
 
@@ -129,8 +129,7 @@ def plot(
         else:
             figure = kinds.plot_figure(kind, data, theme=theme, size=size, title=options.title_of(lens))
             save_figure(figure, target)
-        if not as_json:
-            _say_written(target)
+        options.say_written(target, quiet or as_json)
     if as_json:
         typer.echo(numbers.as_json(data))
 
@@ -154,6 +153,7 @@ def report(
         Optional[str],  # noqa: UP045
         typer.Option("--theme", metavar="NAME", help="light or dark [light; of .html as the browser is set]"),
     ] = None,
+    quiet: options.Quiet = False,
 ) -> None:
     """Write all about a lens on four pages: the lens, rays, contrast and colour, waves and light."""
     from ..analysis import save_report
@@ -169,7 +169,7 @@ def report(
         object_distance_m=_distance(object_distance),
         theme=theme,
     )
-    _say_written(target)
+    options.say_written(target, quiet)
 
 
 def _numbers(text: str | None, what: str) -> NDArray[np.float64] | None:
@@ -179,7 +179,3 @@ def _numbers(text: str | None, what: str) -> NDArray[np.float64] | None:
 
 def _distance(text: str | None) -> float | None:
     return None if text is None else options.number(text, "--object-distance")
-
-
-def _say_written(target: Path) -> None:
-    typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")

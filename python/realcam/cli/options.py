@@ -3,9 +3,22 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from .._core import InputError, Lens, LensFileError, _did_you_mean
+
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors alone")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
+
+
+def say_written(target: Path, quiet: bool = False) -> None:
+    if not quiet:
+        typer.echo(f"wrote {os.fsencode(target).decode(errors='replace')}")
 
 
 def number(text: str, what: str, wanted: str = "a number") -> float:

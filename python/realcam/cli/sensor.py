@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import warnings
 from pathlib import Path
 from typing import Annotated, Optional
@@ -11,6 +12,8 @@ import numpy as np
 import typer
 
 from .._core import Film, InputError, Sensor, sensor_names
+from ..json_values import json_text
+from . import options
 from .completions import completion_of
 
 app = typer.Typer(help="Look at sensors.", rich_markup_mode=None)
@@ -26,18 +29,25 @@ SensorName = Annotated[
 
 
 @app.command("list")
-def list_sensors() -> None:
+def list_sensors(as_json: options.AsJson = False) -> None:
     """List the bundled sensors."""
     names = sensor_names()
+    if as_json:
+        typer.echo(json_text([{"name": name, "title": Sensor.load(name).title} for name in names]))
+        return
     for name in names:
         typer.echo(f"{name:{max(map(len, names))}}  {Sensor.load(name).title}")
 
 
 @app.command("info")
-def info(name: SensorName) -> None:
+def info(name: SensorName, as_json: options.AsJson = False) -> None:
     """Print what a sensor does, where it is from, and what had to be assumed."""
     sensor = Sensor.load(name)
     lowest, highest = sensor.iso_range()
+    if as_json:
+        values = {key: getattr(sensor, key) for key, value in vars(Sensor).items() if isinstance(value, property)}
+        typer.echo(json_text({**values, "iso_range": None if lowest == 0 else (lowest, highest)}))
+        return
     rows = {
         "pixels": "any" if sensor.resolution is None else f"{sensor.resolution[0]} x {sensor.resolution[1]}",
         "pixel pitch": "the film's" if sensor.pixel_pitch_um is None else f"{sensor.pixel_pitch_um:g} um",
@@ -87,6 +97,8 @@ def expose(
     ] = None,
     tone: Annotated[str, typer.Option(metavar="CURVE", help="Tone curve of .png: linear (clipped) or film")] = "linear",
     demosaic: Annotated[str, typer.Option(metavar="NAME", help="Of .png: menon, malvar or bilinear")] = "menon",
+    as_json: options.AsJson = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Expose a sensor to a film: raw numbers with the sensor's noise, and a picture developed from them."""
     from ..demosaicing import METHODS
@@ -106,26 +118,36 @@ def expose(
     chosen = Sensor.load(sensor)
     pixels, entries = read_film(film)
     if chosen.angular_response:
-        typer.echo("realcam: the film does not tell where its exit pupil was: all angles count alike", err=True)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        raw = exposed_film(
-            chosen,
-            pixels,
-            _film_of(film, entries, pixels),
-            exposure_time_s=_number(film, entries, "realcam:exposure_time_s"),
-            iso=_number(film, entries, "realcam:iso") if iso is None else iso,
-            illuminant=entries.get("realcam:illuminant", ""),
-            temperature_c=temperature,
-            seed=seed,
-            serial=serial,
-            metadata=entries,
-        )
-    for warning in caught:
-        typer.echo(f"realcam: {warning.message}", err=True)
+        warnings.warn("the film does not tell where its exit pupil was: all angles count alike", stacklevel=1)
+    raw = exposed_film(
+        chosen,
+        pixels,
+        _film_of(film, entries, pixels),
+        exposure_time_s=_number(film, entries, "realcam:exposure_time_s"),
+        iso=_number(film, entries, "realcam:iso") if iso is None else iso,
+        illuminant=entries.get("realcam:illuminant", ""),
+        temperature_c=temperature,
+        seed=seed,
+        serial=serial,
+        metadata=entries,
+    )
     for path in output:
         raw.save(path, tone=tone, demosaic=demosaic)
     full = float(np.mean(raw.mosaic >= raw.white_level_dn))
+    if as_json:
+        figures = {
+            "sensor": chosen.name,
+            "iso": raw.iso,
+            "gain_dn_per_e": raw.gain_dn_per_e,
+            "black_level_dn": raw.black_level_dn,
+            "white_level_dn": raw.white_level_dn,
+            "full_share": full,
+            "assumptions": chosen.assumptions,
+            "files": [os.fsencode(path).decode(errors="replace") for path in output],
+        }
+        typer.echo(json_text(figures))
+    if as_json or quiet:
+        return
     typer.echo(
         f"{chosen.name}, ISO {raw.iso:.4g}: {raw.gain_dn_per_e:.4g} DN/e, black {raw.black_level_dn:g}, "
         f"white {raw.white_level_dn} DN, {100 * full:.2g}% of the pixels full"
@@ -133,7 +155,7 @@ def expose(
     for assumption in chosen.assumptions:
         typer.echo(f"assumed: {assumption}")
     for path in output:
-        typer.echo(f"wrote {path}")
+        options.say_written(path)
 
 
 def _film_of(path: Path, entries: dict[str, str], pixels: np.ndarray) -> Film:
