@@ -18,6 +18,7 @@ import api_pages
 import cpp_pages
 import effect_pages
 import lens_pages
+from links import broken_links
 from sphinx.cmd.build import main as sphinx
 
 HERE = Path(__file__).resolve().parent
@@ -73,9 +74,11 @@ def main() -> int:
     timed("effects", lambda: effect_pages.write(PAGES / "effects"))
     words = ["-W", "--keep-going", "-q", "-b", "html", "-c", HERE, "-d", WORK / "doctrees", PAGES, arguments.output]
     status = sphinx([str(word) for word in words])
-    if status == 0:
+    broken = [] if status else list(broken_links(arguments.output))
+    print(*broken, sep="\n", end="\n" if broken else "", file=sys.stderr)
+    if status == 0 and not broken:
         print(f"The site is in {arguments.output}: open index.html")
-    return int(status)
+    return int(status or bool(broken))
 
 
 if __name__ == "__main__":

@@ -66,8 +66,8 @@ def save_mtf(lens: rc.Lens, target: Path) -> None:
         figure = style.new_figure(6.2, 2.9)
         axes = figure.add_subplot()
         try:
-            data = rc.analysis.mtf_over_field(lens, samples=21)
+            data = rc.analysis.mtf_over_field(lens)
         except rc.InputError:  # a wavefront that is too far from a sphere for the contrast of waves
-            data = rc.analysis.mtf_over_field(lens, samples=21, method="geometric")
+            data = rc.analysis.mtf_over_field(lens, method="geometric")
         rc.analysis.plot_mtf_over_field(data, axes)
         rc.analysis.save_figure(figure, target, dpi=110)

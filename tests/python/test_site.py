@@ -59,6 +59,20 @@ def test_every_public_name_is_in_the_api(monkeypatch: pytest.MonkeyPatch) -> Non
     assert set(names) == set(rc.__all__) - {"__version__", "analysis"}
 
 
+def test_broken_links_are_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "a.html").write_text(
+        '<h1 id="here">A</h1><a href="#here"></a><a href="sub/b.html#there"></a><a href="https://example.org/x"></a>'
+        '<img src="gone.png"><a href="sub/b.html#gone"></a><a href="sub/b.html"></a><img src="data:image/png;base64,x">'
+    )
+    (tmp_path / "sub" / "b.html").write_text('<p id="there"></p><a href="../a.html#here"></a><a href="../c.html"></a>')
+    assert list(module_of("links", monkeypatch).broken_links(tmp_path)) == [
+        "a.html: there is no gone.png",
+        "a.html: there is no heading sub/b.html#gone",
+        "sub/b.html: there is no ../c.html",
+    ]
+
+
 HEADER = """#pragma once
 namespace REALCAM_NAMESPACE {
 
