@@ -15,7 +15,8 @@ from written import remove_others, write_text
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ROOT / "cpp"
-_MACRO = re.compile(r"\b(?!REALCAM_NAMESPACE)REALCAM_\w+\s+")
+# What is for compilers alone.
+_MACRO = re.compile(r"\b(?!REALCAM_NAMESPACE)REALCAM_\w+\s+|(?<=\s)\[\[.*?\]\]\s|\[\[.*?\]\]")
 _TYPE = re.compile(r"^(?:template\s*<.*>\s*)?(?:typedef\s+)?(struct|class|union|enum(?:\s+class)?)\s+(\w+)", re.DOTALL)
 _OPERATOR = re.compile(r"operator\s*[^\w\s(]+")
 # Where the list of a constructor's members begins.

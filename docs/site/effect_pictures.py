@@ -113,7 +113,7 @@ def diffraction() -> Pair:
     camera = rc.Camera(lens, film=rc.Film(24, 16, SIZE), exposure_time_s=1.0, iso=400)
     return Pair(
         night(), camera, (), ("diffraction",),
-        "Three lamps before a board, at f/16 with six blades.", spp=512, is_denoised=False,  # thin rays stay
+        "Three lamps before a board, at f/16 with six blades.", spp=256, is_denoised=False,  # thin rays stay
     )  # fmt: skip
 
 
