@@ -14,6 +14,7 @@
 #include "bindings.hpp"
 #include "coating_from.hpp"
 #include "short_text.hpp"
+#include "triples.hpp"
 #include "value_methods.hpp"
 
 namespace realcam::bindings {
@@ -71,6 +72,8 @@ struct SurfaceChanges {
     std::optional<double> inner_semi_diameter_mm;
     std::optional<std::string> type;
     std::optional<Coating> coating;
+    std::optional<std::vector<double>> decentre_mm, tilt_deg;
+    std::optional<bool> returns;
 };
 
 std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {
@@ -84,6 +87,13 @@ std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {
         list[term] = value;
     }
     return list;
+}
+
+/// x, y and z; of a decentre z may be left out.
+Vec3d triple_from(const std::vector<double>& values, std::size_t least, const char* what) {
+    if (values.size() < least || values.size() > 3)
+        throw InputError(std::string(what) + " is " + (least < 3 ? "(x, y) or (x, y, z)" : "(x, y, z)"));
+    return {values[0], values[1], values.size() > 2 ? values[2] : 0};
 }
 
 Surface changed(Surface surface, const SurfaceChanges& to) {
@@ -101,14 +111,18 @@ Surface changed(Surface surface, const SurfaceChanges& to) {
     surface.inner_semi_diameter = to.inner_semi_diameter_mm.value_or(surface.inner_semi_diameter);
     surface.conic = to.conic.value_or(surface.conic);
     surface.coating = to.coating.value_or(surface.coating);
+    if (to.decentre_mm) surface.placement.decentre = triple_from(*to.decentre_mm, 2, "decentre_mm");
+    if (to.tilt_deg) surface.placement.tilt_deg = triple_from(*to.tilt_deg, 3, "tilt_deg");
+    surface.placement.returns = to.returns.value_or(surface.placement.returns);
     return surface;
 }
 
 Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
                      double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
-                     double inner_semi_diameter, const std::string& type, const py::object& coating) {
+                     double inner_semi_diameter, const std::string& type, const py::object& coating,
+                     const std::vector<double>& decentre, const std::vector<double>& tilt, bool returns) {
     return changed(Surface(), {radius_of_curvature, thickness, glass_from(material), clear_semi_diameter, conic,
-                               aspheric, inner_semi_diameter, type, coating_from(coating)});
+                               aspheric, inner_semi_diameter, type, coating_from(coating), decentre, tilt, returns});
 }
 
 /// Defines a method whose arguments are `first`, and by their names those of Surface. What is left out stays; because
@@ -122,18 +136,22 @@ void def_surface_changes(py::class_<T>& type, const char* name, Function functio
         name,
         [function](const T& self, Index<First>... place, Number radius, Number thickness, const py::object& material,
                    Number clear, Number conic, const std::optional<std::map<int, double>>& aspheric, Number inner,
-                   const std::optional<std::string>& surface_type, const py::object& coating) {
+                   const std::optional<std::string>& surface_type, const py::object& coating,
+                   const std::optional<std::vector<double>>& decentre, const std::optional<std::vector<double>>& tilt,
+                   std::optional<bool> returns) {
             const bool stays = material.is(py::ellipsis());
             const SurfaceChanges changes{
-                radius, thickness,    stays ? std::nullopt : std::optional(glass_from(material)),
-                clear,  conic,        aspheric,
-                inner,  surface_type, coating.is_none() ? std::nullopt : std::optional(coating_from(coating))};
+                radius,   thickness,    stays ? std::nullopt : std::optional(glass_from(material)),
+                clear,    conic,        aspheric,
+                inner,    surface_type, coating.is_none() ? std::nullopt : std::optional(coating_from(coating)),
+                decentre, tilt,         returns};
             return function(self, place..., changes);
         },
         first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
         "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),
         "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
-        "coating"_a = py::none(), text);
+        "coating"_a = py::none(), "decentre_mm"_a = py::none(), "tilt_deg"_a = py::none(), "returns"_a = py::none(),
+        text);
 }
 
 std::map<int, double> aspheric_map(const Surface& surface) {
@@ -169,6 +187,8 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     }
     validate(lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
+    if (!film_distance && !lens.is_rotational())
+        throw LensFileError("film_distance_mm is wanted, because " + lens.asymmetry());
     lens.film_distance = film_distance ? *film_distance : best_focus_distance(lens, wavelength_nm, kInfinity);
     if (!film_distance && !(lens.film_distance > 0))
         throw LensFileError(
@@ -187,17 +207,21 @@ std::string text_of(const Surface& s) {
     if (s.curvature != 0) text += ", radius " + digits(1 / s.curvature) + " mm";
     text += ", semi-diameter " + digits(s.clear_semi_diameter) + " mm";
     if (s.is_asphere() || s.conic != 0) text += ", aspheric";
+    if (s.placement.tilt_deg != Vec3d{0, 0, 0}) text += ", tilted";
+    if (s.placement.decentre != Vec3d{0, 0, 0}) text += ", decentred";
     if (s.coating.kind != CoatingKind::unknown)
         text += ", " + (s.coating.name.empty() ? std::string("coated") : shortened(s.coating.name));
     return text + ", then " + digits(s.thickness) + " mm of " + text_of(s.material) + '>';
 }
 
 std::string text_of(const LensSystem& lens) {
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const std::string name = lens.name.empty() ? "" : ' ' + shortened(lens.name) + ',';
     const std::string focus = std::isinf(lens.focus_distance) ? "infinity" : digits(lens.focus_distance / 1000) + " m";
-    return "<realcam.Lens" + name + ' ' + counted(lens.surfaces.size(), "surface") + ", " +
-           digits(data.effective_focal_length) + " mm f/" + digits(data.f_number) + ", focused at " + focus + '>';
+    const std::string begin = "<realcam.Lens" + name + ' ' + counted(lens.surfaces.size(), "surface") + ", ";
+    if (const std::string why = lens.asymmetry(); !why.empty()) return begin + why + ", focused at " + focus + '>';
+    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    return begin + digits(data.effective_focal_length) + " mm f/" + digits(data.f_number) + ", focused at " + focus +
+           '>';
 }
 
 std::string text_of(const FirstOrder& data) {
@@ -321,7 +345,8 @@ void bind_surface(py::module_& m) {
         .def(py::init(&make_surface), py::kw_only(), "radius_of_curvature_mm"_a = kInfinity, "thickness_mm"_a = 0.0,
              "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
              "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
-             "type"_a = "refracting", "coating"_a = "unknown",
+             "type"_a = "refracting", "coating"_a = "unknown", "decentre_mm"_a = std::vector<double>{0, 0, 0},
+             "tilt_deg"_a = std::vector<double>{0, 0, 0}, "returns"_a = false,
              "radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.\n"
              "thickness_mm: to the next surface; that of the last surface is not used.\n"
              "material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.\n"
@@ -330,7 +355,11 @@ void bind_surface(py::module_& m) {
              "type: refracting, mirror, stop or aperture (a plane that only blocks).\n"
              "coating: \"bare\", \"quarter_wave\", of a mirror \"aluminium\" or \"silver\", a Coating, or \"unknown\": "
              "light\n"
-             "is then taken to meet bare glass, or a perfect mirror.")
+             "is then taken to meet bare glass, or a perfect mirror.\n"
+             "decentre_mm: (x, y) or (x, y, z) of the vertex, from its place on the axis. tilt_deg: angles by which "
+             "it\n"
+             "is then turned about x, its new y and its new z, counterclockwise as seen from the axis's tip. returns:\n"
+             "this moves the surface alone; else the axis goes on from there, with all that follows and the film.")
         .def_property_readonly("radius_of_curvature_mm",
                                [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
         .def_readonly("curvature_per_mm", &Surface::curvature)
@@ -342,6 +371,9 @@ void bind_surface(py::module_& m) {
         .def_property_readonly("aspheric_coefficients", &aspheric_map)
         .def_property_readonly("type", [](const Surface& s) { return kTypeNames[static_cast<int>(s.type)]; })
         .def_readonly("coating", &Surface::coating)
+        .def_property_readonly("decentre_mm", [](const Surface& s) { return triple(s.placement.decentre); })
+        .def_property_readonly("tilt_deg", [](const Surface& s) { return triple(s.placement.tilt_deg); })
+        .def_property_readonly("returns", [](const Surface& s) { return s.placement.returns; })
         .def("sag_mm", &Surface::sag, "radius_mm"_a,
              "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.")
         .def("__repr__", [](const Surface& s) { return text_of(s); });
@@ -472,6 +504,8 @@ void bind_lens(py::module_& m) {
         .def_property_readonly("nearest_focus_m", [](const LensSystem& l) { return l.focusing.nearest_mm / 1000; })
         .def_property_readonly("stop_index", &LensSystem::stop_index)
         .def_readonly("stop_semi_diameter_mm", &LensSystem::stop_semi_diameter)
+        .def_property_readonly("is_rotational", &LensSystem::is_rotational,
+                               "Whether this is a centred lens of revolution: no surface is tilted or decentred.")
         .def_property_readonly("iris_blades", [](const LensSystem& l) { return l.iris.blades; })
         .def(
             "with_iris",

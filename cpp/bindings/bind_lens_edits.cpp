@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "../optics/lens/lens_edits.hpp"
+#include "../optics/lens/lens_tilts.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {
@@ -49,7 +50,20 @@ void bind_lens_edits(py::module_& m) {
             "The lens without the surfaces of index first to last, from 0; None: first alone. What is left stays in "
             "its\n"
             "place, film, focus group and zoom positions too. Raises InputError, and LensFileError where the lens\n"
-            "cannot be built.");
+            "cannot be built.")
+        .def(
+            "with_element_tilted",
+            [](const LensSystem& lens, int first, std::optional<int> last, double x, double y, double z, double dx,
+               double dy, double dz, double pivot) {
+                return with_element_tilted(lens, first, last.value_or(first), {{dx, dy, dz}, {x, y, z}, false}, pivot);
+            },
+            "first"_a, "last"_a = py::none(), py::kw_only(), "x_deg"_a = 0.0, "y_deg"_a = 0.0, "z_deg"_a = 0.0,
+            "decentre_x_mm"_a = 0.0, "decentre_y_mm"_a = 0.0, "decentre_z_mm"_a = 0.0, "pivot_mm"_a = 0.0,
+            "The lens with the surfaces of index first to last, from 0, moved as one rigid piece; None: first alone.\n"
+            "The rest and the film stay in place. The piece is decentred, then turned about x, its new y and its new\n"
+            "z, as a surface is by its tilt_deg. pivot_mm: how far behind the first vertex the point lies that it "
+            "turns\n"
+            "about. Raises InputError, and LensFileError where the lens cannot be built.");
 }
 
 }  // namespace realcam::bindings

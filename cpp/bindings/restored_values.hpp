@@ -75,6 +75,8 @@ struct RestoredCheck<Coating> {
     }
 };
 template <>
+struct RestoredCheck<SurfacePlacement> : AnyMembers {};  // by the lens
+template <>
 struct RestoredCheck<Surface> {
     /// As far as it can be said without its lens.
     static void check(const Surface& surface) {

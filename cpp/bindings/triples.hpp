@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <tuple>
 
 #include "../math/color.hpp"
 #include "../math/vec3.hpp"
@@ -12,6 +13,10 @@ using Colour = std::array<float, 3>;
 
 inline Vec3d vector_of(const Triple& v) {
     return {v[0], v[1], v[2]};
+}
+
+inline std::tuple<double, double, double> triple(Vec3d v) {
+    return {v.x, v.y, v.z};
 }
 
 inline Color rgb(const Colour& c) {

@@ -105,6 +105,7 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
         if (array) array = copy(array, static_cast<std::size_t>(count));
     };
     move(view.lens.surfaces, view.lens.count);
+    view.lens.free.move_arrays(view.lens.count, move);
     move(view.keys, view.key_count);
     move(view.map.nodes, view.map.count);
     move(view.polynomial.coefficients, 2 * LensPolynomialView::kVectors * view.polynomial.terms);

@@ -43,6 +43,7 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
     const DispersionView& view = camera.dispersion;
     LensView<float> to_film = camera.lens;
     to_film.surfaces = view.film_surfaces;
+    to_film.free = view.film_free;
     for (int step = 1; step < kSharedWavelengths; ++step) {
         LensRays<float, N> back;
         Lanes<float, N> nm, variable;

@@ -24,6 +24,7 @@ struct DispersionView {
     WavelengthVariable variable;
     const IndexCubic *to_scene, *to_film;  ///< of the lens's surfaces, in the order in which light meets them
     const SurfaceView<float>* film_surfaces;  ///< of the lens, on the light's way to the film
+    FreeParts<float> film_free;               ///< and what belongs to them
 };
 
 /// Wavelengths for which samples count: one that was drawn, and others at steps from its place, see film_color.

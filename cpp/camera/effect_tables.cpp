@@ -28,13 +28,15 @@ EffectViews EffectTables::views(double film_angle) const {
     const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
     EffectViews views{};
     views.effects = effects_;
+    const LensView<float> film_path = film_path_ ? film_path_->view() : LensView<float>{};
     if (spectrum_)
         views.dispersion = {spectrum_->cells().data(),
                             static_cast<int>(spectrum_->cells().size()),
                             variable_over(spectrum_->range()),
                             data_of(to_scene_),
                             data_of(to_film_),
-                            film_path_ ? film_path_->view().surfaces : nullptr};
+                            film_path.surfaces,
+                            film_path.free};
     views.coatings = {data_of(coatings_), data_of(coatings_to_scene_), data_of(coatings_to_film_)};
     if (diffraction_) views.diffraction = diffraction_->view(film_angle);
     return views;

@@ -19,6 +19,7 @@ struct EffectViews {
         move(dispersion.to_scene, surfaces);
         move(dispersion.to_film, surfaces);
         move(dispersion.film_surfaces, surfaces);
+        dispersion.film_free.move_arrays(surfaces, move);
         move(dispersion.cells, dispersion.cell_count);
         move(coatings.one_wavelength, surfaces);
         move(coatings.to_scene, surfaces);

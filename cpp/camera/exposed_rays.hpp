@@ -43,7 +43,7 @@ REALCAM_HD inline void expose_rays(const CameraView& camera, const SampleBlock<N
 }
 
 /// generate_rays, at such times.
-template <LensKind lens_kind = LensKind::any, int N>
+template <LensKind lens_kind = LensKind::rotational, int N>
 REALCAM_HD inline void generate_exposed_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                              float (&times)[N]) {
     generate_rays<lens_kind>(camera, block, rays);

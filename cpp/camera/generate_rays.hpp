@@ -162,7 +162,7 @@ REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, co
 }
 
 /// generate_lens_rays of a camera whose pixels learn where light passes.
-template <int N, class Points>
+template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                               const LaneNumbers<N>& numbers, CameraRays<N>& rays) {
     LensRays<float, N> inside;
@@ -178,7 +178,7 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
         rays.weight[i] = pupil.weight * u.weight;
     }
     mark_sampled(block, inside, rays);
-    trace_lens(camera.lens, inside);
+    trace_lens<lens_kind>(camera.lens, inside);
     place_lens_rays(camera, inside, rays);
     for (int i = 0; i < N; ++i) {
         PixelPupil& pupil = camera.pixel_pupils.found[pixel_of(i)];
@@ -240,19 +240,19 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
                                 [&](Vec2f at, int lane) { return thick_lens_ray(camera, at, u[lane]); });
             break;
         case CameraModel::full_lens:
-            if constexpr (lens_kind == LensKind::any) {
+            if constexpr (lens_kind != LensKind::plain) {
                 if (camera.pixel_pupils.known) {
-                    generate_learning_rays(camera, block, film, u, rays);
+                    generate_learning_rays<lens_kind>(camera, block, film, u, rays);
                     break;
                 }
             }
             generate_lens_rays<lens_kind>(camera, block, film, u, rays);
             break;
         case CameraModel::polynomial_lens:
-            if constexpr (lens_kind == LensKind::any) generate_polynomial_rays(camera, block, film, u, rays);
+            if constexpr (lens_kind != LensKind::plain) generate_polynomial_rays(camera, block, film, u, rays);
             break;
         case CameraModel::full_lens_double:
-            if constexpr (lens_kind == LensKind::any && !kIsDeviceCode)
+            if constexpr (lens_kind != LensKind::plain && !kIsDeviceCode)
                 generate_lens_rays_in_double(camera, block, film, u, rays);
             break;
     }
@@ -260,7 +260,7 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
 
 /// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the
 /// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `lens_kind`: any, or the lens's own.
-template <LensKind lens_kind = LensKind::any, int N>
+template <LensKind lens_kind = LensKind::rotational, int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     generate_rays_from<lens_kind>(camera, block, PixelPoints<N>(camera, block), rays);
 }

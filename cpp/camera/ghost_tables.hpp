@@ -71,7 +71,7 @@ private:
     float film_radius_, film_index_, entry_reach_, exit_reach_;
     float largest_half_tangent_ = 0;
     Iris<float> iris_{};
-    LensKind kind_ = LensKind::any;
+    LensKind kind_ = LensKind::rotational;
 };
 
 }  // namespace REALCAM_NAMESPACE

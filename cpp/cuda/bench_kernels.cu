@@ -144,7 +144,7 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
         with_copied_arrays(setup.view(camera.pose.position_m),
                            [&](const auto* from, std::size_t count) { return arrays.copy(from, count, stream); });
     const int pixels = view.width * view.height;
-    const bool plain = view.lens.kind == LensKind::plain;
+    const LensKind kind = view.lens.kind;
     DeviceArray<unsigned long long> passed(1);
     DeviceArray<float> sink(1);
     DeviceArray<BenchRay> rays(static_cast<std::size_t>(pixels));
@@ -154,7 +154,9 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
     LensRayRates rates{};
     const double count = static_cast<double>(pixels) * kSamples;
     rates.generated = rate_of(stream, count, [&] {
-        (plain ? generate<LensKind::plain> : generate<LensKind::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
+        (kind == LensKind::plain        ? generate<LensKind::plain>
+         : kind == LensKind::rotational ? generate<LensKind::rotational>
+                                        : generate<LensKind::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
             view, kSamples, passed.data(), sink.data());
     });
     unsigned long long total = 0;
@@ -163,7 +165,9 @@ LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer trace
     rates.passed = static_cast<double>(total) / (count * kRounds);
     sample_lens_rays<<<blocks_for(pixels), kBlockSize, 0, stream>>>(view, rays.data());
     rates.traced = rate_of(stream, count, [&] {
-        (plain ? trace<LensKind::plain> : trace<LensKind::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
+        (kind == LensKind::plain        ? trace<LensKind::plain>
+         : kind == LensKind::rotational ? trace<LensKind::rotational>
+                                        : trace<LensKind::any>)<<<blocks_for(pixels), kBlockSize, 0, stream>>>(
             view, rays.data(), kSamples, passed.data(), sink.data());
     });
     return rates;

@@ -17,6 +17,9 @@ void trace_with(int ordinal, const TracePath<T>& path, std::int64_t count, const
     DeviceArrays arrays;
     TraceRequest<T> request = path.request(count, origins, directions, out);
     request.lens.surfaces = arrays.copy(request.lens.surfaces, static_cast<std::size_t>(request.lens.count), stream);
+    request.lens.free.move_arrays(request.lens.count, [&](auto*& array, int surfaces) {
+        if (array) array = arrays.copy(array, static_cast<std::size_t>(surfaces), stream);
+    });
     launch_trace(request, stream);
     stream.wait("tracing rays");
 }

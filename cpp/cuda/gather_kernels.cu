@@ -11,7 +11,7 @@ template <bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) gather_ghosts_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;
     BvhScene<SceneKind::any, true> scene{job.scene, job.bvh, 0};
-    gather_ghosts<LensKind::any, SceneKind::any, has_wavelengths, 1>(
+    gather_ghosts<LensKind::rotational, SceneKind::any, has_wavelengths, 1>(
         job.scene, job.camera, job.settings, job.ghosts, range_of(job), threadIdx.x, scene, GhostSplat{job});
     count_block(job);
 }

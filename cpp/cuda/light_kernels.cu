@@ -12,8 +12,8 @@ template <SceneKind scene_kind, bool instanced, bool has_wavelengths>
 __global__ void __launch_bounds__(kGhostBlock, 2) trace_lights_of(const __grid_constant__ GhostJob job) {
     if (is_stopped(job)) return;
     BvhScene<scene_kind, instanced> scene{job.scene, job.bvh, 0};
-    trace_lights<LensKind::any, scene_kind, has_wavelengths, 1>(job.scene, job.camera, job.ghosts, range_of(job),
-                                                                threadIdx.x, scene, GhostSplat{job});
+    trace_lights<LensKind::rotational, scene_kind, has_wavelengths, 1>(job.scene, job.camera, job.ghosts, range_of(job),
+                                                                       threadIdx.x, scene, GhostSplat{job});
     count_block(job);
 }
 

@@ -45,8 +45,7 @@ struct CompiledKernel {
 
     bool serves(const RenderJob& job) const {
         const SceneKind wanted = kind_of(job.scene, job.camera);
-        return effects == number_of(job.camera.effects) &&
-               (lens == LensKind::any || lens == lens_kind_of(job.camera)) &&
+        return effects == number_of(job.camera.effects) && lens >= lens_kind_of(job.camera) &&
                (scene == SceneKind::any || scene == wanted);
     }
 };
@@ -58,7 +57,8 @@ constexpr CompiledKernel kKernels[] = {
 #undef REALCAM_RENDER_KERNEL
 };
 
-/// The last one of each set serves any lens and any scene.
+/// A kernel serves the kinds in front of its own in their list too. The last one of each set serves any lens and any
+/// scene.
 RenderKernel kernel_for(const RenderJob& job) {
     const CompiledKernel* kernel = kKernels;
     while (!kernel->serves(job)) ++kernel;

@@ -112,7 +112,7 @@ PacketScene<scene_kind> packet_scene_of(const realcam_tile& tile, const SceneVie
             RayOrder::coherent, 0};
 }
 
-template <SceneKind scene_kind, Effects effects>
+template <LensKind lens_kind, SceneKind scene_kind, Effects effects>
 void render_tile_of(realcam_tile* tile) {
     const SceneView view = *static_cast<const SceneView*>(tile->scene_view);
     const PathSettings settings = *static_cast<const PathSettings*>(tile->path_settings);
@@ -123,7 +123,7 @@ void render_tile_of(realcam_tile* tile) {
     PacketScene<scene_kind> scene = packet_scene_of<scene_kind>(*tile, view);
     for_blocks_of(*tile, camera.width, [&](const SampleBlock<kLanes>& block, int lanes, const int* place) {
         scene.order = RayOrder::coherent;
-        render_samples<LensKind::any, scene_kind, effects>(view, camera, settings, block, scene, clock, results);
+        render_samples<lens_kind, scene_kind, effects>(view, camera, settings, block, scene, clock, results);
         for (int k = 0; k < lanes;) {
             const int pixel = place[k];
             PixelSum sum = sums[pixel];  // in registers while the samples are the same pixel's
@@ -148,12 +148,14 @@ void render_tile_of(realcam_tile* tile) {
 }
 
 template <int effects_number>
-void render_tile_with(realcam_tile* tile, SceneKind scene_kind) {
+void render_tile_with(realcam_tile* tile, LensKind lens_kind, SceneKind scene_kind) {
     constexpr Effects effects = kCompiledEffects[effects_number];
+    // Few lenses are not centred, and their code takes as long to compile.
+    if (lens_kind == LensKind::any) return render_tile_of<LensKind::any, SceneKind::any, effects>(tile);
     switch (scene_kind) {
-        case SceneKind::plain: return render_tile_of<SceneKind::plain, effects>(tile);
-        case SceneKind::opaque: return render_tile_of<SceneKind::opaque, effects>(tile);
-        case SceneKind::any: return render_tile_of<SceneKind::any, effects>(tile);
+        case SceneKind::plain: return render_tile_of<LensKind::rotational, SceneKind::plain, effects>(tile);
+        case SceneKind::opaque: return render_tile_of<LensKind::rotational, SceneKind::opaque, effects>(tile);
+        case SceneKind::any: return render_tile_of<LensKind::rotational, SceneKind::any, effects>(tile);
     }
 }
 
@@ -162,7 +164,9 @@ void render_tile(realcam_tile* tile) {
     const auto& camera = *static_cast<const CameraView*>(tile->camera_view);
     const int wanted = number_of(camera.effects);
     [&]<int... number>(std::integer_sequence<int, number...>) {
-        (void)((number == wanted && (render_tile_with<number>(tile, kind_of(scene, camera)), true)) || ...);
+        (void)((number == wanted &&
+                (render_tile_with<number>(tile, lens_kind_of(camera), kind_of(scene, camera)), true)) ||
+               ...);
     }(std::make_integer_sequence<int, std::size(kCompiledEffects)>());
 }
 
@@ -223,13 +227,13 @@ void for_ghosts_of(realcam_ghosts* job, Take&& take) {
 template <SceneKind scene_kind, bool has_wavelengths>
 void splat_ghosts_with(realcam_ghosts* job) {
     for_ghosts_of<scene_kind>(
-        job, [](auto&... with) { splat_ghosts<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
+        job, [](auto&... with) { splat_ghosts<LensKind::rotational, scene_kind, has_wavelengths, kLanes>(with...); });
 }
 
 template <SceneKind scene_kind, bool has_wavelengths>
 void trace_lights_with(realcam_ghosts* job) {
     for_ghosts_of<scene_kind>(
-        job, [](auto&... with) { trace_lights<LensKind::any, scene_kind, has_wavelengths, kLanes>(with...); });
+        job, [](auto&... with) { trace_lights<LensKind::rotational, scene_kind, has_wavelengths, kLanes>(with...); });
 }
 
 template <bool has_wavelengths>
@@ -237,8 +241,8 @@ void gather_ghosts_with(realcam_ghosts* job) {
     const PathSettings settings = *static_cast<const PathSettings*>(job->path_settings);
     for_ghosts_of<SceneKind::any>(job, [&](const auto& view, const auto& camera, const auto& ghosts, const auto& range,
                                            std::uint32_t first, auto& scene, const auto& splat) {
-        gather_ghosts<LensKind::any, SceneKind::any, has_wavelengths, kLanes>(view, camera, settings, ghosts, range,
-                                                                              first, scene, splat);
+        gather_ghosts<LensKind::rotational, SceneKind::any, has_wavelengths, kLanes>(view, camera, settings, ghosts,
+                                                                                     range, first, scene, splat);
     });
 }
 
@@ -283,10 +287,11 @@ void expose_sensor(const void* request) {
 template <class T>
 void film_points(void* request) {
     auto& points = *static_cast<FilmPointsRequest<T>*>(request);
-    if (points.lens.kind == LensKind::plain)
-        find_film_points<LensKind::plain, kLanes>(points);
-    else
-        find_film_points<LensKind::any, kLanes>(points);
+    switch (points.lens.kind) {
+        case LensKind::plain: return find_film_points<LensKind::plain, kLanes>(points);
+        case LensKind::rotational: return find_film_points<LensKind::rotational, kLanes>(points);
+        case LensKind::any: return find_film_points<LensKind::any, kLanes>(points);
+    }
 }
 
 void aim_all(const void* request) {

@@ -11,7 +11,8 @@ inline SceneKind kind_of(const SceneView& scene, const CameraView& camera) {
 
 /// What is there to be compared with stays out of the code for plain lenses.
 inline LensKind lens_kind_of(const CameraView& camera) {
-    return camera.pixel_pupils.known || camera.model == CameraModel::polynomial_lens ? LensKind::any : camera.lens.kind;
+    const bool compares = camera.pixel_pupils.known || camera.model == CameraModel::polynomial_lens;
+    return compares && camera.lens.kind == LensKind::plain ? LensKind::rotational : camera.lens.kind;
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -176,6 +176,9 @@ class Surface(_Value):
         inner_semi_diameter_mm: float = 0.0,
         type: str = "refracting",
         coating: _Coating = "unknown",
+        decentre_mm: Sequence[float] = ...,
+        tilt_deg: Sequence[float] = ...,
+        returns: bool = False,
     ) -> None: ...
     @property
     def radius_of_curvature_mm(self) -> float: ...
@@ -197,6 +200,12 @@ class Surface(_Value):
     def type(self) -> str: ...
     @property
     def coating(self) -> Coating: ...
+    @property
+    def decentre_mm(self) -> tuple[float, float, float]: ...
+    @property
+    def tilt_deg(self) -> tuple[float, float, float]: ...
+    @property
+    def returns(self) -> bool: ...
     def sag_mm(self, radius_mm: float) -> float: ...
     def replace(
         self,
@@ -210,6 +219,9 @@ class Surface(_Value):
         inner_semi_diameter_mm: float | None = None,
         type: str | None = None,
         coating: _Coating | None = None,
+        decentre_mm: Sequence[float] | None = None,
+        tilt_deg: Sequence[float] | None = None,
+        returns: bool | None = None,
     ) -> Surface: ...
 
 @final
@@ -653,6 +665,8 @@ class Lens(_Value):
     @property
     def stop_semi_diameter_mm(self) -> float: ...
     @property
+    def is_rotational(self) -> bool: ...
+    @property
     def iris_blades(self) -> int: ...
     @property
     def iris_rounding(self) -> float: ...
@@ -667,6 +681,19 @@ class Lens(_Value):
     def reversed(self, film_distance_mm: float | None = None) -> Lens: ...
     def inserted(self, index: int, surfaces: Sequence[Surface], *, gap_mm: float | None = None) -> Lens: ...
     def removed(self, first: int, last: int | None = None) -> Lens: ...
+    def with_element_tilted(
+        self,
+        first: int,
+        last: int | None = None,
+        *,
+        x_deg: float = 0.0,
+        y_deg: float = 0.0,
+        z_deg: float = 0.0,
+        decentre_x_mm: float = 0.0,
+        decentre_y_mm: float = 0.0,
+        decentre_z_mm: float = 0.0,
+        pivot_mm: float = 0.0,
+    ) -> Lens: ...
     def with_surface(
         self,
         index: int,
@@ -680,6 +707,9 @@ class Lens(_Value):
         inner_semi_diameter_mm: float | None = None,
         type: str | None = None,
         coating: _Coating | None = None,
+        decentre_mm: Sequence[float] | None = None,
+        tilt_deg: Sequence[float] | None = None,
+        returns: bool | None = None,
     ) -> Lens: ...
 
 @final

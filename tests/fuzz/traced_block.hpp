@@ -84,7 +84,7 @@ void check_surfaces(const LensPath<T>& path, LensRays<T, kRays>& rays) {
             alive += rays.status[i] == 0;
         }
         if (alive == 0) return;
-        trace_lens(LensView<T>{lens.surfaces + k, 1, LensKind::any, lens.iris}, rays, record);
+        trace_lens(LensView<T>{lens.surfaces + k, 1, LensKind::rotational, lens.iris}, rays, record);
         for (int i = 0; i < kRays; ++i) {
             if (before.status[i] != 0) continue;
             Vec3<T> o = before.origin[i];
@@ -115,7 +115,7 @@ void check_surfaces(const realcam_kernels& kernels, const LensPath<T>& path, con
         const SurfaceLaws<T> laws(step, lens.iris);
         const KernelTrace trace{0, 0, index, std::numeric_limits<double>::infinity()};
         enter(rays, trace, before);
-        trace(kernels, LensView<T>{&step, 1, LensKind::any, lens.iris}, rays, out);
+        trace(kernels, LensView<T>{&step, 1, LensKind::rotational, lens.iris}, rays, out);
         int alive = 0;
         for (int i = 0; i < kRays; ++i) {
             ended[i] |= before.status[i] != 0;  // by now too far away to be taken in

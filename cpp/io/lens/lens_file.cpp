@@ -53,15 +53,26 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
     return values;
 }
 
+SurfacePlacement read_placement(const TomlTable& table) {
+    SurfacePlacement placement;
+    const std::vector<double> decentre = table.numbers("decentre_mm", 3), tilt = table.numbers("tilt_deg", 3);
+    if (!decentre.empty()) placement.decentre = {decentre[0], decentre[1], decentre[2]};
+    if (!tilt.empty()) placement.tilt_deg = {tilt[0], tilt[1], tilt[2]};
+    placement.returns = table.flag("returns");
+    return placement;
+}
+
 Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& glasses, const LensCoatings& coatings,
                      bool is_last, bool is_zoomed) {
     Surface surface;
     surface.type = read_type(table);
     if (surface.bends_light()) {
         table.allow({"type", "radius_of_curvature_mm", "thickness_mm", "material", "clear_semi_diameter_mm",
-                     "inner_semi_diameter_mm", "conic", "aspheric_coefficients", "coating", "curvature_per_mm"});
+                     "inner_semi_diameter_mm", "conic", "aspheric_coefficients", "coating", "curvature_per_mm",
+                     "decentre_mm", "tilt_deg", "returns"});
     } else {
-        table.allow({"type", "thickness_mm", "clear_semi_diameter_mm", "inner_semi_diameter_mm"});
+        table.allow({"type", "thickness_mm", "clear_semi_diameter_mm", "inner_semi_diameter_mm", "decentre_mm",
+                     "tilt_deg", "returns"});
     }
     if (const auto radius = table.number("radius_of_curvature_mm")) {
         if (*radius == 0)
@@ -95,6 +106,7 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     if (!rim) table.fail("\"clear_semi_diameter_mm\" is missing");
     surface.clear_semi_diameter = *rim;
     surface.inner_semi_diameter = table.number("inner_semi_diameter_mm").value_or(0);
+    surface.placement = read_placement(table);
     return surface;
 }
 
@@ -162,13 +174,15 @@ void check_lens(const TomlTable& file, const toml::array& surfaces, const LensSy
 
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
     const auto distance = file.number("film_distance_mm");
-    if (distance && !(*distance > 0))
+    if (distance && !(*distance > 0) && lens.is_rotational())
         file.fail("\"film_distance_mm\" must be positive: the film lies behind the last surface",
                   file.find("film_distance_mm"));
     const bool zooms = !lens.zoom.positions.empty();
     if (!distance && zooms)
         lens.film_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].film_distance;
     if (distance) lens.film_distance = *distance;
+    if (!distance && !lens.is_rotational())
+        file.fail("\"film_distance_mm\" is missing; it is wanted because " + lens.asymmetry());
     if (!distance && !zooms) {
         lens.film_distance = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
         if (!(lens.film_distance > 0))

@@ -97,6 +97,12 @@ private:
             body_ += key("material", material(s.material));
         body_ += number("clear_semi_diameter_mm", s.clear_semi_diameter);
         if (s.inner_semi_diameter != 0) body_ += number("inner_semi_diameter_mm", s.inner_semi_diameter);
+        const auto triple = [](Vec3d v) {
+            return '[' + toml_number(v.x) + ", " + toml_number(v.y) + ", " + toml_number(v.z) + ']';
+        };
+        if (s.placement.decentre != Vec3d{0, 0, 0}) body_ += key("decentre_mm", triple(s.placement.decentre));
+        if (s.placement.tilt_deg != Vec3d{0, 0, 0}) body_ += key("tilt_deg", triple(s.placement.tilt_deg));
+        if (s.placement.returns) body_ += key("returns", "true");
         if (!s.bends_light()) return;
         if (s.conic != 0) body_ += number("conic", s.conic);
         if (!s.aspheric.empty()) {

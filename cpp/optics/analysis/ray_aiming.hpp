@@ -8,7 +8,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A lens path whose rims are changed for aiming.
+/// The path of a centred lens, with its rims changed for aiming.
 class AimingPath {
 public:
     /// Without rims, blades and central obstructions: what a ray is aimed through. Whether the real lens lets it pass
@@ -16,7 +16,9 @@ public:
     static AimingPath open(const LensPath<double>& path);
     /// The lens as it is.
     static AimingPath real(const LensPath<double>& path) { return AimingPath(path); }
-    LensView<double> view() const { return {steps_.data(), static_cast<int>(steps_.size()), LensKind::any, iris_}; }
+    LensView<double> view() const {
+        return {steps_.data(), static_cast<int>(steps_.size()), LensKind::rotational, iris_};
+    }
 
 private:
     explicit AimingPath(const LensPath<double>& path);

@@ -10,6 +10,7 @@ namespace realcam {
 PolarisedTrace::PolarisedTrace(const LensSystem& lens, LightDirection direction, double wavelength_nm,
                                int surface_count)
     : path_(lens, direction, wavelength_nm), surfaces_(coated_surfaces(lens, wavelength_nm, direction)) {
+    lens.require_rotational("transmission");
     check_wavelength_in_glasses(lens, wavelength_nm, "transmission");
     if (surface_count >= 0) surfaces_.erase(surfaces_.begin() + surface_count, surfaces_.end());
 }
@@ -28,7 +29,7 @@ RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const
     for (std::size_t i = 0; i < surfaces_.size() && ray.status[0] == 0; ++i) {
         const SurfaceView<double>& surface = all.surfaces[i];
         const Vec3d before = normalized(ray.direction[0]);
-        trace_lens(LensView<double>{&surface, 1, LensKind::any, all.iris}, ray, PathRecord<double, 1>{});
+        trace_lens(LensView<double>{&surface, 1, LensKind::rotational, all.iris}, ray, PathRecord<double, 1>{});
         if (ray.status[0] != 0 || !surfaces_[i]) continue;
         const Vec3d normal = normal_at(surface, ray.origin[0]);
         const PolarisedResponse response = surfaces_[i]->at(std::fabs(dot(before, normal)));

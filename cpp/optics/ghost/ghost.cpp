@@ -5,6 +5,7 @@
 namespace realcam {
 
 GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pair) {
+    lens.require_rotational("a ghost's first-order data");
     const int count = static_cast<int>(lens.surfaces.size());
     if (!(0 <= pair.second && pair.second < pair.first && pair.first <= count))
         throw InputError(

@@ -23,7 +23,8 @@ struct GhostPath {
 ///
 /// A paraxial ray meets the surfaces one by one; at each reflection, a mirror's too, the index changes its sign (R. H.
 /// Abd El-Maksoud and J. M. Sasian, "Paraxial ghost image analysis", Proc. SPIE 7428, 742807, 2009). Throws InputError
-/// where the two are not refracting surfaces, or the film and one of these, in that order.
+/// where the two are not refracting surfaces, or the film and one of these, in that order, and where the lens is no
+/// centred one of revolution.
 GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pair);
 
 }  // namespace REALCAM_NAMESPACE

@@ -34,6 +34,7 @@ std::vector<bool> passing(const LensPath<double>& path, double film_distance, co
 }  // namespace
 
 double axis_irradiance(LensSystem lens) {
+    lens.require_rotational("the irradiance in the middle of the film");
     lens.iris.blades = 0;
     const LensPath<double> path(lens, LightDirection::to_scene, lens.wavelength_nm);
     const Surface& last = lens.surfaces.back();

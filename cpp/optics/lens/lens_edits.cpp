@@ -51,6 +51,7 @@ LensSystem scaled(const LensSystem& lens, double factor) {
             s.thickness *= factor;
             s.clear_semi_diameter *= factor;
             s.inner_semi_diameter *= factor;
+            s.placement.decentre = factor * s.placement.decentre;
             double power = factor * factor * factor;
             for (double& a : s.aspheric) {
                 a /= power;
@@ -65,6 +66,7 @@ LensSystem scaled(const LensSystem& lens, double factor) {
 }
 
 LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance) {
+    lens.require_rotational("turning a lens round");
     const std::size_t n = lens.surfaces.size();
     if (!medium_before(lens, n).is_air())
         throw LensFileError("the lens cannot be turned round: what lies behind its last surface is not air");
@@ -125,6 +127,11 @@ LensSystem removed(const LensSystem& lens, int first, int last) {
     const int n = static_cast<int>(lens.surfaces.size()), count = last - first + 1;
     if (count < 1) throw InputError("surfaces are removed from a first to a last one, which does not come before it");
     if (count == n) throw InputError("all surfaces would be removed");
+    for (int i = first; i <= last; ++i)
+        if (const SurfacePlacement& of = lens.surfaces[static_cast<std::size_t>(i)].placement;
+            !of.returns && !of.is_in_place())
+            throw InputError("surface " + std::to_string(i + 1) +
+                             " cannot be removed: its placement moves all that follow");
     return lens_edits_detail::edited_in_all_states(lens, [&](LensSystem l) {
         double length = 0;
         for (int i = first; i <= last && i + 1 < n; ++i) length += l.surfaces[static_cast<std::size_t>(i)].thickness;

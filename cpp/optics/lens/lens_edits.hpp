@@ -36,7 +36,8 @@ LensSystem with_film(LensSystem lens, double width, double height);
 LensSystem scaled(const LensSystem& lens, double factor);
 
 /// The lens turned round, its last surface towards the scene, and focused at infinity: the film is where infinity is
-/// sharpest, or `film_distance` behind the last vertex. Throws LensFileError where infinity has no real image there and
+/// sharpest, or `film_distance` behind the last vertex. Throws InputError for lenses that are not centred ones of
+/// revolution, and LensFileError where infinity has no real image there and
 /// no distance is given, and where the medium at the film is not air.
 LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance = {});
 
@@ -48,7 +49,8 @@ LensSystem inserted(const LensSystem& lens, int index, const std::vector<Surface
                     std::optional<double> gap = {});
 
 /// The lens without surfaces `first` to `last`, counted from 0; those that stay do so in their places, and the film
-/// too. Throws InputError where there are no such surfaces, and LensFileError where the lens cannot be built.
+/// too. Throws InputError where there are no such surfaces, or where one of them moves those behind it, and
+/// LensFileError where the lens cannot be built.
 LensSystem removed(const LensSystem& lens, int first, int last);
 
 }  // namespace REALCAM_NAMESPACE

@@ -12,6 +12,7 @@ double sum_or_zero(double a, double b) {
 }
 
 ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, ParaxialRay ray, int first, int last) {
+    lens.require_rotational("first-order data");
     const std::vector<double> index = lens.indices(wavelength_nm);
     double sign = 1;
     for (int i = 0; i < last; ++i) {

@@ -22,7 +22,7 @@ inline ParaxialRay refract_paraxial(ParaxialRay ray, double curvature, double be
 }
 
 /// Traces a paraxial ray over the surfaces [first, last) in the direction of the light, from the vertex of the first
-/// to the vertex of the last one.
+/// to the vertex of the last one. Throws InputError where the lens is no centred one of revolution.
 ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, ParaxialRay ray, int first, int last);
 
 /// First-order data at one wavelength. Positions in the lens frame (from the front vertex), mm.
@@ -40,6 +40,7 @@ struct FirstOrder {
     bool is_afocal() const { return std::isinf(effective_focal_length); }
 };
 
+/// Throws InputError where the lens is no centred one of revolution.
 FirstOrder first_order(const LensSystem& lens, double wavelength_nm);
 
 /// Last vertex to the paraxial image of an axial point `object_distance` mm in front of the front vertex.

@@ -92,7 +92,18 @@ std::vector<FaceCrossing> find_crossings(const LensSystem& lens, std::size_t mos
     bool glass = false;
     for (std::size_t i = 0; i < lens.surfaces.size() && crossings.size() < most; ++i) {
         const Surface& surface = lens.surfaces[i];
-        if (!surface.bends_light()) continue;
+        const bool is_moved = !surface.placement.is_in_place(), alone = is_moved && surface.placement.returns;
+        if (is_moved && !alone) {
+            append_crossings(lens, run, in_glass, direction, most, crossings);
+            run.clear();
+            in_glass.clear();
+        }
+        if (surface.bends_light() && alone) {
+            if (surface.type == SurfaceType::mirror) direction = -direction;
+            if (surface.type == SurfaceType::refracting) glass = !surface.material.is_air();
+            if (!in_glass.empty()) in_glass.back() = false;
+        }
+        if (!surface.bends_light() || alone) continue;
         if (surface.type == SurfaceType::refracting) glass = !surface.material.is_air();
         run.push_back({static_cast<int>(i), z[i]});
         in_glass.push_back(glass);

@@ -18,14 +18,15 @@ struct FaceCrossing {
 /// Pairs of refracting or reflecting faces that cross inside their clear apertures, whether or not they are neighbours.
 /// The two faces of an element must not cross anywhere up to the larger of its two rims, because the smaller face is
 /// edged flat unless it is hollow. Stops and apertures are planes of no substance, and may cross a face: a stop may be
-/// given at the vertex of one. In the order of the light, and no more than `most`.
+/// given at the vertex of one. Faces are compared with those that share their axis: not across a tilt or a decentre. In
+/// the order of the light, and no more than `most`.
 std::vector<FaceCrossing> find_crossings(const LensSystem& lens,
                                          std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// The first of them.
 std::optional<FaceCrossing> find_crossing(const LensSystem& lens);
 
-/// Whether the film lies in front of the rim of the last face, as far as its corners reach.
+/// Of a centred lens: whether the film lies in front of the rim of the last face, as far as its corners reach.
 bool film_crosses_lens(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

@@ -51,7 +51,7 @@ void check_rim(const Surface& s, std::size_t i) {
     }
 }
 
-/// `direction`: of the light behind the surface, 1 or -1.
+/// `direction`: of the light behind the surface, 1 or -1; 0: not known, because surfaces are tilted.
 void check_thickness(const Surface& s, std::size_t i, double direction) {
     if (!std::isfinite(s.thickness)) fail(i, "the thickness is not a finite number");
     if (std::fabs(s.thickness) > kLongest) fail(i, "the thickness is more than 1e9 mm");
@@ -59,6 +59,14 @@ void check_thickness(const Surface& s, std::size_t i, double direction) {
         fail(i, direction > 0
                     ? "the thickness is negative; light travels to the film here, so 0 or more is wanted"
                     : "the thickness is positive; light travels back behind a mirror, so 0 or less is wanted");
+}
+
+void check_placement(const Surface& s, std::size_t i) {
+    const auto& [decentre, tilt, returns] = s.placement;
+    if (!(std::fabs(decentre.x) <= kLongest && std::fabs(decentre.y) <= kLongest && std::fabs(decentre.z) <= kLongest))
+        fail(i, "the decentre must be three lengths of at most 1e9 mm");
+    if (!(std::fabs(tilt.x) <= 360 && std::fabs(tilt.y) <= 360 && std::fabs(tilt.z) <= 360))
+        fail(i, "the tilt must be three angles between -360 and 360 degrees");
 }
 
 void check_material(const Surface& s, std::size_t i, double design_wavelength_nm) {
@@ -104,18 +112,20 @@ void check_surfaces(const LensSystem& lens) {
         throw LensFileError("the lens has " + std::to_string(lens.surfaces.size()) + " surfaces; at most " +
                             std::to_string(kMaxSurfaces) + " are supported");
     double direction = 1;
+    const bool is_rotational = lens.is_rotational();
     std::size_t last_mirror = 0;
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         const Surface& s = lens.surfaces[i];
         if (s.type == SurfaceType::mirror) direction = -direction, last_mirror = i;
         check_figure(s, i);
         check_rim(s, i);
-        check_thickness(s, i, direction);
+        check_thickness(s, i, is_rotational ? direction : 0);
+        check_placement(s, i);
         check_material(s, i, lens.wavelength_nm);
         check_surface_coating(s, i);
     }
     check_stop(lens);
-    if (direction < 0)
+    if (is_rotational && direction < 0)
         fail(last_mirror, "the lens has an odd number of mirrors, so its light never reaches a film behind it");
     if (lens.allow_crossing) return;
     if (const auto crossing = find_crossing(lens))
@@ -185,6 +195,10 @@ void validate(const LensSystem& lens) {
 }
 
 std::string film_distance_error(const LensSystem& lens) {
+    if (!lens.is_rotational()) {
+        const double away = std::fabs(lens.film_distance);
+        return away > 0 && away <= kLongest ? "" : "the film must lie away from the last surface, at most 1e9 mm";
+    }
     if (!(lens.film_distance > 0) || !(lens.film_distance <= kLongest))
         return "the film must lie behind the last surface of the lens, at most 1e9 mm away";
     if (!lens.allow_crossing && film_crosses_lens(lens))

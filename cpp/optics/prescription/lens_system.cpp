@@ -10,6 +10,18 @@ int LensSystem::stop_index() const {
     return -1;
 }
 
+std::string LensSystem::asymmetry() const {
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+        if (const std::string why = surfaces[i].asymmetry(); !why.empty())
+            return "surface " + std::to_string(i + 1) + ' ' + why;
+    return "";
+}
+
+void LensSystem::require_rotational(const std::string& what) const {
+    if (const std::string why = asymmetry(); !why.empty())
+        throw InputError(what + " needs a centred lens of revolution; " + why);
+}
+
 std::vector<double> LensSystem::vertices() const {
     std::vector<double> z(surfaces.size(), 0.0);
     for (std::size_t i = 1; i < surfaces.size(); ++i) z[i] = z[i - 1] + surfaces[i - 1].thickness;

@@ -56,7 +56,15 @@ struct LensSystem {
     const Surface& stop() const { return surfaces[static_cast<std::size_t>(stop_index())]; }
     bool is_wide_open() const { return stop_semi_diameter >= stop().clear_semi_diameter; }
 
-    /// z of each vertex.
+    /// Why this is no centred lens of revolution, by the first surface that makes it another: "surface 3 is tilted".
+    /// Empty: it is one.
+    std::string asymmetry() const;
+    bool is_rotational() const { return asymmetry().empty(); }
+    /// For what only a centred lens of revolution has. Throws InputError for others: "`what` needs a centred lens of
+    /// revolution; surface 3 is tilted".
+    void require_rotational(const std::string& what) const;
+
+    /// z of each vertex, along the axis: of lenses that are not centred, as if their surfaces were not moved.
     std::vector<double> vertices() const;
     double last_vertex() const;
     double film_position() const { return last_vertex() + film_distance; }

@@ -5,6 +5,12 @@
 
 namespace realcam {
 
+std::string Surface::asymmetry() const {
+    if (placement.tilt_deg != Vec3d{0, 0, 0}) return "is tilted";
+    if (placement.decentre != Vec3d{0, 0, 0}) return "is decentred";
+    return "";
+}
+
 double Surface::sag(double radius) const {
     const double r2 = radius * radius;
     double polynomial = 0;

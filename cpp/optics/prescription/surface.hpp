@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "coating.hpp"
+#include "surface_placement.hpp"
 
 namespace REALCAM_NAMESPACE {
 
@@ -24,6 +25,7 @@ struct Surface {
     double clear_semi_diameter = 0;
     double inner_semi_diameter = 0;  ///< light closer to the axis is blocked; 0: none
     Coating coating;
+    SurfacePlacement placement;
 
     bool operator==(const Surface&) const = default;
 
@@ -31,6 +33,9 @@ struct Surface {
     bool is_asphere() const {
         return std::any_of(aspheric.begin(), aspheric.end(), [](double a) { return a != 0; });
     }
+
+    /// What keeps a lens with this surface from being a centred one of revolution: "is tilted". Empty: nothing.
+    std::string asymmetry() const;
 
     /// Height of the surface over its vertex plane at a radial distance, mm; NaN past the edge of the conic.
     double sag(double radius) const;

@@ -11,6 +11,7 @@ namespace realcam {
 
 Pupil::Pupil(const LensSystem& lens, double film_radius, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
     : search_(lens, std::move(tracer), wavelengths_nm), image_radius_(film_radius * (1 + 1e-6)) {
+    lens.require_rotational("the search for a pupil");
     if (!(film_radius > 0) || !(film_radius <= kLongest))
         throw InputError("the film's radius must be a positive length, of at most 1e9 mm");
     find_nodes();

@@ -1,34 +1,45 @@
 #pragma once
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "../prescription/crossing.hpp"
-#include "../prescription/lens_system.hpp"
+#include "../prescription/surface_frames.hpp"
 #include "asphere_start.hpp"
 #include "lens_trace.hpp"
 #include "open_iris.hpp"
+#include "path_frames.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 enum class LightDirection { to_film, to_scene };
 
+/// Frames in which rays enter a path and leave it, where these are not the lens frame: as seen from that.
+struct PathEnds {
+    std::optional<Affine<double>> entry, exit;
+};
+
 /// The surfaces of a lens in the order in which light of one wavelength meets them. Owns the memory of its view.
 template <class T>
 class LensPath {
 public:
-    LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm)
-        : LensPath(lens, crossings_of(lens), direction, wavelength_nm) {}
+    LensPath(const LensSystem& lens, LightDirection direction, double wavelength_nm, const PathEnds& ends = {})
+        : LensPath(lens, crossings_of(lens), direction, wavelength_nm, ends) {}
 
-    /// The path of light that takes this way to the film, or the same way back to the scene.
-    LensPath(const LensSystem& lens, const std::vector<Crossing>& way, LightDirection direction, double wavelength_nm)
+    /// The path of light that takes this way to the film, or the same way back to the scene. Rays are relative to
+    /// `entry_position` and `exit_position` on the z axis of the lens frame, or to the origins of `ends`.
+    LensPath(const LensSystem& lens, const std::vector<Crossing>& way, LightDirection direction, double wavelength_nm,
+             const PathEnds& ends = {})
         : iris_(iris_of(lens)) {
         const std::vector<double> n = lens.indices(wavelength_nm);
         const std::vector<double> z = lens.vertices();
         const auto vertex = [&](std::size_t crossing) { return z[static_cast<std::size_t>(way[crossing].surface)]; };
         const bool to_film = direction == LightDirection::to_film;
-        double direction_sign = 1;  // of light on its way to the film
+        const bool is_centred = !path_frames_detail::has_placements(lens) && !ends.entry && !ends.exit;
+        double direction_sign = 1;  // of light on its way to the film, along the z axis of the surface's frame
         for (std::size_t m = 0; m < way.size(); ++m) {
             const Surface& surface = lens.surfaces[static_cast<std::size_t>(way[m].surface)];
+            if (!is_centred) direction_sign *= path_frames_detail::turn_before(lens, way, m);
             const bool turns = way[m].is_reflected || surface.type == SurfaceType::mirror;
             const double sign_behind = turns ? -direction_sign : direction_sign;
             const double before = way[m].index_before(n), behind = way[m].index_behind(n);
@@ -51,13 +62,12 @@ public:
         entry_reach = 16 * (to_film ? lens.surfaces.front() : lens.surfaces.back()).clear_semi_diameter;
         entry_position = to_film ? z.front() : z.back();
         exit_position = to_film ? z.back() : z.front();
+        if (!is_centred) set_frames(lens, ends);
     }
 
     LensView<T> view() const {
-        const bool plain = std::all_of(views_.begin(), views_.end(), [](const SurfaceView<T>& view) {
-            return view.kind == SurfaceShape::sphere && view.hole_squared < T(0) && !view.has_blades;
-        });
-        return {views_.data(), static_cast<int>(views_.size()), plain ? LensKind::plain : LensKind::any, iris_};
+        const FreeParts<T> free{frames_.empty() ? nullptr : frames_.data()};
+        return {views_.data(), static_cast<int>(views_.size()), kind(), iris_, free};
     }
 
     double entry_index = 1;  ///< of the medium from which rays enter: what their unit directions are multiplied by
@@ -66,6 +76,43 @@ public:
     double exit_position = 0;  ///< the same for leaving rays
 
 private:
+    LensKind kind() const {
+        if (!frames_.empty()) return LensKind::any;
+        const bool plain = std::all_of(views_.begin(), views_.end(), [](const SurfaceView<T>& view) {
+            return view.kind == SurfaceShape::sphere && view.hole_squared < T(0) && !view.has_blades;
+        });
+        return plain ? LensKind::plain : LensKind::rotational;
+    }
+
+    /// The frames in which rays meet the surfaces. Where the axis goes on, the shift of a centred lens says it all.
+    void set_frames(const LensSystem& lens, const PathEnds& ends) {
+        const SurfaceFrames frames = surface_frames(lens);
+        const std::vector<double> z = lens.vertices();
+        const auto frame = [&](std::size_t k) {
+            return frames.surfaces[static_cast<std::size_t>(views_[k].surface_index)];
+        };
+        const auto on_axis = [](double position) { return Affine<double>{.origin = {0, 0, position}}; };
+        if (ends.entry) entry_position = 0;
+        if (ends.exit) exit_position = 0;
+        for (std::size_t k = 0; k < views_.size(); ++k) {
+            FrameChanges<T>& changes = frames_.emplace_back();
+            const Affine<double> before =
+                k == 0 ? inverse_motion(ends.entry.value_or(on_axis(entry_position))) * frame(k)
+                       : path_frames_detail::neighbour(lens, views_[k - 1].surface_index, views_[k].surface_index);
+            if (!(before == on_axis(k == 0 ? 0.0 : before.origin.z))) {
+                changes.before = path_frames_detail::change_to<T>(before);
+                views_[k].shift = 0;
+            } else {
+                views_[k].shift = static_cast<T>(before.origin.z);
+            }
+            const double last = z[static_cast<std::size_t>(views_[k].surface_index)];
+            const Affine<double> out = inverse_motion(frame(k)) * ends.exit.value_or(on_axis(last));
+            if (!(out == Affine<double>{})) changes.out = path_frames_detail::change_to<T>(out);
+        }
+        const auto is_used = [](const FrameChanges<T>& changes) { return changes.before.changes != 0; };
+        if (std::none_of(frames_.begin(), frames_.end(), is_used) && !frames_.back().out.changes) frames_.clear();
+    }
+
     static SurfaceView<T> shape_of(const Surface& surface) {
         SurfaceView<T> view{};
         view.kind = surface.is_asphere() ? SurfaceShape::asphere
@@ -136,6 +183,7 @@ private:
     }
 
     std::vector<SurfaceView<T>> views_;
+    std::vector<FrameChanges<T>> frames_;  ///< empty: centred
     Iris<T> iris_;
 };
 

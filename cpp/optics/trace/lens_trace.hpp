@@ -95,8 +95,8 @@ REALCAM_HD inline void cross_conic(const SurfaceView<T>& surface, const Boundary
         SurfaceHit<T> hit =
             intersect_conic(o + approach * p, p, surface.curvature, surface.conic_factor, surface.direction_sign_in);
         hit.parameter += approach;
-        cross_surface<LensKind::any>(surface, boundary, rays, record, i, o, p, hit,
-                                     static_cast<int>(RayStatus::missed));
+        cross_surface<LensKind::rotational>(surface, boundary, rays, record, i, o, p, hit,
+                                            static_cast<int>(RayStatus::missed));
     }
 }
 
@@ -228,7 +228,7 @@ REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Bounda
         // Without a bracket the slack is NaN.
         const int failure = select(hits.slack[i] < T(0), static_cast<int>(RayStatus::no_convergence),
                                    static_cast<int>(RayStatus::missed));
-        cross_surface<LensKind::any>(surface, boundary, rays, record, i, o, p, hit, failure);
+        cross_surface<LensKind::rotational>(surface, boundary, rays, record, i, o, p, hit, failure);
     }
 }
 
@@ -257,18 +257,35 @@ REALCAM_HD inline void cross_iris(const Iris<T>& iris, LensRays<T, N>& rays) {
     }
 }
 
+template <class T, int N>
+REALCAM_HD inline void change_frame(const FrameChange<T>& change, LensRays<T, N>& rays) {
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        rays.origin.set(i, change.point(rays.origin[i]));
+        rays.direction.set(i, change.direction(rays.direction[i]));
+    }
+}
+
 /// Traces N rays through a lens, surface by surface.
 ///
 /// Origins are given relative to the vertex of the first surface that the light meets, and returned relative to the
-/// vertex of the last one. Directions are optical ones in the lens frame, before and after (LensPath::entry_index).
+/// vertex of the last one. Directions are optical ones in the lens frame, before and after (LensPath::entry_index). For
+/// lenses that are not centred, and for other frames, see LensPath.
 /// Rays whose status is not ok on entry are left alone. Nothing here branches on a lane, so the compiler turns the
-/// loops into vector code. `lens_kind`: any, or the lens's own. `media`: OneWavelength, ManyWavelengths or CoatedMedia.
-template <LensKind lens_kind = LensKind::any, class T, int N, class Record = NoRecord, class Media = OneWavelength>
+/// loops into vector code. `lens_kind`: the lens's own, or one behind that in the list. `media`: OneWavelength,
+/// ManyWavelengths or CoatedMedia.
+template <LensKind lens_kind, class T, int N, class Record = NoRecord, class Media = OneWavelength>
 REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
                                   const Media& media = {}) {
     for (int k = 0; k < lens.count; ++k) {
         const SurfaceView<T> surface = lens.surfaces[k];  // a copy: lane stores cannot alias it
         const auto boundary = media.at(surface, k);
+        if constexpr (lens_kind == LensKind::any) {
+            if (lens.free.frames && lens.free.frames[k].before.changes) {
+                const FrameChange<T> before = lens.free.frames[k].before;
+                change_frame(before, rays);
+            }
+        }
         if (lens_kind == LensKind::plain) {
             cross_sphere<lens_kind>(surface, boundary, rays, record);
         } else {
@@ -283,6 +300,22 @@ REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays,
         if constexpr (N == 1 && !std::remove_reference_t<Record>::enabled)
             if (rays.status[0] != 0) return;
     }
+    if constexpr (lens_kind == LensKind::any) {
+        if (lens.free.frames && lens.count > 0 && lens.free.frames[lens.count - 1].out.changes) {
+            const FrameChange<T> out = lens.free.frames[lens.count - 1].out;
+            change_frame(out, rays);
+        }
+    }
+}
+
+/// The same for a lens whose kind is not known where this is compiled.
+template <class T, int N, class Record = NoRecord, class Media = OneWavelength>
+REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays, Record&& record = {},
+                                  const Media& media = {}) {
+    if (lens.kind == LensKind::any)
+        trace_lens<LensKind::any>(lens, rays, record, media);
+    else
+        trace_lens<LensKind::rotational>(lens, rays, record, media);
 }
 
 }  // namespace REALCAM_NAMESPACE

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "../../platform.hpp"
+#include "../../math/vec3.hpp"
 #include "../prescription/lens_limits.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -52,10 +52,44 @@ struct Iris {
     T cos[kMaxIrisBlades], sin[kMaxIrisBlades];
 };
 
+/// A rigid change of frame.
+template <class T>
+struct alignas(16) FrameChange {
+    Vec3<T> origin;  ///< of the new frame, in the old one
+    Vec3<T> x, y, z;  ///< its axes
+    std::int32_t changes;  ///< 0: both frames are the same
+
+    REALCAM_INLINE Vec3<T> direction(Vec3<T> d) const { return {dot(x, d), dot(y, d), dot(z, d)}; }
+    REALCAM_INLINE Vec3<T> point(Vec3<T> p) const { return direction(p - origin); }
+};
+
+/// Of a surface of a lens that is not centred.
+template <class T>
+struct FrameChanges {
+    FrameChange<T> before;  ///< from the frame of the surface before, or of the rays that enter; then its shift is 0
+    FrameChange<T> out;  ///< from the surface's frame to that in which rays leave, if it is the last
+};
+
+/// What makes a lens one of kind `any`: arrays of a member for each surface, or null.
+template <class T>
+struct FreeParts {
+    const FrameChanges<T>* frames = nullptr;
+
+    /// Those from surface `first` on.
+    REALCAM_INLINE FreeParts from(int first) const { return {frames ? frames + first : nullptr}; }
+
+    /// move(array, count) for every array.
+    template <class Move>
+    void move_arrays(int surfaces, Move&& move) {
+        move(frames, surfaces);
+    }
+};
+
 /// What a lens consists of. Code for plain ones alone needs fewer registers and instructions, of which a GPU has few.
 enum class LensKind : int {
     plain,  ///< spheres and planes, open up to their rims, and a stop without blades
-    any,
+    rotational,  ///< a centred lens of revolution
+    any,  ///< surfaces may be tilted and decentred
 };
 
 /// A lens in one state of focus and stop, at one wavelength and in one direction of the light.
@@ -66,6 +100,7 @@ struct LensView {
     int count;
     LensKind kind;
     Iris<T> iris;
+    FreeParts<T> free = {};  ///< read only where the kind is `any`
 };
 
 }  // namespace REALCAM_NAMESPACE

@@ -43,8 +43,8 @@ REALCAM_HD inline void trace_rays_of(const TraceRequest<T>& request, std::int64_
         double* o = request.out_origins + 3 * (first + k);
         double* d = request.out_directions + 3 * (first + k);
         const bool bad = rays.status[k] == static_cast<int>(RayStatus::bad_input);
-        o[0] = rays.origin.x[k], o[1] = rays.origin.y[k];
-        o[2] = bad ? 0.0 : static_cast<double>(rays.origin.z[k]) + request.exit_position;
+        const Vec3d at = static_cast<Vec3d>(rays.origin[k]);
+        o[0] = bad ? 0.0 : at.x, o[1] = bad ? 0.0 : at.y, o[2] = bad ? 0.0 : at.z + request.exit_position;
         const Vec3d optical = static_cast<Vec3d>(rays.direction[k]);
         const double size = length(optical), unit = size > 0 ? 1 / size : 0.0;
         d[0] = unit * optical.x, d[1] = unit * optical.y, d[2] = unit * optical.z;

@@ -228,7 +228,7 @@ TEST_CASE("a guess that is a root to the last digit, but in the wrong direction,
     ray.origin.set(0, o);
     ray.direction.set(0, p);
     ray.status[0] = 0;
-    trace_lens(LensView<float>{&step, 1, LensKind::any, {}}, ray, PathRecord<float, 1>{});
+    trace_lens(LensView<float>{&step, 1, LensKind::rotational, {}}, ray, PathRecord<float, 1>{});
     const Vec3f at = ray.origin[0];
     CHECK(ray.status[0] != static_cast<int>(RayStatus::no_convergence));
     CHECK(std::fabs(at.z - asphere_sag(step, at.x * at.x + at.y * at.y).height) < 1e-3f);
@@ -252,7 +252,7 @@ TEST_CASE("a sphere and a polynomial that nearly cancel leave roundings that the
     for (const realcam_kernels* kernels : available_kernels()) {
         double at[3], towards[3], path;
         int status, surface;
-        const TraceRequest<float> request{{&step, 1, LensKind::any, {}},
+        const TraceRequest<float> request{{&step, 1, LensKind::rotational, {}},
                                           0,
                                           0,
                                           index,

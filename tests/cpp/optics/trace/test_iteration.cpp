@@ -54,7 +54,7 @@ struct Steps {
         ray.status[0] = 0;
         SurfaceView<T> alone = step;
         alone.shift = 0;
-        trace_lens(LensView<T>{&alone, 1, LensKind::any, {}}, ray, PathRecord<T, 1>{});
+        trace_lens(LensView<T>{&alone, 1, LensKind::rotational, {}}, ray, PathRecord<T, 1>{});
         worst = std::max(worst, end.steps);
         unfound += static_cast<int>(!end.found);
         unfound_but_passed += static_cast<int>(!end.found && ray.status[0] == 0);
@@ -80,7 +80,7 @@ Steps steps_in_lens(const LensSystem& lens) {
             Vec3<T> o = ray.origin[0];
             o.z -= step.shift;
             if (step.kind == SurfaceShape::asphere) steps.take(step, o, ray.direction[0]);
-            trace_lens(LensView<T>{&step, 1, LensKind::any, {}}, ray, PathRecord<T, 1>{});
+            trace_lens(LensView<T>{&step, 1, LensKind::rotational, {}}, ray, PathRecord<T, 1>{});
         }
     }
     return steps;

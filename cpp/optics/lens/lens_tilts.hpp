@@ -1,0 +1,13 @@
+#pragma once
+#include "../prescription/lens_checks.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The lens with surfaces `first` to `last`, counted from 0, moved together as one rigid piece; all others and the film
+/// stay in their places. The placement is seen from the axis in front of the first surface, and turns the piece about
+/// the point that lies `pivot` mm behind that surface's vertex on it. Throws InputError where there are no such
+/// surfaces, and LensFileError where the lens cannot be built.
+LensSystem with_element_tilted(const LensSystem& lens, int first, int last, const SurfacePlacement& placement,
+                               double pivot = 0);
+
+}  // namespace REALCAM_NAMESPACE
