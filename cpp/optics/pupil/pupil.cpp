@@ -93,7 +93,13 @@ PupilNode Pupil::node_at(double position) const {
 
 std::vector<PupilOutline> Pupil::outlines_at(const std::vector<double>& positions) const {
     std::vector<OutlineLook> looks;
-    for (const double position : positions) looks.push_back({radius_at(position), node_at(position)});
+    for (const double position : positions) {
+        const PupilNode box = node_at(position);
+        looks.push_back({{radius_at(position), 0},
+                         {static_cast<double>(box.centre), 0},
+                         static_cast<double>(box.half_width),
+                         static_cast<double>(box.half_height)});
+    }
     return OutlineSearch::find(search_.lens(), looks);
 }
 

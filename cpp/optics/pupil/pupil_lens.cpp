@@ -10,8 +10,9 @@
 
 namespace realcam {
 
-void PupilRays::set(int lane, double from_radius, PupilDirection d) {
-    radius[lane] = from_radius;
+void PupilRays::set(int lane, Vec2<double> film, PupilDirection d) {
+    x[lane] = film.x;
+    y[lane] = film.y;
     l[lane] = d.l;
     m[lane] = d.m;
 }
@@ -62,6 +63,21 @@ PupilBox PupilLens::box_of_last_surface(double radius) const {
     return box.grown(0.02);
 }
 
+DirectionBox PupilLens::box_of_last_surface(Vec2<double> film) const {
+    const Surface& last = lens_.surfaces.back();
+    DirectionBox box = DirectionBox::none();
+    for (int ring = 0; ring <= 8; ++ring) {
+        const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r) - lens_.film_distance;
+        for (int spoke = 0; spoke < 32; ++spoke) {
+            const double angle = std::numbers::pi * spoke / 16;
+            const Vec3d d =
+                path_.entry_index * normalized(Vec3d{r * std::cos(angle) - film.x, r * std::sin(angle) - film.y, z});
+            box = box.with({d.x, d.y});
+        }
+    }
+    return box.grown(0.02);
+}
+
 LensSystem PupilLens::round_iris(LensSystem lens) {
     const double rim = lens.stop().clear_semi_diameter;
     if (lens.iris.blades > 0 && !lens.is_wide_open()) {
@@ -80,7 +96,7 @@ void PupilLens::trace(const LensView<float>& view, const PupilRays& from, PupilT
     REALCAM_LANES
     for (int i = 0; i < kBlock; ++i) {
         const double l = from.l[i], m = from.m[i], squared = n2 - l * l - m * m;
-        rays.origin.set(i, {static_cast<float>(from.radius[i]), 0, z});
+        rays.origin.set(i, {static_cast<float>(from.x[i]), static_cast<float>(from.y[i]), z});
         rays.direction.set(i,
                            {static_cast<float>(l), static_cast<float>(m), -static_cast<float>(sqrt_or_zero(squared))});
         rays.status[i] = squared > 0 ? 0 : static_cast<int>(RayStatus::missed);

@@ -3,19 +3,21 @@
 #include <vector>
 
 #include "../trace/lens_path.hpp"
-#include "pupil_box.hpp"
+#include "direction_box.hpp"
 #include "pupil_tracer.hpp"
 
 namespace REALCAM_NAMESPACE {
 
-/// A block of rays from film points on the +x axis.
+/// A block of rays from film points.
 struct PupilRays {
     static constexpr int kBlock = PupilTracer::kBlock;
 
-    double radius[kBlock];  ///< of the film point, mm
+    double x[kBlock], y[kBlock];  ///< of the film point, mm
     double l[kBlock], m[kBlock];
 
-    void set(int lane, double from_radius, PupilDirection d);
+    void set(int lane, Vec2<double> film, PupilDirection d);
+    /// From a film point on the +x axis.
+    void set(int lane, double radius, PupilDirection d) { set(lane, Vec2<double>{radius, 0}, d); }
 };
 
 /// A lens as the search for its pupil sees it, and what traces rays through it.
@@ -49,6 +51,8 @@ public:
 
     /// Box of the directions from a film point to the last surface's clear aperture.
     PupilBox box_of_last_surface(double radius) const;
+    /// The same of any film point.
+    DirectionBox box_of_last_surface(Vec2<double> film) const;
 
 private:
     /// Blades are ignored here and reject rays later; the circle around their opening holds all that pass.

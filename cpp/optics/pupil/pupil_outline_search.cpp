@@ -21,10 +21,9 @@ OutlineSearch::OutlineSearch(const std::vector<OutlineLook>& looks, int first, i
         const int spoke = first + std::min(i, count - 1);
         const OutlineLook& look = looks[static_cast<std::size_t>(spoke / kSpokes)];
         const PupilDirection unit = PupilOutline::direction(spoke % kSpokes);
-        rays_.radius[i] = look.radius;
-        centre_[i] = static_cast<double>(look.box.centre);
-        l_[i] = static_cast<double>(look.box.half_width) * unit.l;
-        m_[i] = static_cast<double>(look.box.half_height) * unit.m;
+        rays_.set(i, look.film, look.centre);
+        centre_[i] = look.centre;
+        unit_[i] = {look.half_width * unit.l, look.half_height * unit.m};
     }
 }
 
@@ -68,8 +67,8 @@ void OutlineSearch::halve(const PupilLens& lens, double (&open)[kBlock], double 
 void OutlineSearch::trace(const PupilLens& lens) {
     REALCAM_LANES
     for (int i = 0; i < kBlock; ++i) {
-        rays_.l[i] = centre_[i] + reach_[i] * l_[i];
-        rays_.m[i] = reach_[i] * m_[i];
+        rays_.l[i] = centre_[i].l + reach_[i] * unit_[i].l;
+        rays_.m[i] = centre_[i].m + reach_[i] * unit_[i].m;
     }
     lens.trace(rays_, passes_);
 }

@@ -6,13 +6,15 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A film radius at which an outline is looked for, and the box about whose middle it lies.
+/// A film point whose outline is looked for, and the box about whose middle it lies. The outline is that of the half
+/// above the middle, or below, where half_height is negative.
 struct OutlineLook {
-    double radius;
-    PupilNode box;
+    Vec2<double> film;  ///< mm
+    PupilDirection centre;
+    double half_width, half_height;
 };
 
-/// The outlines at some film radii. Each ray of a block has an azimuth of its own, of whichever of the looks.
+/// The outlines at some film points. Each ray of a block has an azimuth of its own, of whichever of the looks.
 class OutlineSearch {
 public:
     /// For `looks` looks.
@@ -41,7 +43,7 @@ private:
 
     int first_, count_;
     PupilRays rays_;
-    double centre_[kBlock], l_[kBlock], m_[kBlock];
+    PupilDirection centre_[kBlock], unit_[kBlock];
     double reach_[kBlock], outer_[kBlock], inner_[kBlock];
     bool passes_[kBlock];
 };

@@ -103,23 +103,32 @@ REALCAM_INLINE PupilSample sample_pupil(const PupilView& pupil, float film_x, fl
     return {{l_film, m_film, -sqrt_or_zero(rest)}, select(rest > 0.0f, pupil_weight(pupil, place, sector), 0.0f)};
 }
 
-/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 where it never goes.
-REALCAM_INLINE float pupil_pdf(const PupilView& pupil, float film_x, float film_y, float l, float m) {
-    const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
-    const float x = (l * place.cos + m * place.sin - place.centre) / place.half_width;
-    const float y = std::fabs(m * place.cos - l * place.sin) / place.half_height;
-    // The sector by azimuth, from 0 to pi.
-    const PupilSector* row = pupil.outline + place.row * pupil.sectors;
-    int first = 0, last = pupil.sectors;
+/// The sector of a place in the box, by its azimuth, which goes from 0 to pi.
+REALCAM_INLINE int sector_at(const PupilSector* row, int sectors, float x, float y) {
+    int first = 0, last = sectors;
     while (first + 1 < last) {
         const int middle = (first + last) / 2;
         const bool after = row[middle].x * y - row[middle].y * x >= 0.0f;
         first = select(after, middle, first);
         last = select(after, last, middle);
     }
-    const PupilSector& s = row[first];
+    return first;
+}
+
+/// Whether a place at a sector's azimuth lies between its inner and its outer edge.
+REALCAM_INLINE bool holds(const PupilSector& s, float x, float y) {
     const float reach = (x * s.dy - y * s.dx) / (s.x * s.dy - s.y * s.dx);
-    const bool inside = reach <= 1.0f && reach * reach >= s.hole_squared;
+    return reach <= 1.0f && reach * reach >= s.hole_squared;
+}
+
+/// Density of sample_pupil at the optical direction cosines (l, m), per unit of their area; 0 where it never goes.
+REALCAM_INLINE float pupil_pdf(const PupilView& pupil, float film_x, float film_y, float l, float m) {
+    const PupilRowPosition place = pupil_row_position(pupil, film_x, film_y);
+    const float x = (l * place.cos + m * place.sin - place.centre) / place.half_width;
+    const float y = std::fabs(m * place.cos - l * place.sin) / place.half_height;
+    const PupilSector* row = pupil.outline + place.row * pupil.sectors;
+    const PupilSector& s = row[sector_at(row, pupil.sectors, x, y)];
+    const bool inside = holds(s, x, y);
     const bool exists = l * l + m * m < pupil.index_squared;
     const float weight = pupil_weight(pupil, place, s);
     return select(inside && exists && weight > 0.0f, 1.0f / weight, 0.0f);

@@ -1,0 +1,47 @@
+#pragma once
+#include <algorithm>
+#include <limits>
+
+#include "pupil_box.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Bounding box of a set of directions.
+struct DirectionBox {
+    double l_min, l_max, m_min, m_max;
+
+    static DirectionBox none() {
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        return {kFar, -kFar, kFar, -kFar};
+    }
+    static DirectionBox around(PupilDirection d, double half_width, double half_height) {
+        return {d.l - half_width, d.l + half_width, d.m - half_height, d.m + half_height};
+    }
+    PupilDirection centre() const { return {0.5 * (l_min + l_max), 0.5 * (m_min + m_max)}; }
+    double half_width() const { return 0.5 * (l_max - l_min); }
+    double half_height() const { return 0.5 * (m_max - m_min); }
+
+    DirectionBox with(PupilDirection d) const {
+        return {std::min(l_min, d.l), std::max(l_max, d.l), std::min(m_min, d.m), std::max(m_max, d.m)};
+    }
+    DirectionBox joined_with(const DirectionBox& other) const {
+        return with({other.l_min, other.m_min}).with({other.l_max, other.m_max});
+    }
+    DirectionBox grown(double share) const { return grown_by(share * 2 * half_width(), share * 2 * half_height()); }
+    DirectionBox grown_by(double width, double height) const {
+        return {l_min - width, l_max + width, m_min - height, m_max + height};
+    }
+    /// Whether it ends inside the searched box, or where nothing can be any more.
+    bool lies_in(const DirectionBox& searched, const DirectionBox& widest) const {
+        return (l_min > searched.l_min || searched.l_min <= widest.l_min) &&
+               (l_max < searched.l_max || searched.l_max >= widest.l_max) &&
+               (m_min > searched.m_min || searched.m_min <= widest.m_min) &&
+               (m_max < searched.m_max || searched.m_max >= widest.m_max);
+    }
+    /// As far beyond this box as it is beyond another one: what moves evenly goes there next.
+    DirectionBox moved_on_from(const DirectionBox& before) const {
+        return {2 * l_min - before.l_min, 2 * l_max - before.l_max, 2 * m_min - before.m_min, 2 * m_max - before.m_max};
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE

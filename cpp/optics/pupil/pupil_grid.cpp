@@ -1,0 +1,219 @@
+#include "pupil_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "../../math/random.hpp"
+
+namespace realcam {
+
+PupilGrid::PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes planes, PupilTracer tracer,
+                     const std::vector<double>& wavelengths_nm)
+    : search_(lens, std::move(tracer), wavelengths_nm), film_(film), planes_(planes) {
+    const auto fold = [](double& least, double& most, int& cells) {
+        most = std::max(std::fabs(least), std::fabs(most));
+        least = 0;
+        cells /= 2;
+    };
+    if (planes.x) fold(film_.least.x, film_.most.x, columns_);
+    if (planes.y) fold(film_.least.y, film_.most.y, rows_);
+    find_nodes();
+    cells_.resize(static_cast<std::size_t>(columns_ * rows_));
+    sectors_.resize(cells_.size() * 2 * kPupilGridSectors);
+    if (!is_lit_) return;
+    sharpen_nodes();
+    find_cells();
+}
+
+PupilGridView PupilGrid::view() const {
+    return {nodes_.data(),
+            cells_.data(),
+            sectors_.data(),
+            columns_,
+            rows_,
+            {static_cast<float>(film_.least.x), static_cast<float>(film_.least.y)},
+            {static_cast<float>(columns_ / (film_.most.x - film_.least.x)),
+             static_cast<float>(rows_ / (film_.most.y - film_.least.y))},
+            planes_.x,
+            planes_.y,
+            static_cast<float>(search_.lens().index_squared())};
+}
+
+Vec2<double> PupilGrid::film_point(double column, double row) const {
+    return {film_.least.x + column / columns_ * (film_.most.x - film_.least.x),
+            film_.least.y + row / rows_ * (film_.most.y - film_.least.y)};
+}
+
+void PupilGrid::find_nodes() {
+    const int columns = node_columns(), rows = node_rows();
+    std::vector<std::optional<DirectionBox>> found(static_cast<std::size_t>(columns * rows));
+    // The middle of the film is lit, if anything is, but for odd cameras.
+    int first_column = planes_.x ? 0 : columns / 2, first_row = planes_.y ? 0 : rows / 2;
+    std::optional<DirectionBox> first = search_.look(node_point(first_column, first_row), {});
+    for (int row = 0; row < rows && !first; ++row)
+        for (int column = 0; column < columns && !first; ++column) {
+            first = search_.look(node_point(column, row), {});
+            if (first) first_column = column, first_row = row;
+        }
+    nodes_.assign(found.size(), PupilGridNode{});
+    if (!first) return;
+    is_lit_ = true;
+    found[node_index(first_column, first_row)] = first;
+    const auto distance = [&](int column, int row) {
+        return std::max(std::abs(column - first_column), std::abs(row - first_row));
+    };
+    for (int ring = 1; ring <= std::max(columns, rows); ++ring) {
+        std::vector<std::pair<int, int>> places;
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column)
+                if (distance(column, row) == ring) places.emplace_back(column, row);
+        std::vector<std::optional<DirectionBox>> boxes(places.size());
+        search_.lens().for_each(static_cast<int>(places.size()), [&](int i) {
+            const auto [column, row] = places[static_cast<std::size_t>(i)];
+            boxes[static_cast<std::size_t>(i)] = look(column, row, found, first_column, first_row);
+        });
+        for (std::size_t i = 0; i < places.size(); ++i) found[node_index(places[i].first, places[i].second)] = boxes[i];
+    }
+    // From the first node outwards, so that every inner neighbour has its box.
+    for (int ring = 0; ring <= std::max(columns, rows); ++ring)
+        for (int row = 0; row < rows; ++row)
+            for (int column = 0; column < columns; ++column) {
+                if (distance(column, row) != ring) continue;
+                PupilGridNode& node = nodes_[node_index(column, row)];
+                const std::optional<DirectionBox>& box = found[node_index(column, row)];
+                const auto inwards = [](int at, int first) { return at - (at > first) + (at < first); };
+                node = box ? node_of(*box) : nodes_[node_index(inwards(column, first_column), inwards(row, first_row))];
+            }
+}
+
+std::optional<DirectionBox> PupilGrid::look(int column, int row, const std::vector<std::optional<DirectionBox>>& found,
+                                            int from_column, int from_row) const {
+    const int dx = (column < from_column) - (column > from_column), dy = (row < from_row) - (row > from_row);
+    std::optional<DirectionBox> expected = found[node_index(column + dx, row + dy)];
+    const int before_column = column + 2 * dx, before_row = row + 2 * dy;
+    const bool has_before = std::max(std::abs(column - from_column), std::abs(row - from_row)) >= 2 &&
+                            before_column >= 0 && before_column < node_columns() && before_row >= 0 &&
+                            before_row < node_rows();
+    if (expected && has_before)
+        if (const auto& before = found[node_index(before_column, before_row)])
+            expected = expected->joined_with(expected->moved_on_from(*before));
+    return search_.look(node_point(column, row), expected);
+}
+
+void PupilGrid::sharpen_nodes() {
+    std::vector<OutlineLook> looks;
+    for (int row = 0; row <= rows_; row += kCellsPerPupilNode)
+        for (int column = 0; column <= columns_; column += kCellsPerPupilNode) add_looks(column, row, looks);
+    const std::vector<PupilOutline> outlines = OutlineSearch::find(search_.lens(), looks);
+    for (std::size_t node = 0; node < nodes_.size(); ++node) {
+        DirectionBox box = DirectionBox::none();
+        for (const std::size_t half : {2 * node, 2 * node + 1})
+            for (int a = 0; a <= PupilOutline::kAzimuths; ++a) {
+                const double reach = outlines[half].outer[a];
+                const PupilDirection unit = PupilOutline::direction(a);
+                if (reach > 0)
+                    box = box.with({looks[half].centre.l + reach * looks[half].half_width * unit.l,
+                                    looks[half].centre.m + reach * looks[half].half_height * unit.m});
+            }
+        if (box.l_max > box.l_min && box.m_max > box.m_min) nodes_[node] = node_of(box);
+    }
+}
+
+void PupilGrid::add_looks(double column, double row, std::vector<OutlineLook>& looks) const {
+    const PupilGridNode box = box_at(column, row);
+    for (const int sign : {1, -1})
+        looks.push_back({film_point(column, row),
+                         {static_cast<double>(box.centre_l), static_cast<double>(box.centre_m)},
+                         static_cast<double>(box.half_width),
+                         sign * static_cast<double>(box.half_height)});
+}
+
+PupilGridNode PupilGrid::node_of(const DirectionBox& box) {
+    return {static_cast<float>(box.centre().l), static_cast<float>(box.centre().m),
+            static_cast<float>(box.half_width()), static_cast<float>(box.half_height())};
+}
+
+PupilGridNode PupilGrid::box_at(double column, double row) const {
+    const PupilGridView grid = view();
+    const Vec2<double> film = film_point(column, row);
+    return pupil_grid_place(grid, static_cast<float>(film.x), static_cast<float>(film.y)).box;
+}
+
+std::vector<PupilOutline> PupilGrid::outlines() const {
+    std::vector<OutlineLook> looks;
+    for (int row = 0; row <= rows_; ++row)
+        for (int column = 0; column <= columns_; ++column) add_looks(column, row, looks);
+    return OutlineSearch::find(search_.lens(), looks);
+}
+
+void PupilGrid::find_cells() {
+    const std::vector<PupilOutline> all = outlines();
+    search_.lens().for_each(columns_ * rows_, [&](int cell) { set_cell(cell % columns_, cell / columns_, all); });
+}
+
+void PupilGrid::set_cell(int column, int row, const std::vector<PupilOutline>& outlines) {
+    std::vector<PupilOutline> seen[2];
+    bool is_partly_dark = false;
+    for (int y = row; y <= row + 1; ++y)
+        for (int x = column; x <= column + 1; ++x) {
+            bool is_dark = true;
+            for (int half = 0; half < 2; ++half) {
+                const auto at = static_cast<std::size_t>(2 * (y * (columns_ + 1) + x) + half);
+                seen[half].push_back(outlines[at]);
+                is_dark &= std::none_of(std::begin(outlines[at].outer), std::end(outlines[at].outer),
+                                        [](double reach) { return reach > 0; });
+            }
+            is_partly_dark |= is_dark;
+        }
+    const bool changes = is_partly_dark || std::max(largest_spread(seen[0]), largest_spread(seen[1])) > 0.2;
+    const double reach = changes ? 1.5 : 1.2;
+    Halves halves = is_partly_dark ? Halves{PupilRow(box_outline()), PupilRow(box_outline())}
+                                   : Halves{PupilRow(holding_all(seen[0])), PupilRow(holding_all(seen[1]))};
+    const int passed = take_in_strays(column, row, reach, changes ? 16 : 2, halves);
+    PupilGridCell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
+    PupilSector* const sectors = sectors_.data() + (&cell - cells_.data()) * 2 * kPupilGridSectors;
+    double areas[2] = {0, 0};
+    for (int half = 0; half < 2; ++half) {
+        std::copy(halves[half].sectors().begin(), halves[half].sectors().end(), sectors + half * kPupilGridSectors);
+        for (const PupilSector& s : halves[half].sectors())
+            areas[half] += static_cast<double>((s.x * s.dy - s.y * s.dx) * (1 - s.hole_squared));
+    }
+    // A half without light may still be hit by a rounding.
+    const double share = std::clamp(areas[0] / (areas[0] + areas[1]), 0.01, 0.99);
+    cell.upper_share = static_cast<float>(share);
+    if (passed == 0) return;  // the weights of the dark are 0
+    cell.upper_weight = static_cast<float>(0.5 * kPupilGridSectors / share);
+    cell.lower_weight = static_cast<float>(0.5 * kPupilGridSectors / (1 - share));
+}
+
+int PupilGrid::take_in_strays(int column, int row, double reach, int clean_rounds, Halves& halves) const {
+    constexpr int kMostRounds = 128, kBlock = PupilTracer::kBlock;
+    int passed = 0;
+    for (int round = 0, clean = 0; round < kMostRounds && clean < clean_rounds; ++round) {
+        const auto stream = static_cast<std::uint32_t>(kMostRounds * (row * columns_ + column) + round);
+        Vec2f places[kBlock];
+        PupilRays rays;
+        for (int i = 0; i < kBlock; ++i) {
+            const auto number = static_cast<std::uint32_t>(i);
+            const Vec2f in_cell = sample_2d(stream, number, 0), u = sample_2d(stream, number, 1);
+            const double x = column + static_cast<double>(in_cell.x), y = row + static_cast<double>(in_cell.y);
+            const PupilGridNode box = box_at(x, y);
+            places[i] = {static_cast<float>(reach) * (2 * u.x - 1), static_cast<float>(reach) * (2 * u.y - 1)};
+            rays.set(i, film_point(x, y),
+                     {static_cast<double>(box.centre_l + box.half_width * places[i].x),
+                      static_cast<double>(box.centre_m + box.half_height * places[i].y)});
+        }
+        bool passes[kBlock], strayed = false;
+        search_.lens().trace(rays, passes);
+        for (int i = 0; i < kBlock; ++i) {
+            if (!passes[i]) continue;
+            ++passed;
+            strayed |= halves[places[i].y < 0].take_in({places[i].x, std::fabs(places[i].y)});
+        }
+        clean = strayed ? 0 : clean + 1;
+    }
+    return passed;
+}
+
+}  // namespace realcam
