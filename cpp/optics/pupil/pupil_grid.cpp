@@ -82,7 +82,7 @@ void PupilGrid::find_nodes() {
                 if (distance(column, row) != ring) continue;
                 PupilGridNode& node = nodes_[node_index(column, row)];
                 const std::optional<DirectionBox>& box = found[node_index(column, row)];
-                const auto inwards = [](int at, int first) { return at - (at > first) + (at < first); };
+                const auto inwards = [](int at, int start) { return at - (at > start) + (at < start); };
                 node = box ? node_of(*box) : nodes_[node_index(inwards(column, first_column), inwards(row, first_row))];
             }
 }
