@@ -164,7 +164,7 @@ std::map<int, double> aspheric_map(const Surface& surface) {
 LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std::optional<double> film_distance,
                      std::pair<double, double> film, double wavelength_nm, int blades, double rounding,
                      double rotation_deg, std::optional<std::pair<int, int>> focus_group, double nearest_focus_m,
-                     bool allow_crossing) {
+                     bool allow_crossing, double film_radius_of_curvature) {
     LensSystem lens;
     lens.allow_crossing = allow_crossing;
     lens.name = name;
@@ -173,6 +173,7 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     lens.wavelength_nm = wavelength_nm;
     lens.film_width = film.first;
     lens.film_height = film.second;
+    lens.film_radius_of_curvature = film_radius_of_curvature;
     lens.iris = {blades, rounding, rotation_deg * std::numbers::pi / 180};
     lens.focusing.nearest_mm = 1000 * nearest_focus_m;
     if (!(wavelength_nm >= 100 && wavelength_nm <= 20000))
@@ -413,13 +414,14 @@ void bind_lens(py::module_& m) {
         .def(py::init(&make_lens), py::kw_only(), "surfaces"_a, "name"_a = "", "film_distance_mm"_a = py::none(),
              "film_mm"_a = std::pair<double, double>{36, 24}, "wavelength_nm"_a = kLineD_nm, "iris_blades"_a = 0,
              "iris_rounding"_a = 0.0, "iris_rotation_deg"_a = 0.0, "focus_group"_a = py::none(),
-             "nearest_focus_m"_a = 0.0, "allow_crossing"_a = false,
+             "nearest_focus_m"_a = 0.0, "allow_crossing"_a = false, "film_radius_of_curvature_mm"_a = kInfinity,
              "surfaces: from the scene to the film, exactly one of them a Stop.\n"
              "film_distance_mm: last vertex to film; None: best focus at infinity by real rays.\n"
              "film_mm: (width, height) used where a Camera names no film.\n"
              "iris_blades: 0 for a round diaphragm, else 3 to 24; iris_rounding: 0 straight to 1 a circle.\n"
              "focus_group: (first, last) index of the surfaces that move to focus; None: the whole lens moves.\n"
              "allow_crossing: for experiments, faces may cross inside their rims, and the film the last face.\n"
+             "film_radius_of_curvature_mm: below 0 the film is hollow towards the lens; inf: flat.\n"
              "Raises LensFileError, naming the surface (from 1), where the lens cannot be built.")
         .def_static(
             "load", &load_lens, "name_or_path"_a, py::kw_only(), "glass"_a = py::none(), "force"_a = false,
@@ -497,6 +499,7 @@ void bind_lens(py::module_& m) {
             "how far they reach into each other at most, and how far from the axis that is. Empty but with "
             "allow_crossing.")
         .def_readonly("film_distance_mm", &LensSystem::film_distance)
+        .def_readonly("film_radius_of_curvature_mm", &LensSystem::film_radius_of_curvature)
         .def_property_readonly("film_position_mm", &LensSystem::film_position, "Front vertex to film.")
         .def_property_readonly("film_mm", [](const LensSystem& l) { return std::pair(l.film_width, l.film_height); })
         .def_property_readonly("vertices_mm", &LensSystem::vertices, "z of each vertex.")

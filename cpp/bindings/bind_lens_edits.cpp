@@ -16,6 +16,9 @@ void bind_lens_edits(py::module_& m) {
              "with_surface. Raises InputError, and LensFileError where the lens cannot be built.")
         .def("with_film", &with_film, "width_mm"_a, "height_mm"_a,
              "The lens for another film, at its place. Raises LensFileError for sizes that are none.")
+        .def("with_film_radius", &with_film_radius, "radius_of_curvature_mm"_a,
+             "The lens for a film of this radius of curvature: below 0 hollow towards the lens, inf flat.\n"
+             "Raises LensFileError where the film does not reach its corners.")
         .def(
             "scaled", &scaled, "factor"_a,
             "The lens with all lengths times factor: film, focus distance and zoom positions with it; coatings keep\n"

@@ -81,6 +81,7 @@ void validate(const Camera& camera) {
         throw InputError("the ISO number must be positive, from 1e-37 to 1e38");
     if (camera.lens.stop_index() < 0) throw InputError("the camera has no lens; one with a stop is wanted");
     if (const std::string why = film_distance_error(camera.lens); !why.empty()) throw InputError(why);
+    check_film_reach(camera.lens, camera.film.radius_mm());
     if (!(camera.lens.stop_semi_diameter >= 0))
         throw InputError("the radius of the lens's open stop must be a length of 0 or more");
     if (!(std::fabs(camera.shutter.opens_s) <= kMostSeconds))

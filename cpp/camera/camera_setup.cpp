@@ -72,32 +72,20 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
       tables_(camera.lens, film_radius(), effects, tracer, last ? &last->tables_ : nullptr) {
     const std::vector<Affine<double>> keys = exposure_keys(camera);
     for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
-    if (last && last->has_pupil_of(camera, tables_.pupil_wavelengths(), effects.pupil_sampling))
-        pupil_ = last->pupil_;
-    else if (has_real_pupil(camera.model))
-        pupil_ = std::make_shared<const Pupil>(sampled_lens(camera.lens, effects.pupil_sampling), film_radius(), tracer,
-                                               tables_.pupil_wavelengths());
-    if (!pupil_) {
+    if (!has_real_pupil(camera.model)) {
         validate_ideal(camera.lens, camera.model);
-        axis_irradiance_ = last && !last->pupil_ && last->camera_.lens == camera.lens
+        axis_irradiance_ = last && !has_real_pupil(last->camera_.model) && last->camera_.lens == camera.lens
                                ? last->axis_irradiance_
                                : static_cast<float>(axis_irradiance(camera.lens));
         if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
         return;
     }
-    const std::string lens = "lens \"" + camera.lens.name + "\"";
-    if (!(camera.lens.stop_semi_diameter > 0)) throw InputError("no light passes " + lens + ": its stop is closed");
-    if (!(pupil_->image_radius() > 0))
-        throw InputError("no light passes " + lens +
-                         " in this state: what it blocks in the middle is larger than what its stop leaves open, or "
-                         "a surface is out of reach");
-    if (!pupil_->follows())
-        throw InputError("the stop of " + lens + ", a hole of radius " +
-                         std::to_string(1000 * camera.lens.stop_semi_diameter) +
-                         " um, is too small for pictures through every surface; open it, or use another camera model");
+    set_pupil(tracer, last);
+    check_light();
     if (camera.model == CameraModel::polynomial_lens)
         polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
-    if (camera.model != CameraModel::polynomial_lens)
+    // The entries are by the angle to the axis.
+    if (camera.model != CameraModel::polynomial_lens && pupil_)
         pupil_entries_ = last && last->pupil_entries_ && last->pupil_ == pupil_
                              ? last->pupil_entries_
                              : std::make_shared<const PupilEntries>(pupil_->view(), path_.view(), film_radius(),
@@ -121,6 +109,7 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     view.film_half_height = static_cast<float>(0.5 * camera_.film.height_mm);
     view.film_middle = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
     view.film_distance = static_cast<float>(lens.film_distance);
+    view.film_curvature = static_cast<float>(1 / lens.film_radius_of_curvature);
     view.front_vertex_m = static_cast<float>(0.001 * lens.film_position());
     view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
     view.thin = thin_lens_of(lens, data);
@@ -129,6 +118,7 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
     view.axis_irradiance = axis_irradiance_;
     if (pupil_) view.pupil = pupil_->view();
+    if (pupil_grid_) view.pupil_grid = pupil_grid_->view();
     view.lens = path_.view();
     if (path_in_double_) view.lens_in_double = &view_in_double_;
     if (polynomial_) view.polynomial = polynomial_->view();
@@ -141,6 +131,41 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
 const Camera& CameraSetup::validated(const Camera& camera) {
     validate(camera);
     return camera;
+}
+
+void CameraSetup::set_pupil(const PupilTracer& tracer, const CameraSetup* last) {
+    const std::vector<double>& wavelengths = tables_.pupil_wavelengths();
+    if (last && last->has_pupil_of(camera_, wavelengths, effects_.pupil_sampling)) {
+        pupil_ = last->pupil_;
+        pupil_grid_ = last->pupil_grid_;
+        return;
+    }
+    const LensSystem lens = sampled_lens(camera_.lens, effects_.pupil_sampling);
+    if (has_radial_pupil(lens))
+        pupil_ = std::make_shared<const Pupil>(lens, film_radius(), tracer, wavelengths);
+    else
+        pupil_grid_ = std::make_shared<const PupilGrid>(lens, film_area(), mirror_planes(lens), tracer, wavelengths);
+}
+
+void CameraSetup::check_light() const {
+    const std::string lens = "lens \"" + camera_.lens.name + "\"";
+    if (!(camera_.lens.stop_semi_diameter > 0)) throw InputError("no light passes " + lens + ": its stop is closed");
+    if (pupil_ ? !(pupil_->image_radius() > 0) : !pupil_grid_->is_lit())
+        throw InputError("no light passes " + lens +
+                         " in this state: what it blocks in the middle is larger than what its stop leaves open, or "
+                         "a surface is out of reach");
+    if (pupil_ && !pupil_->follows())
+        throw InputError("the stop of " + lens + ", a hole of radius " +
+                         std::to_string(1000 * camera_.lens.stop_semi_diameter) +
+                         " um, is too small for pictures through every surface; open it, or use another camera model");
+}
+
+FilmArea CameraSetup::film_area() const {
+    const Film& film = camera_.film;
+    // The film's axes point against the picture's.
+    const Vec2<double> middle = {-film.shift_mm.x, -film.shift_mm.y};
+    return {{middle.x - 0.5 * film.width_mm, middle.y - 0.5 * film.height_mm},
+            {middle.x + 0.5 * film.width_mm, middle.y + 0.5 * film.height_mm}};
 }
 
 void CameraSetup::set_map(const PupilTracer& tracer, const CameraSetup* last) {
@@ -175,7 +200,7 @@ bool CameraSetup::has_lens_and_film_of(const Camera& camera) const {
 
 bool CameraSetup::has_pupil_of(const Camera& camera, const std::vector<double>& wavelengths,
                                PupilSampling sampling) const {
-    return pupil_ && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&
+    return (pupil_ || pupil_grid_) && has_real_pupil(camera.model) && has_lens_and_film_of(camera) &&
            tables_.pupil_wavelengths() == wavelengths && effects_.pupil_sampling == sampling;
 }
 

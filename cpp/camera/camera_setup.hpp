@@ -5,6 +5,7 @@
 
 #include "../optics/lens/lens_polynomial.hpp"
 #include "../optics/pupil/pupil.hpp"
+#include "../optics/pupil/pupil_grid.hpp"
 #include "camera.hpp"
 #include "effect_tables.hpp"
 #include "lens_map.hpp"
@@ -38,6 +39,12 @@ private:
     /// Distance of the film point furthest from the axis, mm.
     double film_radius() const { return camera_.film.radius_mm(); }
 
+    /// Finds where rays are sent into the lens, or takes it over.
+    void set_pupil(const PupilTracer& tracer, const CameraSetup* last);
+    /// Throws InputError where no light arrives.
+    void check_light() const;
+    FilmArea film_area() const;
+
     void set_map(const PupilTracer& tracer, const CameraSetup* last);
 
     static CameraPlacement placement(const Affine<double>& scene_from_camera, Vec3d origin_m);
@@ -55,7 +62,8 @@ private:
     LensView<double> view_in_double_{};
     std::optional<LensPolynomial> polynomial_;
     std::vector<CameraPlacement> keys_;  ///< positions relative to the first
-    std::shared_ptr<const Pupil> pupil_;
+    std::shared_ptr<const Pupil> pupil_;  ///< of a centred lens of revolution
+    std::shared_ptr<const PupilGrid> pupil_grid_;  ///< of any other
     std::shared_ptr<const PupilEntries> pupil_entries_;
     float axis_irradiance_ = 0;  ///< of an ideal lens
     std::shared_ptr<const LensMap> map_;  ///< of the model mapped_lens

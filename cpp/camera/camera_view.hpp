@@ -2,7 +2,8 @@
 #include <cstddef>
 
 #include "../math/key_interval.hpp"
-#include "../optics/pupil/pupil_view.hpp"
+#include "../optics/pupil/film_surface.hpp"
+#include "../optics/pupil/pupil_grid_view.hpp"
 #include "../optics/trace/lens_polynomial_view.hpp"
 #include "../optics/trace/lens_view.hpp"
 #include "circle_of_confusion.hpp"
@@ -57,6 +58,7 @@ struct CameraView : CameraPlacement, EffectViews {
     float film_half_width, film_half_height;  ///< mm
     Vec2f film_middle;                        ///< from the axis, mm
     float film_distance;                  ///< last vertex to film, mm
+    float film_curvature;  ///< see FilmSurface; 0 where the lens and its film are of revolution
     float axis_irradiance;  ///< of the real lens on the axis for unit radiance; the ideal models take it over
     float front_vertex_m;   ///< film to front vertex, metres
     float pupil_m;          ///< film to entrance pupil, metres
@@ -64,7 +66,8 @@ struct CameraView : CameraPlacement, EffectViews {
     ThickLens thick;
     LensMapView map;  ///< of a mapped lens; else without nodes
     CircleOfConfusion circle;
-    PupilView pupil;
+    PupilView pupil;  ///< of a centred lens of revolution
+    PupilGridView pupil_grid;  ///< of any other; else without nodes
     TracedLightsView traced_lights;
     PixelPupils pixel_pupils;
     LensView<float> lens;
@@ -113,6 +116,10 @@ CameraView with_copied_arrays(CameraView view, Copy&& copy) {
     view.traced_lights.move_arrays(move);
     move(view.pupil.nodes, view.pupil.rows + 1);
     move(view.pupil.outline, view.pupil.rows * view.pupil.sectors);
+    const PupilGridView& grid = view.pupil_grid;
+    move(view.pupil_grid.nodes, (grid.columns / kCellsPerPupilNode + 1) * (grid.rows / kCellsPerPupilNode + 1));
+    move(view.pupil_grid.cells, grid.columns * grid.rows);
+    move(view.pupil_grid.sectors, grid.columns * grid.rows * 2 * kPupilGridSectors);
     return view;
 }
 

@@ -59,7 +59,7 @@ REALCAM_HD inline void find_shares(const CameraView& camera, const SampleBlock<N
                                           camera.coatings.to_film, variable, wavelengths.passed[step]);
         REALCAM_LANES
         for (int i = 0; i < N; ++i) {
-            const Vec2f on_film = crossing_at(camera.film_distance, back.origin[i], back.direction[i]);
+            const Vec2f on_film = landing_on_film<lens_kind>(camera, back.origin[i], back.direction[i]);
             const Vec2f place = film.landing(i, on_film, nm[i]);
             const bool is_shared = (back.status[i] == 0) & lies_in_pixel(camera, block, i, place);
             wavelengths.shares[i] |= select(is_shared, 1 << step, 0);

@@ -1,7 +1,7 @@
 #pragma once
 #include "../math/sampling.hpp"
 #include "../optics/trace/lens_trace.hpp"
-#include "camera_view.hpp"
+#include "camera_pupil.hpp"
 #include "lane_numbers.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -114,16 +114,16 @@ REALCAM_INLINE void mark_sampled(const SampleBlock<N>& block, LensRays<T, N>& in
 }
 
 /// Rays from film and pupil, in front of the last surface.
-template <class T, int N, class Points>
+template <LensKind lens_kind, class T, int N, class Points>
 REALCAM_INLINE void start_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                     const LaneNumbers<N>& u, LensRays<T, N>& inside, CameraRays<N>& rays) {
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
         const Vec2f at = film[i];
-        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u[i].x, u[i].y);
-        inside.origin.set(i, static_cast<Vec3<T>>(Vec3f{at.x, at.y, camera.film_distance}));
-        inside.direction.set(i, static_cast<Vec3<T>>(pupil.direction));
-        rays.weight[i] = pupil.weight;
+        const FilmRaySample ray = sample_film_ray<lens_kind>(camera, at, u[i]);
+        inside.origin.set(i, static_cast<Vec3<T>>(ray.origin));
+        inside.direction.set(i, static_cast<Vec3<T>>(ray.direction));
+        rays.weight[i] = ray.weight;
     }
     mark_sampled(block, inside, rays);
 }
@@ -147,7 +147,7 @@ template <LensKind lens_kind, int N, class Points>
 REALCAM_HD inline void generate_lens_rays(const CameraView& camera, const SampleBlock<N>& block, const Points& film,
                                           const LaneNumbers<N>& u, CameraRays<N>& rays) {
     LensRays<float, N> inside;
-    start_lens_rays(camera, block, film, u, inside, rays);
+    start_lens_rays<lens_kind>(camera, block, film, u, inside, rays);
     trace_lens<lens_kind>(camera.lens, inside);
     place_lens_rays(camera, inside, rays);
 }
@@ -156,7 +156,7 @@ template <int N, class Points>
 REALCAM_HD inline void generate_lens_rays_in_double(const CameraView& camera, const SampleBlock<N>& block,
                                                     const Points& film, const LaneNumbers<N>& u, CameraRays<N>& rays) {
     LensRays<double, N> inside;
-    start_lens_rays(camera, block, film, u, inside, rays);
+    start_lens_rays<LensKind::any>(camera, block, film, u, inside, rays);
     trace_lens(*camera.lens_in_double, inside);
     place_lens_rays(camera, inside, rays);
 }
@@ -172,10 +172,10 @@ REALCAM_HD inline void generate_learning_rays(const CameraView& camera, const Sa
         const Vec2f at = film[i];
         const GuidedPlace u = guided(camera.pixel_pupils.known[pixel_of(i)].promising(), numbers[i]);
         cells[i] = pixel_pupil::cell_of(u.place);
-        const PupilSample pupil = sample_pupil(camera.pupil, at.x, at.y, u.place.x, u.place.y);
-        inside.origin.set(i, {at.x, at.y, camera.film_distance});
-        inside.direction.set(i, pupil.direction);
-        rays.weight[i] = pupil.weight * u.weight;
+        const FilmRaySample ray = sample_film_ray<lens_kind>(camera, at, u.place);
+        inside.origin.set(i, ray.origin);
+        inside.direction.set(i, ray.direction);
+        rays.weight[i] = ray.weight * u.weight;
     }
     mark_sampled(block, inside, rays);
     trace_lens<lens_kind>(camera.lens, inside);

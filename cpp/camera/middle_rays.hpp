@@ -19,18 +19,37 @@ REALCAM_INLINE Vec2f spiral(int index) {
     return {reach * azimuth.x, reach * azimuth.y};
 }
 
+/// The optical direction with these cosines.
+REALCAM_INLINE Vec3f optical_direction(float l, float m, float index_squared) {
+    return {l, m, -sqrt_or_zero(index_squared - l * l - m * m)};
+}
+
 /// The optical direction from a film point to a place in the box around its pupil.
-REALCAM_INLINE Vec3f direction_to(const PupilView& pupil, const PupilRowPosition& row, Vec2f place) {
+REALCAM_INLINE Vec3f direction_to(const CameraView& camera, Vec2f film, Vec2f place) {
+    if (camera.pupil_grid.nodes) {
+        const PupilGridPlace at = pupil_grid_place(camera.pupil_grid, film.x, film.y);
+        return optical_direction(at.sign_l * (at.box.centre_l + at.box.half_width * place.x),
+                                 at.sign_m * (at.box.centre_m + at.box.half_height * place.y),
+                                 camera.pupil_grid.index_squared);
+    }
+    const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
     const float l = row.centre + row.half_width * place.x, m = row.half_height * place.y;
-    const float rest = pupil.index_squared - l * l - m * m;
-    return {l * row.cos - m * row.sin, l * row.sin + m * row.cos, -sqrt_or_zero(rest)};
+    const Vec3f on_x_axis = optical_direction(l, m, camera.pupil.index_squared);
+    return {l * row.cos - m * row.sin, l * row.sin + m * row.cos, on_x_axis.z};
+}
+
+/// Whether light may arrive at a film point at all.
+REALCAM_INLINE bool may_be_lit(const CameraView& camera, Vec2f film) {
+    if (camera.pupil_grid.nodes)
+        return camera.pupil_grid.cells[pupil_grid_place(camera.pupil_grid, film.x, film.y).cell].upper_weight > 0.0f;
+    return pupil_row_position(camera.pupil, film.x, film.y).lit > 0.0f;
 }
 
 /// The next place, from `first` on, that lies in the pupil by its table; kMiddlePlaces where there is none.
-REALCAM_INLINE int next_place(const PupilView& pupil, const PupilRowPosition& row, Vec2f film, int first) {
+REALCAM_INLINE int next_place(const CameraView& camera, Vec2f film, int first) {
     for (int k = first; k < kMiddlePlaces; ++k) {
-        const Vec3f direction = direction_to(pupil, row, spiral(k));
-        if (direction.z < 0.0f && pupil_pdf(pupil, film.x, film.y, direction.x, direction.y) > 0.0f) return k;
+        const Vec3f direction = direction_to(camera, film, spiral(k));
+        if (direction.z < 0.0f && camera_pupil_pdf(camera, film, direction) > 0.0f) return k;
     }
     return kMiddlePlaces;
 }
@@ -42,9 +61,8 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
     int searching = 0;
     for (int i = 0; i < N; ++i) {
         const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
-        const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
         // The pupil's own middle is tried even where the table leaves it out: the table is a polygon.
-        place[i] = block.used[i] && row.lit > 0.0f ? 0 : kMiddlePlaces;
+        place[i] = block.used[i] && may_be_lit(camera, film) ? 0 : kMiddlePlaces;
         rays.passed[i] = 0;
         rays.sampled[i] = block.used[i];
         place_ray(camera, rays, i, {}, false);
@@ -54,10 +72,11 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
         searching = 0;
         for (int i = 0; i < N; ++i) {
             const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
-            const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
             const bool tries = !rays.passed[i] && place[i] < kMiddlePlaces;
-            inside.origin.set(i, {film.x, film.y, camera.film_distance});
-            inside.direction.set(i, direction_to(camera.pupil, row, spiral(tries ? place[i] : 0)));
+            const Vec3f direction = direction_to(camera, film, spiral(tries ? place[i] : 0));
+            const FilmSurface<float> surface = film_surface(camera);
+            inside.origin.set(i, surface.place(film));
+            inside.direction.set(i, surface.direction(film, direction));
             inside.status[i] = tries ? 0 : static_cast<int>(RayStatus::vignetted);
         }
         trace_lens(camera.lens, inside);
@@ -69,8 +88,7 @@ REALCAM_HD inline void lens_rays(const CameraView& camera, const SampleBlock<N>&
                 continue;
             }
             const Vec2f film = film_point(camera, block.column[i], block.row[i], {0.5f, 0.5f});
-            const PupilRowPosition row = pupil_row_position(camera.pupil, film.x, film.y);
-            place[i] = next_place(camera.pupil, row, film, place[i] + 1);
+            place[i] = next_place(camera, film, place[i] + 1);
             searching |= place[i] < kMiddlePlaces;
         }
     }

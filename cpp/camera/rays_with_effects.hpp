@@ -41,13 +41,13 @@ REALCAM_HD inline void generate_surface_rays(const CameraView& camera, const Sam
         Lanes<float, N> variable;
         REALCAM_LANES
         for (int i = 0; i < N; ++i) variable[i] = view.variable.at(wavelengths.nm[i]);
-        start_lens_rays(camera, block, film, u, inside, rays);
+        start_lens_rays<lens_kind>(camera, block, film, u, inside, rays);
         trace_surfaces<lens_kind, effects.coatings>(camera.lens, inside, ManyWavelengths{view.to_scene, variable},
                                                     camera.coatings.to_scene, variable, wavelengths.passed[0]);
         if (view.cell_count > 1) find_shares<lens_kind, effects.coatings>(camera, block, inside, film, wavelengths);
     } else {
         Lanes<float, N> passed;
-        start_lens_rays(camera, block, film, u, inside, rays);
+        start_lens_rays<lens_kind>(camera, block, film, u, inside, rays);
         trace_surfaces<lens_kind, true>(camera.lens, inside, OneWavelength{}, camera.coatings.one_wavelength, nullptr,
                                         passed);
         REALCAM_LANES

@@ -55,8 +55,8 @@ __global__ void sample_lens_rays(const __grid_constant__ CameraView camera, Benc
     const SampleBlock<1> block = block_of(camera, pixel, 0);
     const Vec2f film = film_point(camera, block.column[0], block.row[0], block.random(0, dimension::film));
     const Vec2f u = block.random(0, dimension::pupil);
-    const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);
-    rays[pixel] = {{film.x, film.y, camera.film_distance}, pupil.direction};
+    const FilmRaySample ray = sample_film_ray<LensKind::any>(camera, film, u);
+    rays[pixel] = {ray.origin, ray.direction};
 }
 
 template <LensKind lens_kind>

@@ -50,11 +50,11 @@ inline SampledBundle traced_bundle(const CameraView& camera, const LensView<floa
     float weights[SampledBundle::kRays];
     for (int i = 0; i < SampledBundle::kRays; ++i) {
         const Vec2f u = sampled_bundles_detail::pupil_number(i);
-        const PupilSample pupil = sample_pupil(camera.pupil, film.x, film.y, u.x, u.y);
-        inside.origin.set(i, {film.x, film.y, camera.film_distance});
-        inside.direction.set(i, pupil.direction);
-        inside.status[i] = pupil.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
-        weights[i] = pupil.weight;
+        const FilmRaySample ray = sample_film_ray<LensKind::any>(camera, film, u);
+        inside.origin.set(i, ray.origin);
+        inside.direction.set(i, ray.direction);
+        inside.status[i] = ray.weight > 0 ? 0 : static_cast<int>(RayStatus::vignetted);
+        weights[i] = ray.weight;
     }
     tracer.trace(path, inside);
     SampledBundle bundle;

@@ -172,6 +172,15 @@ void check_lens(const TomlTable& file, const toml::array& surfaces, const LensSy
     check_part(file, part("focus", "group"), surfaces, [&] { check_focusing(lens); });
 }
 
+double film_radius(const TomlTable& file) {
+    const char* const key = "film_radius_of_curvature_mm";
+    const double radius = file.number(key).value_or(kInfinity);
+    if (!(std::fabs(radius) >= kShortestRadius))
+        file.fail('"' + std::string(key) + "\" must be a radius; below 0: the film is hollow towards the lens",
+                  file.find(key));
+    return radius;
+}
+
 void set_film_distance(const TomlTable& file, LensSystem& lens) {
     const auto distance = file.number("film_distance_mm");
     if (distance && !(*distance > 0) && lens.is_rotational())
@@ -213,9 +222,9 @@ void set_rings(const TomlTable& file, LensSystem& lens) {
 
 LensSystem lens_from_table(const toml::table& root, const std::string& file, const KeepGoing& keep_going) {
     const TomlTable top(root, file);
-    top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm", "glass", "coating",
-               "default_coating", "surface", "iris", "focus", "allow_crossing", "zoom", "zoom_position",
-               "focus_distance_mm", "stop_semi_diameter_mm"});
+    top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm",
+               "film_radius_of_curvature_mm", "glass", "coating", "default_coating", "surface", "iris", "focus",
+               "allow_crossing", "zoom", "zoom_position", "focus_distance_mm", "stop_semi_diameter_mm"});
     const auto format = top.number("format");
     if (!format) top.fail("\"format = 1\" is missing");
     if (*format != kFormat)
@@ -233,6 +242,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
         lens.film_width = film[0];
         lens.film_height = film[1];
     }
+    lens.film_radius_of_curvature = film_radius(top);
     const auto glasses = top.table("glass");
     const LensCoatings coatings(top, glasses);
     const toml::array* surfaces = root["surface"].as_array();

@@ -46,6 +46,8 @@ public:
         head += number("wavelength_nm", lens_.wavelength_nm);
         head += key("film_mm", '[' + toml_number(lens_.film_width) + ", " + toml_number(lens_.film_height) + ']');
         head += number("film_distance_mm", lens_.film_distance);
+        if (std::isfinite(lens_.film_radius_of_curvature))
+            head += number("film_radius_of_curvature_mm", lens_.film_radius_of_curvature);
         if (lens_.allow_crossing) head += key("allow_crossing", "true");
         head += write_rings();
         return head + glasses_ + coatings_ + body_;

@@ -43,6 +43,12 @@ LensSystem with_film(LensSystem lens, double width, double height) {
     return lens;
 }
 
+LensSystem with_film_radius(LensSystem lens, double radius_of_curvature) {
+    lens.film_radius_of_curvature = radius_of_curvature;
+    validate(lens);
+    return lens;
+}
+
 LensSystem scaled(const LensSystem& lens, double factor) {
     if (!(factor > 0) || !std::isfinite(factor)) throw InputError("a lens is scaled by a positive, finite factor");
     return lens_edits_detail::edited_in_all_states(lens, [&](LensSystem l) {
@@ -58,8 +64,8 @@ LensSystem scaled(const LensSystem& lens, double factor) {
                 power *= factor * factor;
             }
         }
-        for (double* length : {&l.film_width, &l.film_height, &l.film_distance, &l.focus_distance,
-                               &l.stop_semi_diameter, &l.focusing.nearest_mm})
+        for (double* length : {&l.film_width, &l.film_height, &l.film_distance, &l.film_radius_of_curvature,
+                               &l.focus_distance, &l.stop_semi_diameter, &l.focusing.nearest_mm})
             *length *= factor;
         return l;
     });

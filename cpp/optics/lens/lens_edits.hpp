@@ -31,6 +31,10 @@ LensSystem edited_in_all_states(const LensSystem& lens, Edit&& edit) {
 /// The lens for another film. Throws LensFileError for sizes that are none.
 LensSystem with_film(LensSystem lens, double width, double height);
 
+/// The lens for a film of this radius of curvature, mm: below 0 hollow towards the lens, infinite flat. Throws
+/// LensFileError where the film does not reach its corners.
+LensSystem with_film_radius(LensSystem lens, double radius_of_curvature);
+
 /// All lengths times `factor`, film and focus distances among them; coatings keep their thickness. Throws InputError
 /// for a factor that is not positive, LensFileError where the lens cannot be built.
 LensSystem scaled(const LensSystem& lens, double factor);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "../../math/hypotenuse.hpp"
 #include "clearance.hpp"
 #include "coating_checks.hpp"
 #include "lens_limits.hpp"
@@ -144,9 +145,19 @@ void check_iris(const IrisShape& iris) {
     if (!std::isfinite(iris.rotation_rad)) throw LensFileError("the rotation of the iris is not a finite number");
 }
 
+void check_film_reach(const LensSystem& lens, double corner) {
+    // At the edge of the half sphere there is no place for a pixel.
+    constexpr double kReach = 0.995;
+    if (!(corner <= kReach * std::fabs(lens.film_radius_of_curvature)))
+        throw LensFileError(
+            "the film's radius of curvature, " + lens_checks_detail::short_mm(lens.film_radius_of_curvature) +
+            ", is too short: the film reaches out to " + lens_checks_detail::short_mm(corner) + " from the axis");
+}
+
 void check_film_size(const LensSystem& lens) {
     if (!(lens.film_width > 0) || !(lens.film_height > 0) || !(lens.film_width + lens.film_height <= kLongest))
         throw LensFileError("the film's width and height must be positive lengths, of at most 1e9 mm");
+    check_film_reach(lens, 0.5 * hypotenuse(lens.film_width, lens.film_height));
 }
 
 void check_focusing(const LensSystem& lens) {

@@ -36,6 +36,9 @@ void check_zoom(const LensSystem& lens);
 void validate(const LensSystem& lens);
 
 /// Why the film cannot lie where it does; empty where it can.
+/// Throws LensFileError where a film that reaches out to `corner` from the axis, mm, is curved more than that.
+void check_film_reach(const LensSystem& lens, double corner);
+
 std::string film_distance_error(const LensSystem& lens);
 
 }  // namespace REALCAM_NAMESPACE

@@ -8,6 +8,14 @@
 
 namespace realcam {
 
+bool has_radial_pupil(const LensSystem& lens) {
+    return std::isinf(lens.film_radius_of_curvature);
+}
+
+MirrorPlanes mirror_planes(const LensSystem&) {
+    return {true, true};
+}
+
 PupilGrid::PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes planes, PupilTracer tracer,
                      const std::vector<double>& wavelengths_nm)
     : search_(lens, std::move(tracer), wavelengths_nm), film_(film), planes_(planes) {

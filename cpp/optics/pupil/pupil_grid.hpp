@@ -19,6 +19,12 @@ struct MirrorPlanes {
     bool x = false, y = false;  ///< what lies at -x, or -y, is as at x, or y
 };
 
+/// Whether the pupil of a film point depends on its distance from the axis alone, and lies in one plane's frame for
+/// all: that of a centred lens of revolution before a flat film. It is found and sampled in less time (Pupil).
+bool has_radial_pupil(const LensSystem& lens);
+
+MirrorPlanes mirror_planes(const LensSystem& lens);
+
 /// The directions that pass a lens of any kind, for every place on the film. Found with real rays; owns the memory of
 /// its view.
 class PupilGrid {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "../trace/open_iris.hpp"
+#include "film_surface.hpp"
 
 namespace realcam {
 
@@ -63,16 +64,17 @@ PupilBox PupilLens::box_of_last_surface(double radius) const {
     return box.grown(0.02);
 }
 
-DirectionBox PupilLens::box_of_last_surface(Vec2<double> film) const {
+DirectionBox PupilLens::box_of_last_surface(Vec2<double> at) const {
     const Surface& last = lens_.surfaces.back();
+    const FilmSurface<double> film{lens_.film_distance, 1 / lens_.film_radius_of_curvature};
+    const Vec3d from = film.place(at), x = film.direction(at, {1, 0, 0}), y = film.direction(at, {0, 1, 0});
     DirectionBox box = DirectionBox::none();
     for (int ring = 0; ring <= 8; ++ring) {
-        const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r) - lens_.film_distance;
+        const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r);
         for (int spoke = 0; spoke < 32; ++spoke) {
             const double angle = std::numbers::pi * spoke / 16;
-            const Vec3d d =
-                path_.entry_index * normalized(Vec3d{r * std::cos(angle) - film.x, r * std::sin(angle) - film.y, z});
-            box = box.with({d.x, d.y});
+            const Vec3d d = path_.entry_index * normalized(Vec3d{r * std::cos(angle), r * std::sin(angle), z} - from);
+            box = box.with({dot(d, x), dot(d, y)});
         }
     }
     return box.grown(0.02);
@@ -92,13 +94,13 @@ LensSystem PupilLens::round_iris(LensSystem lens) {
 
 void PupilLens::trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const {
     const double n2 = index_squared();
-    const auto z = static_cast<float>(lens_.film_distance);
+    const FilmSurface<double> film{lens_.film_distance, 1 / lens_.film_radius_of_curvature};
     REALCAM_LANES
     for (int i = 0; i < kBlock; ++i) {
         const double l = from.l[i], m = from.m[i], squared = n2 - l * l - m * m;
-        rays.origin.set(i, {static_cast<float>(from.x[i]), static_cast<float>(from.y[i]), z});
-        rays.direction.set(i,
-                           {static_cast<float>(l), static_cast<float>(m), -static_cast<float>(sqrt_or_zero(squared))});
+        const Vec2<double> at = {from.x[i], from.y[i]};
+        rays.origin.set(i, static_cast<Vec3f>(film.place(at)));
+        rays.direction.set(i, static_cast<Vec3f>(film.direction(at, {l, m, -sqrt_or_zero(squared)})));
         rays.status[i] = squared > 0 ? 0 : static_cast<int>(RayStatus::missed);
     }
     tracer_.trace(view, rays);

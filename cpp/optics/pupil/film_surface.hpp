@@ -1,0 +1,46 @@
+#pragma once
+#include "../../math/lanes.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// The film, a sphere's cap or a plane, in its own frame: the vertex lies on the z axis, and light comes with growing
+/// z. Its points are named by their x and y. Directions at a point are in the frame of the tangent plane there: what
+/// the film's axes become when z is turned to the normal, the shortest way.
+template <class T>
+struct FilmSurface {
+    T distance;   ///< of the vertex from the origin, mm
+    T curvature;  ///< 1/mm; above 0: the centre lies behind the film
+
+    REALCAM_INLINE Vec3<T> place(Vec2<T> at) const {
+        const T squared = at.x * at.x + at.y * at.y;
+        return {at.x, at.y, distance + curvature * squared / (T(1) + cosine(squared))};
+    }
+
+    /// Of a direction of the tangent frame at a point, in the film's.
+    REALCAM_INLINE Vec3<T> direction(Vec2<T> at, Vec3<T> local) const {
+        // With n the normal: x becomes (1 - nx nx / (1 + nz), -nx ny / (1 + nz), -nx), and y likewise.
+        const T nx = -curvature * at.x, ny = -curvature * at.y, nz = cosine(at.x * at.x + at.y * at.y);
+        const T along = (nx * local.x + ny * local.y) / (T(1) + nz);
+        return {local.x - along * nx + local.z * nx, local.y - along * ny + local.z * ny,
+                local.z * nz - nx * local.x - ny * local.y};
+    }
+
+    /// Where a ray that comes from the lens meets it; no number where it does not.
+    REALCAM_INLINE Vec2<T> landing(Vec3<T> origin, Vec3<T> direction) const {
+        // As in intersect_sphere, for the near cap.
+        const Vec3<T> o = {origin.x, origin.y, origin.z - distance};
+        const T F = curvature * dot(o, o) - T(2) * o.z;
+        const T G = direction.z - curvature * dot(o, direction);
+        const T A = curvature * dot(direction, direction);
+        const T t = F / (G + std::sqrt(G * G - A * F));
+        return {o.x + t * direction.x, o.y + t * direction.y};
+    }
+
+private:
+    /// Of the angle between the normal and z.
+    REALCAM_INLINE T cosine(T squared_radius) const {
+        return sqrt_or_zero(T(1) - curvature * curvature * squared_radius);
+    }
+};
+
+}  // namespace REALCAM_NAMESPACE
