@@ -2,6 +2,7 @@
 
 #include "../optics/lens/lens_edits.hpp"
 #include "../optics/lens/lens_tilts.hpp"
+#include "../optics/lens/tilt_shift.hpp"
 #include "bindings.hpp"
 
 namespace realcam::bindings {
@@ -19,6 +20,24 @@ void bind_lens_edits(py::module_& m) {
         .def("with_film_radius", &with_film_radius, "radius_of_curvature_mm"_a,
              "The lens for a film of this radius of curvature: below 0 hollow towards the lens, inf flat.\n"
              "Raises LensFileError where the film does not reach its corners.")
+        .def(
+            "shifted",
+            [](const LensSystem& lens, double x_mm, double y_mm) {
+                return with_lens_moved(lens, {.decentre = {x_mm, y_mm, 0}});
+            },
+            "x_mm"_a = 0.0, "y_mm"_a = 0.0,
+            "The lens moved sideways before the film, which stays. A lens that goes up, y_mm above 0, looks up.\n"
+            "Raises InputError where its first surface is moved alone, and LensFileError.")
+        .def(
+            "tilted",
+            [](const LensSystem& lens, double x_deg, double y_deg, double pivot_mm) {
+                return with_lens_moved(lens, {.tilt_deg = {x_deg, y_deg, 0}}, pivot_mm);
+            },
+            "x_deg"_a = 0.0, "y_deg"_a = 0.0, py::kw_only(), "pivot_mm"_a = 0.0,
+            "The lens turned before the film, which stays: about the x axis, then the turned y axis, each\n"
+            "counterclockwise as seen from its tip. The plane in focus turns with it (Scheimpflug).\n"
+            "pivot_mm: from the middle of the film towards the scene to the point about which it turns.\n"
+            "Raises InputError where its first surface is moved alone, and LensFileError.")
         .def(
             "scaled", &scaled, "factor"_a,
             "The lens with all lengths times factor: film, focus distance and zoom positions with it; coatings keep\n"

@@ -32,7 +32,7 @@ consteval std::size_t count() {
 template <class T>
 auto members(T& x) {
     constexpr std::size_t n = members_detail::count<std::remove_const_t<T>>();
-    static_assert(std::is_aggregate_v<std::remove_const_t<T>> && n >= 1 && n <= 15, "add a line for so many members");
+    static_assert(std::is_aggregate_v<std::remove_const_t<T>> && n >= 1 && n <= 16, "add a line for so many members");
     if constexpr (n == 1) {
         auto& [a] = x;
         return std::tie(a);
@@ -75,9 +75,12 @@ auto members(T& x) {
     } else if constexpr (n == 14) {
         auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = x;
         return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, o);
-    } else {
+    } else if constexpr (n == 15) {
         auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = x;
         return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p);
+    } else {
+        auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = x;
+        return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q);
     }
 }
 

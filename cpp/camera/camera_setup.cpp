@@ -68,7 +68,8 @@ CircleOfConfusion circle_of_confusion(double entrance_pupil_position, ThinLens t
 CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraSetup* last, const LensEffects& effects)
     : camera_(validated(camera)),
       effects_(effects),
-      path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm),
+      path_(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm,
+            film_path_ends(camera.lens, LightDirection::to_scene)),
       tables_(camera.lens, film_radius(), effects, tracer, last ? &last->tables_ : nullptr) {
     const std::vector<Affine<double>> keys = exposure_keys(camera);
     for (const Affine<double>& key : keys) keys_.push_back(placement(key, keys.front().origin));
@@ -91,14 +92,17 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
                              : std::make_shared<const PupilEntries>(pupil_->view(), path_.view(), film_radius(),
                                                                     camera.lens.film_distance, tracer);
     if (camera.model == CameraModel::full_lens_double) {
-        path_in_double_.emplace(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm);
+        path_in_double_.emplace(camera.lens, LightDirection::to_scene, camera.lens.wavelength_nm,
+                                film_path_ends(camera.lens, LightDirection::to_scene));
         view_in_double_ = path_in_double_->view();
     }
 }
 
 CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     const LensSystem& lens = camera_.lens;
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
+    // What is only about the size of blurs is that of the lens on one axis.
+    const LensSystem on_axis = centred(lens);
+    const FirstOrder data = first_order(on_axis, lens.wavelength_nm);
     CameraView view{};
     static_cast<CameraPlacement&>(view) =
         placement(scene_from_camera(pose_at(camera_, camera_.exposure().begin_s)), origin_m);
@@ -110,10 +114,10 @@ CameraView CameraSetup::view(Vec3d origin_m, bool scene_moves) const {
     view.film_middle = {static_cast<float>(-camera_.film.shift_mm.x), static_cast<float>(-camera_.film.shift_mm.y)};
     view.film_distance = static_cast<float>(lens.film_distance);
     view.film_curvature = static_cast<float>(1 / lens.film_radius_of_curvature);
-    view.front_vertex_m = static_cast<float>(0.001 * lens.film_position());
+    view.front_vertex_m = static_cast<float>(0.001 * camera_film_position(lens));
     view.pupil_m = static_cast<float>(0.001 * (lens.film_position() - data.entrance_pupil_position));
-    view.thin = thin_lens_of(lens, data);
-    view.thick = thick_lens_of(lens, data);
+    view.thin = thin_lens_of(on_axis, data);
+    view.thick = thick_lens_of(on_axis, data);
     if (map_) view.map = map_->view();
     view.circle = circle_of_confusion(data.entrance_pupil_position, view.thin, view.thick, lens.film_distance);
     view.axis_irradiance = axis_irradiance_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../optics/lens/film_frame.hpp"
 #include "../optics/trace/lens_dispersion.hpp"
 
 namespace realcam {
@@ -58,7 +59,7 @@ void EffectTables::set_wavelengths(const Illuminant& illuminant) {
     check_dispersion(lens_, range);
     to_scene_ = index_cubics(lens_, LightDirection::to_scene, range);
     to_film_ = index_cubics(lens_, LightDirection::to_film, range);
-    film_path_.emplace(lens_, LightDirection::to_film, design);
+    film_path_.emplace(lens_, LightDirection::to_film, design, film_path_ends(lens_, LightDirection::to_film));
     pupil_wavelengths_ = {std::clamp(design, range.first, range.last)};
     for (const double end : {range.first, range.last})
         if (end != pupil_wavelengths_.front()) pupil_wavelengths_.push_back(end);

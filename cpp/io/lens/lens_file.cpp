@@ -53,12 +53,12 @@ std::vector<double> read_aspheric_coefficients(const TomlTable& table) {
     return values;
 }
 
-SurfacePlacement read_placement(const TomlTable& table) {
+/// `of`: before the keys.
+SurfacePlacement read_placement(const TomlTable& table, const std::string& of = "") {
     SurfacePlacement placement;
-    const std::vector<double> decentre = table.numbers("decentre_mm", 3), tilt = table.numbers("tilt_deg", 3);
+    const std::vector<double> decentre = table.numbers(of + "decentre_mm", 3), tilt = table.numbers(of + "tilt_deg", 3);
     if (!decentre.empty()) placement.decentre = {decentre[0], decentre[1], decentre[2]};
     if (!tilt.empty()) placement.tilt_deg = {tilt[0], tilt[1], tilt[2]};
-    placement.returns = table.flag("returns");
     return placement;
 }
 
@@ -107,6 +107,7 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     surface.clear_semi_diameter = *rim;
     surface.inner_semi_diameter = table.number("inner_semi_diameter_mm").value_or(0);
     surface.placement = read_placement(table);
+    surface.placement.returns = table.flag("returns");
     return surface;
 }
 
@@ -222,9 +223,27 @@ void set_rings(const TomlTable& file, LensSystem& lens) {
 
 LensSystem lens_from_table(const toml::table& root, const std::string& file, const KeepGoing& keep_going) {
     const TomlTable top(root, file);
-    top.allow({"format", "name", "title", "source", "wavelength_nm", "film_mm", "film_distance_mm",
-               "film_radius_of_curvature_mm", "glass", "coating", "default_coating", "surface", "iris", "focus",
-               "allow_crossing", "zoom", "zoom_position", "focus_distance_mm", "stop_semi_diameter_mm"});
+    top.allow({"format",
+               "name",
+               "title",
+               "source",
+               "wavelength_nm",
+               "film_mm",
+               "film_distance_mm",
+               "film_radius_of_curvature_mm",
+               "film_decentre_mm",
+               "film_tilt_deg",
+               "glass",
+               "coating",
+               "default_coating",
+               "surface",
+               "iris",
+               "focus",
+               "allow_crossing",
+               "zoom",
+               "zoom_position",
+               "focus_distance_mm",
+               "stop_semi_diameter_mm"});
     const auto format = top.number("format");
     if (!format) top.fail("\"format = 1\" is missing");
     if (*format != kFormat)
@@ -243,6 +262,7 @@ LensSystem lens_from_table(const toml::table& root, const std::string& file, con
         lens.film_height = film[1];
     }
     lens.film_radius_of_curvature = film_radius(top);
+    lens.film_placement = read_placement(top, "film_");
     const auto glasses = top.table("glass");
     const LensCoatings coatings(top, glasses);
     const toml::array* surfaces = root["surface"].as_array();

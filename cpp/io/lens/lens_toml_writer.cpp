@@ -48,6 +48,9 @@ public:
         head += number("film_distance_mm", lens_.film_distance);
         if (std::isfinite(lens_.film_radius_of_curvature))
             head += number("film_radius_of_curvature_mm", lens_.film_radius_of_curvature);
+        const SurfacePlacement& film = lens_.film_placement;
+        if (film.decentre != Vec3d{0, 0, 0}) head += key("film_decentre_mm", triple(film.decentre));
+        if (film.tilt_deg != Vec3d{0, 0, 0}) head += key("film_tilt_deg", triple(film.tilt_deg));
         if (lens_.allow_crossing) head += key("allow_crossing", "true");
         head += write_rings();
         return head + glasses_ + coatings_ + body_;
@@ -56,6 +59,10 @@ public:
 private:
     static std::string key(const std::string& name, const std::string& value) { return name + " = " + value + '\n'; }
     static std::string number(const std::string& name, double value) { return key(name, toml_number(value)); }
+
+    static std::string triple(Vec3d v) {
+        return '[' + toml_number(v.x) + ", " + toml_number(v.y) + ", " + toml_number(v.z) + ']';
+    }
 
     static std::string text(const std::string& value) {
         if (!is_utf8(value) || printable(value) != value)
@@ -99,9 +106,6 @@ private:
             body_ += key("material", material(s.material));
         body_ += number("clear_semi_diameter_mm", s.clear_semi_diameter);
         if (s.inner_semi_diameter != 0) body_ += number("inner_semi_diameter_mm", s.inner_semi_diameter);
-        const auto triple = [](Vec3d v) {
-            return '[' + toml_number(v.x) + ", " + toml_number(v.y) + ", " + toml_number(v.z) + ']';
-        };
         if (s.placement.decentre != Vec3d{0, 0, 0}) body_ += key("decentre_mm", triple(s.placement.decentre));
         if (s.placement.tilt_deg != Vec3d{0, 0, 0}) body_ += key("tilt_deg", triple(s.placement.tilt_deg));
         if (s.placement.returns) body_ += key("returns", "true");

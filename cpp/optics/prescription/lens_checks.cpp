@@ -62,12 +62,14 @@ void check_thickness(const Surface& s, std::size_t i, double direction) {
                     : "the thickness is positive; light travels back behind a mirror, so 0 or less is wanted");
 }
 
-void check_placement(const Surface& s, std::size_t i) {
-    const auto& [decentre, tilt, returns] = s.placement;
+/// Empty: it can be.
+std::string placement_error(const SurfacePlacement& placement) {
+    const auto& [decentre, tilt, returns] = placement;
     if (!(std::fabs(decentre.x) <= kLongest && std::fabs(decentre.y) <= kLongest && std::fabs(decentre.z) <= kLongest))
-        fail(i, "the decentre must be three lengths of at most 1e9 mm");
+        return "the decentre must be three lengths of at most 1e9 mm";
     if (!(std::fabs(tilt.x) <= 360 && std::fabs(tilt.y) <= 360 && std::fabs(tilt.z) <= 360))
-        fail(i, "the tilt must be three angles between -360 and 360 degrees");
+        return "the tilt must be three angles between -360 and 360 degrees";
+    return "";
 }
 
 void check_material(const Surface& s, std::size_t i, double design_wavelength_nm) {
@@ -121,7 +123,7 @@ void check_surfaces(const LensSystem& lens) {
         check_figure(s, i);
         check_rim(s, i);
         check_thickness(s, i, is_rotational ? direction : 0);
-        check_placement(s, i);
+        if (const std::string why = placement_error(s.placement); !why.empty()) fail(i, why);
         check_material(s, i, lens.wavelength_nm);
         check_surface_coating(s, i);
     }
@@ -157,6 +159,8 @@ void check_film_reach(const LensSystem& lens, double corner) {
 void check_film_size(const LensSystem& lens) {
     if (!(lens.film_width > 0) || !(lens.film_height > 0) || !(lens.film_width + lens.film_height <= kLongest))
         throw LensFileError("the film's width and height must be positive lengths, of at most 1e9 mm");
+    if (const std::string why = lens_checks_detail::placement_error(lens.film_placement); !why.empty())
+        throw LensFileError("film: " + why);
     check_film_reach(lens, 0.5 * hypotenuse(lens.film_width, lens.film_height));
 }
 

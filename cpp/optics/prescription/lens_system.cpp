@@ -14,7 +14,7 @@ std::string LensSystem::asymmetry() const {
     for (std::size_t i = 0; i < surfaces.size(); ++i)
         if (const std::string why = surfaces[i].asymmetry(); !why.empty())
             return "surface " + std::to_string(i + 1) + ' ' + why;
-    return "";
+    return film_placement.is_in_place() ? "" : "its film is tilted or moved";
 }
 
 void LensSystem::require_rotational(const std::string& what) const {

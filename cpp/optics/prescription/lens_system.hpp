@@ -43,6 +43,7 @@ struct LensSystem {
     double film_width = 36, film_height = 24;
     double film_distance = 0;  ///< last vertex to film
     double film_radius_of_curvature = kInfinity;  ///< mm; above 0: the centre lies behind the film
+    SurfacePlacement film_placement;  ///< as seen from the last axis, film_distance behind the last vertex
     double focus_distance = kInfinity;  ///< object plane to film
     double stop_semi_diameter = 0;  ///< radius of the circle that has the diaphragm's open area
     IrisShape iris;

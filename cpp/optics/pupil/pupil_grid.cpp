@@ -9,11 +9,19 @@
 namespace realcam {
 
 bool has_radial_pupil(const LensSystem& lens) {
-    return std::isinf(lens.film_radius_of_curvature);
+    return lens.is_rotational() && std::isinf(lens.film_radius_of_curvature);
 }
 
-MirrorPlanes mirror_planes(const LensSystem&) {
-    return {true, true};
+MirrorPlanes mirror_planes(const LensSystem& lens) {
+    MirrorPlanes planes{true, true};
+    const auto heed = [&](const SurfacePlacement& placement) {
+        const auto& [decentre, tilt, returns] = placement;
+        planes.x &= decentre.x == 0 && tilt.y == 0 && tilt.z == 0;
+        planes.y &= decentre.y == 0 && tilt.x == 0 && tilt.z == 0;
+    };
+    for (const Surface& surface : lens.surfaces) heed(surface.placement);
+    heed(lens.film_placement);
+    return planes;
 }
 
 PupilGrid::PupilGrid(const LensSystem& lens, const FilmArea& film, MirrorPlanes planes, PupilTracer tracer,

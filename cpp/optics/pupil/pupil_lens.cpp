@@ -20,15 +20,22 @@ void PupilRays::set(int lane, Vec2<double> film, PupilDirection d) {
 
 PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
     : lens_(round_iris(lens)),
-      path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front()),
+      path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front(),
+            film_path_ends(lens_, LightDirection::to_scene)),
       tracer_(std::move(tracer)),
       has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
                                 [](const Surface& surface) { return surface.is_asphere(); })) {
     for (std::size_t i = 1; i < wavelengths_nm.size(); ++i)
-        others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i]);
+        others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i],
+                             film_path_ends(lens_, LightDirection::to_scene));
     const LensView<float> all = path_.view();
     surfaces_to_stop_.assign(all.surfaces, all.surfaces + all.count - lens_.stop_index());
     surfaces_to_stop_.back().rim_squared = std::numeric_limits<float>::max();
+    if (!all.free.frames) return;
+    frames_to_stop_.assign(all.free.frames, all.free.frames + surfaces_to_stop_.size());
+    frames_to_stop_.back().out = {};  // rays stay in the frame of the stop
+    last_surface_ =
+        inverse_motion(*film_path_ends(lens_, LightDirection::to_scene).entry) * surface_frames(lens_).surfaces.back();
 }
 
 void PupilLens::trace(const PupilRays& from, bool* passes) const {
@@ -47,6 +54,7 @@ void PupilLens::trace_to_stop(const PupilRays& from, PupilTracer::Rays& rays) co
     LensView<float> view = path_.view();
     view.surfaces = surfaces_to_stop_.data();
     view.count = static_cast<int>(surfaces_to_stop_.size());
+    if (!frames_to_stop_.empty()) view.free.frames = frames_to_stop_.data();
     trace(view, from, rays);
 }
 
@@ -73,7 +81,8 @@ DirectionBox PupilLens::box_of_last_surface(Vec2<double> at) const {
         const double r = last.clear_semi_diameter * ring / 8, z = last.sag(r);
         for (int spoke = 0; spoke < 32; ++spoke) {
             const double angle = std::numbers::pi * spoke / 16;
-            const Vec3d d = path_.entry_index * normalized(Vec3d{r * std::cos(angle), r * std::sin(angle), z} - from);
+            const Vec3d d = path_.entry_index *
+                            normalized(last_surface_.point({r * std::cos(angle), r * std::sin(angle), z}) - from);
             box = box.with({dot(d, x), dot(d, y)});
         }
     }

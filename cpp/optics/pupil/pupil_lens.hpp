@@ -2,7 +2,7 @@
 #include <functional>
 #include <vector>
 
-#include "../trace/lens_path.hpp"
+#include "../lens/film_frame.hpp"
 #include "direction_box.hpp"
 #include "pupil_tracer.hpp"
 
@@ -65,6 +65,8 @@ private:
     std::vector<LensPath<float>> others_;  ///< of other wavelengths
     PupilTracer tracer_;
     std::vector<SurfaceView<float>> surfaces_to_stop_;
+    std::vector<FrameChanges<float>> frames_to_stop_;
+    Affine<double> last_surface_;  ///< its frame, as rays from the film see it
     bool has_aspheres_;
 };
 

@@ -1,0 +1,50 @@
+#include "film_frame.hpp"
+
+#include <utility>
+
+namespace realcam {
+
+namespace {
+
+Affine<double> along_axis(double distance) {
+    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, distance}};
+}
+
+/// -1 where light reaches the film against the last axis.
+double direction_behind(const LensSystem& lens) {
+    const std::vector<Crossing> way = crossings_of(lens);
+    double sign = 1;
+    for (std::size_t m = 0; m < way.size(); ++m) {
+        sign *= path_frames_detail::turn_before(lens, way, m);
+        if (lens.surfaces[static_cast<std::size_t>(way[m].surface)].type == SurfaceType::mirror) sign = -sign;
+    }
+    return sign;
+}
+
+bool is_centred(const LensSystem& lens) {
+    return !path_frames_detail::has_placements(lens) && lens.film_placement.is_in_place();
+}
+
+}  // namespace
+
+Affine<double> film_frame(const LensSystem& lens) {
+    const Affine<double> film =
+        surface_frames(lens).last_axis * along_axis(lens.film_distance) * lens.film_placement.frame();
+    if (direction_behind(lens) > 0) return film;
+    return film * Affine<double>{{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 0}};
+}
+
+PathEnds film_path_ends(const LensSystem& lens, LightDirection direction) {
+    if (is_centred(lens)) return {};
+    const Affine<double> film = film_frame(lens);
+    PathEnds ends{film * along_axis(-lens.film_distance),
+                  Affine<double>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {film.origin.x, film.origin.y, 0}}};
+    if (direction == LightDirection::to_film) std::swap(ends.entry, ends.exit);
+    return ends;
+}
+
+double camera_film_position(const LensSystem& lens) {
+    return is_centred(lens) ? lens.film_position() : film_frame(lens).origin.z;
+}
+
+}  // namespace realcam
