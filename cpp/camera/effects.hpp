@@ -68,6 +68,7 @@ struct EffectInfo {
     const char* usage = "";  ///< what else a user should know
     bool has_wavelengths = false;  ///< each sample has one, so that an illuminant can be named
     bool needs_full_lens = false;  ///< it happens at the lens's surfaces, which only the camera model full has
+    bool needs_round_lens = false;  ///< a centred one of revolution before a flat film
     bool needs_coatings = false;  ///< of the lens file; without them it is a guess
     bool shows_in_previews = true;  ///< in pictures of fewer pixels than were asked for
     /// Of a picture of the frame benchmark with it over one without, on a core and on a GPU (benchmarks/effects.py, the
@@ -111,6 +112,7 @@ inline constexpr EffectInfo kEffects[] = {
               "model full",
      .usage = "ghosts=1e-8 leaves out those with less than 1e-8 of the lens's light, where ghosts alone means 1e-6",
      .needs_full_lens = true,
+     .needs_round_lens = true,
      .needs_coatings = true,
      .cpu_time = 1.51,
      .gpu_time = 1.21},
@@ -121,12 +123,14 @@ inline constexpr EffectInfo kEffects[] = {
      .needs = "what ghosts needs",
      .usage = "film_reflection=0.1 reflects a tenth, where film_reflection alone means 0.05",
      .needs_full_lens = true,
+     .needs_round_lens = true,
      .needs_coatings = true},
     {.name = "diffraction",
      .member = &EffectChoice::diffraction,
      .what = "the edges of the aperture spread light of each wavelength over the film, and make stars of lamps",
      .needs = "nothing of lens, scene and camera",
      .has_wavelengths = true,
+     .needs_round_lens = true,
      .shows_in_previews = false,
      .cpu_time = 1.12,
      .gpu_time = 1.13},

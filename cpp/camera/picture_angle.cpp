@@ -7,7 +7,7 @@
 namespace realcam {
 
 double picture_angle(const Camera& camera, double image_height_mm) {
-    const LensSystem& lens = camera.lens;
+    const LensSystem lens = centred(camera.lens);
     if (has_real_pupil(camera.model) || camera.model == CameraModel::mapped_lens)
         return widest_field_angle(lens, image_height_mm);
     camera_detail::validate_ideal(lens, camera.model);
@@ -36,7 +36,7 @@ FieldOfView field_of_view(const Camera& camera) {
 }
 
 std::optional<Vec3d> entrance_pupil_position_m(const Camera& camera) {
-    const LensSystem& lens = camera.lens;
+    const LensSystem lens = centred(camera.lens);
     const double pupil_mm = first_order(lens, lens.wavelength_nm).entrance_pupil_position;
     if (!std::isfinite(pupil_mm)) return std::nullopt;
     const Vec3d backward = camera_detail::axes_of(camera.pose).backward;

@@ -20,7 +20,7 @@ CentralLens central_lens(const LensSystem& lens, CameraModel model) {
 }  // namespace
 
 std::optional<PinholeCamera> pinhole_camera(const Camera& camera, const Pose& pose) {
-    const CentralLens lens = central_lens(camera.lens, camera.model);
+    const CentralLens lens = central_lens(centred(camera.lens), camera.model);
     if (!std::isfinite(lens.position) || !std::isfinite(lens.image_distance)) return std::nullopt;
     const Film& film = camera.film;
     PinholeCamera result{};

@@ -11,13 +11,16 @@ namespace REALCAM_NAMESPACE {
 inline Plan make_plan(Session& session, const Assembly& scene, const Camera& camera, const RenderSettings& settings,
                       bool measures_times, const PupilTracer& tracer, const Progress& progress = {}) {
     validate(settings);
-    const SceneFacts facts = probe_scene(session, scene, camera, settings, progress);
-    Camera full = camera, ideal = camera;
+    // What errors and effects amount to is looked at without tilts: they change little of it.
+    Camera full = camera;
+    full.lens = centred(camera.lens);
+    const SceneFacts facts = probe_scene(session, scene, full, settings, progress);
+    Camera ideal = full;
     full.model = CameraModel::full_lens;
     ideal.model = CameraModel::thin_lens;
     const CameraSetup of_surfaces(full, tracer), of_ideal(ideal, tracer);
     const LensErrors errors =
-        lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), camera.lens, facts, tracer);
+        lens_errors(of_surfaces.view({0, 0, 0}), of_ideal.view({0, 0, 0}), full.lens, facts, tracer);
     Plan plan = plan_shot(camera, errors, facts, settings);
     if (measures_times) measure_times(session, scene, camera, settings, plan, progress);
     return plan;

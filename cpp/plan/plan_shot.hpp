@@ -4,6 +4,7 @@
 #include <string>
 
 #include "../optics/coating/coated_faces.hpp"
+#include "../optics/pupil/pupil_grid.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "lens_errors.hpp"
@@ -31,7 +32,11 @@ inline std::string short_size(double size) {
 class Planner {
 public:
     Planner(const Camera& camera, const LensErrors& errors, const SceneFacts& facts, const RenderSettings& settings)
-        : camera_(camera), errors_(errors), facts_(facts), settings_(settings) {}
+        : camera_(with_centred_lens(camera)),
+          errors_(errors),
+          facts_(facts),
+          settings_(settings),
+          is_round_(has_radial_pupil(camera.lens)) {}
 
     Plan plan() {
         plan_.effects = without_plan(settings_.effects);
@@ -45,12 +50,23 @@ public:
     }
 
 private:
+    static Camera with_centred_lens(Camera camera) {
+        camera.lens = centred(camera.lens);
+        return camera;
+    }
+
     /// Whether the effect is one of surfaces, which an ideal lens has not.
     bool is_impossible(const EffectInfo& effect) const { return effect.needs_full_lens && !may_choose_model_; }
 
-    /// `reason`: what is so large. `doubt`: why it is left to the user; empty: it is not.
-    void decide(const char* name, double size, SizeUnit unit, std::string reason, const std::string& doubt = "") {
+    /// `doubt`, or why the lens cannot show the effect.
+    std::string doubt_or_refusal(const EffectInfo& effect, const std::string& doubt) const {
+        return effect.needs_round_lens && !is_round_ ? "but only a centred lens of revolution can show it" : doubt;
+    }
+
+    /// `reason`: what is so large. `leave`: why it is left to the user; empty: it is not.
+    void decide(const char* name, double size, SizeUnit unit, std::string reason, const std::string& leave = "") {
         const EffectInfo& effect = *find_effect(name);
+        const std::string doubt = doubt_or_refusal(effect, leave);
         const double threshold = unit == SizeUnit::pixels ? settings_.thresholds.pixels : settings_.thresholds.codes;
         const bool is_named = (settings_.effects.named & bit_of(effect)) != 0;
         const bool is_kept =
@@ -142,7 +158,7 @@ private:
         CameraModel model = CameraModel::full_lens;
         if (!may_choose_model_)
             model = camera_.model;
-        else if (!any_is(plan_.effects, &EffectInfo::needs_full_lens))
+        else if (is_round_ && !any_is(plan_.effects, &EffectInfo::needs_full_lens))
             model = errors_.pinhole.is_within(thresholds)  ? CameraModel::pinhole
                     : errors_.thin.is_within(thresholds)   ? CameraModel::thin_lens
                     : errors_.mapped.is_within(thresholds) ? CameraModel::mapped_lens
@@ -168,10 +184,11 @@ private:
             "a thin lens's picture differs by " + codes(errors_.thin.light_codes) + " towards the corners");
     }
 
-    const Camera& camera_;
+    Camera camera_;
     const LensErrors& errors_;
     const SceneFacts& facts_;
     const RenderSettings& settings_;
+    const bool is_round_;
     const bool may_choose_model_ = camera_.model == CameraModel::full_lens;  ///< else the camera's stays
     Plan plan_;
     double coating_colour_codes_ = 0, ghost_colour_codes_ = 0;  ///< of those that are kept

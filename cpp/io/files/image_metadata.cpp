@@ -48,12 +48,12 @@ std::string name_of(LightTransport transport) {
 }
 
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) {
-    const FirstOrder data = first_order(camera.lens, camera.lens.wavelength_nm);
+    const FirstOrder data = first_order(centred(camera.lens), camera.lens.wavelength_nm);
     ImageMetadata metadata;
     metadata.lens = camera.lens.name;
     metadata.model = name_of(camera.model);
     metadata.focal_length_mm = data.effective_focal_length;
-    metadata.f_number = f_number_at_infinity(camera.lens);
+    metadata.f_number = f_number_at_infinity(centred(camera.lens));
     metadata.iris = camera.lens.iris;
     metadata.focus_distance_m = camera.lens.focus_distance / 1000;
     metadata.film_width_mm = camera.film.width_mm;

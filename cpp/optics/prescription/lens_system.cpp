@@ -60,4 +60,10 @@ LensSystem at_zoom_position(LensSystem lens, int position) {
     return lens;
 }
 
+LensSystem centred(LensSystem lens) {
+    for (Surface& surface : lens.surfaces) surface.placement = {};
+    lens.film_placement = {};
+    return lens;
+}
+
 }  // namespace realcam

@@ -27,12 +27,6 @@ SurfaceFrames surface_frames(const LensSystem& lens) {
     return result;
 }
 
-LensSystem centred(LensSystem lens) {
-    for (Surface& surface : lens.surfaces) surface.placement = {};
-    lens.film_placement = {};
-    return lens;
-}
-
 Affine<double> frame_of_next(const LensSystem& lens, int index) {
     const Surface &here = surface_of(lens, index), &next = surface_of(lens, index + 1);
     const Affine<double> to_next = along_axis(here.thickness) * next.placement.frame();

@@ -14,9 +14,6 @@ struct SurfaceFrames {
 
 SurfaceFrames surface_frames(const LensSystem& lens);
 
-/// The lens with all its surfaces, and the film, in place on one axis.
-LensSystem centred(LensSystem lens);
-
 /// From the frame of surface `index` + 1 to that of surface `index`. Where neither surface is moved, exactly the
 /// thickness.
 Affine<double> frame_of_next(const LensSystem& lens, int index);
