@@ -43,10 +43,13 @@ REALCAM_HD inline void expose_rays(const CameraView& camera, const SampleBlock<N
 }
 
 /// generate_rays, at such times.
-template <LensKind lens_kind = LensKind::rotational, int N>
+template <int N>
 REALCAM_HD inline void generate_exposed_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                              float (&times)[N]) {
-    generate_rays<lens_kind>(camera, block, rays);
+    if (camera.pupil_grid.nodes)
+        generate_rays<LensKind::any>(camera, block, rays);
+    else
+        generate_rays<LensKind::rotational>(camera, block, rays);
     expose_rays(camera, block, rays, times);
 }
 

@@ -260,7 +260,7 @@ REALCAM_HD inline void generate_rays_from(const CameraView& camera, const Sample
 
 /// Samples film and pupil and takes the rays through the lens. The expected value of weight times radiance is the
 /// pixel's irradiance, pi L sin^2(theta') for a constant field on the axis. `lens_kind`: any, or the lens's own.
-template <LensKind lens_kind = LensKind::rotational, int N>
+template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays) {
     generate_rays_from<lens_kind>(camera, block, PixelPoints<N>(camera, block), rays);
 }

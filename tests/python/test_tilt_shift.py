@@ -1,0 +1,157 @@
+"""Lenses that are tilted and shifted before the film, and films that are curved: where their rays go, and pictures.
+
+Truth: rotations and shifts of rays by hand; Gaussian optics of the lens on its axis; the exposure integral."""
+
+import numpy as np
+import pytest
+import realcam as rc
+from realcam import Camera, Film, Lens
+
+FILM = Film(36, 24, (36, 24))
+
+
+def turn_about_x(degrees):
+    c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+def film_rays(lens, count=200):
+    """Rays from the film's plane to the last surface's rim: origins and directions in the lens frame."""
+    rng = np.random.default_rng(3)
+    film = np.column_stack(
+        [rng.uniform(-15, 15, count), rng.uniform(-10, 10, count), np.full(count, lens.film_position_mm)]
+    )
+    rim = lens.surfaces[-1].clear_semi_diameter_mm
+    to = np.column_stack([rng.uniform(-rim, rim, (count, 2)), np.full(count, lens.vertices_mm[-1])])
+    return film, to - film
+
+
+def through(lens, origins, directions):
+    traced = lens.trace(origins, directions)
+    assert (traced.status == 0).sum() > 50
+    return traced
+
+
+@pytest.mark.parametrize(("x", "y"), [(0.0, 8.0), (-5.0, 3.0)])
+def test_a_shifted_lens_does_what_the_lens_does_with_shifted_rays(x, y):
+    lens = Lens.load("double-gauss-50mm")
+    by = np.array([x, y, 0])
+    origins, directions = film_rays(lens)
+    truth, traced = through(lens, origins, directions), through(lens.shifted(x, y), origins + by, directions)
+    assert np.array_equal(truth.status, traced.status)
+    ok = truth.status == 0
+    # Lengths of 60 mm: a few roundings of 1e-14 mm each, which six elements multiply.
+    assert np.abs(traced.origins_mm[ok] - by - truth.origins_mm[ok])[:, :2].max() < 1e-11
+    assert np.abs(traced.directions[ok] - truth.directions[ok]).max() < 1e-12
+
+
+@pytest.mark.parametrize("pivot", [0.0, 40.0])
+def test_a_tilted_lens_does_what_the_lens_does_with_turned_rays(pivot):
+    lens = Lens.load("double-gauss-50mm")
+    turn, about = turn_about_x(5), np.array([0, 0, lens.film_position_mm - pivot])
+    origins, directions = film_rays(lens)
+    truth = through(lens, origins, directions)
+    traced = through(lens.tilted(x_deg=5, pivot_mm=pivot), (origins - about) @ turn.T + about, directions @ turn.T)
+    ok = truth.status == 0
+    assert np.array_equal(ok, traced.status == 0)
+    assert np.abs(traced.directions[ok] - truth.directions[ok] @ turn.T).max() < 1e-12
+    # The same line: what lies between the two points on it goes along it.
+    apart = traced.origins_mm[ok] - ((truth.origins_mm[ok] - about) @ turn.T + about)
+    assert np.abs(np.cross(apart, traced.directions[ok])).max() < 1e-10
+
+
+def test_the_film_stays_where_it_is():
+    lens = Lens.load("double-gauss-50mm")
+    shot = Camera(lens.tilted(3, -2).shifted(4, 1), film=FILM)
+    rays = shot.generate_rays(spp=1)
+    straight = Camera(lens, film=FILM).generate_rays(spp=1)
+    # The camera's pose is that of its film: the middle of the picture looks a few degrees aside, and no more.
+    middle = (straight.directions * straight.weights[:, None]).sum(0)
+    aside = (rays.directions * rays.weights[:, None]).sum(0)
+    cosine = middle @ aside / np.linalg.norm(middle) / np.linalg.norm(aside)
+    assert 1 < np.rad2deg(np.arccos(cosine)) < 12
+
+
+def sharp_point(origins, directions):
+    """The point nearest to all of these lines, by least squares."""
+    project = np.eye(3) - directions[:, :, None] * directions[:, None, :]
+    return np.linalg.solve(project.sum(0), (project @ origins[:, :, None]).sum(0)[:, 0])
+
+
+@pytest.mark.parametrize("tilt", [-4.0, 2.0, 6.0])
+def test_the_plane_in_focus_turns_by_scheimpflugs_rule(tilt):
+    """Where narrow bundles from the film's middle meet again in the scene, through the tilted lens."""
+    lens = Lens.load("double-gauss-50mm").focused(1.5)
+    data, middle, turn = lens.first_order(), np.array([0, 0, lens.film_position_mm]), turn_about_x(tilt)
+    f = data.effective_focal_length_mm
+    across = np.array([[np.cos(a), np.sin(a), 0] for a in np.linspace(0, 6, 40)])
+    exit_pupil = [0, 0, data.exit_pupil_position_mm]
+    traced, true = [], []
+    for height in (-0.5, 0.5):
+        film = np.array([0, height, 0])
+        in_lens = turn.T @ film + middle  # what the film is in the axes of the lens
+        aims = exit_pupil + 0.5 * across
+        rays = lens.tilted(x_deg=tilt).trace(np.tile(film + middle, (40, 1)), (aims - in_lens) @ turn.T)
+        assert (rays.status == 0).all()
+        traced.append(sharp_point(rays.origins_mm, rays.directions) - middle)
+        # Newton's equation, from the two focal points.
+        behind = in_lens[2] - (lens.vertices_mm[-1] + data.back_focal_distance_mm)
+        point = np.array([0, -in_lens[1] * f / behind, data.front_focal_distance_mm - f * f / behind])
+        true.append(turn @ (point - middle))
+    angles = [np.rad2deg(np.arctan2(*(b - a)[1:])) for a, b in (traced, true)]
+    # A bundle of f/50 has a spherical aberration of 1e-4 of the distance, and the field of 0.5 mm is as flat.
+    assert angles[0] == pytest.approx(angles[1], abs=0.1)
+
+
+def passing_area(lens, film, turn, count=700):
+    """Integral of the direction cosines on the film over the rays that pass, from a fine grid of them."""
+    edge = (np.arange(count) + 0.5) / count * 2 - 1
+    x, y = (a.ravel() for a in np.meshgrid(edge, edge))
+    inside = x**2 + y**2 < 1
+    local = np.column_stack([x, y, -np.sqrt(np.maximum(0, 1 - x**2 - y**2))])[inside]
+    rays = lens.trace(np.tile(film, (len(local), 1)), local @ turn.T, dtype="float32")
+    return (rays.status == 0).sum() * (2 / count) ** 2
+
+
+@pytest.mark.parametrize("height", [-9.0, 0.0, 7.0])
+def test_the_irradiance_of_a_tilted_lens_is_the_integral_over_its_pupil(height):
+    lens = Lens.load("double-gauss-50mm").tilted(x_deg=8, y_deg=-3).shifted(y_mm=4)
+    film = Film(1e-3, 1e-3, (1, 1), shift_mm=(5, height))
+    rays = Camera(lens, film=film).generate_rays(spp=1 << 16)
+    at = np.array([-5, -height, lens.film_position_mm])  # the film's axes point against the picture's
+    # 700 x 700 cells, of which those at the rim of a region of 0.4 across are counted or not: 0.2%. As much of the
+    # samples' own noise, of which some 5% do not pass.
+    assert rays.weights.mean() == pytest.approx(passing_area(lens, at, np.eye(3)), rel=5e-3)
+
+
+@pytest.mark.parametrize("radius", [-40.0, -22.0, 30.0])
+def test_the_irradiance_of_a_curved_film_is_that_of_its_tangent_plane(radius):
+    lens = Lens.load("double-gauss-50mm").with_film_radius(radius)
+    for x, y in ((0.0, 0.0), (10.0, 0.0), (-6.0, 12.0)):
+        film = Film(1e-3, 1e-3, (1, 1), shift_mm=(-x, -y))
+        rays = Camera(lens, film=film).generate_rays(spp=1 << 16)
+        r2 = x * x + y * y
+        sag = radius - np.sign(radius) * np.sqrt(radius**2 - r2)
+        normal = np.array([-x, -y, radius - sag]) / radius
+        # The shortest turn from z to the normal (Rodrigues).
+        axis = np.cross([0, 0, 1], normal)
+        cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+        turn = np.eye(3) + cross + cross @ cross / (1 + normal[2])
+        at = np.array([x, y, lens.film_position_mm + sag])
+        assert rays.weights.mean() == pytest.approx(passing_area(lens, at, turn), rel=5e-3)
+
+
+def test_a_lens_and_its_film_are_written_and_read_back(tmp_path):
+    lens = Lens.load("double-gauss-50mm").tilted(3, 1, pivot_mm=20).shifted(1, 2).with_film_radius(-90)
+    lens.save(tmp_path / "tilted.toml")
+    assert Lens.load(tmp_path / "tilted.toml") == lens
+
+
+def test_what_cannot_be_is_refused():
+    lens = Lens.load("double-gauss-50mm")
+    with pytest.raises(rc.LensFileError, match=r"too short: the film reaches out to 21\.6"):
+        lens.with_film_radius(-21)
+    with pytest.raises(rc.InputError, match=r"diffraction needs a centred lens of revolution.*surface 1 is tilted"):
+        rc.render(rc.Scene(), Camera(lens.tilted(2)), spp=1, effects=("diffraction",))
+    with pytest.raises(rc.InputError, match=r"ghosts needs.*its film is curved"):
+        rc.render(rc.Scene(), Camera(lens.with_film_radius(-50)), spp=1, effects=("ghosts",))
