@@ -31,7 +31,7 @@ inline CameraRays<kLanes> rays_of_pixel(const CameraView& view, int column, int 
         block.sample[i] = first_sample + static_cast<std::uint32_t>(i);
     }
     CameraRays<kLanes> rays;
-    generate_rays(view, block, rays);
+    generate_rays<LensKind::rotational>(view, block, rays);
     return rays;
 }
 

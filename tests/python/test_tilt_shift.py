@@ -5,6 +5,7 @@ Truth: rotations and shifts of rays by hand; Gaussian optics of the lens on its 
 import numpy as np
 import pytest
 import realcam as rc
+from frame_scene import frame_scene
 from realcam import Camera, Film, Lens
 
 FILM = Film(36, 24, (36, 24))
@@ -152,6 +153,8 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(rc.LensFileError, match=r"too short: the film reaches out to 21\.6"):
         lens.with_film_radius(-21)
     with pytest.raises(rc.InputError, match=r"diffraction needs a centred lens of revolution.*surface 1 is tilted"):
-        rc.render(rc.Scene(), Camera(lens.tilted(2)), spp=1, effects=("diffraction",))
+        rc.render(frame_scene(spheres=1, boxes=1, rows=8), Camera(lens.tilted(2)), spp=1, effects=("diffraction",))
     with pytest.raises(rc.InputError, match=r"ghosts needs.*its film is curved"):
-        rc.render(rc.Scene(), Camera(lens.with_film_radius(-50)), spp=1, effects=("ghosts",))
+        rc.render(
+            frame_scene(spheres=1, boxes=1, rows=8), Camera(lens.with_film_radius(-50)), spp=1, effects=("ghosts",)
+        )

@@ -88,7 +88,7 @@ TEST_CASE("lanes that are not used make no light and no NaN") {
         SampleBlock<kLanes> block{};
         for (int i = 0; i < kLanes; ++i) block.used[i] = i % 2;
         CameraRays<kLanes> rays;
-        generate_rays(view, block, rays);  // the film's corner: out of the fisheye's image
+        generate_rays<LensKind::rotational>(view, block, rays);  // the film's corner: out of the fisheye's image
         for (int i = 0; i < kLanes; ++i) {
             CHECK(std::isfinite(length(rays.direction[i])));
             CHECK(std::isfinite(length(rays.origin[i])));
