@@ -26,7 +26,8 @@ DispersionView view_of(const FilmSpectrum& spectrum) {
             variable_over(spectrum.range()),
             nullptr,
             nullptr,
-            nullptr};
+            nullptr,
+            {}};
 }
 
 /// The greatest error of index that the cubics of a lens leave, as an index of glass in air.
