@@ -86,7 +86,7 @@ __global__ void camera_rays(const __grid_constant__ CameraView camera, BenchRay*
     const std::int32_t pixel = static_cast<std::int32_t>(blockIdx.x * kBlockSize + threadIdx.x);
     if (pixel >= camera.width * camera.height) return;
     CameraRays<1> made;
-    generate_rays(camera, block_of(camera, pixel, 0), made);
+    generate_rays<LensKind::rotational>(camera, block_of(camera, pixel, 0), made);
     rays[pixel] = {made.origin[0], made.direction[0]};
 }
 
