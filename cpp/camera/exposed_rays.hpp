@@ -43,13 +43,10 @@ REALCAM_HD inline void expose_rays(const CameraView& camera, const SampleBlock<N
 }
 
 /// generate_rays, at such times.
-template <int N>
+template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_exposed_rays(const CameraView& camera, const SampleBlock<N>& block, CameraRays<N>& rays,
                                              float (&times)[N]) {
-    if (camera.pupil_grid.nodes)
-        generate_rays<LensKind::any>(camera, block, rays);
-    else
-        generate_rays<LensKind::rotational>(camera, block, rays);
+    generate_rays<lens_kind>(camera, block, rays);
     expose_rays(camera, block, rays, times);
 }
 

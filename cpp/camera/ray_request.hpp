@@ -24,8 +24,9 @@ struct RayRequest {
     REALCAM_HD std::int64_t count() const { return range.count; }
 };
 
-/// Makes N rays of the range, from its `first` on; fewer at the end of the arrays.
-template <int N>
+/// Makes N rays of the range, from its `first` on; fewer at the end of the arrays. `lens_kind`: rotational where the
+/// camera has a radial pupil, else any.
+template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t first) {
     SampleBlock<N> block;
     CameraRays<N> rays;
@@ -40,7 +41,7 @@ REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t 
         block.sample[k] = static_cast<std::uint32_t>(ray % request.spp);
     }
     float times[N];
-    generate_exposed_rays(request.camera, block, rays, times);
+    generate_exposed_rays<lens_kind>(request.camera, block, rays, times);
     for (int k = 0; k < used; ++k) {
         const Vec3f o = rays.origin[k], d = rays.direction[k];
         float* out_origin = request.origins + 3 * (first + k);

@@ -10,8 +10,9 @@ __global__ void __launch_bounds__(kBlockSize) trace(const __grid_constant__ Trac
     if (thread_index() < request.count) trace_rays_of<1>(request, thread_index());
 }
 
+template <LensKind lens_kind>
 __global__ void __launch_bounds__(kBlockSize) generate(const __grid_constant__ RayRequest request) {
-    if (thread_index() < request.count()) generate_rays_of<1>(request, thread_index());
+    if (thread_index() < request.count()) generate_rays_of<lens_kind, 1>(request, thread_index());
 }
 
 template <class T>
@@ -32,7 +33,8 @@ void launch_trace(const TraceRequest<float>& request, cudaStream_t stream) {
 
 void launch_generate(const RayRequest& request, cudaStream_t stream) {
     if (request.count() == 0) return;
-    generate<<<blocks_for(request.count()), kBlockSize, 0, stream>>>(request);
+    auto* const kernel = request.camera.pupil_grid.nodes ? generate<LensKind::any> : generate<LensKind::rotational>;
+    kernel<<<blocks_for(request.count()), kBlockSize, 0, stream>>>(request);
     check_cuda(cudaGetLastError(), "starting to generate rays");
 }
 

@@ -270,7 +270,12 @@ void take_splats(realcam_ghosts* job) {
 
 void generate_all(const void* request) {
     const RayRequest rays = *static_cast<const RayRequest*>(request);
-    for (std::int64_t first = 0; first < rays.count(); first += kLanes) generate_rays_of<kLanes>(rays, first);
+    for (std::int64_t first = 0; first < rays.count(); first += kLanes) {
+        if (rays.camera.pupil_grid.nodes)
+            generate_rays_of<LensKind::any, kLanes>(rays, first);
+        else
+            generate_rays_of<LensKind::rotational, kLanes>(rays, first);
+    }
 }
 
 template <class T>

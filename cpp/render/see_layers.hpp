@@ -38,7 +38,10 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
-    generate_exposed_rays(camera, block, camera_rays, rays.time);
+    if (camera.pupil_grid.nodes)
+        generate_exposed_rays<LensKind::any>(camera, block, camera_rays, rays.time);
+    else
+        generate_exposed_rays<LensKind::rotational>(camera, block, camera_rays, rays.time);
     for (int i = 0; i < N; ++i) rays.number[i] = ray_number(block, i, 0);
     trace_to_surfaces(camera_rays, scene, rays, hits);
     for (int i = 0; i < N; ++i) {
