@@ -1,11 +1,13 @@
 """Makes a wheel of realcam that runs where nothing of it is installed: `./run wheel`, and the workflow of wheels.
 
-It holds the shared libraries that the extension needs, and their licences.
+It holds the shared libraries that the extension needs, and their licences. With --cuda it is the wheel realcam-cuda13,
+the plug-in for GPUs.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
@@ -22,11 +24,12 @@ APACHE = Path("/usr/share/common-licenses/Apache-2.0")
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, help="where the wheel goes")
+    parser.add_argument("--cuda", action="store_true", help="the plug-in for GPUs, which nvcc compiles")
     parser.add_argument("--repair", type=Path, metavar="WHEEL", help="a wheel that is built already")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
-        built = arguments.repair or build(Path(scratch, "built"))
+        built = arguments.repair or build(Path(scratch, "built"), arguments.cuda)
         repaired = repair(built, Path(scratch, "repaired"))
         print(with_licences(repaired, Path(scratch, "open"), arguments.folder))
 
@@ -35,11 +38,20 @@ def run(*words: str | Path) -> str:
     return subprocess.run([*map(str, words)], check=True, stdout=subprocess.PIPE, text=True, cwd=ROOT).stdout
 
 
-def build(folder: Path) -> Path:
+def build(folder: Path, cuda: bool) -> Path:
     """With the packages of this Python, so that CMake's build folder serves the next time, too."""
-    settings = ["cmake.define.REALCAM_CUDA=OFF", "cmake.define.REALCAM_INSTRUCTION_SETS=v2;v3;v4"]
+    if cuda:
+        asked = {
+            "CMAKE_CUDA_ARCHITECTURES": os.environ.get("REALCAM_CUDA_ARCHITECTURES", ""),
+            "REALCAM_CUDA_FAST_COMPILE": os.environ.get("REALCAM_CUDA_FAST_COMPILE", ""),
+        }
+        settings = [f"cmake.define.{name}={value}" for name, value in asked.items() if value]
+    else:
+        sets = os.environ.get("REALCAM_INSTRUCTION_SETS", "v2;v3;v4")
+        settings = ["cmake.define.REALCAM_CUDA=OFF", f"cmake.define.REALCAM_INSTRUCTION_SETS={sets}"]
     words = [word for setting in settings for word in ("--config-settings", setting)]
-    run(sys.executable, "-m", "pip", "wheel", ".", "--no-deps", "--no-build-isolation", "--wheel-dir", folder, *words)
+    pip_wheel = ["-m", "pip", "wheel", "./cuda13" if cuda else ".", "--no-deps", "--no-build-isolation"]
+    run(sys.executable, *pip_wheel, "--wheel-dir", folder, *words)
     return next(folder.glob("*.whl"))
 
 

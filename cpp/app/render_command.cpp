@@ -93,7 +93,7 @@ public:
             for (const Layer layer : {Layer::albedo, Layer::normal}) request.settings.layers.add(layer);
         check_memory(camera.film, request.settings.layers);
         // First, because reading a scene may take long.
-        const auto session = make_session(words_.device);
+        const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
         std::optional<Denoiser> denoiser;
         if (request.denoises) denoiser.emplace(words_.device, request.settings.threads);
         const std::string denoiser_name = denoiser ? denoiser->name() : "";
@@ -120,7 +120,7 @@ public:
         shot::ShotRequest request = understand(words_);
         request.settings.effects.is_automatic = true;
         Camera camera = camera_of(request);
-        const auto session = make_session(words_.device);
+        const auto session = make_session(words_.device, [this](const std::string& text) { warn(text); });
         shot::Shot shot = set_up_shot(request, std::move(camera));
         const Plan plan = planned(*session, shot, request, true);
         std::fputs((as_json ? json_of(plan) : text_of(plan, io::name_of(plan.model))).c_str(), stdout);

@@ -26,7 +26,7 @@ class PythonLiveView {
 public:
     PythonLiveView(const Assembly& scene, const std::string& device) {
         const Unlocked unlocked;
-        view_ = std::make_unique<LiveView>(make_live_session(device), scene);
+        view_ = std::make_unique<LiveView>(make_live_session(device, warn_of_device), scene);
         const std::lock_guard lock(mutex());
         all().insert(view_.get());
     }

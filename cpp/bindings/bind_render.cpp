@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "../camera/code_table.hpp"
+#include "../devices/cuda_plugin.hpp"
 #include "../devices/devices.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/metering.hpp"
@@ -38,8 +39,13 @@ Session& session_for(const std::string& device) {
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
     std::unique_ptr<Session>& session = sessions()[device];
-    if (!session) session = make_session(device);
+    if (!session) session = make_session(device, warn_of_device);
     return *session;
+}
+
+void warn_of_device(const std::string& text) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) < 0) throw py::error_already_set();
 }
 
 ToneCurve tone_curve_from(const std::string& name) {
@@ -196,6 +202,7 @@ void bind_render(py::module_& m) {
         .def("__str__", py::overload_cast<const Device&>(&line_text))
         .def("__repr__", [](const Device& d) { return "<realcam.Device " + line_text(d) + '>'; });
     m.def("devices", &devices, "All devices of this machine, the CPU first.");
+    m.def("_name_cuda_plugin", &name_cuda_plugin, "path"_a);
 }
 
 }  // namespace realcam::bindings

@@ -22,7 +22,7 @@ public:
         : settings_(std::move(settings)) {
         {
             const Unlocked unlocked;
-            session_ = make_session(device);
+            session_ = make_session(device, warn_of_device);
         }
         set(scene, camera);
     }

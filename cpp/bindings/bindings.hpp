@@ -63,6 +63,9 @@ void finish_module(py::module_& m);
 /// The session on the device of that name. One for the process, so that it keeps the last scene. Throws DeviceError.
 Session& session_for(const std::string& device);
 
+/// A DeviceNotice: a UserWarning on the line of the user's call. Called with or without the interpreter's lock.
+void warn_of_device(const std::string& text);
+
 /// "film" or "linear". Throws InputError.
 ToneCurve tone_curve_from(const std::string& name);
 

@@ -8,6 +8,7 @@
 #include "../embree/embree_session.hpp"
 #include "../embree/fast_pupil_tracer.hpp"
 #include "../error.hpp"
+#include "cuda_plugin.hpp"
 
 namespace realcam {
 namespace {
@@ -58,11 +59,15 @@ int one_gpu(const std::string& device, const std::string& what_happens) {
 }
 
 /// A GPU that is no use to this build is passed over.
-std::unique_ptr<Session> make_best_session() {
+std::unique_ptr<Session> make_best_session(const DeviceNotice& notice) {
+    std::string why_not;
     try {
         if (!cuda_devices().empty()) return make_gpu_session({0});
-    } catch (const UnsupportedGpu&) {
+        why_not = why_no_gpu_by_plugin();
+    } catch (const UnsupportedGpu& error) {
+        why_not = error.what();
     }
+    if (!why_not.empty()) notice("the CPU is used: " + why_not);
     return make_embree_session();
 }
 
@@ -74,16 +79,16 @@ std::vector<Device> devices() {
     return list;
 }
 
-std::unique_ptr<Session> make_session(const std::string& device) {
+std::unique_ptr<Session> make_session(const std::string& device, const DeviceNotice& notice) {
     if (device == "cpu") return make_embree_session();
-    if (device == "auto") return make_best_session();
+    if (device == "auto") return make_best_session(notice);
     if (device == "cuda" || device.starts_with("cuda:")) return make_gpu_session(ordinals_of(device));
     fail_unknown(device);
 }
 
-std::unique_ptr<Session> make_live_session(const std::string& device) {
+std::unique_ptr<Session> make_live_session(const std::string& device, const DeviceNotice& notice) {
     if (device == "cpu") return make_embree_session();
-    if (device == "auto") return make_best_session();
+    if (device == "auto") return make_best_session(notice);
     return make_gpu_session({one_gpu(device, "frames are taken")});
 }
 

@@ -67,6 +67,7 @@ from ._core import (
     sensor_names,
 )
 from .accuracy import AccuracyCost, accuracy_cost
+from .cuda_plugin import path_of_plugin as _path_of_plugin
 from .drawing import CrossSection, cross_section
 from .image import Image
 from .image_file import read_environment
@@ -83,6 +84,8 @@ from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_j
 
 if TYPE_CHECKING:
     from . import analysis
+
+_core._name_cuda_plugin(_path_of_plugin())
 
 __all__ = [
     "PSF",

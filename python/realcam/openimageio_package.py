@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import tempfile
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,18 @@ except ImportError as error:
 _SUFFIXES = {"jpeg": ".jpg", "openexr": ".exr", "tiff": ".tif", "bmp": ".bmp", "targa": ".tga"}
 _LARGEST_NUMBER = 2**24
 _opening = threading.Lock()
+
+
+def _text(get: Callable[[], str]) -> str:
+    """What `get` returns. OpenImageIO's texts quote the file, whose bytes may be no UTF-8."""
+    try:
+        return get()
+    except UnicodeDecodeError as error:
+        return error.object.decode(errors="replace")
+
+
+def _name_of(attribute: Any) -> str:
+    return _text(lambda: str(attribute.name))
 
 
 def _opened(format: str, name: str) -> Any:
@@ -44,7 +56,7 @@ def _opened(format: str, name: str) -> Any:
         finally:
             oiio.attribute("try_all_readers", tries_all)
         if opened is None:
-            raise ValueError(oiio.geterror().replace(str(link), "picture"))
+            raise ValueError(_text(oiio.geterror).replace(str(link), "picture"))
     return opened
 
 
@@ -60,14 +72,14 @@ class Decoder:
         """The members of EncodedHeader."""
         spec = self._spec
         names = ("x", "y", "width", "height", "depth", "full_x", "full_y", "full_width", "full_height")
-        entries = [attribute.name for attribute in spec.extra_attribs if attribute.name.startswith("realcam:")]
+        entries = [name for name in map(_name_of, spec.extra_attribs) if name.startswith("realcam:")]
         return {
             **{name: getattr(spec, name) for name in (*names, "nchannels", "alpha_channel", "deep")},
             "bytes_per_value": spec.format.size(),
             "is_floating_point": spec.format.basetype in (oiio.HALF, oiio.FLOAT, oiio.DOUBLE),
             "tile_height": spec.tile_height if spec.tile_width > 0 else 0,
             "chromaticities": spec.getattribute("chromaticities", oiio.TypeDesc("float[8]")),
-            "textureformat": spec.get_string_attribute("textureformat"),
+            "textureformat": _text(lambda: spec.get_string_attribute("textureformat")),
             "entries": [(name, spec.get_bytes_attribute(name)) for name in entries],
         }
 
@@ -80,7 +92,7 @@ class Decoder:
             pixels = self._input.read_tiles(0, 0, *columns, begin, below, spec.z, spec.z + 1, 0, count, format)
         else:
             pixels = self._input.read_scanlines(0, 0, begin, below, spec.z, 0, count, format)
-        return pixels, self._input.geterror()
+        return pixels, _text(self._input.geterror)
 
 
 class Encoder:
@@ -112,9 +124,9 @@ class Encoder:
                 spec.attribute(key, oiio.TypeDesc(oiio.FLOAT, oiio.VEC2), tuple(value))
         output = oiio.ImageOutput.create(format)
         if output is None:
-            raise OSError(f"OpenImageIO cannot write .{format}: {oiio.geterror()}")
+            raise OSError(f"OpenImageIO cannot write .{format}: {_text(oiio.geterror)}")
         if not output.open(name, spec):
-            raise OSError(output.geterror())
+            raise OSError(_text(output.geterror))
         self._output = output
 
     def write(self, first: int, end: int, rows: memoryview) -> tuple[bool, str]:
@@ -127,7 +139,7 @@ class Encoder:
                 return False, f"a layer has numbers above {_LARGEST_NUMBER}"
             # OpenImageIO takes 1 for the largest of whole numbers, and computes with 24 bits.
             pixels = np.where(self._numbers, whole / float(2**32 - 1), pixels)
-        return self._output.write_scanlines(first, end, 0, pixels), self._output.geterror()
+        return self._output.write_scanlines(first, end, 0, pixels), _text(self._output.geterror)
 
     def close(self) -> tuple[bool, str]:
-        return self._output.close(), self._output.geterror()
+        return self._output.close(), _text(self._output.geterror)

@@ -22,6 +22,7 @@ MAY_INCLUDE = {
     "bvh": {"math", "scene"},
     "embree": {*CORE, "bvh"},
     "cuda": {*CORE, "bvh"},
+    "cuda_plugin": {"cuda"},
     "devices": {*CORE, *BACKENDS},
     "denoise": {*CORE},
     "io": {*CORE},

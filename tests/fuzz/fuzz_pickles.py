@@ -1,52 +1,16 @@
 """Changes pickles of all kinds of values, and reads them: each must become a value, or an InputError in one line.
 
-fuzz_pickles.py [COUNT] [--seed N] [--folder FOLDER]: COUNT mutations in all, over the kinds in turn. Each is a function
-of seed and number, so that a run can be repeated. A process of its own does the work; one that a signal ends, or that
-takes too long, leaves the number it was at, and the next one goes on behind it.
-fuzz_pickles.py replay FILE...: reads what was saved of a finding.
-
-`./run fuzz pickles` runs it with an extension that has sanitizers: REALCAM_CORE is the path of that extension.
+See many_mutations.py. `./run fuzz pickles` runs it with an extension that has sanitizers.
 """
 
 from __future__ import annotations
 
-import argparse
-import importlib.abc
-import importlib.machinery
-import importlib.util
-import os
-import pickle
 import random
-import signal
-import subprocess
 import sys
-import time
 import traceback
-from collections import Counter
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-LONGEST_S = 60  # a thousand times what one takes
-
-
-class CoreFinder(importlib.abc.MetaPathFinder):
-    """Loads the extension of another build in place of the package's own."""
-
-    def __init__(self, file: str) -> None:
-        self.file = file
-
-    def find_spec(
-        self, name: str, path: object = None, target: ModuleType | None = None
-    ) -> importlib.machinery.ModuleSpec | None:
-        return importlib.util.spec_from_file_location(name, self.file) if name == "realcam._core" else None
-
-
-def prepare() -> None:
-    if os.environ.get("REALCAM_CORE"):
-        sys.meta_path.insert(0, CoreFinder(os.environ["REALCAM_CORE"]))
-    here = Path(__file__).resolve().parent
-    sys.path[:0] = [str(here), str(here.parent / "python")]
+from many_mutations import Target, main
 
 
 def read(case: tuple[Any, ...]) -> tuple[str, str]:
@@ -105,85 +69,5 @@ def case_of(cases: list[tuple[Any, ...]], seed: int, number: int) -> tuple[Any, 
     return kind, {**arguments, field: mutated(arguments[field], draw)}
 
 
-def work(first: int, last: int, seed: int, folder: Path) -> None:
-    """Prints what became of all: a line that a program reads."""
-    cases = seeds()
-    counts: Counter[str] = Counter()
-    with (folder / f"at-{seed}").open("wb", buffering=0) as at:
-        for number in range(first, last):
-            at.seek(0)
-            at.write(b"%20d" % number)
-            case = case_of(cases, seed, number)
-            signal.alarm(LONGEST_S)
-            outcome, why = read(case)
-            signal.alarm(0)
-            counts[outcome] += 1
-            if outcome == "broken":
-                file = folder / f"pickle-{seed}-{number}.pkl"
-                file.write_bytes(pickle.dumps(case))
-                print(f"{file}: {why}", file=sys.stderr, flush=True)
-    print(counts["read"], counts["refused"], counts["broken"])
-
-
-def drive(count: int, seed: int, folder: Path) -> int:
-    folder.mkdir(parents=True, exist_ok=True)
-    start, first, broken = time.monotonic(), 0, 0
-    at = folder / f"at-{seed}"
-    at.unlink(missing_ok=True)
-    totals: Counter[str] = Counter()
-    while first < count:
-        command = [sys.executable, __file__, "--work", str(first), str(count), "--seed", str(seed)]
-        done = subprocess.run([*command, "--folder", str(folder)], stdout=subprocess.PIPE, text=True)
-        if done.returncode == 0:
-            for name, text in zip(("read", "refused", "broken"), done.stdout.split(), strict=True):
-                totals[name] += int(text)
-            break
-        number = int(at.read_bytes() or b"-1") if at.exists() else -1
-        if number < first:
-            print("the values themselves cannot be made", file=sys.stderr)
-            return 1
-        broken += 1
-        file = folder / f"pickle-{seed}-{number}.pkl"
-        save = [sys.executable, __file__, "--save", str(number), str(file), "--seed", str(seed)]
-        subprocess.run(save, check=True)
-        ended = f"signal {-done.returncode}" if done.returncode < 0 else f"exit code {done.returncode}"
-        print(f"{file}: the process ended with {ended}", file=sys.stderr, flush=True)
-        first = number + 1
-        if broken >= 20:
-            break
-    broken += totals["broken"]
-    seconds = time.monotonic() - start
-    print(
-        f"pickles: {count} mutations with seed {seed} in {seconds:.0f} s; of those since the last signal "
-        f"{totals['read']} read, {totals['refused']} refused; {broken} broken"
-    )
-    return 1 if broken else 0
-
-
-def main() -> int:
-    if sys.argv[1:2] == ["replay"]:
-        prepare()
-        outcomes = [(file, *read(pickle.loads(Path(file).read_bytes()))) for file in sys.argv[2:]]
-        for file, outcome, why in outcomes:
-            print(f"{file}: {outcome} {why}".rstrip())
-        return int(any(outcome == "broken" for _, outcome, _ in outcomes))
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("count", nargs="?", type=float, default=1e4)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--folder", type=Path, default=Path("build/fuzz"))
-    parser.add_argument("--work", nargs=2, type=int, help=argparse.SUPPRESS)
-    parser.add_argument("--save", nargs=2, help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.work or options.save:
-        prepare()
-    if options.work:
-        work(*options.work, options.seed, options.folder)
-        return 0
-    if options.save:
-        Path(options.save[1]).write_bytes(pickle.dumps(case_of(seeds(), options.seed, int(options.save[0]))))
-        return 0
-    return drive(int(options.count), options.seed, options.folder)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(__doc__ or "", __file__, Target("pickles", seeds, case_of, read)))

@@ -402,3 +402,24 @@ def test_a_picture_of_very_many_channels_is_refused(tmp_path: Path) -> None:
     write(tmp_path / "many.exr", np.zeros((2, 2, 65), np.float32))
     with pytest.raises(rc.ImageFileError, match="has 65 channels; at most 64"):
         rc.read_environment(tmp_path / "many.exr")
+
+
+def test_a_broken_file_is_quoted_whatever_its_bytes_are(image: rc.Image, tmp_path: Path) -> None:
+    """OpenImageIO names the type of an attribute as it stands in the file, and that may be no UTF-8."""
+    path = tmp_path / "picture.exr"
+    image.save(path)
+    whole = path.read_bytes()
+    broken = whole.replace(b"pixelAspectRatio\0float\0", b"pixelAspectRatio\0floa\xff\0")
+    assert broken != whole
+    path.write_bytes(broken)
+    with pytest.raises(rc.ImageFileError) as error:
+        rc.read_environment(path)
+    assert "\n" not in str(error.value)
+
+
+def test_mutations_become_pixels_or_an_error(tmp_path: Path) -> None:
+    """The fuzz target, in a process of its own: what it holds to includes that no signal ends it."""
+    command = [sys.executable, str(ROOT / "tests" / "fuzz" / "fuzz_pictures.py"), "300", "--seed", "7"]
+    done = subprocess.run([*command, "--folder", str(tmp_path)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "; 0 broken" in done.stdout

@@ -1,0 +1,48 @@
+#pragma once
+#include "../bvh/scene_bvh.hpp"
+#include "bench_kernels.hpp"
+#include "cuda_devices.hpp"
+#include "cuda_rays.hpp"
+#include "cuda_session.hpp"
+#include "foreign_memory.hpp"
+#include "ray_arrays.hpp"
+
+namespace realcam {
+
+/// Where the CUDA backend is a library of its own, the plug-in: what realcam calls in it. Classes of the core cross
+/// this border as they are, exceptions too. So both sides are compiled from the same headers, which cuda_backend_stamp
+/// tells.
+struct CudaBackend {
+    decltype(&realcam::cuda_devices) cuda_devices;
+    decltype(&realcam::why_no_cuda_device) why_no_cuda_device;
+    decltype(&realcam::cuda_device) cuda_device;
+    decltype(&realcam::make_cuda_session) make_cuda_session;
+    decltype(&realcam::trace_rays_on_gpu) trace_rays_on_gpu;
+    decltype(&realcam::trace_arrays) trace_arrays;
+    decltype(&realcam::generate_ray_arrays) generate_ray_arrays;
+    decltype(&realcam::gpu_of_address) gpu_of_address;
+    decltype(&realcam::wait_for_gpu) wait_for_gpu;
+    void (*download)(const SharedDeviceArray& array, void* to);
+    SharedDeviceArray (*duplicate)(const SharedDeviceArray& array);
+    decltype(&realcam::lens_ray_rates) lens_ray_rates;
+    decltype(&realcam::hit_rates) hit_rates;
+};
+
+/// What the plug-in calls in realcam, because it needs Embree and TBB.
+struct CudaHost {
+    decltype(&realcam::build_scene_bvh) build_scene_bvh;
+    decltype(&realcam::refit_instances) refit_instances;
+    decltype(&realcam::bvh_instances) bvh_instances;
+};
+
+/// The version, and a number made of all headers. Defined by cmake/RealcamCudaStamp.cmake.
+const char* cuda_backend_stamp();
+
+/// The two functions of the plug-in, by their names there. The second is called only where the stamps are equal; `host`
+/// stays.
+using CudaPluginStamp = const char*();
+using CudaPluginBackend = const CudaBackend*(const CudaHost* host);
+inline constexpr const char* kCudaPluginStamp = "realcam_cuda_stamp";
+inline constexpr const char* kCudaPluginBackend = "realcam_cuda_backend";
+
+}  // namespace realcam

@@ -1,0 +1,117 @@
+// What the CUDA backend offers, where it was not built: the plug-in does it, where there is one.
+#include <cstdlib>
+#include <utility>
+
+#include "../cuda/cuda_backend.hpp"
+#include "cuda_plugin.hpp"
+
+#if defined(REALCAM_HAS_CUDA)
+
+namespace realcam {
+
+void name_cuda_plugin(const std::string&) {}
+std::string why_no_gpu_by_plugin() {
+    return "";
+}
+
+}  // namespace realcam
+
+#else
+
+namespace realcam {
+namespace {
+
+struct Plugin {
+    const CudaBackend* backend = nullptr;
+    bool is_named = false;
+    std::string failure;  ///< where there is no backend
+};
+
+std::string& named_path() {
+    static std::string path;
+    return path;
+}
+
+Plugin loaded() {
+    const char* const variable = std::getenv("REALCAM_CUDA_PLUGIN");
+    const std::string path = variable ? variable : named_path();
+    if (path.empty())
+        return {
+            nullptr, false,
+            "this build of realcam has no CUDA backend: `pip install realcam[cuda]` brings one to the wheel, a build "
+            "from the source with nvcc has one, and the device \"cpu\" works without"};
+    try {
+        return {&load_cuda_plugin(path), true, ""};
+    } catch (const DeviceError& error) {
+        return {nullptr, true, error.what()};
+    }
+}
+
+const Plugin& plugin() {
+    static const Plugin once = loaded();
+    return once;
+}
+
+/// Throws DeviceError where there is none.
+const CudaBackend& backend() {
+    if (!plugin().backend) throw DeviceError(plugin().failure);
+    return *plugin().backend;
+}
+
+}  // namespace
+
+void name_cuda_plugin(const std::string& path) {
+    named_path() = path;
+}
+std::string why_no_gpu_by_plugin() {
+    return plugin().is_named ? why_no_cuda_device() : "";
+}
+
+std::vector<CudaDevice> cuda_devices() {
+    return plugin().backend ? plugin().backend->cuda_devices() : std::vector<CudaDevice>{};
+}
+std::string why_no_cuda_device() {
+    return plugin().backend ? plugin().backend->why_no_cuda_device() : plugin().failure;
+}
+CudaDevice cuda_device(int ordinal) {
+    return backend().cuda_device(ordinal);
+}
+std::unique_ptr<Session> make_cuda_session(const std::vector<int>& ordinals, PupilTracer tracer) {
+    return backend().make_cuda_session(ordinals, std::move(tracer));
+}
+void trace_rays_on_gpu(int ordinal, const LensSystem& lens, LightDirection direction, double wavelength_nm,
+                       Precision precision, int surface_count, std::int64_t count, const double* origins,
+                       const double* directions, const TracedRays& out) {
+    backend().trace_rays_on_gpu(ordinal, lens, direction, wavelength_nm, precision, surface_count, count, origins,
+                                directions, out);
+}
+TracedArrays trace_arrays(const LensSystem& lens, LightDirection direction, double wavelength_nm, Precision precision,
+                          int surface_count, std::int64_t count, ForeignNumbers origins, ForeignNumbers directions) {
+    return backend().trace_arrays(lens, direction, wavelength_nm, precision, surface_count, count, origins, directions);
+}
+CameraRayArrays generate_ray_arrays(int ordinal, const CameraSetup& setup, std::uint32_t spp, std::uint32_t seed,
+                                    RayRange range) {
+    return backend().generate_ray_arrays(ordinal, setup, spp, seed, range);
+}
+std::optional<int> gpu_of_address(const void* address) {
+    return backend().gpu_of_address(address);
+}
+void wait_for_gpu(int ordinal, std::optional<std::uintptr_t> stream) {
+    backend().wait_for_gpu(ordinal, stream);
+}
+void SharedDeviceArray::download(void* to) const {
+    backend().download(*this, to);
+}
+SharedDeviceArray SharedDeviceArray::duplicate() const {
+    return backend().duplicate(*this);
+}
+LensRayRates lens_ray_rates(int ordinal, const Camera& camera, PupilTracer tracer) {
+    return backend().lens_ray_rates(ordinal, camera, std::move(tracer));
+}
+HitRates hit_rates(int ordinal, const Assembly& scene, const Camera& camera, PupilTracer tracer) {
+    return backend().hit_rates(ordinal, scene, camera, std::move(tracer));
+}
+
+}  // namespace realcam
+
+#endif
