@@ -40,7 +40,7 @@ TEST_CASE("a plug-in of another version is refused with both versions") {
 }
 
 TEST_CASE("what is no plug-in is refused") {
-    for (const std::string path : {kFolder + "/nothing.so", kFolder + "/cuda_plugin.so/x", std::string("libm.so.6")})
+    for (const std::string& path : {kFolder + "/nothing.so", kFolder + "/cuda_plugin.so/x", std::string("libm.so.6")})
         CHECK(message_of<DeviceError>([&] {
                   load_cuda_plugin(path);
               }).starts_with("the CUDA plug-in cannot be loaded: "));
