@@ -13,6 +13,7 @@
 #include "../optics/prescription/clearance.hpp"
 #include "bindings.hpp"
 #include "coating_from.hpp"
+#include "form_from.hpp"
 #include "short_text.hpp"
 #include "triples.hpp"
 #include "value_methods.hpp"
@@ -74,6 +75,7 @@ struct SurfaceChanges {
     std::optional<Coating> coating;
     std::optional<std::vector<double>> decentre_mm, tilt_deg;
     std::optional<bool> returns;
+    FormChanges form;
 };
 
 std::vector<double> aspheric_from(const std::map<int, double>& coefficients) {
@@ -114,15 +116,37 @@ Surface changed(Surface surface, const SurfaceChanges& to) {
     if (to.decentre_mm) surface.placement.decentre = triple_from(*to.decentre_mm, 2, "decentre_mm");
     if (to.tilt_deg) surface.placement.tilt_deg = triple_from(*to.tilt_deg, 3, "tilt_deg");
     surface.placement.returns = to.returns.value_or(surface.placement.returns);
+    change_form(surface, to.form);
     return surface;
 }
+
+using Number = std::optional<double>;
+using Numbers = std::optional<std::vector<double>>;
+using Name = std::optional<std::string>;
+using Dict = std::optional<py::dict>;
+using Dicts = std::optional<std::vector<py::dict>>;
+using RadialTerms = std::optional<std::map<int, double>>;
+using XyTerms = std::optional<std::map<std::pair<int, int>, double>>;
 
 Surface make_surface(double radius_of_curvature, double thickness, const py::object& material,
                      double clear_semi_diameter, double conic, const std::map<int, double>& aspheric,
                      double inner_semi_diameter, const std::string& type, const py::object& coating,
-                     const std::vector<double>& decentre, const std::vector<double>& tilt, bool returns) {
-    return changed(Surface(), {radius_of_curvature, thickness, glass_from(material), clear_semi_diameter, conic,
-                               aspheric, inner_semi_diameter, type, coating_from(coating), decentre, tilt, returns});
+                     const std::vector<double>& decentre, const std::vector<double>& tilt, bool returns,
+                     const Name& form, Number radius_x, Number conic_x, const RadialTerms& radial, const XyTerms& xy,
+                     const Dict& zernike, const Dict& forbes, const Dict& aperture, const Dicts& obscurations) {
+    return changed(Surface(), {radius_of_curvature,
+                               thickness,
+                               glass_from(material),
+                               clear_semi_diameter,
+                               conic,
+                               aspheric,
+                               inner_semi_diameter,
+                               type,
+                               coating_from(coating),
+                               decentre,
+                               tilt,
+                               returns,
+                               {form, radius_x, conic_x, radial, xy, zernike, forbes, aperture, obscurations}});
 }
 
 /// Defines a method whose arguments are `first`, and by their names those of Surface. What is left out stays; because
@@ -131,27 +155,37 @@ template <class>
 using Index = int;
 template <class T, class Function, class... First>
 void def_surface_changes(py::class_<T>& type, const char* name, Function function, const char* text, First... first) {
-    using Number = std::optional<double>;
     type.def(
         name,
         [function](const T& self, Index<First>... place, Number radius, Number thickness, const py::object& material,
-                   Number clear, Number conic, const std::optional<std::map<int, double>>& aspheric, Number inner,
-                   const std::optional<std::string>& surface_type, const py::object& coating,
-                   const std::optional<std::vector<double>>& decentre, const std::optional<std::vector<double>>& tilt,
-                   std::optional<bool> returns) {
+                   Number clear, Number conic, const RadialTerms& aspheric, Number inner, const Name& surface_type,
+                   const py::object& coating, const Numbers& decentre, const Numbers& tilt, std::optional<bool> returns,
+                   const Name& form, Number radius_x, Number conic_x, const RadialTerms& radial, const XyTerms& xy,
+                   const Dict& zernike, const Dict& forbes, const Dict& aperture, const Dicts& obscurations) {
             const bool stays = material.is(py::ellipsis());
             const SurfaceChanges changes{
-                radius,   thickness,    stays ? std::nullopt : std::optional(glass_from(material)),
-                clear,    conic,        aspheric,
-                inner,    surface_type, coating.is_none() ? std::nullopt : std::optional(coating_from(coating)),
-                decentre, tilt,         returns};
+                radius,
+                thickness,
+                stays ? std::nullopt : std::optional(glass_from(material)),
+                clear,
+                conic,
+                aspheric,
+                inner,
+                surface_type,
+                coating.is_none() ? std::nullopt : std::optional(coating_from(coating)),
+                decentre,
+                tilt,
+                returns,
+                {form, radius_x, conic_x, radial, xy, zernike, forbes, aperture, obscurations}};
             return function(self, place..., changes);
         },
         first..., py::kw_only(), "radius_of_curvature_mm"_a = py::none(), "thickness_mm"_a = py::none(),
         "material"_a = py::ellipsis(), "clear_semi_diameter_mm"_a = py::none(), "conic"_a = py::none(),
         "aspheric_coefficients"_a = py::none(), "inner_semi_diameter_mm"_a = py::none(), "type"_a = py::none(),
         "coating"_a = py::none(), "decentre_mm"_a = py::none(), "tilt_deg"_a = py::none(), "returns"_a = py::none(),
-        text);
+        "form"_a = py::none(), "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(),
+        "radial_terms"_a = py::none(), "xy_terms"_a = py::none(), "zernike"_a = py::none(), "forbes"_a = py::none(),
+        "aperture"_a = py::none(), "obscurations"_a = py::none(), text);
 }
 
 std::map<int, double> aspheric_map(const Surface& surface) {
@@ -208,6 +242,7 @@ std::string text_of(const Surface& s) {
     if (s.curvature != 0) text += ", radius " + digits(1 / s.curvature) + " mm";
     text += ", semi-diameter " + digits(s.clear_semi_diameter) + " mm";
     if (s.is_asphere() || s.conic != 0) text += ", aspheric";
+    if (const std::string why = s.form.asymmetry(); !why.empty()) text += ", " + why;
     if (s.placement.tilt_deg != Vec3d{0, 0, 0}) text += ", tilted";
     if (s.placement.decentre != Vec3d{0, 0, 0}) text += ", decentred";
     if (s.coating.kind != CoatingKind::unknown)
@@ -347,7 +382,10 @@ void bind_surface(py::module_& m) {
              "material"_a = py::none(), "clear_semi_diameter_mm"_a, "conic"_a = 0.0,
              "aspheric_coefficients"_a = std::map<int, double>{}, "inner_semi_diameter_mm"_a = 0.0,
              "type"_a = "refracting", "coating"_a = "unknown", "decentre_mm"_a = std::vector<double>{0, 0, 0},
-             "tilt_deg"_a = std::vector<double>{0, 0, 0}, "returns"_a = false,
+             "tilt_deg"_a = std::vector<double>{0, 0, 0}, "returns"_a = false, "form"_a = py::none(),
+             "radius_of_curvature_x_mm"_a = py::none(), "conic_x"_a = py::none(), "radial_terms"_a = py::none(),
+             "xy_terms"_a = py::none(), "zernike"_a = py::none(), "forbes"_a = py::none(), "aperture"_a = py::none(),
+             "obscurations"_a = py::none(),
              "radius_of_curvature_mm: positive where the centre lies on the film side; inf: plane.\n"
              "thickness_mm: to the next surface; that of the last surface is not used.\n"
              "material: behind the surface: index, (n_d, V_d), glass name, Glass, or None for air.\n"
@@ -360,7 +398,18 @@ void bind_surface(py::module_& m) {
              "decentre_mm: (x, y) or (x, y, z) of the vertex, from its place on the axis. tilt_deg: angles by which "
              "it\n"
              "is then turned about x, its new y and its new z, counterclockwise as seen from the axis's tip. returns:\n"
-             "this moves the surface alone; else the axis goes on from there, with all that follows and the film.")
+             "this moves the surface alone; else the axis goes on from there, with all that follows and the film.\n"
+             "form: \"biconic\" or \"toroid\", of which radius and conic are the section in the yz plane, and\n"
+             "radius_of_curvature_x_mm and conic_x that in the xz plane. A toroid's even terms are of y.\n"
+             "radial_terms: {power of r: mm^(1 - power)}, powers 1 to 20. xy_terms: {(i, j): coefficient of x^i y^j}.\n"
+             "zernike: {\"order\": \"noll\" or \"fringe\", \"radius_mm\", \"coefficients_mm\"}. forbes: the same "
+             "with\n"
+             "\"kind\": \"bfs\" or \"con\". These parts are added to the conic.\n"
+             "aperture: {\"ellipse_mm\" or \"rectangle_mm\": (half_x, half_y)}, {\"circle_mm\": radius} or\n"
+             "{\"polygon_mm\": corners}, each with \"offset_mm\". obscurations: a list of {\"circle_mm\", "
+             "\"ellipse_mm\" or\n"
+             "\"rectangle_mm\", \"offset_mm\", \"angle_deg\"} and {\"spider_arms\": count, \"width_mm\", "
+             "\"angle_deg\"}.")
         .def_property_readonly("radius_of_curvature_mm",
                                [](const Surface& s) { return s.curvature == 0 ? kInfinity : 1 / s.curvature; })
         .def_readonly("curvature_per_mm", &Surface::curvature)
@@ -375,8 +424,24 @@ void bind_surface(py::module_& m) {
         .def_property_readonly("decentre_mm", [](const Surface& s) { return triple(s.placement.decentre); })
         .def_property_readonly("tilt_deg", [](const Surface& s) { return triple(s.placement.tilt_deg); })
         .def_property_readonly("returns", [](const Surface& s) { return s.placement.returns; })
-        .def("sag_mm", &Surface::sag, "radius_mm"_a,
-             "Height over the vertex plane at a distance from the axis; nan past the edge of the conic.")
+        .def_property_readonly("form", &form_name)
+        .def_property_readonly(
+            "radius_of_curvature_x_mm",
+            [](const Surface& s) { return s.form.curvature_x == 0 ? kInfinity : 1 / s.form.curvature_x; })
+        .def_property_readonly("conic_x", [](const Surface& s) { return s.form.conic_x; })
+        .def_property_readonly("radial_terms", &radial_terms_of)
+        .def_property_readonly("xy_terms", &xy_terms_of)
+        .def_property_readonly("zernike", &zernike_of)
+        .def_property_readonly("forbes", &forbes_of)
+        .def_property_readonly("aperture", &aperture_of)
+        .def_property_readonly("obscurations", &obscurations_of)
+        .def(
+            "sag_mm", [](const Surface& s, double radius) { return s.sag(radius); }, "radius_mm"_a,
+            "Height over the vertex plane at a distance from the axis, in the yz plane; nan past the edge of the "
+            "conic.")
+        .def(
+            "sag_at_mm", [](const Surface& s, double x, double y) { return s.sag(x, y); }, "x_mm"_a, "y_mm"_a,
+            "Height over the vertex plane; nan past the edge of the conic.")
         .def("__repr__", [](const Surface& s) { return text_of(s); });
     def_surface_changes(surface, "replace", &changed,
                         "The surface with some of what Surface() takes changed. What is not given stays.");

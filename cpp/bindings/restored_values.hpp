@@ -6,6 +6,7 @@
 #include "../camera/sensor.hpp"
 #include "../optics/lens/paraxial.hpp"
 #include "../optics/prescription/coating_checks.hpp"
+#include "../optics/prescription/form_checks.hpp"
 #include "../optics/prescription/lens_checks.hpp"
 #include "../render/image.hpp"
 #include "../scene/scene_checks.hpp"
@@ -75,7 +76,29 @@ struct RestoredCheck<Coating> {
     }
 };
 template <>
-struct RestoredCheck<SurfacePlacement> : AnyMembers {};  // by the lens
+struct LastEnumerator<BaseForm> : LastIs<BaseForm::toroid> {};
+template <>
+struct LastEnumerator<ZernikeOrder> : LastIs<ZernikeOrder::fringe> {};
+template <>
+struct LastEnumerator<ForbesKind> : LastIs<ForbesKind::con> {};
+template <>
+struct LastEnumerator<ApertureKind> : LastIs<ApertureKind::polygon> {};
+
+// By the surface, or the lens.
+template <>
+struct RestoredCheck<SurfacePlacement> : AnyMembers {};
+template <>
+struct RestoredCheck<XyTerm> : AnyMembers {};
+template <>
+struct RestoredCheck<ZernikeTerms> : AnyMembers {};
+template <>
+struct RestoredCheck<ForbesTerms> : AnyMembers {};
+template <>
+struct RestoredCheck<SurfaceForm> : AnyMembers {};
+template <>
+struct RestoredCheck<Obscuration> : AnyMembers {};
+template <>
+struct RestoredCheck<ApertureShape> : AnyMembers {};
 template <>
 struct RestoredCheck<Surface> {
     /// As far as it can be said without its lens.
@@ -83,6 +106,7 @@ struct RestoredCheck<Surface> {
         if (!std::isfinite(surface.curvature)) throw InputError("a radius of curvature of 0 is no surface");
         if (surface.aspheric.size() > static_cast<std::size_t>(kMaxAsphericTerms))
             throw InputError("a surface has more aspheric coefficients than " + std::to_string(kMaxAsphericTerms));
+        if (const std::string why = form_error(surface); !why.empty()) throw InputError("a surface " + why);
     }
 };
 template <>

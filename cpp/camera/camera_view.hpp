@@ -80,6 +80,11 @@ struct CameraView : CameraPlacement, EffectViews {
     int key_count;
 };
 
+/// Whether only the code for lenses of any kind serves it.
+REALCAM_INLINE bool has_any_lens(const CameraView& camera) {
+    return camera.pupil_grid.nodes || camera.lens.kind == LensKind::any;
+}
+
 /// The camera at a time of the exposure. Between two keys its axes are interpolated, and made unit and right-angled
 /// again.
 REALCAM_INLINE CameraPlacement camera_at(const CameraView& camera, float time) {

@@ -6,6 +6,7 @@
 #include "../optics/ghost/film_mirror.hpp"
 #include "../optics/ghost/ghost_coatings.hpp"
 #include "../optics/lens/axial_share.hpp"
+#include "lens_way.hpp"
 
 namespace realcam {
 
@@ -32,6 +33,7 @@ GhostTables::GhostTables(const LensSystem& of_lens, double film_radius, const Gh
       entry_reach_(entry_reach(of_lens)),
       exit_reach_(static_cast<float>(exit_reach(of_lens))) {
     using namespace ghost_tables_detail;
+    check_traces_lights(LensPath<float>(of_lens, LightDirection::to_film, of_lens.wavelength_nm).view());
     const LensSystem lens = with_film_mirror(of_lens, choice.film_reflectance, film_radius);
     std::vector<GhostPair> pairs;
     std::vector<double> axial;

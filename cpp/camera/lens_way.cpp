@@ -2,11 +2,19 @@
 
 namespace realcam {
 
+void check_traces_lights(const LensView<float>& lens) {
+    if (lens.kind == LensKind::any)
+        throw InputError(
+            "ghosts, starbursts and samples from the lights need a centred lens of conics and even aspheres with round "
+            "apertures; switch them off for this one");
+}
+
 LensWay::LensWay(const LensSystem& lens, const std::optional<FilmSpectrum>& spectrum, const Effects& effects)
     : effects_(effects),
       path_(lens, LightDirection::to_film, lens.wavelength_nm),
       way_{0, path_.view().count, 1},
       reach_(entry_reach(lens)) {
+    check_traces_lights(path_.view());
     const double design = lens.wavelength_nm;
     const std::vector<Crossing> way = crossings_of(lens);
     const WavelengthRange one{design, design};

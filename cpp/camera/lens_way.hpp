@@ -11,6 +11,9 @@
 
 namespace REALCAM_NAMESPACE {
 
+/// Throws InputError for a lens of the kind `any`: through it no light is traced apart from the samples of pixels.
+void check_traces_lights(const LensView<float>& lens);
+
 /// The way of light to the film that no surface reflects but mirrors. Owns the memory of its views.
 class LensWay {
 public:

@@ -24,8 +24,8 @@ struct RayRequest {
     REALCAM_HD std::int64_t count() const { return range.count; }
 };
 
-/// Makes N rays of the range, from its `first` on; fewer at the end of the arrays. `lens_kind`: rotational where the
-/// camera has a radial pupil, else any.
+/// Makes N rays of the range, from its `first` on; fewer at the end of the arrays. `lens_kind`: any where
+/// has_any_lens says so, else rotational.
 template <LensKind lens_kind, int N>
 REALCAM_HD inline void generate_rays_of(const RayRequest& request, std::int64_t first) {
     SampleBlock<N> block;

@@ -33,7 +33,7 @@ void launch_trace(const TraceRequest<float>& request, cudaStream_t stream) {
 
 void launch_generate(const RayRequest& request, cudaStream_t stream) {
     if (request.count() == 0) return;
-    auto* const kernel = request.camera.pupil_grid.nodes ? generate<LensKind::any> : generate<LensKind::rotational>;
+    auto* const kernel = has_any_lens(request.camera) ? generate<LensKind::any> : generate<LensKind::rotational>;
     kernel<<<blocks_for(request.count()), kBlockSize, 0, stream>>>(request);
     check_cuda(cudaGetLastError(), "starting to generate rays");
 }

@@ -271,7 +271,7 @@ void take_splats(realcam_ghosts* job) {
 void generate_all(const void* request) {
     const RayRequest rays = *static_cast<const RayRequest*>(request);
     for (std::int64_t first = 0; first < rays.count(); first += kLanes) {
-        if (rays.camera.pupil_grid.nodes)
+        if (has_any_lens(rays.camera))
             generate_rays_of<LensKind::any, kLanes>(rays, first);
         else
             generate_rays_of<LensKind::rotational, kLanes>(rays, first);

@@ -11,7 +11,7 @@ inline SceneKind kind_of(const SceneView& scene, const CameraView& camera) {
 
 /// What is there to be compared with stays out of the code for plain lenses.
 inline LensKind lens_kind_of(const CameraView& camera) {
-    if (camera.pupil_grid.nodes) return LensKind::any;
+    if (has_any_lens(camera)) return LensKind::any;
     const bool compares = camera.pixel_pupils.known || camera.model == CameraModel::polynomial_lens;
     return compares && camera.lens.kind == LensKind::plain ? LensKind::rotational : camera.lens.kind;
 }

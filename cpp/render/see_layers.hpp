@@ -38,7 +38,7 @@ REALCAM_HD inline void see_layers(const SceneView& view, const CameraView& camer
     CameraRays<N> camera_rays;
     SceneRays<N> rays;
     Hits<N> hits;
-    if (camera.pupil_grid.nodes)
+    if (has_any_lens(camera))
         generate_exposed_rays<LensKind::any>(camera, block, camera_rays, rays.time);
     else
         generate_exposed_rays<LensKind::rotational>(camera, block, camera_rays, rays.time);

@@ -179,6 +179,15 @@ class Surface(_Value):
         decentre_mm: Sequence[float] = ...,
         tilt_deg: Sequence[float] = ...,
         returns: bool = False,
+        form: str | None = None,
+        radius_of_curvature_x_mm: float | None = None,
+        conic_x: float | None = None,
+        radial_terms: Mapping[int, float] | None = None,
+        xy_terms: Mapping[tuple[int, int], float] | None = None,
+        zernike: Mapping[str, Any] | None = None,
+        forbes: Mapping[str, Any] | None = None,
+        aperture: Mapping[str, Any] | None = None,
+        obscurations: Sequence[Mapping[str, Any]] | None = None,
     ) -> None: ...
     @property
     def radius_of_curvature_mm(self) -> float: ...
@@ -206,7 +215,26 @@ class Surface(_Value):
     def tilt_deg(self) -> tuple[float, float, float]: ...
     @property
     def returns(self) -> bool: ...
+    @property
+    def form(self) -> str: ...
+    @property
+    def radius_of_curvature_x_mm(self) -> float: ...
+    @property
+    def conic_x(self) -> float: ...
+    @property
+    def radial_terms(self) -> dict[int, float]: ...
+    @property
+    def xy_terms(self) -> dict[tuple[int, int], float]: ...
+    @property
+    def zernike(self) -> dict[str, Any]: ...
+    @property
+    def forbes(self) -> dict[str, Any]: ...
+    @property
+    def aperture(self) -> dict[str, Any]: ...
+    @property
+    def obscurations(self) -> list[dict[str, Any]]: ...
     def sag_mm(self, radius_mm: float) -> float: ...
+    def sag_at_mm(self, x_mm: float, y_mm: float) -> float: ...
     def replace(
         self,
         *,
@@ -222,6 +250,15 @@ class Surface(_Value):
         decentre_mm: Sequence[float] | None = None,
         tilt_deg: Sequence[float] | None = None,
         returns: bool | None = None,
+        form: str | None = None,
+        radius_of_curvature_x_mm: float | None = None,
+        conic_x: float | None = None,
+        radial_terms: Mapping[int, float] | None = None,
+        xy_terms: Mapping[tuple[int, int], float] | None = None,
+        zernike: Mapping[str, Any] | None = None,
+        forbes: Mapping[str, Any] | None = None,
+        aperture: Mapping[str, Any] | None = None,
+        obscurations: Sequence[Mapping[str, Any]] | None = None,
     ) -> Surface: ...
 
 @final
@@ -716,6 +753,15 @@ class Lens(_Value):
         decentre_mm: Sequence[float] | None = None,
         tilt_deg: Sequence[float] | None = None,
         returns: bool | None = None,
+        form: str | None = None,
+        radius_of_curvature_x_mm: float | None = None,
+        conic_x: float | None = None,
+        radial_terms: Mapping[int, float] | None = None,
+        xy_terms: Mapping[tuple[int, int], float] | None = None,
+        zernike: Mapping[str, Any] | None = None,
+        forbes: Mapping[str, Any] | None = None,
+        aperture: Mapping[str, Any] | None = None,
+        obscurations: Sequence[Mapping[str, Any]] | None = None,
     ) -> Lens: ...
 
 @final

@@ -18,11 +18,7 @@ from ..measurement import Measurement, hold
 
 SECTION = "Other programs"
 FILE = Path(__file__).with_name("free_rays.json.gz")
-CASES = [
-    case
-    for case in json.loads(gzip.decompress(FILE.read_bytes()))["lenses"]
-    if not any(row["form"] for row in case["rows"])
-]
+CASES = json.loads(gzip.decompress(FILE.read_bytes()))["lenses"]
 
 # As for the peers of centred lenses: a millionth of a wavelength, and the angle of that over 100 mm.
 POSITION_MM, DIRECTION = 1e-9, 1e-11

@@ -8,6 +8,7 @@
 #include "../text/toml_document.hpp"
 #include "bundled_lenses.hpp"
 #include "lens_coating.hpp"
+#include "lens_form.hpp"
 #include "lens_format.hpp"
 #include "lens_from_prescription.hpp"
 #include "lens_material.hpp"
@@ -67,12 +68,32 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     Surface surface;
     surface.type = read_type(table);
     if (surface.bends_light()) {
-        table.allow({"type", "radius_of_curvature_mm", "thickness_mm", "material", "clear_semi_diameter_mm",
-                     "inner_semi_diameter_mm", "conic", "aspheric_coefficients", "coating", "curvature_per_mm",
-                     "decentre_mm", "tilt_deg", "returns"});
+        table.allow({"type",
+                     "radius_of_curvature_mm",
+                     "thickness_mm",
+                     "material",
+                     "clear_semi_diameter_mm",
+                     "inner_semi_diameter_mm",
+                     "conic",
+                     "aspheric_coefficients",
+                     "coating",
+                     "curvature_per_mm",
+                     "form",
+                     "radius_of_curvature_x_mm",
+                     "curvature_x_per_mm",
+                     "conic_x",
+                     "radial_terms",
+                     "xy_terms",
+                     "zernike",
+                     "forbes",
+                     "aperture",
+                     "obscurations",
+                     "decentre_mm",
+                     "tilt_deg",
+                     "returns"});
     } else {
         table.allow({"type", "thickness_mm", "clear_semi_diameter_mm", "inner_semi_diameter_mm", "decentre_mm",
-                     "tilt_deg", "returns"});
+                     "tilt_deg", "returns", "aperture", "obscurations"});
     }
     if (const auto radius = table.number("radius_of_curvature_mm")) {
         if (*radius == 0)
@@ -108,6 +129,8 @@ Surface read_surface(const TomlTable& table, const std::optional<TomlTable>& gla
     surface.inner_semi_diameter = table.number("inner_semi_diameter_mm").value_or(0);
     surface.placement = read_placement(table);
     surface.placement.returns = table.flag("returns");
+    surface.form = read_form(table);
+    surface.aperture_shape = read_aperture(table, surface.clear_semi_diameter);
     return surface;
 }
 

@@ -8,28 +8,16 @@
 #include "../text/printable.hpp"
 #include "../text/text_number.hpp"
 #include "../text/utf8.hpp"
+#include "lens_form.hpp"
 #include "lens_format.hpp"
 #include "lens_glass.hpp"
 #include "lens_material.hpp"
 #include "lens_text.hpp"
 #include "lens_writers.hpp"
+#include "toml_numbers.hpp"
 
 namespace realcam::io {
 namespace {
-
-/// In TOML a whole number without a point is an integer, of 64 bits.
-std::string toml_number(double value) {
-    const std::string text = exact_number(value);
-    return text.find_first_of(".e") == text.npos ? text + ".0" : text;
-}
-
-/// What `back` makes exactly this value of; nothing where rounding leaves none.
-template <class Back>
-std::optional<double> before_rounding(double near, double value, const Back& back) {
-    for (const double candidate : {near, std::nextafter(near, kInfinity), std::nextafter(near, -kInfinity)})
-        if (std::isfinite(candidate) && back(candidate) == value) return candidate;
-    return std::nullopt;
-}
 
 class Writer {
 public:
@@ -106,11 +94,13 @@ private:
             body_ += key("material", material(s.material));
         body_ += number("clear_semi_diameter_mm", s.clear_semi_diameter);
         if (s.inner_semi_diameter != 0) body_ += number("inner_semi_diameter_mm", s.inner_semi_diameter);
+        body_ += aperture_as_toml(s.aperture_shape);
         if (s.placement.decentre != Vec3d{0, 0, 0}) body_ += key("decentre_mm", triple(s.placement.decentre));
         if (s.placement.tilt_deg != Vec3d{0, 0, 0}) body_ += key("tilt_deg", triple(s.placement.tilt_deg));
         if (s.placement.returns) body_ += key("returns", "true");
         if (!s.bends_light()) return;
         if (s.conic != 0) body_ += number("conic", s.conic);
+        body_ += form_as_toml(s.form);
         if (!s.aspheric.empty()) {
             std::string list;
             for (std::size_t i = 0; i < s.aspheric.size(); ++i)

@@ -130,6 +130,9 @@ public:
         return TomlTable(*node->as_table(), file_, surface_, raise_);
     }
 
+    /// A table within this one.
+    TomlTable within(const toml::table& inner) const { return TomlTable(inner, file_, surface_, raise_); }
+
     const toml::table& raw() const { return table_; }
     const std::string& file() const { return file_; }
 

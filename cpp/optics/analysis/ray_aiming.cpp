@@ -23,6 +23,7 @@ AimingPath AimingPath::open(const LensPath<double>& path) {
 AimingPath::AimingPath(const LensPath<double>& path) {
     const LensView<double> view = path.view();
     steps_.assign(view.surfaces, view.surfaces + view.count);
+    if (view.free.freeforms) freeforms_.assign(view.free.freeforms, view.free.freeforms + view.count);
     iris_ = view.iris;
 }
 

@@ -17,12 +17,15 @@ public:
     /// The lens as it is.
     static AimingPath real(const LensPath<double>& path) { return AimingPath(path); }
     LensView<double> view() const {
-        return {steps_.data(), static_cast<int>(steps_.size()), LensKind::rotational, iris_};
+        const FreeParts<double> free{nullptr, freeforms_.empty() ? nullptr : freeforms_.data(), nullptr};
+        return {steps_.data(), static_cast<int>(steps_.size()),
+                freeforms_.empty() ? LensKind::rotational : LensKind::any, iris_, free};
     }
 
 private:
     explicit AimingPath(const LensPath<double>& path);
     std::vector<SurfaceView<double>> steps_;
+    std::vector<FreeformView<double>> freeforms_;
     Iris<double> iris_;
 };
 

@@ -28,6 +28,10 @@ struct ParaxialPair {
 };
 
 ParaxialPair entering_rays(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+        if (!lens.surfaces[i].form.is_none())
+            throw InputError("third-order sums know conics and even aspheres alone, and surface " +
+                             std::to_string(i + 1) + " has other terms");
     const FirstOrder data = first_order(lens, wavelength_nm);
     const double pupil = data.entrance_pupil_position, radius = 0.5 * data.entrance_pupil_diameter;
     if (!(std::fabs(field.angle_rad) < 0.5 * std::numbers::pi))

@@ -29,9 +29,10 @@ RayTransmittance PolarisedTrace::operator()(Vec3d origin, Vec3d direction) const
     for (std::size_t i = 0; i < surfaces_.size() && ray.status[0] == 0; ++i) {
         const SurfaceView<double>& surface = all.surfaces[i];
         const Vec3d before = normalized(ray.direction[0]);
-        trace_lens(LensView<double>{&surface, 1, LensKind::rotational, all.iris}, ray, PathRecord<double, 1>{});
+        trace_lens(LensView<double>{&surface, 1, all.kind, all.iris, all.free.from(static_cast<int>(i))}, ray,
+                   PathRecord<double, 1>{});
         if (ray.status[0] != 0 || !surfaces_[i]) continue;
-        const Vec3d normal = normal_at(surface, ray.origin[0]);
+        const Vec3d normal = normal_at(all, static_cast<int>(i), ray.origin[0]);
         const PolarisedResponse response = surfaces_[i]->at(std::fabs(dot(before, normal)));
         const bool mirror = surfaces_[i]->is_mirror();
         averaged *= mirror ? response.mean_reflectance() : response.mean_transmittance();
@@ -73,7 +74,14 @@ PolarisedTrace::Fields PolarisedTrace::across(const Fields& fields, Vec3d before
     return {changed(fields.first), changed(fields.second)};
 }
 
-Vec3d PolarisedTrace::normal_at(const SurfaceView<double>& surface, Vec3d at) {
+Vec3d PolarisedTrace::normal_at(const LensView<double>& lens, int index, Vec3d at) {
+    const SurfaceView<double>& surface = lens.surfaces[index];
+    if (surface.kind == SurfaceShape::freeform) {
+        const Lanes<double, 1> x = {at.x}, y = {at.y};
+        FreeformSags<double, 1> sag;
+        freeform_sags<double, 1>(lens.free.freeforms[index], x, y, sag);
+        return normalized(Vec3d{-sag.slope_x[0], -sag.slope_y[0], 1});
+    }
     if (surface.kind == SurfaceShape::asphere) {
         const double slope = 2 * asphere_sag(surface, at.x * at.x + at.y * at.y).derivative;
         return normalized(Vec3d{-slope * at.x, -slope * at.y, 1});

@@ -49,7 +49,7 @@ private:
     /// `to_s`, `to_p`: complex amplitudes of the surface for the two polarisations.
     static Fields across(const Fields& fields, Vec3d before, Vec3d after, Vec3d normal, Complex to_s, Complex to_p);
 
-    static Vec3d normal_at(const SurfaceView<double>& surface, Vec3d at);
+    static Vec3d normal_at(const LensView<double>& lens, int index, Vec3d at);
 
     LensPath<double> path_;
     std::vector<std::optional<CoatedSurface>> surfaces_;

@@ -31,7 +31,7 @@ GhostPath ghost_path(const LensSystem& lens, double wavelength_nm, GhostPair pai
         const double behind = direction_sign * crossing.index_behind(n);
         for (ParaxialRay& ray : rays) {
             ray.height += (here - at) * ray.slope;
-            ray = refract_paraxial(ray, surface(crossing.surface).curvature, before, behind);
+            ray = refract_paraxial(ray, surface(crossing.surface).vertex_curvature(), before, behind);
         }
         if (!is_film(lens, crossing.surface)) meetings.push_back({crossing.surface, rays[0].height, rays[1].height});
         at = here;

@@ -57,6 +57,8 @@ LensSystem scaled(const LensSystem& lens, double factor) {
             s.thickness *= factor;
             s.clear_semi_diameter *= factor;
             s.inner_semi_diameter *= factor;
+            s.form = s.form.scaled(factor);
+            s.aperture_shape = s.aperture_shape.scaled(factor);
             s.placement.decentre = factor * s.placement.decentre;
             double power = factor * factor * factor;
             for (double& a : s.aspheric) {
@@ -81,6 +83,7 @@ LensSystem reversed(const LensSystem& lens, std::optional<double> film_distance)
         for (std::size_t i = 0; i < n; ++i) {
             Surface& s = turned.surfaces[i] = l.surfaces[n - 1 - i];
             s.curvature = -s.curvature;
+            s.form = s.form.turned();
             for (double& a : s.aspheric) a = -a;
             if (s.type == SurfaceType::refracting) s.material = medium_before(l, n - 1 - i);
             s.thickness = i + 1 < n ? l.surfaces[n - 2 - i].thickness : 0;

@@ -21,7 +21,7 @@ ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, Paraxia
         if (s.type == SurfaceType::mirror) sign = -sign;
         if (i < first) continue;
         const double after = sign * index[static_cast<std::size_t>(i) + 1];
-        ray = refract_paraxial(ray, s.curvature, before, after);
+        ray = refract_paraxial(ray, s.vertex_curvature(), before, after);
         if (i + 1 < last) ray.height = sum_or_zero(ray.height, s.thickness * ray.slope);
     }
     return ray;

@@ -34,7 +34,7 @@ FaceCrossing deepest(const LensSystem& lens, const Face& first, const Face& seco
     };
     // The gap between two spheres only grows, or only shrinks, on the way to the rim, as its derivative by r^2 has the
     // sign of the difference of the curvatures. Others are looked at in steps.
-    const auto is_sphere = [](const Surface& s) { return s.conic == 0 && !s.is_asphere(); };
+    const auto is_sphere = [](const Surface& s) { return s.conic == 0 && !s.is_asphere() && s.form.is_none(); };
     const int steps = is_sphere(a) && is_sphere(b) ? 1 : 64;
     const double middle = std::clamp(rim, from, to);
     for (int i = 0; i <= steps; ++i) {
@@ -92,8 +92,9 @@ std::vector<FaceCrossing> find_crossings(const LensSystem& lens, std::size_t mos
     bool glass = false;
     for (std::size_t i = 0; i < lens.surfaces.size() && crossings.size() < most; ++i) {
         const Surface& surface = lens.surfaces[i];
-        const bool is_moved = !surface.placement.is_in_place(), alone = is_moved && surface.placement.returns;
-        if (is_moved && !alone) {
+        const bool is_moved = !surface.placement.is_in_place();
+        const bool alone = (is_moved && surface.placement.returns) || !surface.form.asymmetry().empty();
+        if (is_moved && !surface.placement.returns) {
             append_crossings(lens, run, in_glass, direction, most, crossings);
             run.clear();
             in_glass.clear();
@@ -123,6 +124,7 @@ std::optional<FaceCrossing> find_crossing(const LensSystem& lens) {
 }
 
 bool film_crosses_lens(const LensSystem& lens) {
+    if (!lens.is_rotational()) return false;
     for (std::size_t i = lens.surfaces.size(); i-- > 0;) {
         const Surface& last = lens.surfaces[i];
         if (!last.bends_light()) continue;

@@ -18,8 +18,8 @@ struct FaceCrossing {
 /// Pairs of refracting or reflecting faces that cross inside their clear apertures, whether or not they are neighbours.
 /// The two faces of an element must not cross anywhere up to the larger of its two rims, because the smaller face is
 /// edged flat unless it is hollow. Stops and apertures are planes of no substance, and may cross a face: a stop may be
-/// given at the vertex of one. Faces are compared with those that share their axis: not across a tilt or a decentre. In
-/// the order of the light, and no more than `most`.
+/// given at the vertex of one. Faces of revolution are compared with those that share their axis: not across a tilt or
+/// a decentre. In the order of the light, and no more than `most`.
 std::vector<FaceCrossing> find_crossings(const LensSystem& lens,
                                          std::size_t most = std::numeric_limits<std::size_t>::max());
 

@@ -6,6 +6,7 @@
 #include "../../math/hypotenuse.hpp"
 #include "clearance.hpp"
 #include "coating_checks.hpp"
+#include "form_checks.hpp"
 #include "lens_limits.hpp"
 
 namespace realcam {
@@ -45,7 +46,8 @@ void check_rim(const Surface& s, std::size_t i) {
     }
     if (!(s.inner_semi_diameter >= 0) || s.inner_semi_diameter >= s.clear_semi_diameter)
         fail(i, "the inner semi-diameter must be at least 0 and less than the clear semi-diameter");
-    if (!std::isfinite(s.sag(s.clear_semi_diameter))) {
+    if (const std::string why = form_error(s); !why.empty()) fail(i, why);
+    if (s.form.is_none() && !std::isfinite(s.sag(s.clear_semi_diameter))) {
         const double limit = 1 / (std::fabs(s.curvature) * std::sqrt(1 + s.conic));
         fail(i, "the clear semi-diameter of " + mm(s.clear_semi_diameter) +
                     " is larger than the surface, which ends at " + mm(limit) + " from the axis");

@@ -61,7 +61,11 @@ LensSystem at_zoom_position(LensSystem lens, int position) {
 }
 
 LensSystem centred(LensSystem lens) {
-    for (Surface& surface : lens.surfaces) surface.placement = {};
+    for (Surface& surface : lens.surfaces) {
+        surface.placement = {};
+        if (!surface.form.asymmetry().empty()) surface.form = {};
+        if (!surface.aperture_shape.asymmetry().empty()) surface.aperture_shape = {};
+    }
     lens.film_placement = {};
     return lens;
 }

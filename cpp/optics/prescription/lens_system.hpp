@@ -76,7 +76,8 @@ struct LensSystem {
     std::vector<double> indices(double wavelength) const;
 };
 
-/// The lens with all its surfaces, and the film, in place on one axis: for numbers that say what kind of lens it is.
+/// The lens with all its surfaces, and the film, in place on one axis, and each of revolution, as in the yz plane: for
+/// numbers that say what kind of lens it is.
 LensSystem centred(LensSystem lens);
 
 /// The lens at rest in a zoom position that it has: wide open, and focused as the position says.

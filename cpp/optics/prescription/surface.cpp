@@ -3,20 +3,73 @@
 #include <cmath>
 #include <cstddef>
 
+#include "form_terms.hpp"
+
 namespace realcam {
 
 std::string Surface::asymmetry() const {
     if (placement.tilt_deg != Vec3d{0, 0, 0}) return "is tilted";
     if (placement.decentre != Vec3d{0, 0, 0}) return "is decentred";
-    return "";
+    if (const std::string why = form.asymmetry(); !why.empty()) return why;
+    return aperture_shape.asymmetry();
 }
 
-double Surface::sag(double radius) const {
-    const double r2 = radius * radius;
-    double polynomial = 0;
-    for (std::size_t i = aspheric.size(); i-- > 0;) polynomial = polynomial * r2 + aspheric[i];
-    const double root = std::sqrt(1 - (1 + conic) * curvature * curvature * r2);
-    return curvature * r2 / (1 + root) + r2 * r2 * polynomial;
+namespace {
+
+double polynomial(const std::vector<double>& coefficients, double u) {
+    double sum = 0;
+    for (std::size_t i = coefficients.size(); i-- > 0;) sum = sum * u + coefficients[i];
+    return sum;
+}
+
+/// y^4 and on, or r^4 and on.
+double even_terms(const Surface& surface, double squared) {
+    return squared * squared * polynomial(surface.aspheric, squared);
+}
+
+double base_sag(const Surface& surface, double x, double y) {
+    const double c = surface.curvature, q = (1 + surface.conic) * c * c;
+    const SurfaceForm& form = surface.form;
+    if (form.base == BaseForm::toroid) {
+        const double section = c * y * y / (1 + std::sqrt(1 - q * y * y)) + even_terms(surface, y * y);
+        const double rest = 1 - form.curvature_x * section, across = form.curvature_x * x;
+        return (section * (1 + rest) + across * x) / (1 + std::sqrt(rest * rest - across * across));
+    }
+    const double r2 = x * x + y * y, terms = even_terms(surface, r2);
+    if (form.base == BaseForm::conic) return c * r2 / (1 + std::sqrt(1 - q * r2)) + terms;
+    const double cx = form.curvature_x, qx = (1 + form.conic_x) * cx * cx;
+    return (cx * x * x + c * y * y) / (1 + std::sqrt(1 - qx * x * x - q * y * y)) + terms;
+}
+
+double forbes_sag(const ForbesTerms& terms, double curvature, double r2) {
+    const double w = r2 / (terms.radius * terms.radius), sum = polynomial(forbes_polynomial(terms), 2 * w - 1);
+    if (terms.kind == ForbesKind::con) return w * w * sum;
+    return w * (1 - w) / std::sqrt(1 - curvature * curvature * r2) * sum;
+}
+
+}  // namespace
+
+double Surface::sag(double x, double y) const {
+    const double r2 = x * x + y * y;
+    double z = base_sag(*this, x, y);
+    if (form.is_none()) return z;
+    const double r = std::sqrt(r2);
+    z += r * polynomial(form.radial, r);
+    for (const XyTerm& term : form.xy) z += term.coefficient * std::pow(x, term.x) * std::pow(y, term.y);
+    if (form.zernike)
+        for (const XyTerm& term : zernike_as_xy(*form.zernike))
+            z += term.coefficient * std::pow(x / form.zernike->radius, term.x) *
+                 std::pow(y / form.zernike->radius, term.y);
+    if (form.forbes) z += forbes_sag(*form.forbes, curvature, r2);
+    return z;
+}
+
+double Surface::vertex_curvature() const {
+    double c = curvature;
+    if (form.radial.size() > 1) c += 2 * form.radial[1];
+    if (form.forbes && form.forbes->kind == ForbesKind::bfs)
+        c += 2 * polynomial(forbes_polynomial(*form.forbes), -1) / (form.forbes->radius * form.forbes->radius);
+    return c;
 }
 
 }  // namespace realcam

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "aperture_shape.hpp"
 #include "coating.hpp"
+#include "surface_form.hpp"
 #include "surface_placement.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -26,6 +28,8 @@ struct Surface {
     double inner_semi_diameter = 0;  ///< light closer to the axis is blocked; 0: none
     Coating coating;
     SurfacePlacement placement;
+    SurfaceForm form;              ///< what the sag has beside its conic and its even terms
+    ApertureShape aperture_shape;  ///< what is open of the circle of the clear semi-diameter
 
     bool operator==(const Surface&) const = default;
 
@@ -37,8 +41,12 @@ struct Surface {
     /// What keeps a lens with this surface from being a centred one of revolution: "is tilted". Empty: nothing.
     std::string asymmetry() const;
 
-    /// Height of the surface over its vertex plane at a radial distance, mm; NaN past the edge of the conic.
-    double sag(double radius) const;
+    /// Height of the surface over its vertex plane, mm; NaN past the edge of the conic.
+    double sag(double x, double y) const;
+    /// The same at a radial distance; of a surface that is not of revolution in its yz plane.
+    double sag(double radius) const { return sag(0, radius); }
+    /// Curvature at the vertex, 1/mm: terms of r^2 bend the surface too. Of surfaces of revolution.
+    double vertex_curvature() const;
 };
 
 }  // namespace REALCAM_NAMESPACE

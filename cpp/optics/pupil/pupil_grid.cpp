@@ -19,7 +19,18 @@ MirrorPlanes mirror_planes(const LensSystem& lens) {
         planes.x &= decentre.x == 0 && tilt.y == 0 && tilt.z == 0;
         planes.y &= decentre.y == 0 && tilt.x == 0 && tilt.z == 0;
     };
-    for (const Surface& surface : lens.surfaces) heed(surface.placement);
+    for (const Surface& surface : lens.surfaces) {
+        heed(surface.placement);
+        for (const XyTerm& term : surface.form.xy) {
+            planes.x &= term.x % 2 == 0;
+            planes.y &= term.y % 2 == 0;
+        }
+        const ApertureShape& aperture = surface.aperture_shape;
+        planes.x &= aperture.offset.x == 0;
+        planes.y &= aperture.offset.y == 0;
+        // These may have the planes too, but few have.
+        if (surface.form.zernike || aperture.kind == ApertureKind::polygon || !aperture.obscurations.empty()) return {};
+    }
     heed(lens.film_placement);
     return planes;
 }

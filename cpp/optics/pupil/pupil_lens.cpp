@@ -23,8 +23,9 @@ PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vect
       path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front(),
             film_path_ends(lens_, LightDirection::to_scene)),
       tracer_(std::move(tracer)),
-      has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(),
-                                [](const Surface& surface) { return surface.is_asphere(); })) {
+      has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& surface) {
+          return surface.is_asphere() || !surface.form.is_none();
+      })) {
     for (std::size_t i = 1; i < wavelengths_nm.size(); ++i)
         others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i],
                              film_path_ends(lens_, LightDirection::to_scene));

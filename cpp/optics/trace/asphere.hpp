@@ -79,43 +79,35 @@ REALCAM_INLINE T begin_search(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> 
     return x * x + y * y - surface.search_squared + select(sideways, kSideways<T>, T(0));
 }
 
-/// For the others: the first piece of the ray's way through the search cylinder that begins on the near side of the
-/// surface and ends on its far side. In a piece that comes nearer to the surface and turns away again, the turning
-/// point may lie on its other side. Leaves the bracket as it is where there is none.
+/// A place on a ray: how far it has passed the surface there, and the derivative of that.
 template <class T>
-REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
+struct WaySample {
+    T parameter, beyond, slope;
+};
+
+/// The first piece of a ray's way, from `middle` - `half` to `middle` + `half`, that begins on the near side of the
+/// surface and ends on its far side. In a piece that comes nearer to the surface and turns away again, the turning
+/// point may lie on its other side. `sample` makes the WaySample of a parameter. Leaves the bracket as it is where
+/// there is none.
+template <class T, class Sample>
+REALCAM_HD inline bool find_bracket_on_way(T middle, T half, T direction_sign, Sample&& sample, T& t, T& below,
+                                           T& above) {
     constexpr int kPieces = 16, kTurnSteps = std::numeric_limits<T>::digits;
-    const T across = p.x * p.x + p.y * p.y;
-    const T middle = -(o.x * p.x + o.y * p.y) / across;
-    const T x = o.x + middle * p.x, y = o.y + middle * p.y;
-    const T room = surface.search_squared - x * x - y * y;
-    if (!(room > T(0))) return false;
-    // A little inside: at the very edge the sag's slope is already that of its continuation.
-    const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * std::sqrt(room / across);
-    struct Sample {
-        T parameter, beyond, slope;  // how far the ray has passed the surface, and its derivative
-    };
-    const auto sample = [&](T parameter) -> Sample {
-        const Vec3<T> at = o + parameter * p;
-        const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
-        return {parameter, surface.direction_sign_in * (at.z - sag.height),
-                surface.direction_sign_in * (p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y))};
-    };
     const auto bracketed = [&](T near, T far) {
-        below = surface.direction_sign_in > T(0) ? near : far;
-        above = surface.direction_sign_in > T(0) ? far : near;
+        below = direction_sign > T(0) ? near : far;
+        above = direction_sign > T(0) ? far : near;
         t = T(0.5) * (below + above);
         return true;
     };
-    Sample near = sample(middle - half);
+    WaySample<T> near = sample(middle - half);
     for (int i = 1; i <= kPieces; ++i) {
-        const Sample far = sample(middle + (T(2) / kPieces * static_cast<T>(i) - T(1)) * half);
+        const WaySample<T> far = sample(middle + (T(2) / kPieces * static_cast<T>(i) - T(1)) * half);
         if (near.beyond < T(0) && far.beyond >= T(0)) return bracketed(near.parameter, far.parameter);
         const T side = near.beyond < T(0) ? T(-1) : T(1);
         if (side * far.beyond >= T(0) && side * near.slope < T(0) && side * far.slope > T(0)) {
             T low = near.parameter, high = far.parameter;
             for (int k = 0; k < kTurnSteps; ++k) {
-                const Sample turn = sample(T(0.5) * (low + high));
+                const WaySample<T> turn = sample(T(0.5) * (low + high));
                 if (side * turn.beyond < T(0))
                     return side > T(0) ? bracketed(turn.parameter, far.parameter)
                                        : bracketed(near.parameter, turn.parameter);
@@ -125,6 +117,25 @@ REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Ve
         near = far;
     }
     return false;
+}
+
+/// For the others: a bracket on their way through the search cylinder.
+template <class T>
+REALCAM_HD inline bool find_bracket(const SurfaceView<T>& surface, Vec3<T> o, Vec3<T> p, T& t, T& below, T& above) {
+    const T across = p.x * p.x + p.y * p.y;
+    const T middle = -(o.x * p.x + o.y * p.y) / across;
+    const T x = o.x + middle * p.x, y = o.y + middle * p.y;
+    const T room = surface.search_squared - x * x - y * y;
+    if (!(room > T(0))) return false;
+    // A little inside: at the very edge the sag's slope is already that of its continuation.
+    const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * std::sqrt(room / across);
+    const auto sample = [&](T parameter) -> WaySample<T> {
+        const Vec3<T> at = o + parameter * p;
+        const Sag<T> sag = asphere_sag(surface, at.x * at.x + at.y * at.y);
+        return {parameter, surface.direction_sign_in * (at.z - sag.height),
+                surface.direction_sign_in * (p.z - T(2) * sag.derivative * (at.x * p.x + at.y * p.y))};
+    };
+    return find_bracket_on_way(middle, half, surface.direction_sign_in, sample, t, below, above);
 }
 
 /// One safeguarded Newton step. `halve`: not Newton's step but the middle of the bracket.

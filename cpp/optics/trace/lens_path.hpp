@@ -7,6 +7,8 @@
 #include "../prescription/surface_frames.hpp"
 #include "asphere_start.hpp"
 #include "lens_trace.hpp"
+#include "make_aperture.hpp"
+#include "make_freeform.hpp"
 #include "open_iris.hpp"
 #include "path_frames.hpp"
 
@@ -63,10 +65,12 @@ public:
         entry_position = to_film ? z.front() : z.back();
         exit_position = to_film ? z.back() : z.front();
         if (!is_centred) set_frames(lens, ends);
+        set_free_parts(lens);
     }
 
     LensView<T> view() const {
-        const FreeParts<T> free{frames_.empty() ? nullptr : frames_.data()};
+        const auto data_of = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+        const FreeParts<T> free{data_of(frames_), data_of(freeforms_), data_of(apertures_)};
         return {views_.data(), static_cast<int>(views_.size()), kind(), iris_, free};
     }
 
@@ -77,7 +81,7 @@ public:
 
 private:
     LensKind kind() const {
-        if (!frames_.empty()) return LensKind::any;
+        if (!frames_.empty() || !freeforms_.empty() || !apertures_.empty()) return LensKind::any;
         const bool plain = std::all_of(views_.begin(), views_.end(), [](const SurfaceView<T>& view) {
             return view.kind == SurfaceShape::sphere && view.hole_squared < T(0) && !view.has_blades;
         });
@@ -113,17 +117,35 @@ private:
         if (std::none_of(frames_.begin(), frames_.end(), is_used) && !frames_.back().out.changes) frames_.clear();
     }
 
+    void set_free_parts(const LensSystem& lens) {
+        const auto surface = [&](const SurfaceView<T>& view) -> const Surface& {
+            return lens.surfaces[static_cast<std::size_t>(view.surface_index)];
+        };
+        const auto is_shaped = [&](const SurfaceView<T>& view) { return !surface(view).aperture_shape.is_plain(); };
+        const auto is_freeform = [](const SurfaceView<T>& view) { return view.kind == SurfaceShape::freeform; };
+        if (std::any_of(views_.begin(), views_.end(), is_shaped))
+            for (const SurfaceView<T>& view : views_)
+                apertures_.push_back(aperture_view<T>(surface(view).aperture_shape));
+        if (std::any_of(views_.begin(), views_.end(), is_freeform))
+            for (const SurfaceView<T>& view : views_)
+                freeforms_.push_back(is_freeform(view) ? freeform_view<T>(surface(view)) : FreeformView<T>{});
+    }
+
     static SurfaceView<T> shape_of(const Surface& surface) {
         SurfaceView<T> view{};
-        view.kind = surface.is_asphere() ? SurfaceShape::asphere
-                    : surface.conic != 0 ? SurfaceShape::conic
-                                         : SurfaceShape::sphere;
+        view.kind = !surface.form.is_none() ? SurfaceShape::freeform
+                    : surface.is_asphere()  ? SurfaceShape::asphere
+                    : surface.conic != 0    ? SurfaceShape::conic
+                                            : SurfaceShape::sphere;
         view.curvature = static_cast<T>(surface.curvature);
         view.conic_factor = static_cast<T>(1 + surface.conic);
         const double rim = surface.clear_semi_diameter, hole = surface.inner_semi_diameter;
         view.rim_squared = static_cast<T>(rim * rim);
         view.hole_squared = static_cast<T>(hole > 0 ? hole * hole : -1.0);
         if (view.kind == SurfaceShape::asphere) set_search_region(view, surface);
+        // The sphere from which the search on a freeform starts.
+        if (view.kind == SurfaceShape::freeform && surface.form.base != BaseForm::conic)
+            view.curvature = static_cast<T>(0.5 * (surface.curvature + surface.form.curvature_x));
         return view;
     }
 
@@ -184,6 +206,8 @@ private:
 
     std::vector<SurfaceView<T>> views_;
     std::vector<FrameChanges<T>> frames_;  ///< empty: centred
+    std::vector<FreeformView<T>> freeforms_;  ///< empty: there are none
+    std::vector<ApertureView<T>> apertures_;
     Iris<T> iris_;
 };
 

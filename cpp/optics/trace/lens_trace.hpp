@@ -2,21 +2,14 @@
 #include <type_traits>
 
 #include "asphere_newton.hpp"
+#include "freeform_search.hpp"
 #include "index_cubic.hpp"
+#include "lens_rays.hpp"
 #include "lens_view.hpp"
 #include "ray_status.hpp"
 #include "refraction.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-/// N rays. Origins in mm; optical directions (unit vectors times the index of the medium that the ray is in); status
-/// holds RayStatus values as plain integers.
-template <class T, int N>
-struct LensRays {
-    Vec3Lanes<T, N> origin;
-    Vec3Lanes<T, N> direction;
-    Lanes<int, N> status;
-};
 
 /// What a trace may write down besides the rays. `NoRecord` is for pictures: rays that end are only marked, as
 /// vignetted whatever the cause, and their origin and direction are then undefined (NaN at worst).
@@ -232,6 +225,29 @@ REALCAM_HD inline void cross_asphere(const SurfaceView<T>& surface, const Bounda
     }
 }
 
+template <class T, int N, class Boundary, class Record>
+REALCAM_HD inline void cross_freeform(const SurfaceView<T>& surface, const FreeformView<T>& form,
+                                      const Boundary& boundary, LensRays<T, N>& rays, Record& record) {
+    int ended = 0;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        rays.origin.z[i] -= surface.shift;
+        ended += static_cast<int>(rays.status[i] != 0);
+    }
+    if (ended == N) return;
+    FreeformHits<T, N> hits;
+    find_freeform_crossings(surface, form, rays, hits);
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec3<T> p = rays.direction[i];
+        const SurfaceHit<T> hit = freeform_hit(surface.direction_sign_in, p, hits.parameter[i], hits.slope_x[i],
+                                               hits.slope_y[i], hits.slack[i]);
+        const int failure = select(hits.slack[i] < T(0), static_cast<int>(RayStatus::no_convergence),
+                                   static_cast<int>(RayStatus::missed));
+        cross_surface<LensKind::any>(surface, boundary, rays, record, i, rays.origin[i], p, hit, failure);
+    }
+}
+
 /// Blocks rays that lie on an iris blade. The opening is what n equal arcs leave open. The blade's edge has curvature q
 /// and distance h from the axis. A point is open where q (r^2 + h^2) + 2 (1 - q h) a - 2 h <= 0, where a is its largest
 /// extent towards any blade.
@@ -293,8 +309,16 @@ REALCAM_HD inline void trace_lens(const LensView<T>& lens, LensRays<T, N>& rays,
                 case SurfaceShape::sphere: cross_sphere<lens_kind>(surface, boundary, rays, record); break;
                 case SurfaceShape::conic: cross_conic(surface, boundary, rays, record); break;
                 case SurfaceShape::asphere: cross_asphere(surface, boundary, rays, record); break;
+                case SurfaceShape::freeform:
+                    if constexpr (lens_kind == LensKind::any)
+                        cross_freeform(surface, lens.free.freeforms[k], boundary, rays, record);
+                    break;
             }
             if (surface.has_blades) cross_iris(lens.iris, rays);
+            if constexpr (lens_kind == LensKind::any)
+                if (lens.free.apertures && lens.free.apertures[k].is_shaped)
+                    cross_aperture(lens.free.apertures[k], rays.origin, rays.status,
+                                   static_cast<int>(RayStatus::vignetted));
         }
         // With a record, a ray that has ended still has to come to the last vertex.
         if constexpr (N == 1 && !std::remove_reference_t<Record>::enabled)

@@ -3,12 +3,14 @@
 
 #include "../../math/vec3.hpp"
 #include "../prescription/lens_limits.hpp"
+#include "aperture.hpp"
+#include "freeform.hpp"
 
 namespace REALCAM_NAMESPACE {
 
 inline constexpr int kStartTerms = 8;  ///< of the polynomial from which the search on an asphere starts
 
-enum class SurfaceShape : int { sphere, conic, asphere };
+enum class SurfaceShape : int { sphere, conic, asphere, freeform };
 
 /// One surface in the order in which the light meets it. Lengths in mm. What every ray needs comes first, in pieces
 /// that a GPU loads at once.
@@ -74,14 +76,21 @@ struct FrameChanges {
 template <class T>
 struct FreeParts {
     const FrameChanges<T>* frames = nullptr;
+    const FreeformView<T>* freeforms = nullptr;  ///< read for freeforms alone
+    const ApertureView<T>* apertures = nullptr;
 
     /// Those from surface `first` on.
-    REALCAM_INLINE FreeParts from(int first) const { return {frames ? frames + first : nullptr}; }
+    REALCAM_INLINE FreeParts from(int first) const {
+        return {frames ? frames + first : nullptr, freeforms ? freeforms + first : nullptr,
+                apertures ? apertures + first : nullptr};
+    }
 
     /// move(array, count) for every array.
     template <class Move>
     void move_arrays(int surfaces, Move&& move) {
         move(frames, surfaces);
+        move(freeforms, surfaces);
+        move(apertures, surfaces);
     }
 };
 
@@ -89,7 +98,7 @@ struct FreeParts {
 enum class LensKind : int {
     plain,  ///< spheres and planes, open up to their rims, and a stop without blades
     rotational,  ///< a centred lens of revolution
-    any,  ///< surfaces may be tilted and decentred
+    any,  ///< surfaces may be tilted, decentred and of any form, with apertures of any shape
 };
 
 /// A lens in one state of focus and stop, at one wavelength and in one direction of the light.

@@ -17,6 +17,11 @@ inline bool has_placements(const LensSystem& lens) {
     return false;
 }
 
+/// Whether a surface has what only the code for lenses of any kind knows.
+inline bool is_free(const Surface& surface) {
+    return !surface.form.is_none() || !surface.aperture_shape.is_plain();
+}
+
 /// From the frame of surface `to` to that of its neighbour `from`.
 inline Affine<double> neighbour(const LensSystem& lens, int from, int to) {
     return to > from ? frame_of_next(lens, from) : inverse_motion(frame_of_next(lens, to));

@@ -1,0 +1,38 @@
+#pragma once
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../optics/prescription/surface.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+/// What a user gives of a surface's form and aperture; the rest stays as it is.
+struct FormChanges {
+    using Number = std::optional<double>;
+    std::optional<std::string> form;
+    Number radius_of_curvature_x_mm, conic_x;
+    std::optional<std::map<int, double>> radial_terms;
+    std::optional<std::map<std::pair<int, int>, double>> xy_terms;
+    std::optional<py::dict> zernike, forbes, aperture;
+    std::optional<std::vector<py::dict>> obscurations;
+};
+
+/// Throws InputError where a name, a key or a value is none. An empty dict takes away what there is.
+void change_form(Surface& surface, const FormChanges& to);
+
+/// As change_form takes them.
+std::string form_name(const Surface& surface);
+std::map<int, double> radial_terms_of(const Surface& surface);
+std::map<std::pair<int, int>, double> xy_terms_of(const Surface& surface);
+py::dict zernike_of(const Surface& surface);
+py::dict forbes_of(const Surface& surface);
+py::dict aperture_of(const Surface& surface);
+std::vector<py::dict> obscurations_of(const Surface& surface);
+
+}  // namespace realcam::bindings

@@ -1,0 +1,195 @@
+#include "lens_form.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../../optics/prescription/lens_limits.hpp"
+
+namespace realcam::io {
+
+namespace {
+
+/// A power as a key of a table.
+int power_of(const TomlTable& table, std::string_view key, const toml::node& node, int most) {
+    const bool digits = !key.empty() && key.size() < 3 && key.find_first_not_of("0123456789") == key.npos;
+    const int power = digits ? std::stoi(std::string(key)) : 0;
+    if (power < 1 || power > most)
+        table.fail("radial terms have powers from 1 to " + std::to_string(most) + " as keys; this one is \"" +
+                       std::string(key) + '"',
+                   &node);
+    return power;
+}
+
+std::vector<double> read_radial(const TomlTable& surface) {
+    std::vector<double> values;
+    const auto terms = surface.table("radial_terms");
+    if (!terms) return values;
+    for (const auto& [key, node] : terms->raw()) {
+        const auto power = static_cast<std::size_t>(power_of(*terms, key.str(), node, kMaxRadialTerms));
+        if (values.size() < power) values.resize(power, 0.0);
+        values[power - 1] = terms->as_number(node, "the coefficient of r^" + std::to_string(power));
+    }
+    return values;
+}
+
+std::vector<XyTerm> read_xy(const TomlTable& surface) {
+    std::vector<XyTerm> terms;
+    const toml::node* node = surface.find("xy_terms");
+    if (!node) return terms;
+    const std::string wanted = "\"xy_terms\" must be an array of [power of x, power of y, coefficient]";
+    if (!node->as_array()) surface.fail(wanted, node);
+    for (const toml::node& item : *node->as_array()) {
+        const toml::array* triple = item.as_array();
+        if (!triple || triple->size() != 3 || !(*triple)[0].is_integer() || !(*triple)[1].is_integer())
+            surface.fail(wanted + ", the powers whole numbers", &item);
+        const auto power = [&](std::size_t i) {
+            return static_cast<int>(std::clamp<std::int64_t>(*(*triple)[i].value<std::int64_t>(), -1, 1000));
+        };
+        const XyTerm term{power(0), power(1), surface.as_number((*triple)[2], "a coefficient of \"xy_terms\"")};
+        for (const XyTerm& other : terms)
+            if (other.x == term.x && other.y == term.y)
+                surface.fail("\"xy_terms\" has the powers " + std::to_string(term.x) + " and " +
+                                 std::to_string(term.y) + " twice",
+                             &item);
+        terms.push_back(term);
+    }
+    return terms;
+}
+
+template <class Terms>
+std::optional<Terms> read_terms(const TomlTable& surface, std::string_view key, std::string_view kind_key,
+                                const char* first, const char* second, decltype(Terms::coefficients)* = nullptr) {
+    const auto table = surface.table(key);
+    if (!table) return std::nullopt;
+    table->allow({kind_key, "radius_mm", "coefficients_mm"});
+    Terms terms;
+    const std::string kind = table->text(kind_key);
+    if (kind != first && kind != second)
+        table->fail('"' + std::string(kind_key) + "\" must be \"" + first + "\" or \"" + second + '"',
+                    table->find(kind_key));
+    const auto radius = table->number("radius_mm");
+    if (!radius) table->fail("\"radius_mm\" is missing: where the polynomials have their rim");
+    terms.radius = *radius;
+    terms.coefficients = table->numbers("coefficients_mm", 0);
+    if (terms.coefficients.empty()) table->fail("\"coefficients_mm\" is missing");
+    if constexpr (std::same_as<Terms, ZernikeTerms>)
+        terms.order = kind == first ? ZernikeOrder::noll : ZernikeOrder::fringe;
+    else
+        terms.kind = kind == first ? ForbesKind::bfs : ForbesKind::con;
+    return terms;
+}
+
+Vec2d pair_of(const std::vector<double>& values) {
+    return values.empty() ? Vec2d{0, 0} : Vec2d{values[0], values[1]};
+}
+
+std::vector<Vec2d> read_corners(const TomlTable& table) {
+    std::vector<Vec2d> corners;
+    const toml::node* node = table.find("polygon_mm");
+    const std::string wanted = "\"polygon_mm\" must be an array of corners [x, y]";
+    if (!node->as_array()) table.fail(wanted, node);
+    for (const toml::node& item : *node->as_array()) {
+        const toml::array* corner = item.as_array();
+        if (!corner || corner->size() != 2) table.fail(wanted, &item);
+        corners.push_back(
+            {table.as_number((*corner)[0], "x of a corner"), table.as_number((*corner)[1], "y of a corner")});
+    }
+    return corners;
+}
+
+/// The one of these keys that a table has.
+std::string one_of(const TomlTable& table, const std::vector<std::string_view>& keys, const std::string& wanted) {
+    std::string found;
+    for (const std::string_view key : keys) {
+        if (!table.find(key)) continue;
+        if (!found.empty()) table.fail(wanted, table.find(key));
+        found = key;
+    }
+    if (found.empty()) table.fail(wanted);
+    return found;
+}
+
+void read_obscuration(const TomlTable& table, double rim, std::vector<Obscuration>& to) {
+    const std::string kind =
+        one_of(table, {"circle_mm", "ellipse_mm", "rectangle_mm", "spider_arms"},
+               "an obscuration has one of \"circle_mm\", \"ellipse_mm\", \"rectangle_mm\" and \"spider_arms\"");
+    if (kind == "spider_arms") {
+        table.allow({"spider_arms", "width_mm", "length_mm", "angle_deg"});
+        const double count = *table.number(kind), width = table.number("width_mm").value_or(0);
+        if (!(count >= 1 && count <= kMaxObscurations && count == std::floor(count)))
+            table.fail("\"spider_arms\" must be a whole number from 1 to " + std::to_string(kMaxObscurations),
+                       table.find(kind));
+        if (!(width > 0)) table.fail("\"width_mm\" of the arms must be a positive length", table.find("width_mm"));
+        const auto arms = spider_arms(static_cast<int>(count), width, table.number("length_mm").value_or(rim),
+                                      table.number("angle_deg").value_or(0));
+        to.insert(to.end(), arms.begin(), arms.end());
+        return;
+    }
+    table.allow({kind, "offset_mm", "angle_deg"});
+    Obscuration piece;
+    piece.is_rectangle = kind == "rectangle_mm";
+    if (kind == "circle_mm")
+        piece.half.x = piece.half.y = *table.number(kind);
+    else
+        piece.half = pair_of(table.numbers(kind, 2));
+    piece.offset = pair_of(table.numbers("offset_mm", 2));
+    piece.angle_deg = table.number("angle_deg").value_or(0);
+    to.push_back(piece);
+}
+
+}  // namespace
+
+SurfaceForm read_form(const TomlTable& table) {
+    SurfaceForm form;
+    if (table.find("form")) {
+        const std::string name = table.text("form");
+        if (name != "biconic" && name != "toroid")
+            table.fail("\"form\" must be \"biconic\" or \"toroid\"", table.find("form"));
+        form.base = name == "biconic" ? BaseForm::biconic : BaseForm::toroid;
+    }
+    const auto radius = table.number("radius_of_curvature_x_mm"), curvature = table.number("curvature_x_per_mm");
+    if (radius && *radius == 0)
+        table.fail("a radius of curvature of 0 is no surface; leave it out for none",
+                   table.find("radius_of_curvature_x_mm"));
+    if (radius && curvature)
+        table.fail("\"radius_of_curvature_x_mm\" and \"curvature_x_per_mm\" say the same; one of them is wanted",
+                   table.find("curvature_x_per_mm"));
+    form.curvature_x = radius ? 1 / *radius : curvature.value_or(0);
+    form.conic_x = table.number("conic_x").value_or(0);
+    form.radial = read_radial(table);
+    form.xy = read_xy(table);
+    form.zernike = read_terms<ZernikeTerms>(table, "zernike", "order", "noll", "fringe");
+    form.forbes = read_terms<ForbesTerms>(table, "forbes", "kind", "bfs", "con");
+    return form;
+}
+
+ApertureShape read_aperture(const TomlTable& surface, double rim) {
+    ApertureShape shape;
+    if (const auto table = surface.table("aperture")) {
+        const std::string kind =
+            one_of(*table, {"circle_mm", "ellipse_mm", "rectangle_mm", "polygon_mm"},
+                   "an aperture has one of \"circle_mm\", \"ellipse_mm\", \"rectangle_mm\" and \"polygon_mm\"");
+        table->allow({kind, "offset_mm"});
+        shape.kind = kind == "circle_mm"      ? ApertureKind::circle
+                     : kind == "ellipse_mm"   ? ApertureKind::ellipse
+                     : kind == "rectangle_mm" ? ApertureKind::rectangle
+                                              : ApertureKind::polygon;
+        if (shape.kind == ApertureKind::polygon)
+            shape.corners = read_corners(*table);
+        else if (shape.kind == ApertureKind::circle)
+            shape.half.x = shape.half.y = *table->number(kind);
+        else
+            shape.half = pair_of(table->numbers(kind, 2));
+        shape.offset = pair_of(table->numbers("offset_mm", 2));
+    }
+    if (const toml::node* list = surface.find("obscurations")) {
+        const toml::array* array = list->as_array();
+        if (!array || !array->is_homogeneous(toml::node_type::table))
+            surface.fail("\"obscurations\" must be an array of tables", list);
+        for (const toml::node& item : *array)
+            read_obscuration(surface.within(*item.as_table()), rim, shape.obscurations);
+    }
+    return shape;
+}
+
+}  // namespace realcam::io

@@ -1,0 +1,95 @@
+#include <functional>
+
+#include "lens_form.hpp"
+#include "toml_numbers.hpp"
+
+namespace realcam::io {
+
+namespace {
+
+std::string key(const std::string& name, const std::string& value) {
+    return name + " = " + value + '\n';
+}
+
+template <class T>
+std::string list_of(const std::vector<T>& items, const std::function<std::string(const T&)>& text) {
+    std::string list;
+    for (const T& item : items) list += (list.empty() ? "" : ", ") + text(item);
+    return '[' + list + ']';
+}
+
+std::string list_of(const std::vector<double>& values) {
+    return list_of<double>(values, toml_number);
+}
+
+std::string pair(Vec2d v) {
+    return '[' + toml_number(v.x) + ", " + toml_number(v.y) + ']';
+}
+
+std::string offset(Vec2d v) {
+    return v == Vec2d{0, 0} ? "" : ", offset_mm = " + pair(v);
+}
+
+template <class Terms>
+std::string terms(const char* kind_key, const char* kind, const Terms& of) {
+    return std::string("{ ") + kind_key + " = \"" + kind + "\", radius_mm = " + toml_number(of.radius) +
+           ", coefficients_mm = " + list_of(of.coefficients) + " }";
+}
+
+std::string obscuration(const Obscuration& piece) {
+    std::string text = piece.is_rectangle ? "{ rectangle_mm = " : "{ ellipse_mm = ";
+    text += pair(piece.half) + offset(piece.offset);
+    if (piece.angle_deg != 0) text += ", angle_deg = " + toml_number(piece.angle_deg);
+    return text + " }";
+}
+
+}  // namespace
+
+std::string form_as_toml(const SurfaceForm& form) {
+    std::string lines;
+    if (form.base != BaseForm::conic)
+        lines += key("form", form.base == BaseForm::toroid ? "\"toroid\"" : "\"biconic\"");
+    if (form.curvature_x != 0) {
+        const auto radius = before_rounding(1 / form.curvature_x, form.curvature_x, [](double r) { return 1 / r; });
+        lines += radius ? key("radius_of_curvature_x_mm", toml_number(*radius))
+                        : key("curvature_x_per_mm", toml_number(form.curvature_x));
+    }
+    if (form.conic_x != 0) lines += key("conic_x", toml_number(form.conic_x));
+    if (!form.radial.empty()) {
+        std::string list;
+        for (std::size_t i = 0; i < form.radial.size(); ++i)
+            list += (i == 0 ? "" : ", ") + std::to_string(i + 1) + " = " + toml_number(form.radial[i]);
+        lines += key("radial_terms", "{ " + list + " }");
+    }
+    if (!form.xy.empty())
+        lines += key("xy_terms", list_of<XyTerm>(form.xy, [](const XyTerm& term) {
+                         return '[' + std::to_string(term.x) + ", " + std::to_string(term.y) + ", " +
+                                toml_number(term.coefficient) + ']';
+                     }));
+    if (form.zernike)
+        lines += key("zernike",
+                     terms("order", form.zernike->order == ZernikeOrder::noll ? "noll" : "fringe", *form.zernike));
+    if (form.forbes)
+        lines += key("forbes", terms("kind", form.forbes->kind == ForbesKind::bfs ? "bfs" : "con", *form.forbes));
+    return lines;
+}
+
+std::string aperture_as_toml(const ApertureShape& shape) {
+    std::string lines;
+    const auto aperture = [&](const std::string& kind, const std::string& value) {
+        lines += key("aperture", "{ " + kind + " = " + value + offset(shape.offset) + " }");
+    };
+    switch (shape.kind) {
+        case ApertureKind::circle:
+            if (shape.half.x > 0) aperture("circle_mm", toml_number(shape.half.x));
+            break;
+        case ApertureKind::ellipse: aperture("ellipse_mm", pair(shape.half)); break;
+        case ApertureKind::rectangle: aperture("rectangle_mm", pair(shape.half)); break;
+        case ApertureKind::polygon: aperture("polygon_mm", list_of<Vec2d>(shape.corners, pair)); break;
+    }
+    if (!shape.obscurations.empty())
+        lines += key("obscurations", list_of<Obscuration>(shape.obscurations, obscuration));
+    return lines;
+}
+
+}  // namespace realcam::io

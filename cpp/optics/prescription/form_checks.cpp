@@ -1,0 +1,122 @@
+#include "form_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lens_limits.hpp"
+#include "lens_system.hpp"
+
+namespace realcam {
+
+namespace {
+
+bool all_finite(const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+bool is_length(double v) {
+    return v >= kShortestRadius && v <= kLongest;
+}
+
+bool is_short(Vec2d v) {
+    return std::fabs(v.x) <= kLongest && std::fabs(v.y) <= kLongest;
+}
+
+/// Past this at the rim a term is no surface.
+bool is_too_large(double coefficient, double rim, int power) {
+    return !(std::fabs(coefficient) <= kLargestCoefficient &&
+             std::fabs(coefficient) * std::pow(rim, power) <= kLongest);
+}
+
+std::string terms_error(const Surface& s) {
+    const SurfaceForm& form = s.form;
+    const double rim = s.clear_semi_diameter;
+    if (form.radial.size() > static_cast<std::size_t>(kMaxRadialTerms))
+        return "radial terms go up to r^" + std::to_string(kMaxRadialTerms);
+    for (std::size_t i = 0; i < form.radial.size(); ++i)
+        if (is_too_large(form.radial[i], rim, static_cast<int>(i) + 1))
+            return "a radial term is too large: its coefficient is past 1e37, or the term past 1e9 mm at the rim";
+    for (const XyTerm& term : form.xy) {
+        if (term.x < 0 || term.y < 0 || term.x + term.y > kMaxXyDegree)
+            return "terms of x and y have powers from 0, and " + std::to_string(kMaxXyDegree) +
+                   " in all at most; one has x^" + std::to_string(term.x) + " y^" + std::to_string(term.y);
+        if (is_too_large(term.coefficient, rim, term.x + term.y))
+            return "a term of x and y is too large: its coefficient is past 1e37, or the term past 1e9 mm at the rim";
+    }
+    if (form.zernike) {
+        const std::size_t most = form.zernike->order == ZernikeOrder::fringe
+                                     ? 37
+                                     : static_cast<std::size_t>((kMaxXyDegree + 1) * (kMaxXyDegree + 2) / 2);
+        if (!is_length(form.zernike->radius)) return "the radius of its Zernike terms must be a positive length";
+        if (form.zernike->coefficients.size() > most) return "has more Zernike terms than " + std::to_string(most);
+        if (!all_finite(form.zernike->coefficients)) return "a Zernike coefficient is not a finite number";
+    }
+    if (form.forbes) {
+        if (!is_length(form.forbes->radius)) return "the radius of its Forbes terms must be a positive length";
+        if (form.forbes->coefficients.size() > static_cast<std::size_t>(kMaxForbesTerms))
+            return "has more Forbes terms than " + std::to_string(kMaxForbesTerms);
+        if (!all_finite(form.forbes->coefficients)) return "a Forbes coefficient is not a finite number";
+        if (form.forbes->kind == ForbesKind::bfs && (s.conic != 0 || form.base != BaseForm::conic))
+            return "Forbes terms of the kind \"bfs\" depart from a sphere, so that no conic is wanted";
+    }
+    return "";
+}
+
+std::string aperture_error(const Surface& s) {
+    const ApertureShape& shape = s.aperture_shape;
+    if (shape.kind == ApertureKind::polygon) {
+        if (shape.corners.size() < 3 || shape.corners.size() > static_cast<std::size_t>(kMaxApertureCorners))
+            return "its aperture has " + std::to_string(shape.corners.size()) + " corners; 3 to " +
+                   std::to_string(kMaxApertureCorners) + " are wanted";
+        for (const Vec2d& corner : shape.corners)
+            if (!is_short(corner)) return "a corner of its aperture is no place";
+    } else if (shape.kind != ApertureKind::circle || shape.half != Vec2d{0, 0}) {
+        if (!is_length(shape.half.x) || !is_length(shape.half.y))
+            return "the half widths of its aperture must be positive lengths";
+    }
+    if (!is_short(shape.offset)) return "the offset of its aperture must be two lengths";
+    const ApertureBox box = shape.box(s.clear_semi_diameter);
+    if (!(box.low.x < box.high.x && box.low.y < box.high.y)) return "its aperture lies beyond its clear semi-diameter";
+    if (shape.obscurations.size() > static_cast<std::size_t>(kMaxObscurations))
+        return "has more obscurations than " + std::to_string(kMaxObscurations);
+    for (const Obscuration& piece : shape.obscurations)
+        if (!is_length(piece.half.x) || !is_length(piece.half.y) || !is_short(piece.offset) ||
+            !(std::fabs(piece.angle_deg) <= 1e6))
+            return "an obscuration wants positive half widths, an offset of two lengths and an angle";
+    return "";
+}
+
+/// Whether the surface is there wherever light can meet it.
+bool reaches_rim(const Surface& s) {
+    constexpr int kHalf = 32;
+    const double rim = s.clear_semi_diameter;
+    const ApertureBox box = s.aperture_shape.box(rim);
+    for (int i = 0; i <= 2 * kHalf; ++i)
+        for (int j = 0; j <= 2 * kHalf; ++j) {
+            double x = box.low.x + (box.high.x - box.low.x) * i / (2 * kHalf);
+            double y = box.low.y + (box.high.y - box.low.y) * j / (2 * kHalf);
+            const double r = std::sqrt(x * x + y * y), inwards = r > rim ? rim / r : 1;
+            if (!std::isfinite(s.sag(inwards * x, inwards * y))) return false;
+        }
+    return true;
+}
+
+}  // namespace
+
+std::string form_error(const Surface& surface) {
+    const SurfaceForm& form = surface.form;
+    if (std::string why = aperture_error(surface); !why.empty()) return why;
+    if (!surface.bends_light() && !form.is_none()) return "a stop or an aperture is a plane";
+    if (!std::isfinite(form.curvature_x) || std::fabs(form.curvature_x) > 1 / kShortestRadius)
+        return "its radius of curvature in x must be at least 1e-6 mm (leave it out for none)";
+    if (!(std::fabs(form.conic_x) <= kLargestConic)) return "the conic in x must lie between -1e6 and 1e6";
+    if (form.base == BaseForm::conic && (form.curvature_x != 0 || form.conic_x != 0))
+        return "a radius of curvature or conic in x is that of a biconic or a toroid";
+    if (form.base == BaseForm::toroid && form.conic_x != 0) return "a toroid has no conic in x";
+    if (std::string why = terms_error(surface); !why.empty()) return why;
+    return form.is_none() || reaches_rim(surface)
+               ? ""
+               : "is not there all over its clear aperture: its radii, conics or terms end it before";
+}
+
+}  // namespace realcam

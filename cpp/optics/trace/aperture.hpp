@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+
+#include "../../math/lanes.hpp"
+#include "../prescription/lens_limits.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// An ellipse or a rectangle, in a frame of its own: u = along . (point - middle), v across that.
+template <class T>
+struct AperturePiece {
+    T middle_x, middle_y, cos, sin;
+    T inverse_half_u, inverse_half_v;
+    std::int32_t is_rectangle;
+
+    REALCAM_INLINE bool holds(T x, T y) const {
+        const T dx = x - middle_x, dy = y - middle_y;
+        const T u = inverse_half_u * (cos * dx + sin * dy), v = inverse_half_v * (cos * dy - sin * dx);
+        const T corner = std::fabs(u) > std::fabs(v) ? std::fabs(u) : std::fabs(v);
+        return select(is_rectangle != 0, corner, u * u + v * v) <= T(1);
+    }
+};
+
+/// What a surface leaves open inside its clear semi-diameter, where that is no circle about the vertex.
+template <class T>
+struct alignas(16) ApertureView {
+    std::int32_t is_shaped;  ///< 0: there is nothing but the circle
+    std::int32_t has_outer;  ///< whether `outer` bounds it
+    std::int32_t corners;    ///< of a polygon that bounds it; 0: none does
+    std::int32_t obscurations;
+    AperturePiece<T> outer;
+    AperturePiece<T> obscuration[kMaxObscurations];
+    T corner_x[kMaxApertureCorners], corner_y[kMaxApertureCorners];
+};
+
+/// Blocks rays that do not pass, in the frame of the surface that they have just met.
+template <class T, int N>
+REALCAM_HD inline void cross_aperture(const ApertureView<T>& aperture, const Vec3Lanes<T, N>& origin,
+                                      Lanes<int, N>& status, int vignetted) {
+    Lanes<int, N> open;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i)
+        open[i] = aperture.has_outer ? static_cast<int>(aperture.outer.holds(origin.x[i], origin.y[i])) : 1;
+    for (int k = 0; k < aperture.obscurations; ++k) {
+        const AperturePiece<T> piece = aperture.obscuration[k];
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) open[i] &= static_cast<int>(!piece.holds(origin.x[i], origin.y[i]));
+    }
+    if (aperture.corners > 0) {
+        // Inside is where a line to one side meets an odd number of edges.
+        Lanes<int, N> odd;
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) odd[i] = 0;
+        for (int k = 0; k < aperture.corners; ++k) {
+            const int next = k + 1 < aperture.corners ? k + 1 : 0;
+            const T ax = aperture.corner_x[k], ay = aperture.corner_y[k];
+            const T bx = aperture.corner_x[next], by = aperture.corner_y[next];
+            const T slope = by == ay ? T(0) : (bx - ax) / (by - ay);
+            REALCAM_LANES
+            for (int i = 0; i < N; ++i) {
+                const bool spans = (ay > origin.y[i]) != (by > origin.y[i]);
+                const bool beside = origin.x[i] < ax + (origin.y[i] - ay) * slope;
+                odd[i] ^= static_cast<int>(spans & beside);
+            }
+        }
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) open[i] &= odd[i];
+    }
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) status[i] = select((status[i] == 0) & (open[i] == 0), vignetted, status[i]);
+}
+
+}  // namespace REALCAM_NAMESPACE

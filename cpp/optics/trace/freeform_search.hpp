@@ -1,0 +1,180 @@
+#pragma once
+#include "asphere.hpp"
+#include "freeform.hpp"
+#include "lens_rays.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Where N rays meet a freeform.
+template <class T, int N>
+struct FreeformHits {
+    Lanes<T, N> parameter;
+    Lanes<T, N> slope_x, slope_y;  ///< of the sag there
+    Lanes<T, N> slack;  ///< by how much the search ended within its tolerance; NaN: no bracket
+};
+
+namespace freeform_detail {
+
+/// Less than 3 degrees from the vertex plane, or backwards.
+template <class T>
+REALCAM_INLINE bool goes_sideways(T direction_sign, Vec3<T> p) {
+    return p.z * direction_sign * std::fabs(p.z) < T(0.0025) * dot(p, p);
+}
+
+template <class T>
+REALCAM_INLINE bool is_outside(const FreeformView<T>& form, T x, T y) {
+    const T far_x = std::fabs(x - form.middle_x), far_y = std::fabs(y - form.middle_y);
+    return (far_x > form.half_x) | (far_y > form.half_y) | (x * x + y * y > form.reach * form.reach);
+}
+
+/// Safeguarded Newton steps from brackets, as improve_search takes them, for rays in an array. Ends when no ray
+/// searches any more: those whose bracket is NaN do not.
+template <class T, int N>
+REALCAM_HD inline void search_freeform(const FreeformView<T>& form, T direction_sign, const Vec3Lanes<T, N>& origin,
+                                       const Vec3Lanes<T, N>& direction, AsphereSearch<T, N>& search,
+                                       FreeformHits<T, N>& hits) {
+    constexpr T eps = std::numeric_limits<T>::epsilon();
+    FreeformSags<T, N> sags;
+    Lanes<T, N> x, y;
+    for (int step = 0; step < kMaxAsphereSteps<T>; ++step) {
+        const bool halve = step >= kNewtonSteps && step % 2 == 0;
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            x[i] = origin.x[i] + search.t[i] * direction.x[i];
+            y[i] = origin.y[i] + search.t[i] * direction.y[i];
+        }
+        freeform_sags(form, x, y, sags);
+        int searching = 0;
+        REALCAM_LANES
+        for (int i = 0; i < N; ++i) {
+            const Vec3<T> o = origin[i], p = direction[i];
+            const T t = search.t[i], gx = sags.slope_x[i], gy = sags.slope_y[i];
+            const T f = o.z + t * p.z - sags.height[i], slope = p.z - gx * p.x - gy * p.y;
+            const T axial =
+                std::fabs(o.z) + std::fabs(t * p.z) + sags.size[i] + T(0.0625) * (form.sag_max - form.sag_min);
+            const T lateral = std::fabs(gx) * (std::fabs(o.x) + std::fabs(t * p.x)) +
+                              std::fabs(gy) * (std::fabs(o.y) + std::fabs(t * p.y));
+            const T most = kSteepest<T> * axial;
+            const T tolerance = T(4) * eps * (axial + select(lateral < most, lateral, most));
+            const bool right = slope * direction_sign >= T(0);
+            const T residual = select(right, std::fabs(f), std::numeric_limits<T>::max());
+            const T below = select(f <= T(0), t, search.below[i]), above = select(f > T(0), t, search.above[i]);
+            const T newton = t - f / slope;
+            const bool inside = (newton - below) * (above - newton) > T(0);
+            const T next = select(inside & right & !halve, newton, T(0.5) * (below + above));
+            search.below[i] = below;
+            search.above[i] = above;
+            search.t[i] = select(residual <= tolerance, t, next);
+            hits.parameter[i] = t;
+            hits.slope_x[i] = gx;
+            hits.slope_y[i] = gy;
+            hits.slack[i] = tolerance - residual;
+            searching |= static_cast<int>(residual > tolerance);
+        }
+        if (searching == 0) break;
+    }
+}
+
+/// A bracket on the ray's way through the search region, between the planes that bound the sag there.
+template <class T>
+REALCAM_HD inline bool find_bracket(const FreeformView<T>& form, T direction_sign, Vec3<T> o, Vec3<T> p, T& t, T& below,
+                                    T& above) {
+    T first = -std::numeric_limits<T>::max(), last = std::numeric_limits<T>::max();
+    const auto keep_between = [&](T at, T along, T low, T high) {
+        if (along == T(0)) {
+            if (at < low || at > high) last = -std::numeric_limits<T>::max();
+            return;
+        }
+        const T a = (low - at) / along, b = (high - at) / along, from = a < b ? a : b, to = a < b ? b : a;
+        first = from > first ? from : first;
+        last = to < last ? to : last;
+    };
+    keep_between(o.x, p.x, form.middle_x - form.half_x, form.middle_x + form.half_x);
+    keep_between(o.y, p.y, form.middle_y - form.half_y, form.middle_y + form.half_y);
+    keep_between(o.z, p.z, form.sag_min, form.sag_max);
+    const T across = p.x * p.x + p.y * p.y;
+    if (across > T(0)) {
+        const T middle = -(o.x * p.x + o.y * p.y) / across, x = o.x + middle * p.x, y = o.y + middle * p.y;
+        const T room = form.reach * form.reach - x * x - y * y;
+        if (!(room > T(0))) return false;
+        const T half = std::sqrt(room / across);
+        first = middle - half > first ? middle - half : first;
+        last = middle + half < last ? middle + half : last;
+    }
+    if (!(first < last)) return false;
+    // A little inside: at the very edge the sag's slope is already that of its continuation.
+    const T half = (T(1) - T(16) * std::numeric_limits<T>::epsilon()) * T(0.5) * (last - first);
+    const auto sample = [&](T parameter) -> WaySample<T> {
+        const Vec3<T> at = o + parameter * p;
+        const Lanes<T, 1> x = {at.x}, y = {at.y};
+        FreeformSags<T, 1> sag;
+        freeform_sags<T, 1>(form, x, y, sag);
+        return {parameter, direction_sign * (at.z - sag.height[0]),
+                direction_sign * (p.z - sag.slope_x[0] * p.x - sag.slope_y[0] * p.y)};
+    };
+    return find_bracket_on_way(T(0.5) * (first + last), half, direction_sign, sample, t, below, above);
+}
+
+/// For a ray that goes sideways, and for one that was found to meet what the surface is continued by: whether it has
+/// met the surface itself before or after.
+template <class T, int N>
+REALCAM_HD inline void search_inside(const FreeformView<T>& form, T direction_sign, Vec3<T> o, Vec3<T> p, int lane,
+                                     FreeformHits<T, N>& hits) {
+    AsphereSearch<T, 1> search;
+    if (!find_bracket(form, direction_sign, o, p, search.t[0], search.below[0], search.above[0])) {
+        if (!(hits.slack[lane] >= T(0))) hits.slack[lane] = std::numeric_limits<T>::quiet_NaN();
+        return;
+    }
+    Vec3Lanes<T, 1> origin, direction;
+    origin.set(0, o);
+    direction.set(0, p);
+    FreeformHits<T, 1> hit;
+    search_freeform<T, 1>(form, direction_sign, origin, direction, search, hit);
+    hits.parameter[lane] = hit.parameter[0];
+    hits.slope_x[lane] = hit.slope_x[0];
+    hits.slope_y[lane] = hit.slope_y[0];
+    hits.slack[lane] = hit.slack[0];
+}
+
+}  // namespace freeform_detail
+
+/// The crossings of N rays with a freeform. Rays that have ended already are left with a slack that is NaN.
+template <class T, int N>
+REALCAM_HD inline void find_freeform_crossings(const SurfaceView<T>& surface, const FreeformView<T>& form,
+                                               const LensRays<T, N>& rays, FreeformHits<T, N>& hits) {
+    using namespace freeform_detail;
+    constexpr T nan = std::numeric_limits<T>::quiet_NaN();
+    const T sign = surface.direction_sign_in;
+    AsphereSearch<T, N> search;
+    REALCAM_LANES
+    for (int i = 0; i < N; ++i) {
+        const Vec3<T> o = rays.origin[i], p = rays.direction[i];
+        const SurfaceHit<T> start = intersect_sphere(o, p, surface.curvature, sign);
+        const T per_z = T(1) / select(p.z == T(0), T(1), p.z);
+        const T below = (form.sag_min - o.z) * per_z, above = (form.sag_max - o.z) * per_z;
+        const bool inside = (start.parameter - below) * (above - start.parameter) >= T(0);
+        const bool searches = (rays.status[i] == 0) & !goes_sideways(sign, p);
+        search.below[i] = select(searches, below, nan);
+        search.above[i] = select(searches, above, nan);
+        search.t[i] = select(searches, select(start.met() & inside, start.parameter, T(0.5) * (below + above)), nan);
+    }
+    search_freeform(form, sign, rays.origin, rays.direction, search, hits);
+    for (int i = 0; i < N; ++i) {
+        if (rays.status[i] != 0) continue;
+        const Vec3<T> o = rays.origin[i], p = rays.direction[i];
+        const T t = hits.parameter[i];
+        if (!(hits.slack[i] >= T(0)) || is_outside(form, o.x + t * p.x, o.y + t * p.y))
+            search_inside(form, sign, o, p, i, hits);
+    }
+}
+
+/// As asphere_hit.
+template <class T>
+REALCAM_INLINE SurfaceHit<T> freeform_hit(T direction_sign, Vec3<T> p, T t, T slope_x, T slope_y, T slack) {
+    const Vec3<T> normal = normalized(Vec3<T>{-slope_x, -slope_y, T(1)});
+    const T along_normal = dot(p, normal);
+    const T crossing = along_normal * direction_sign;
+    return {t, along_normal, normal, select(crossing < slack, crossing, slack)};
+}
+
+}  // namespace REALCAM_NAMESPACE
