@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "../optics/lens/film_frame.hpp"
+#include "../optics/trace/film_frame.hpp"
 #include "../optics/trace/lens_dispersion.hpp"
 
 namespace realcam {

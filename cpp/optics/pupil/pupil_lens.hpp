@@ -2,7 +2,7 @@
 #include <functional>
 #include <vector>
 
-#include "../lens/film_frame.hpp"
+#include "../trace/film_frame.hpp"
 #include "direction_box.hpp"
 #include "pupil_tracer.hpp"
 

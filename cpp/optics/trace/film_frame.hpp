@@ -1,5 +1,5 @@
 #pragma once
-#include "../trace/lens_path.hpp"
+#include "lens_path.hpp"
 
 namespace REALCAM_NAMESPACE {
 
