@@ -77,21 +77,42 @@ std::string set_aspheric_terms(const PrescriptionSurface& row, double height, Su
     surface.curvature = row.curvature;
     surface.conic = row.conic;
     surface.aspheric.clear();
+    surface.form = row.form;
+    const bool is_toroid = row.form.base == BaseForm::toroid;
+    const auto add_radial = [&](int power, double value) {
+        std::vector<double>& radial = surface.form.radial;
+        radial.resize(std::max(radial.size(), static_cast<std::size_t>(power)), 0.0);
+        radial[static_cast<std::size_t>(power) - 1] = value;
+    };
     double square = 0;
     std::string foreign;
     for (const auto& [power, value] : row.aspheric) {
         if (value == 0) continue;
         if (power == 2) {
             square = value;
-        } else if (power < 4 || power % 2 != 0 || power > kLargestPower) {
-            foreign += (foreign.empty() ? "an aspheric term of r^" : " and of r^") + std::to_string(power);
+        } else if (power % 2 != 0 || power > kLargestPower) {
+            if (!is_toroid && power > 0 && power <= kMaxRadialTerms)
+                add_radial(power, value);
+            else
+                foreign += (foreign.empty() ? "an aspheric term of r^" : " and of r^") + std::to_string(power);
         } else {
             const auto term = static_cast<std::size_t>(power / 2 - 2);
             if (surface.aspheric.size() <= term) surface.aspheric.resize(term + 1, 0.0);
             surface.aspheric[term] = value;
         }
     }
-    const std::string folded = square == 0 ? "" : fold_square_term(square, height, surface);
+    if (square == 0) return foreign;
+    if (!is_toroid && !surface.form.is_none()) {
+        add_radial(2, square);
+        return foreign;
+    }
+    const Surface before = surface;
+    std::string folded = fold_square_term(square, height, surface);
+    if (!folded.empty() && !is_toroid) {
+        surface = before;
+        add_radial(2, square);
+        folded.clear();
+    }
     return foreign.empty() || folded.empty() ? foreign + folded : foreign + " and " + folded;
 }
 

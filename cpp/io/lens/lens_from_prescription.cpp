@@ -15,6 +15,7 @@
 #include "lens_asphere_terms.hpp"
 #include "lens_error.hpp"
 #include "lens_foreign.hpp"
+#include "lens_places.hpp"
 #include "lens_rims.hpp"
 #include "lens_states.hpp"
 
@@ -45,6 +46,7 @@ public:
         set_film_size();
         set_open_rims();
         lens_ = joined_states(p_, states_);
+        set_free_parts();
         finish();
         return lens_;
     }
@@ -120,6 +122,13 @@ private:
         }
     }
 
+    /// Puts a form aside that is not of revolution.
+    void keep_form(std::size_t i) {
+        forms_.resize(kept_.size());
+        forms_[i] = lens_.surfaces[i].form;
+        if (!forms_[i].asymmetry().empty()) lens_.surfaces[i].form = {};
+    }
+
     /// Names all that there is no model of; where that is not forced, as an error.
     void refuse_foreign() {
         for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -128,6 +137,7 @@ private:
             const double rim = row.clear_semi_diameter > 0 ? row.clear_semi_diameter : kGuess * known_aperture();
             const std::string what = set_aspheric_terms(row, rim, lens_.surfaces[i]);
             if (!what.empty()) foreign_.push_back({what, row.line, row.number});
+            keep_form(i);
         }
         realcam::io::refuse_foreign(foreign_, p_.file, options_);
     }
@@ -175,10 +185,12 @@ private:
         if (!row.aspheric.contains(2) || !lens_.surfaces[i].bends_light()) return;
         const std::string what = set_aspheric_terms(row, rim, lens_.surfaces[i]);
         if (!what.empty() && !options_.force) fail("has " + what + ", of which realcam has no model", &row);
+        keep_form(i);
         for (auto& [state, distance] : states_) {
             state.surfaces[i].curvature = lens_.surfaces[i].curvature;
             state.surfaces[i].conic = lens_.surfaces[i].conic;
             state.surfaces[i].aspheric = lens_.surfaces[i].aspheric;
+            state.surfaces[i].form = lens_.surfaces[i].form;
         }
     }
 
@@ -212,6 +224,21 @@ private:
         const double focal = std::fabs(first_order(lens, lens_.wavelength_nm).effective_focal_length);
         // In front of all rims: whatever comes at twice the field's slope, and at 27 degrees at least.
         return end + std::fabs(distance) * std::clamp(2 * film / focal, 0.5, 10.0);
+    }
+
+    /// Sizes were found as if the lens were centred, in the yz planes of its surfaces.
+    void set_free_parts() {
+        bool moves = false;
+        for (const PrescriptionSurface& row : p_.surfaces) moves |= is_moved(row);
+        for (std::size_t i = 0; i < kept_.size(); ++i) {
+            lens_.surfaces[i].aperture_shape = row_of(i).aperture_shape;
+            if (lens_.surfaces[i].bends_light()) lens_.surfaces[i].form = forms_[i];
+        }
+        if (moves && !p_.zoom_names.empty()) fail("zooms with surfaces that are tilted or decentred; none is wanted");
+        if (moves) set_places(p_, kept_, lens_);
+        if (!lens_.is_rotational())
+            warn("is no centred lens of revolution: " + lens_.asymmetry() +
+                 ". Its stop and what else the file leaves open are found as if it were, in the yz plane");
     }
 
     void set_film_size() {
@@ -295,6 +322,7 @@ private:
     std::vector<KeptRow> kept_;
     LensSystem lens_;
     std::vector<LensState> states_;
+    std::vector<SurfaceForm> forms_;
     int stop_on_surface_ = 0;
     std::set<int> curved_planes_;
     Checkpoint checkpoint_;

@@ -20,6 +20,10 @@ struct PrescriptionSurface {
     double clear_semi_diameter = 0;  ///< 0: the file does not say it
     double inner_semi_diameter = 0;
     bool blocks = false;  ///< it has an aperture that somebody gave it, so that it counts even where it bends no light
+    SurfaceForm form;
+    ApertureShape aperture_shape;
+    Affine<double> before;  ///< from its frame to that of the axis in front of it, at its place there
+    Affine<double> behind;  ///< from the frame of the axis behind it to its own
     /// Its aperture is a disc that blocks, the inner semi-diameter, and light passes everywhere beyond it. The clear
     /// semi-diameter, if any, is how large the surface is drawn.
     bool is_open_outside = false;

@@ -172,6 +172,18 @@ void CodeVReader::finish() {
         if (std::isinf(rows_[i].thickness))
             throw LensFileError("the thickness is infinite; only the object may be as far away", p_.file, rows_[i].line,
                                 rows_[i].number);
+    if (!(image.before == Affine<double>{}))
+        p_.foreign.push_back({"a tilted or decentred image", image.line, image.number});
+    for (PrescriptionSurface& row : rows_) {
+        ApertureShape& shape = row.aperture_shape;
+        if (shape.is_plain()) continue;
+        // Of the two sides one may be left open.
+        const double open = 10 * std::max({shape.half.x, shape.half.y, row.clear_semi_diameter});
+        for (double* half : {&shape.half.x, &shape.half.y})
+            if (*half == 0) *half = open;
+        row.clear_semi_diameter = shape.reach();
+        row.is_open_outside = false;
+    }
     p_.surfaces.assign(rows_.begin() + 1, rows_.end() - 1);
     if (rows_.size() < 3) fail_file("has no surface between object and image");
     if (p_.aperture_kind == ApertureKind::entrance_pupil_diameter) p_.aperture *= unit_;

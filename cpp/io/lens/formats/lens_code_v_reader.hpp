@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <map>
 #include <set>
 
 #include "../lens_glass.hpp"
@@ -45,6 +47,14 @@ private:
     /// False where the command is none of a surface.
     bool read_surface_command(const std::string& word, Words words);
     void read_circle(Words& words);
+    /// A rectangle or an ellipse, or where its middle is.
+    void read_aperture(const std::string& word, Words& words);
+    /// A coefficient of SPS XYP.
+    void read_xy_term(Words& words);
+    /// Of XDE, YDE, ZDE, ADE, BDE and CDE; -1: another word.
+    static int place_number(const std::string& word);
+    /// From what is known of it so far.
+    void set_place(PrescriptionSurface& row);
 
     /// Glasses of the file's own: PWL and the wavelengths, then a name and an index for each, or a name, a formula and
     /// its coefficients. What is wrong with one is told where a surface has it: makers' files carry some that none has.
@@ -79,6 +89,8 @@ private:
     std::set<std::string> private_names_, zoom_left_out_, unknown_, remarks_;
     std::map<std::string, LensFileError> broken_private_;
     std::set<std::pair<std::string, int>> shaped_, foreign_;
+    std::map<int, std::array<double, 6>> places_;  ///< decentres and tilts, by the number of the surface
+    std::map<int, std::string> place_kinds_;  ///< DAR, BEN or REV
 };
 
 /// Whether a word is digits alone.

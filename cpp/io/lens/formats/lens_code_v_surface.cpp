@@ -1,9 +1,13 @@
 // The commands of a .seq file that are about one surface.
 
+#include "lens_code_v_reader.hpp"
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
-#include "lens_code_v_reader.hpp"
 
 namespace realcam::io {
 
@@ -71,13 +75,12 @@ PrescriptionSurface& CodeVReader::row_of(Words& words) {
 }
 
 bool CodeVReader::read_surface_command(const std::string& word, Words words) {
-    static const std::set<std::string> shapes{"CYL", "XTO", "YTO", "AAS", "SPS", "DIF", "GRT", "DOE", "HOE", "HWL",
-                                              "HOR", "HCT", "HCO", "GRO", "GRS", "TOR", "ANA", "UD1", "SCO", "THM",
-                                              "LNS", "MOD", "NSS", "INT", "ARR", "GRI", "CUX", "RDX", "KX",  "AR"};
-    static const std::set<std::string> tilts{"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE", "XOD", "YOD", "ZOD", "ADX",
-                                             "ADY", "ARO", "GLB", "XGR", "YGR", "ZGR", "AGR", "BGR", "CGR"};
-    static const std::set<std::string> returns{"DAR", "BEN", "RET"};
-    static const std::set<std::string> rectangles{"REX", "REY", "ELX", "ELY", "REC", "ELL", "POL", "CIG", "REG", "ELG"};
+    static const std::set<std::string> shapes{
+        "CYL", "XTO", "DIF", "GRT", "DOE", "HOE", "HWL", "HOR", "HCT", "HCO", "GRO", "GRS", "TOR", "ANA", "UD1", "SCO",
+        "THM", "LNS", "MOD", "NSS", "INT", "ARR", "GRI", "AR",  "BR",  "CR",  "DR",  "AP",  "BP",  "CP",  "DP"};
+    static const std::set<std::string> tilts{"XOD", "YOD", "ZOD", "ARO", "GLB", "XGR",
+                                             "YGR", "ZGR", "AGR", "BGR", "CGR"};
+    static const std::set<std::string> rectangles{"REC", "ELL", "POL", "CIG", "REG", "ELG"};
     if (word == "STO") {
         PrescriptionSurface& row = row_of(words);
         for (PrescriptionSurface& other : rows_) other.is_stop = false;  // a lens has one, and this moves it
@@ -115,6 +118,35 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
         remark("the values in the file are taken for those of its solves and pickups (" + word + ")");
     } else if (word == "COA" || word == "MLT") {
         remark("coatings are left out (" + word + ")");
+    } else if (word == "YTO" || word == "AAS") {
+        row_of(words).form.base = word == "YTO" ? BaseForm::toroid : BaseForm::biconic;
+    } else if (word == "RDX" || word == "CUX") {
+        PrescriptionSurface& row = row_of(words);
+        const double value =
+            word == "RDX" ? number_or_infinity(words, 1, "the radius") : number(words, 1, "the curvature");
+        row.form.curvature_x = word == "CUX" ? value / unit_ : value == 0 ? 0.0 : 1 / (unit_ * value);
+    } else if (word == "KX") {
+        row_of(words).form.conic_x = number(words, 1, "the conic");
+    } else if (word == "SPS") {
+        row_of(words);
+        if (words.size() < 2 || upper_case(words[1].text) != "XYP")
+            foreign("a special surface (SPS" + (words.size() < 2 ? "" : ' ' + printable(words[1].text.substr(0, 10))) +
+                    ')');
+    } else if (word == "SCO") {
+        read_xy_term(words);
+    } else if (place_number(word) >= 0) {
+        PrescriptionSurface& row = row_of(words);
+        const int place = place_number(word);
+        // Lengths first. The first two angles count clockwise.
+        const double factor = place < 3 ? unit_ : place == 5 ? 1 : -1;
+        places_[row.number][place] = factor * number(words, 1, "the decentre or tilt");
+        set_place(row);
+    } else if (word == "DAR" || word == "BEN" || word == "REV") {
+        PrescriptionSurface& row = row_of(words);
+        place_kinds_[row.number] = word;
+        set_place(row);
+    } else if (word == "REX" || word == "REY" || word == "ELX" || word == "ELY" || word == "ADX" || word == "ADY") {
+        read_aperture(word, words);
     } else if (shapes.contains(word)) {
         row_of(words);
         if (shaped_.insert({word, rows_[current_].number}).second)
@@ -123,9 +155,9 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
         row_of(words);
         const bool is_zero = words.size() == 2 && lines_.number_of(words[1].text, word) == 0;
         if (!is_zero) foreign("a tilt or decentre (" + word + ")");
-    } else if (returns.contains(word)) {
+    } else if (word == "RET") {
         row_of(words);
-        if (word == "RET") foreign("a return to another surface's axes (RET)");
+        foreign("a return to another surface's axes (RET)");
     } else if (rectangles.contains(word)) {
         row_of(words);
         const bool is_edge = words.size() > 1 && upper_case(words[1].text) == "EDG";
@@ -134,6 +166,61 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
         return false;
     }
     return true;
+}
+
+int CodeVReader::place_number(const std::string& word) {
+    static const std::array<const char*, 6> kWords = {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"};
+    const auto found = std::find(kWords.begin(), kWords.end(), word);
+    return found == kWords.end() ? -1 : static_cast<int>(found - kWords.begin());
+}
+
+void CodeVReader::set_place(PrescriptionSurface& row) {
+    const std::array<double, 6>& v = places_[row.number];
+    const SurfacePlacement placement{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, false};
+    const std::string kind = place_kinds_.contains(row.number) ? place_kinds_[row.number] : "";
+    row.before = row.behind = {};
+    if (placement.is_in_place()) return;
+    const Affine<double> frame = placement.frame();
+    if (kind != "REV") row.before = frame;
+    if (kind == "DAR" || kind == "REV") row.behind = inverse_motion(frame);
+    if (kind == "BEN") row.behind = SurfacePlacement{{}, placement.tilt_deg, false}.frame();
+}
+
+void CodeVReader::read_xy_term(Words& words) {
+    PrescriptionSurface& row = row_of(words);
+    if (words.size() < 3) lines_.fail("SCO needs the coefficient's name and its value");
+    const std::string name = upper_case(words[1].text);
+    const double value = lines_.number_of(words[2].text, "the coefficient");
+    if (name == "K" || name == "C1") {
+        row.conic = value;
+        return;
+    }
+    if (name[0] != 'C')
+        return foreign("a coefficient of a special surface (SCO " + printable(name.substr(0, 10)) + ')');
+    // j = ((i + k)^2 + i + 3 k) / 2 + 1 of x^i y^k.
+    int left = lines_.whole_number_of(name.substr(1), "the number of the coefficient", 2, 1000) - 1, degree = 0;
+    while (left > degree) left -= ++degree;
+    if (value == 0) return;
+    if (degree > kMaxXyDegree)
+        return foreign("a term of x and y of more than the power " + std::to_string(kMaxXyDegree));
+    row.form.xy.push_back({degree - left, left, value * std::pow(unit_, 1 - degree)});
+}
+
+void CodeVReader::read_aperture(const std::string& word, Words& words) {
+    PrescriptionSurface& row = row_of(words);
+    const std::string kind = words.size() > 2 ? upper_case(words[1].text) : "CLR";
+    if (kind == "EDG") return;  // where the glass ends
+    if (kind != "CLR" && kind[0] != 'L') return foreign("an aperture that is no circle (" + word + ' ' + kind + ')');
+    const double value = unit_ * number(words, words.size() - 1, "the aperture");
+    ApertureShape& shape = row.aperture_shape;
+    if (word[0] == 'A') {
+        (word == "ADX" ? shape.offset.x : shape.offset.y) = value;
+    } else {
+        if (!(value > 0)) lines_.fail("the half width of the aperture must be positive");
+        shape.kind = word[0] == 'R' ? realcam::ApertureKind::rectangle : realcam::ApertureKind::ellipse;
+        (word[2] == 'X' ? shape.half.x : shape.half.y) = value;
+        row.blocks = true;
+    }
 }
 
 void CodeVReader::read_circle(Words& words) {

@@ -15,6 +15,13 @@ public:
     explicit Writer(const LensSystem& lens) : lens_(lens) {}
 
     LensText write() {
+        for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) {
+            const Surface& s = lens_.surfaces[i];
+            if (!s.form.is_none() || !s.aperture_shape.is_plain() || !s.placement.is_in_place())
+                throw InputError("surface " + std::to_string(i + 1) +
+                                 " is tilted, decentred, or of a form or an aperture that realcam does not write to "
+                                 ".seq files; a .toml or a .zmx file is wanted");
+        }
         result_.warnings = left_out_of_foreign_files(lens_, "CODE V");
         for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_surface(i);
         const FirstOrder data = first_order(lens_, lens_.wavelength_nm);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include "../../text/printable.hpp"
@@ -58,6 +59,20 @@ private:
         return value == 0 ? 0 : 1 / value;
     }
 
+    /// Its systems of coordinates count from one origin, and turn about fixed axes: about x first, then y, then z. Here
+    /// each surface alone is moved from its place on the z axis.
+    void read_place(const Json& surface, PrescriptionSurface& row) {
+        const Json& cs = surface["geometry"]["cs"];
+        if (!cs["reference_cs"].is_null()) return foreign("a system of coordinates within another");
+        const auto value = [&](const char* key) { return json_.number_or(cs[key], key, 0); };
+        constexpr double kDegrees = 180 / std::numbers::pi;
+        const auto turn = [](Vec3d tilt) { return SurfacePlacement{{}, tilt, false}.frame(); };
+        const SurfacePlacement shift{{value("x"), value("y"), 0}, {}, false};
+        row.before = shift.frame() * turn({0, 0, kDegrees * value("rz")}) * turn({0, kDegrees * value("ry"), 0}) *
+                     turn({kDegrees * value("rx"), 0, 0});
+        if (!(row.before == Affine<double>{})) row.behind = inverse_motion(row.before);
+    }
+
     /// Tilts and decentres of a coordinate system.
     void check_place(const Json& surface, const std::string& what) {
         const Json& cs = surface["geometry"]["cs"];
@@ -80,7 +95,7 @@ private:
         PrescriptionSurface row;
         row.number = surface_;
         row.is_stop = surface["is_stop"].is_true();
-        check_place(surface, "surface");
+        read_place(surface, row);
         const auto z = [&](const Json& s) { return json_.number(s["geometry"]["cs"]["z"], "z of the surface"); };
         row.thickness = z(next) - z(surface);
         read_thickness(surface["thickness"], row);
@@ -109,6 +124,9 @@ private:
         row.curvature = curvature_of(geometry);
         row.conic = json_.number_or(geometry["conic"], "the conic", 0);
         const bool even = type == "EvenAsphere", odd = type == "OddAsphere";
+        if (type == "ToroidalGeometry") return read_toroid(geometry, row);
+        if (type == "PolynomialGeometry") return read_xy_terms(geometry["coefficients"], row);
+        if (type == "ZernikePolynomialGeometry") return read_zernike_terms(geometry, row);
         if (!even && !odd && type != "StandardGeometry" && type != "Plane")
             foreign("a surface of type " + printable(type).substr(0, 40));
         if (!even && !odd) return;
@@ -118,6 +136,44 @@ private:
             const int power = (even ? 2 : 1) * (static_cast<int>(i) + 1);
             if (value != 0) row.aspheric[power] = value;
         }
+    }
+
+    void read_toroid(const Json& geometry, PrescriptionSurface& row) const {
+        const auto curvature = [&](const char* key) {
+            const Json& radius = geometry[key];
+            return radius.is_number() && std::isinf(radius.number(0)) ? 0.0 : 1 / json_.number(radius, key);
+        };
+        row.form.base = BaseForm::toroid;
+        row.curvature = curvature("radius_y");
+        row.form.curvature_x = curvature("radius_x");
+        row.conic = json_.number_or(geometry["conic_yz"], "conic_yz", 0);
+        const Json& list = geometry["coeffs_poly_y"];
+        for (std::size_t i = 0; i < list.size() && i < 100; ++i)
+            if (const double value = json_.number(list[i], "a coefficient of y"); value != 0)
+                row.aspheric[2 * (static_cast<int>(i) + 1)] = value;
+    }
+
+    /// A table whose row is the power of x, and its column that of y.
+    void read_xy_terms(const Json& table, PrescriptionSurface& row) {
+        for (std::size_t i = 0; i < table.size() && i < 100; ++i)
+            for (std::size_t j = 0; j < table[i].size() && j < 100; ++j) {
+                const double value = json_.number(table[i][j], "a coefficient of x and y");
+                if (value != 0) row.form.xy.push_back({static_cast<int>(i), static_cast<int>(j), value});
+            }
+    }
+
+    void read_zernike_terms(const Json& geometry, PrescriptionSurface& row) {
+        const std::string order = geometry["zernike_type"].text();
+        if (order != "noll" && order != "fringe")
+            return foreign("Zernike terms of the order " + in_quotes(printable(order).substr(0, 20)));
+        ZernikeTerms terms{order == "noll" ? ZernikeOrder::noll : ZernikeOrder::fringe,
+                           json_.number(geometry["norm_radius"], "the radius of the Zernike terms"),
+                           {}};
+        const Json& list = geometry["coefficients"];
+        for (std::size_t i = 0; i < list.size() && i < 300; ++i)
+            terms.coefficients.push_back(json_.number(list[i], "a Zernike coefficient"));
+        while (!terms.coefficients.empty() && terms.coefficients.back() == 0) terms.coefficients.pop_back();
+        if (!terms.coefficients.empty()) row.form.zernike = terms;
     }
 
     Glass material_of(const Json& material) {
@@ -161,6 +217,7 @@ private:
     void read_rim(const Json& aperture, PrescriptionSurface& row) {
         if (aperture.is_null()) return;
         const std::string type = aperture["type"].text();
+        if (type == "EllipticalAperture" || type == "RectangularAperture") return read_shaped(type, aperture, row);
         if (type != "RadialAperture")
             return foreign("an aperture that is no circle (" + printable(type).substr(0, 40) + ")");
         const Json& outer = aperture["r_max"];
@@ -168,6 +225,23 @@ private:
         row.inner_semi_diameter = json_.number_or(aperture["r_min"], "r_min", 0);
         row.blocks = true;
         row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
+    }
+
+    void read_shaped(const std::string& type, const Json& aperture, PrescriptionSurface& row) const {
+        const auto value = [&](const char* key) { return json_.number(aperture[key], key); };
+        ApertureShape& shape = row.aperture_shape;
+        if (type == "EllipticalAperture") {
+            shape.kind = realcam::ApertureKind::ellipse;
+            shape.half = {value("a"), value("b")};
+            shape.offset = {value("offset_x"), value("offset_y")};
+        } else {
+            shape.kind = realcam::ApertureKind::rectangle;
+            const double x0 = value("x_min"), x1 = value("x_max"), y0 = value("y_min"), y1 = value("y_max");
+            shape.half = {0.5 * (x1 - x0), 0.5 * (y1 - y0)};
+            shape.offset = {0.5 * (x0 + x1), 0.5 * (y0 + y1)};
+        }
+        row.clear_semi_diameter = shape.reach();
+        row.blocks = true;
     }
 
     void read_aperture(const Json& aperture) {

@@ -7,6 +7,7 @@
 #include "../lens_readers.hpp"
 #include "../lens_text.hpp"
 #include "lens_zemax_file.hpp"
+#include "lens_zemax_shape.hpp"
 
 namespace realcam::io {
 namespace {
@@ -60,43 +61,12 @@ private:
         }
         if (is_object) return;
         if (s.row.clear_semi_diameter == 0) s.row.clear_semi_diameter = s.diameter;
-        convert_shape(s, add_foreign);
+        const std::string foreign = set_zemax_shape(s, file_.unit);
+        if (!foreign.empty()) add_foreign(foreign);
+        set_zemax_aperture(s);
         convert_glass(s, fail, add_foreign);
         glass_behind_.push_back(&s);
         p_.surfaces.push_back(s.row);
-    }
-
-    template <class Foreign>
-    void convert_shape(ZemaxSurface& s, const Foreign& add_foreign) {
-        const auto any_parameter = [&](int first, int last) {
-            return std::any_of(s.parameters.begin(), s.parameters.end(),
-                               [&](const auto& p) { return p.first >= first && p.first <= last && p.second != 0; });
-        };
-        const auto term = [&](int power, double value) {
-            if (value != 0) s.row.aspheric[power] = value * std::pow(file_.unit, 1 - power);
-        };
-        if (s.type == "STANDARD") {
-            // Its parameters mean nothing.
-        } else if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
-            const int step = s.type == "EVENASPH" ? 2 : 1;
-            for (const auto& [number, value] : s.parameters)
-                if (number > 0) term(step * number, value);
-        } else if (s.type == "XASPHERE") {
-            const auto extra = [&](int number) {
-                const auto found = s.extra.find(number);
-                return found == s.extra.end() ? 0.0 : found->second;
-            };
-            const double radius = extra(2) > 0 ? extra(2) : 1;
-            for (const auto& [number, value] : s.extra)
-                if (number >= 3 && number < 3 + static_cast<int>(std::min(extra(1), 300.0)))
-                    term(2 * (number - 2), value / std::pow(radius, 2 * (number - 2)));
-        } else if (s.type == "COORDBRK") {
-            if (any_parameter(1, 5)) add_foreign("a tilt or decentre (coordinate break)");
-            s.row.curvature = 0;
-            s.glass.clear();
-        } else {
-            add_foreign("a surface of type " + printable(s.type).substr(0, 40));
-        }
     }
 
     template <class Fail, class Foreign>

@@ -21,6 +21,9 @@ struct ZemaxSurface {
     int pickup = 0;  ///< the surface whose glass it takes, where the kind says so
     double n_d = 0, v_d = 0, partial = 0;  ///< of a model glass; of others, what may be left of an earlier one
     double diameter = 0;
+    Vec2d aperture_offset = {0, 0};  ///< of its aperture and its obscurations, mm
+    double arm_width = 0;            ///< of a spider, mm
+    int arms = 0;
     bool has_thickness = false, at_infinity = false;
 };
 

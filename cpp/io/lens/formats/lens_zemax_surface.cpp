@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
 #include "lens_zemax_reader.hpp"
 
@@ -53,10 +54,24 @@ bool ZemaxReader::read_surface_line(const std::string& word, std::string_view re
         // The complement of a circular aperture. The semi-diameter (DIAM) of a surface that has one limits nothing.
         s.row.is_open_outside = s.row.clear_semi_diameter == 0;
     } else if (word == "OBDC") {
-        if (number(words, 0, "the decentre") != 0 || number(words, 1, "the decentre") != 0)
-            foreign("a decentred aperture");
-    } else if (word == "SQAP" || word == "ELAP" || word == "SPID" || word == "SQOB" || word == "ELOB" ||
-               word == "UDAD" || word == "USAP" || word == "UDOB") {
+        s.aperture_offset = {out_.unit * number(words, 0, "the decentre"),
+                             out_.unit * number(words, 1, "the decentre")};
+    } else if (word == "SQAP" || word == "ELAP") {
+        s.row.blocks = true;
+        s.row.aperture_shape.kind = word == "SQAP" ? realcam::ApertureKind::rectangle : realcam::ApertureKind::ellipse;
+        s.row.aperture_shape.half = {length(words, 0, "the half width"), length(words, 1, "the half width")};
+    } else if (word == "SQOB" || word == "ELOB") {
+        s.row.blocks = true;
+        Obscuration piece;
+        piece.is_rectangle = word == "SQOB";
+        piece.half = {length(words, 0, "the half width"), length(words, 1, "the half width")};
+        s.row.aperture_shape.obscurations.push_back(piece);
+    } else if (word == "SPID") {
+        s.row.blocks = true;
+        s.arm_width = length(words, 0, "the width of the arms");
+        if (words.size() < 2) lines_.fail("SPID needs the number of arms");
+        s.arms = lines_.whole_number_of(words[1].text, "the number of arms", 1, kMaxObscurations);
+    } else if (word == "UDAD" || word == "USAP" || word == "UDOB") {
         foreign("an aperture that is no circle (" + word + ")");
     } else if (word == "SCBD" || word == "TILT" || word == "SDEC") {
         foreign("a tilted or decentred surface (" + word + ")");

@@ -6,6 +6,7 @@
 #include "../../text/printable.hpp"
 #include "../lens_glass.hpp"
 #include "../lens_writers.hpp"
+#include "lens_zemax_shape.hpp"
 
 namespace realcam::io {
 namespace {
@@ -20,9 +21,11 @@ public:
         write_zoom();
         std::string head = "VERS 180000 0 0\nMODE SEQ\nNAME " +
                            printable(lens_.title.empty() ? lens_.name : lens_.title) + "\nUNIT MM X W X CM MR CPMM\n";
-        const FirstOrder data = first_order(lens_, lens_.wavelength_nm);
-        if (std::isfinite(data.entrance_pupil_diameter))
-            head += "ENPD " + exact_number(data.entrance_pupil_diameter) + '\n';
+        // Of other lenses the stop alone says how wide the light is.
+        const bool has_pupil = lens_.is_rotational();
+        const double pupil = has_pupil ? first_order(lens_, lens_.wavelength_nm).entrance_pupil_diameter : kInfinity;
+        if (std::isfinite(pupil))
+            head += "ENPD " + exact_number(pupil) + '\n';
         else
             head += "FLOA\n";
         if (!makers_.empty()) {
@@ -37,7 +40,7 @@ public:
         const double object = lens_.focus_distance - lens_.film_position();
         head += "SURF 0\n  TYPE STANDARD\n  CURV 0\n  DISZ " +
                 (std::isfinite(object) ? exact_number(object) : std::string("INFINITY")) + "\n  DIAM 0 0 0 0 1 \"\"\n";
-        const std::string image = "SURF " + std::to_string(lens_.surfaces.size() + 1) +
+        const std::string image = "SURF " + std::to_string(count_ + 1) +
                                   "\n  TYPE STANDARD\n  CURV 0\n  DISZ 0\n  DIAM " + exact_number(corner) +
                                   " 0 0 0 1 \"\"\n";
         result_.text = head + surfaces_ + image + zoom_;
@@ -50,11 +53,17 @@ private:
     void write_surface(std::size_t i) {
         const Surface& s = lens_.surfaces[i];
         const bool is_last = i + 1 == lens_.surfaces.size();
-        surfaces_ += "SURF " + std::to_string(i + 1) + '\n';
+        const bool is_moved = !s.placement.is_in_place(), returns = is_moved && s.placement.returns;
+        if (is_moved) write_break(s.placement);
+        surfaces_ += "SURF " + std::to_string(++count_) + '\n';
         if (s.type == SurfaceType::stop) line("STOP");
-        const bool bends = s.bends_light(), is_asphere = bends && s.is_asphere();
-        line(is_asphere ? "TYPE EVENASPH" : "TYPE STANDARD");
+        const bool bends = s.bends_light(), is_asphere = bends && s.is_asphere() && s.form.is_none();
+        const ZemaxShape shape = zemax_shape_of(s);
+        line("TYPE " + shape.type);
         line("CURV " + exact_number(bends ? s.curvature : 0.0) + " 0 0 0 0 \"\"");
+        for (const std::string& parameter : shape.lines) line(parameter);
+        for (const std::string& what : shape.left_out)
+            result_.warnings.push_back("surface " + std::to_string(i + 1) + ' ' + what);
         if (is_asphere) {
             // Parameter 1 is that of r^2; there are eight, up to r^16.
             line("PARM 1 0");
@@ -66,7 +75,8 @@ private:
                                                " has an aspheric term of r^18, which OpticStudio's even asphere lacks");
             }
         }
-        line("DISZ " + exact_number(is_last ? lens_.film_distance : s.thickness));
+        const double thickness = is_last ? lens_.film_distance : s.thickness;
+        line("DISZ " + exact_number(returns ? 0.0 : thickness));
         if (s.type == SurfaceType::mirror)
             line("GLAS MIRROR 0 0 1.5 40 0 0 0 0 0 0");
         else if (const Glass& behind = medium_behind(i); !behind.is_air())
@@ -74,10 +84,36 @@ private:
         if (bends && s.conic != 0) line("CONI " + exact_number(s.conic));
         const double rim = s.type == SurfaceType::stop ? lens_.stop_semi_diameter : s.clear_semi_diameter;
         line("DIAM " + exact_number(rim) + " 1 0 0 1 \"\"");
-        if (s.type == SurfaceType::aperture || s.inner_semi_diameter > 0)
+        if (!s.aperture_shape.is_plain())
+            for (const std::string& aperture : shape.aperture) line(aperture);
+        else if (s.type == SurfaceType::aperture || s.inner_semi_diameter > 0)
             line("CLAP " + exact_number(s.inner_semi_diameter) + ' ' + exact_number(s.clear_semi_diameter) + " 0");
         else if (s.type != SurfaceType::stop)
             line("FLAP 0 " + exact_number(s.clear_semi_diameter) + " 0");
+        if (returns) write_return(s.placement, thickness);
+    }
+
+    void write_break_line(const std::vector<double>& parameters, double thickness) {
+        surfaces_ += "SURF " + std::to_string(++count_) + '\n';
+        line("TYPE COORDBRK");
+        line("CURV 0 0 0 0 0 \"\"");
+        for (std::size_t k = 0; k < parameters.size(); ++k)
+            line("PARM " + std::to_string(k + 1) + ' ' + exact_number(parameters[k]));
+        line("DISZ " + exact_number(thickness));
+        line("DIAM 0 0 0 0 1 \"\"");
+    }
+
+    /// A step along the axis goes first: behind a break it would be one along the new axis.
+    void write_break(const SurfacePlacement& place) {
+        const auto& [decentre, tilt, returns] = place;
+        if (decentre.z != 0) write_break_line({0, 0, 0, 0, 0, 0}, decentre.z);
+        write_break_line({decentre.x, decentre.y, tilt.x, tilt.y, tilt.z, 0}, 0);
+    }
+
+    /// With order 1 a break does the same steps the other way round.
+    void write_return(const SurfacePlacement& place, double thickness) {
+        const auto& [decentre, tilt, returns] = place;
+        write_break_line({-decentre.x, -decentre.y, -tilt.x, -tilt.y, -tilt.z, 1}, thickness - decentre.z);
     }
 
     /// A stop or an aperture inside a glass has it on both sides.
@@ -108,6 +144,10 @@ private:
     void write_zoom() {
         const ZoomRange& zoom = lens_.zoom;
         if (zoom.positions.empty()) return;
+        if (count_ != static_cast<int>(lens_.surfaces.size())) {
+            result_.warnings.push_back("zoom positions, because surfaces are tilted or decentred");
+            return;
+        }
         zoom_ = "MNUM " + std::to_string(zoom.positions.size()) + ' ' + std::to_string(zoom.current + 1) + '\n';
         const auto add = [&](const std::string& name, int surface, std::size_t position, double value) {
             zoom_ += name + ' ' + std::to_string(surface) + ' ' + std::to_string(position + 1) + ' ' +
@@ -138,6 +178,7 @@ private:
     }
 
     const LensSystem& lens_;
+    int count_ = 0;  ///< of surfaces written, coordinate breaks among them
     LensText result_;
     std::string surfaces_, zoom_;
     std::set<std::string> makers_, told_;

@@ -1,0 +1,74 @@
+#include "lens_places.hpp"
+
+#include <cmath>
+
+#include "../../math/hypotenuse.hpp"
+
+namespace realcam::io {
+
+namespace {
+
+Affine<double> along_axis(double distance) {
+    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, distance}};
+}
+
+/// Without what roundings leave of breaks that undo each other.
+SurfacePlacement placement_of(const Affine<double>& frame) {
+    SurfacePlacement placement = SurfacePlacement::of(frame);
+    constexpr double kRounding = 1e-12;
+    for (Vec3d* of : {&placement.decentre, &placement.tilt_deg})
+        for (double* value : {&of->x, &of->y, &of->z})
+            if (std::fabs(*value) < kRounding) *value = 0;
+    return placement;
+}
+
+bool is_alone(const std::vector<KeptRow>& kept, std::size_t index) {
+    return (index == 0 || kept[index - 1].row != kept[index].row) &&
+           (index + 1 == kept.size() || kept[index + 1].row != kept[index].row);
+}
+
+}  // namespace
+
+bool is_moved(const PrescriptionSurface& row) {
+    return !(row.before == Affine<double>{}) || !(row.behind == Affine<double>{});
+}
+
+void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens) {
+    Affine<double> way;      // from the last kept surface's axis to here
+    double thickness = 0;    // along it, as if it were straight
+    bool is_straight = true;  // so far there was nothing but thickness
+    std::size_t next = 0;
+    for (std::size_t row = 0; row < p.surfaces.size(); ++row) {
+        const PrescriptionSurface& here = p.surfaces[row];
+        const bool returns = here.behind == inverse_motion(here.before) && !(here.before == Affine<double>{});
+        const bool moves_alone =
+            returns && is_straight && next < kept.size() && kept[next].row == row && is_alone(kept, next);
+        way = way * here.before;
+        is_straight &= here.before == Affine<double>{};
+        for (; next < kept.size() && kept[next].row == row; ++next) {
+            if (!is_straight) lens.surfaces[next].placement = placement_of(along_axis(-thickness) * way);
+            way = {};
+            thickness = 0;
+            is_straight = true;
+        }
+        if (moves_alone) {
+            lens.surfaces[next - 1].placement.returns = true;
+        } else {
+            way = way * here.behind;
+            is_straight &= here.behind == Affine<double>{};
+        }
+        way = way * along_axis(here.thickness);
+        thickness += here.thickness;
+    }
+    if (is_straight || placement_of(along_axis(-thickness) * way).is_in_place()) return;
+    Surface carrier;
+    carrier.type = SurfaceType::aperture;
+    double reach = hypotenuse(lens.film_width, lens.film_height);
+    for (const Surface& surface : lens.surfaces) reach = std::max(reach, surface.clear_semi_diameter);
+    carrier.clear_semi_diameter = 100 * (reach + std::fabs(lens.film_distance));
+    carrier.placement = placement_of(way * along_axis(-thickness));
+    lens.surfaces.back().thickness = 0;
+    lens.surfaces.push_back(carrier);
+}
+
+}  // namespace realcam::io
