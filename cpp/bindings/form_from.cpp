@@ -101,13 +101,13 @@ void change_aperture(ApertureShape& shape, const py::dict& given) {
         allow(given, what, {kind, "offset_mm"});
         next.offset = vector_of(value_or<Pair>(given, "offset_mm", what, {0, 0}));
         if (kind == "polygon_mm") {
-            next.kind = ApertureKind::polygon;
+            next.kind = ApertureOutline::polygon;
             for (const Pair& corner : value_of<std::vector<Pair>>(given, "polygon_mm", what))
                 next.corners.push_back(vector_of(corner));
         } else if (kind == "circle_mm") {
             next.half.x = next.half.y = value_of<double>(given, "circle_mm", what);
         } else {
-            next.kind = kind == "ellipse_mm" ? ApertureKind::ellipse : ApertureKind::rectangle;
+            next.kind = kind == "ellipse_mm" ? ApertureOutline::ellipse : ApertureOutline::rectangle;
             next.half = vector_of(value_of<Pair>(given, kind.c_str(), what));
         }
     }
@@ -220,13 +220,13 @@ py::dict aperture_of(const Surface& surface) {
     const ApertureShape& shape = surface.aperture_shape;
     py::dict result;
     switch (shape.kind) {
-        case ApertureKind::circle:
+        case ApertureOutline::circle:
             if (shape.half.x == 0) return result;
             result["circle_mm"] = shape.half.x;
             break;
-        case ApertureKind::ellipse: result["ellipse_mm"] = pair_of(shape.half); break;
-        case ApertureKind::rectangle: result["rectangle_mm"] = pair_of(shape.half); break;
-        case ApertureKind::polygon: {
+        case ApertureOutline::ellipse: result["ellipse_mm"] = pair_of(shape.half); break;
+        case ApertureOutline::rectangle: result["rectangle_mm"] = pair_of(shape.half); break;
+        case ApertureOutline::polygon: {
             std::vector<Pair> corners;
             for (const Vec2d& corner : shape.corners) corners.push_back(pair_of(corner));
             result["polygon_mm"] = corners;

@@ -82,7 +82,7 @@ struct LastEnumerator<ZernikeOrder> : LastIs<ZernikeOrder::fringe> {};
 template <>
 struct LastEnumerator<ForbesKind> : LastIs<ForbesKind::con> {};
 template <>
-struct LastEnumerator<ApertureKind> : LastIs<ApertureKind::polygon> {};
+struct LastEnumerator<ApertureOutline> : LastIs<ApertureOutline::polygon> {};
 
 // By the surface, or the lens.
 template <>

@@ -170,13 +170,13 @@ ApertureShape read_aperture(const TomlTable& surface, double rim) {
             one_of(*table, {"circle_mm", "ellipse_mm", "rectangle_mm", "polygon_mm"},
                    "an aperture has one of \"circle_mm\", \"ellipse_mm\", \"rectangle_mm\" and \"polygon_mm\"");
         table->allow({kind, "offset_mm"});
-        shape.kind = kind == "circle_mm"      ? ApertureKind::circle
-                     : kind == "ellipse_mm"   ? ApertureKind::ellipse
-                     : kind == "rectangle_mm" ? ApertureKind::rectangle
-                                              : ApertureKind::polygon;
-        if (shape.kind == ApertureKind::polygon)
+        shape.kind = kind == "circle_mm"      ? ApertureOutline::circle
+                     : kind == "ellipse_mm"   ? ApertureOutline::ellipse
+                     : kind == "rectangle_mm" ? ApertureOutline::rectangle
+                                              : ApertureOutline::polygon;
+        if (shape.kind == ApertureOutline::polygon)
             shape.corners = read_corners(*table);
-        else if (shape.kind == ApertureKind::circle)
+        else if (shape.kind == ApertureOutline::circle)
             shape.half.x = shape.half.y = *table->number(kind);
         else
             shape.half = pair_of(table->numbers(kind, 2));

@@ -80,12 +80,12 @@ std::string aperture_as_toml(const ApertureShape& shape) {
         lines += key("aperture", "{ " + kind + " = " + value + offset(shape.offset) + " }");
     };
     switch (shape.kind) {
-        case ApertureKind::circle:
+        case ApertureOutline::circle:
             if (shape.half.x > 0) aperture("circle_mm", toml_number(shape.half.x));
             break;
-        case ApertureKind::ellipse: aperture("ellipse_mm", pair(shape.half)); break;
-        case ApertureKind::rectangle: aperture("rectangle_mm", pair(shape.half)); break;
-        case ApertureKind::polygon: aperture("polygon_mm", list_of<Vec2d>(shape.corners, pair)); break;
+        case ApertureOutline::ellipse: aperture("ellipse_mm", pair(shape.half)); break;
+        case ApertureOutline::rectangle: aperture("rectangle_mm", pair(shape.half)); break;
+        case ApertureOutline::polygon: aperture("polygon_mm", list_of<Vec2d>(shape.corners, pair)); break;
     }
     if (!shape.obscurations.empty())
         lines += key("obscurations", list_of<Obscuration>(shape.obscurations, obscuration));

@@ -10,10 +10,10 @@ namespace realcam {
 std::string ApertureShape::asymmetry() const {
     if (!obscurations.empty()) return "has an obscuration";
     switch (kind) {
-        case ApertureKind::circle: break;
-        case ApertureKind::ellipse: return "has an elliptic aperture";
-        case ApertureKind::rectangle: return "has a rectangular aperture";
-        case ApertureKind::polygon: return "has a polygonal aperture";
+        case ApertureOutline::circle: break;
+        case ApertureOutline::ellipse: return "has an elliptic aperture";
+        case ApertureOutline::rectangle: return "has a rectangular aperture";
+        case ApertureOutline::polygon: return "has a polygonal aperture";
     }
     return half != Vec2d{0, 0} && offset != Vec2d{0, 0} ? "has a decentred aperture" : "";
 }
@@ -37,7 +37,7 @@ ApertureBox ApertureShape::box(double rim) const {
         box.low = {std::clamp(low.x, -rim, rim), std::clamp(low.y, -rim, rim)};
         box.high = {std::clamp(high.x, -rim, rim), std::clamp(high.y, -rim, rim)};
     };
-    if (kind == ApertureKind::polygon) {
+    if (kind == ApertureOutline::polygon) {
         Vec2d low{rim, rim}, high{-rim, -rim};
         for (const Vec2d& corner : corners) {
             low = {std::min(low.x, offset.x + corner.x), std::min(low.y, offset.y + corner.y)};
@@ -54,16 +54,16 @@ double ApertureShape::reach() const {
     double reach = 0;
     const auto hold = [&](double x, double y) { reach = std::max(reach, hypotenuse(x, y)); };
     switch (kind) {
-        case ApertureKind::circle:
+        case ApertureOutline::circle:
             if (half.x > 0) reach = hypotenuse(offset.x, offset.y) + half.x;
             break;
-        case ApertureKind::ellipse:
+        case ApertureOutline::ellipse:
             // Of the box about it, cut down where the middle is the vertex.
             if (offset == Vec2d{0, 0}) return std::max(half.x, half.y);
             hold(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y);
             break;
-        case ApertureKind::rectangle: hold(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y); break;
-        case ApertureKind::polygon:
+        case ApertureOutline::rectangle: hold(std::fabs(offset.x) + half.x, std::fabs(offset.y) + half.y); break;
+        case ApertureOutline::polygon:
             for (const Vec2d& corner : corners) hold(offset.x + corner.x, offset.y + corner.y);
             break;
     }

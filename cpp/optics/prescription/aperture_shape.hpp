@@ -6,7 +6,7 @@
 
 namespace REALCAM_NAMESPACE {
 
-enum class ApertureKind { circle, ellipse, rectangle, polygon };
+enum class ApertureOutline { circle, ellipse, rectangle, polygon };
 
 /// A piece in a surface's way that light does not pass. All of them are rectangles or ellipses; a circle is an ellipse,
 /// and the arm of a spider a rectangle that begins in the middle.
@@ -26,7 +26,7 @@ struct ApertureBox {
 
 /// What a surface leaves open, beside the circle of its clear semi-diameter about the vertex. Lengths in mm.
 struct ApertureShape {
-    ApertureKind kind = ApertureKind::circle;
+    ApertureOutline kind = ApertureOutline::circle;
     Vec2d half = {0, 0};  ///< semi-axes or half widths; of a circle both are its radius, 0: the clear semi-diameter's
     Vec2d offset = {0, 0};  ///< of the middle from the vertex; of a polygon added to its corners
     std::vector<Vec2d> corners;  ///< of a polygon, one after the other
@@ -35,7 +35,7 @@ struct ApertureShape {
     bool operator==(const ApertureShape&) const = default;
 
     /// Whether the circle of the clear semi-diameter says it all.
-    bool is_plain() const { return kind == ApertureKind::circle && half == Vec2d{0, 0} && obscurations.empty(); }
+    bool is_plain() const { return kind == ApertureOutline::circle && half == Vec2d{0, 0} && obscurations.empty(); }
     /// Empty: open alike in all directions. Else what it is: "has a rectangular aperture".
     std::string asymmetry() const;
     /// With all lengths times `factor`.

@@ -64,13 +64,13 @@ std::string terms_error(const Surface& s) {
 
 std::string aperture_error(const Surface& s) {
     const ApertureShape& shape = s.aperture_shape;
-    if (shape.kind == ApertureKind::polygon) {
+    if (shape.kind == ApertureOutline::polygon) {
         if (shape.corners.size() < 3 || shape.corners.size() > static_cast<std::size_t>(kMaxApertureCorners))
             return "its aperture has " + std::to_string(shape.corners.size()) + " corners; 3 to " +
                    std::to_string(kMaxApertureCorners) + " are wanted";
         for (const Vec2d& corner : shape.corners)
             if (!is_short(corner)) return "a corner of its aperture is no place";
-    } else if (shape.kind != ApertureKind::circle || shape.half != Vec2d{0, 0}) {
+    } else if (shape.kind != ApertureOutline::circle || shape.half != Vec2d{0, 0}) {
         if (!is_length(shape.half.x) || !is_length(shape.half.y))
             return "the half widths of its aperture must be positive lengths";
     }

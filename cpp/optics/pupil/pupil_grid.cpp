@@ -29,7 +29,8 @@ MirrorPlanes mirror_planes(const LensSystem& lens) {
         planes.x &= aperture.offset.x == 0;
         planes.y &= aperture.offset.y == 0;
         // These may have the planes too, but few have.
-        if (surface.form.zernike || aperture.kind == ApertureKind::polygon || !aperture.obscurations.empty()) return {};
+        if (surface.form.zernike || aperture.kind == ApertureOutline::polygon || !aperture.obscurations.empty())
+            return {};
     }
     heed(lens.film_placement);
     return planes;

@@ -20,10 +20,10 @@ ApertureView<T> aperture_view(const ApertureShape& shape) {
     ApertureView<T> view{};
     if (shape.is_plain()) return view;
     view.is_shaped = 1;
-    const bool is_polygon = shape.kind == ApertureKind::polygon;
+    const bool is_polygon = shape.kind == ApertureOutline::polygon;
     view.has_outer = !is_polygon && shape.half.x > 0;
     if (view.has_outer)
-        view.outer = aperture_piece<T>(shape.kind == ApertureKind::rectangle, shape.half, shape.offset, 0);
+        view.outer = aperture_piece<T>(shape.kind == ApertureOutline::rectangle, shape.half, shape.offset, 0);
     for (const Obscuration& piece : shape.obscurations)
         view.obscuration[view.obscurations++] =
             aperture_piece<T>(piece.is_rectangle, piece.half, piece.offset, piece.angle_deg);

@@ -217,7 +217,7 @@ void CodeVReader::read_aperture(const std::string& word, Words& words) {
         (word == "ADX" ? shape.offset.x : shape.offset.y) = value;
     } else {
         if (!(value > 0)) lines_.fail("the half width of the aperture must be positive");
-        shape.kind = word[0] == 'R' ? realcam::ApertureKind::rectangle : realcam::ApertureKind::ellipse;
+        shape.kind = word[0] == 'R' ? ApertureOutline::rectangle : ApertureOutline::ellipse;
         (word[2] == 'X' ? shape.half.x : shape.half.y) = value;
         row.blocks = true;
     }

@@ -231,11 +231,11 @@ private:
         const auto value = [&](const char* key) { return json_.number(aperture[key], key); };
         ApertureShape& shape = row.aperture_shape;
         if (type == "EllipticalAperture") {
-            shape.kind = realcam::ApertureKind::ellipse;
+            shape.kind = ApertureOutline::ellipse;
             shape.half = {value("a"), value("b")};
             shape.offset = {value("offset_x"), value("offset_y")};
         } else {
-            shape.kind = realcam::ApertureKind::rectangle;
+            shape.kind = ApertureOutline::rectangle;
             const double x0 = value("x_min"), x1 = value("x_max"), y0 = value("y_min"), y1 = value("y_max");
             shape.half = {0.5 * (x1 - x0), 0.5 * (y1 - y0)};
             shape.offset = {0.5 * (x0 + x1), 0.5 * (y0 + y1)};

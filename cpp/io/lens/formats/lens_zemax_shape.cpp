@@ -126,10 +126,10 @@ void set_zemax_aperture(ZemaxSurface& s) {
     const Vec2d offset = s.aperture_offset;
     if (offset != Vec2d{0, 0}) {
         // Of a circle, which is stated by its radii alone.
-        if (shape.kind == realcam::ApertureKind::circle && s.row.inner_semi_diameter > 0)
+        if (shape.kind == ApertureOutline::circle && s.row.inner_semi_diameter > 0)
             shape.obscurations.push_back({false, {s.row.inner_semi_diameter, s.row.inner_semi_diameter}, {0, 0}, 0});
         s.row.inner_semi_diameter = 0;
-        if (shape.kind == realcam::ApertureKind::circle && !s.row.is_open_outside && s.row.blocks)
+        if (shape.kind == ApertureOutline::circle && !s.row.is_open_outside && s.row.blocks)
             shape.half = {s.row.clear_semi_diameter, s.row.clear_semi_diameter};
         shape.offset = shape.half.x > 0 ? offset : Vec2d{0, 0};
         for (Obscuration& piece : shape.obscurations) piece.offset = offset;

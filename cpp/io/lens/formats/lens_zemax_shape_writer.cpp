@@ -84,12 +84,12 @@ std::string half_widths(const char* word, Vec2d half) {
 void set_aperture(ZemaxShape& shape, const Surface& s) {
     const ApertureShape& aperture = s.aperture_shape;
     Vec2d offset = aperture.offset;
-    const bool is_open = aperture.kind == realcam::ApertureKind::circle && aperture.half.x == 0;
-    if (aperture.kind == realcam::ApertureKind::rectangle) shape.aperture = {half_widths("SQAP", aperture.half)};
-    if (aperture.kind == realcam::ApertureKind::ellipse) shape.aperture = {half_widths("ELAP", aperture.half)};
-    if (aperture.kind == realcam::ApertureKind::polygon)
+    const bool is_open = aperture.kind == ApertureOutline::circle && aperture.half.x == 0;
+    if (aperture.kind == ApertureOutline::rectangle) shape.aperture = {half_widths("SQAP", aperture.half)};
+    if (aperture.kind == ApertureOutline::ellipse) shape.aperture = {half_widths("ELAP", aperture.half)};
+    if (aperture.kind == ApertureOutline::polygon)
         shape.left_out.push_back("has a polygonal aperture, which realcam does not write to .zmx files");
-    if (aperture.kind == realcam::ApertureKind::circle && !is_open)
+    if (aperture.kind == ApertureOutline::circle && !is_open)
         shape.aperture = {half_widths("CLAP", {s.inner_semi_diameter, aperture.half.x})};
     // Zemax gives a surface one aperture or one obscuration.
     const bool says_it = is_open && aperture.obscurations.size() == 1 && aperture.obscurations.front().angle_deg == 0;

@@ -58,7 +58,7 @@ bool ZemaxReader::read_surface_line(const std::string& word, std::string_view re
                              out_.unit * number(words, 1, "the decentre")};
     } else if (word == "SQAP" || word == "ELAP") {
         s.row.blocks = true;
-        s.row.aperture_shape.kind = word == "SQAP" ? realcam::ApertureKind::rectangle : realcam::ApertureKind::ellipse;
+        s.row.aperture_shape.kind = word == "SQAP" ? ApertureOutline::rectangle : ApertureOutline::ellipse;
         s.row.aperture_shape.half = {length(words, 0, "the half width"), length(words, 1, "the half width")};
     } else if (word == "SQOB" || word == "ELOB") {
         s.row.blocks = true;

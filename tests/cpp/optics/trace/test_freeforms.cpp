@@ -131,7 +131,7 @@ TEST_CASE("an ellipsoid's off-axis part images one focus in the other, also as a
     Surface mirror = refracting(radius, 0, Glass::air(), 58);
     mirror.type = SurfaceType::mirror;
     mirror.conic = conic;
-    mirror.aperture_shape.kind = ApertureKind::ellipse;
+    mirror.aperture_shape.kind = ApertureOutline::ellipse;
     mirror.aperture_shape.half = {10, 8};
     mirror.aperture_shape.offset = {30, -20};
     for (const bool is_freeform : {false, true}) {
@@ -310,7 +310,7 @@ TEST_CASE("a ray along the vertex plane meets what stands in its way") {
 TEST_CASE("apertures and obscurations block what lies under them") {
     Surface window = refracting(0, 0, Glass::air(), 12);
     const auto passes = [&](double x, double y) { return meet(window, {x, y, -1}, {0, 0, 1}).passed(); };
-    window.aperture_shape.kind = ApertureKind::rectangle;
+    window.aperture_shape.kind = ApertureOutline::rectangle;
     window.aperture_shape.half = {3, 2};
     window.aperture_shape.offset = {1, -1};
     CHECK(passes(3.9, 0.9));
@@ -318,7 +318,7 @@ TEST_CASE("apertures and obscurations block what lies under them") {
     CHECK_FALSE(passes(0, 1.1));
     CHECK(passes(-1.9, -2.9));
     window.aperture_shape = {};
-    window.aperture_shape.kind = ApertureKind::polygon;
+    window.aperture_shape.kind = ApertureOutline::polygon;
     window.aperture_shape.corners = {{0, 0}, {6, 0}, {6, 6}, {3, 2}};  // hollow at (3, 2)
     CHECK(passes(5, 1));
     CHECK(passes(5.5, 5));
@@ -351,7 +351,7 @@ TEST_CASE("a form that cannot be is refused with the surface's number") {
     form.curvature_x = 0.1;
     CHECK(contains(refused(with_form(plain, form)), "is that of a biconic or a toroid"));
     Surface window = plain;
-    window.aperture_shape.kind = ApertureKind::ellipse;
+    window.aperture_shape.kind = ApertureOutline::ellipse;
     window.aperture_shape.half = {3, 0};
     CHECK(contains(refused(window), "the half widths of its aperture must be positive lengths"));
     window.aperture_shape.half = {3, 3};
@@ -362,7 +362,7 @@ TEST_CASE("a form that cannot be is refused with the surface's number") {
 TEST_CASE("a rectangle may reach where the circle about it has no surface") {
     // The section ends at y = 10; the rectangle is 30 mm long in x.
     Surface surface = with_form(refracting(10, 0, Glass::constant(1.5), 31), toroid(0));
-    surface.aperture_shape.kind = ApertureKind::rectangle;
+    surface.aperture_shape.kind = ApertureOutline::rectangle;
     surface.aperture_shape.half = {30, 7};
     const LensSystem lens = lens_of({stop_plane(5, 40), surface});
     CHECK_NOTHROW(validate(lens));
