@@ -29,6 +29,9 @@ struct PrescriptionSurface {
     bool is_open_outside = false;
 };
 
+/// Words that are not known are named; a file of another kind has as many as lines.
+inline constexpr std::size_t kMostUnknown = 1000;
+
 /// How a file says how wide the light's cone is.
 enum class ApertureKind {
     stop_size,  ///< the clear semi-diameter of the stop

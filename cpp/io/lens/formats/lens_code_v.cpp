@@ -21,9 +21,6 @@ bool is_harmless(const std::string& word) {
     return words.contains(word);
 }
 
-/// Commands that are not known are named; a file that is none of CODE V has as many as lines.
-constexpr std::size_t kMostUnknown = 1000;
-
 /// Lengths beyond the core's longest are CODE V's infinity.
 double finite_or_infinite(double distance) {
     return distance >= kLongest ? kInfinity : distance;

@@ -13,7 +13,6 @@ namespace {
 
 /// Object distances of that many units or more are infinite to OSLO.
 constexpr double kFarAway = 1e8;
-constexpr std::size_t kMostUnknown = 1000;
 
 /// Commands that say nothing about where light goes: names, notes, drawing, weights, and how OSLO computes.
 bool is_harmless(const std::string& word) {

@@ -4,16 +4,10 @@
 #include <algorithm>
 
 #include "../../text/printable.hpp"
+#include "../lens_prescription.hpp"
 #include "lens_zemax_reader.hpp"
 
 namespace realcam::io {
-namespace {
-
-/// Keywords that are not known are named; a file that is none of Zemax has as many as lines.
-constexpr std::size_t kMostUnknown = 1000;
-
-}  // namespace
-
 bool is_harmless_in_zemax(const std::string& word, bool in_surface) {
     static const std::set<std::string> of_surface{
         "HIDE", "MIRR", "SLAB", "POPS", "MEMA", "COMM", "FIMP", "VDSZ", "PPAR", "VPAR", "PZUP", "PKUP",
