@@ -8,10 +8,6 @@ namespace realcam::io {
 
 namespace {
 
-Affine<double> along_axis(double distance) {
-    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, distance}};
-}
-
 /// Without what roundings leave of breaks that undo each other.
 SurfacePlacement placement_of(const Affine<double>& frame) {
     SurfacePlacement placement = SurfacePlacement::of(frame);

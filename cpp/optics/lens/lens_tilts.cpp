@@ -9,10 +9,6 @@ namespace realcam {
 
 namespace {
 
-Affine<double> along_axis(double distance) {
-    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, distance}};
-}
-
 /// Puts a motion in front of a surface's own placement. What is behind goes on from there if `goes_on`.
 void put_before(Surface& surface, const Affine<double>& motion, bool goes_on) {
     SurfacePlacement& own = surface.placement;

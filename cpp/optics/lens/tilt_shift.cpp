@@ -13,7 +13,7 @@ Affine<double> shift(Vec3d by) {
 
 /// Of the film's vertex, before anything of it is turned.
 Affine<double> film_on_axis(const LensSystem& lens) {
-    return surface_frames(lens).last_axis * shift({0, 0, lens.film_distance});
+    return surface_frames(lens).last_axis * along_axis(lens.film_distance);
 }
 
 }  // namespace

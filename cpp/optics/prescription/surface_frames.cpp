@@ -8,10 +8,6 @@ const Surface& surface_of(const LensSystem& lens, int index) {
     return lens.surfaces[static_cast<std::size_t>(index)];
 }
 
-Affine<double> along_axis(double thickness) {
-    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, thickness}};
-}
-
 }  // namespace
 
 SurfaceFrames surface_frames(const LensSystem& lens) {

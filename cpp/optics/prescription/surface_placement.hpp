@@ -25,6 +25,11 @@ struct SurfacePlacement {
     static SurfacePlacement of(const Affine<double>& frame);
 };
 
+/// The frame that stands farther along the z axis.
+inline Affine<double> along_axis(double distance) {
+    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, distance}};
+}
+
 /// The inverse of a rigid motion.
 Affine<double> inverse_motion(const Affine<double>& motion);
 

@@ -20,23 +20,22 @@ void PupilRays::set(int lane, Vec2<double> film, PupilDirection d) {
 
 PupilLens::PupilLens(const LensSystem& lens, PupilTracer tracer, const std::vector<double>& wavelengths_nm)
     : lens_(round_iris(lens)),
+      ends_(film_path_ends(lens_, LightDirection::to_scene)),
       path_(lens_, LightDirection::to_scene, wavelengths_nm.empty() ? lens.wavelength_nm : wavelengths_nm.front(),
-            film_path_ends(lens_, LightDirection::to_scene)),
+            ends_),
       tracer_(std::move(tracer)),
       has_aspheres_(std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& surface) {
           return surface.is_asphere() || !surface.form.is_none();
       })) {
     for (std::size_t i = 1; i < wavelengths_nm.size(); ++i)
-        others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i],
-                             film_path_ends(lens_, LightDirection::to_scene));
+        others_.emplace_back(lens_, LightDirection::to_scene, wavelengths_nm[i], ends_);
     const LensView<float> all = path_.view();
     surfaces_to_stop_.assign(all.surfaces, all.surfaces + all.count - lens_.stop_index());
     surfaces_to_stop_.back().rim_squared = std::numeric_limits<float>::max();
     if (!all.free.frames) return;
     frames_to_stop_.assign(all.free.frames, all.free.frames + surfaces_to_stop_.size());
     frames_to_stop_.back().out = {};  // rays stay in the frame of the stop
-    last_surface_ =
-        inverse_motion(*film_path_ends(lens_, LightDirection::to_scene).entry) * surface_frames(lens_).surfaces.back();
+    last_surface_ = inverse_motion(*ends_.entry) * surface_frames(lens_).surfaces.back();
 }
 
 void PupilLens::trace(const PupilRays& from, bool* passes) const {

@@ -61,6 +61,7 @@ private:
     void trace(const LensView<float>& view, const PupilRays& from, PupilTracer::Rays& rays) const;
 
     LensSystem lens_;
+    PathEnds ends_;  ///< the film, and the camera
     LensPath<float> path_;
     std::vector<LensPath<float>> others_;  ///< of other wavelengths
     PupilTracer tracer_;

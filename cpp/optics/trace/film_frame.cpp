@@ -6,10 +6,6 @@ namespace realcam {
 
 namespace {
 
-Affine<double> along_axis(double distance) {
-    return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, distance}};
-}
-
 /// -1 where light reaches the film against the last axis.
 double direction_behind(const LensSystem& lens) {
     const std::vector<Crossing> way = crossings_of(lens);
