@@ -9,6 +9,7 @@
 #include "../math/uniform_keys.hpp"
 #include "../optics/lens/exposure.hpp"
 #include "exposed_rays.hpp"
+#include "lens_way.hpp"
 
 namespace realcam {
 
@@ -85,8 +86,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
     check_light();
     if (camera.model == CameraModel::polynomial_lens)
         polynomial_.emplace(camera.lens, pupil_->view(), std::min(film_radius(), pupil_->image_radius()));
-    // The entries are by the angle to the axis.
-    if (camera.model != CameraModel::polynomial_lens && pupil_)
+    if (camera.model != CameraModel::polynomial_lens && traces_lights(camera.lens))
         pupil_entries_ = last && last->pupil_entries_ && last->pupil_ == pupil_
                              ? last->pupil_entries_
                              : std::make_shared<const PupilEntries>(pupil_->view(), path_.view(), film_radius(),

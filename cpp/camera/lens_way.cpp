@@ -1,6 +1,13 @@
 #include "lens_way.hpp"
 
+#include "../optics/pupil/pupil_grid.hpp"
+
 namespace realcam {
+
+bool traces_lights(const LensSystem& lens) {
+    return has_radial_pupil(lens) &&
+           LensPath<float>(lens, LightDirection::to_film, lens.wavelength_nm).view().kind != LensKind::any;
+}
 
 void check_traces_lights(const LensView<float>& lens) {
     if (lens.kind == LensKind::any)

@@ -11,7 +11,10 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// Throws InputError for a lens of the kind `any`: through it no light is traced apart from the samples of pixels.
+/// Whether light is traced through a lens apart from the samples of pixels: not through one of the kind `any`.
+bool traces_lights(const LensSystem& lens);
+
+/// Throws InputError for a lens of that kind.
 void check_traces_lights(const LensView<float>& lens);
 
 /// The way of light to the film that no surface reflects but mirrors. Owns the memory of its views.

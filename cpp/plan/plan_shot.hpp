@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <string>
 
+#include "../camera/lens_way.hpp"
 #include "../optics/coating/coated_faces.hpp"
-#include "../optics/pupil/pupil_grid.hpp"
 #include "../render/effect_names.hpp"
 #include "../render/render_settings.hpp"
 #include "lens_errors.hpp"
@@ -36,7 +36,7 @@ public:
           errors_(errors),
           facts_(facts),
           settings_(settings),
-          is_round_(has_radial_pupil(camera.lens)) {}
+          is_round_(traces_lights(camera.lens)) {}
 
     Plan plan() {
         plan_.effects = without_plan(settings_.effects);

@@ -158,3 +158,18 @@ def test_what_cannot_be_is_refused():
         rc.render(
             frame_scene(spheres=1, boxes=1, rows=8), Camera(lens.with_film_radius(-50)), spp=1, effects=("ghosts",)
         )
+
+
+def test_a_lens_of_revolution_with_odd_terms_takes_pictures_with_all_defaults():
+    """The radial pupil is its own, and light that is traced from lamps is not for it: both have to be heeded."""
+    shot = rc.Shot.load("scenes/demo.toml", device="cpu")
+    lens = shot.camera.lens.with_surface(0, radial_terms={3: 1e-12})
+    assert lens.is_rotational
+    film = Film(36, 24, (60, 40))
+    place = {"position": shot.camera.position, "look_at": shot.camera.look_at}
+    straight, odd = (
+        rc.render(shot.scene, Camera(of, film=film, **place), spp=64, effects="auto", device="cpu")
+        for of in (shot.camera.lens, lens)
+    )
+    # A term of 2e-9 mm at the rim changes nothing; the lamps are samples of pixels alone, with all their noise.
+    assert odd.pixels.mean() == pytest.approx(straight.pixels.mean(), rel=0.05)
