@@ -214,6 +214,7 @@ class BenchPage:
         """Camera, lens and effects (see bench_state) as they were when the page was opened: in a third of the time that
         this takes. What else has been set on the page stays.
         """
+        self.page.evaluate("scrollTo(0, 0)")
         self.page.mouse.move(0, 0)
         self.page.evaluate("document.activeElement.blur()")
         self.send({"type": "restore", "state": state})
@@ -287,6 +288,11 @@ class BenchPage:
     def click_picture(self, u: float, v: float) -> None:
         box = self.canvas.bounding_box()
         self.canvas.click(position={"x": u * box["width"], "y": v * box["height"]})
+
+    def hover(self, u: float, v: float) -> None:
+        """Over a place of the picture, which is scrolled to where it is seen."""
+        box = self.canvas.bounding_box()
+        self.canvas.hover(position={"x": u * box["width"], "y": v * box["height"]})
 
     def turn(self, name: str, key: str, times: int = 1) -> None:
         """A ring, by the keyboard."""

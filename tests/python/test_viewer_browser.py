@@ -471,8 +471,7 @@ def test_rays_of_the_point_under_the_mouse(bench: BenchPage) -> None:
 
     bench.picture()
     before = rays()
-    box = bench.canvas.bounding_box()
-    bench.page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
+    bench.hover(0.6, 0.5)
     until(rays, lambda now: now != before, "other rays")
 
 
@@ -622,7 +621,7 @@ def test_the_magnifier_enlarges_what_the_page_shows(bench: BenchPage) -> None:
     bench.picture()
     bench.page.get_by_label("Magnifier").check()
     box = bench.canvas.bounding_box()
-    bench.page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    bench.hover(0.5, 0.5)
     # The page shows a pixel as box.width / its width pixels, the magnifier as four times as many.
     seen = bench.page.evaluate(
         """() => {
