@@ -133,8 +133,7 @@ std::string text_of(const Camera& camera) {
     const std::string name = camera.lens.name.empty() ? "a lens" : shortened(camera.lens.name);
     const std::string model =
         camera.model == CameraModel::full_lens ? "" : std::string(", ") + io::name_of(camera.model);
-    return "<realcam.Camera with " + name + " f/" +
-           digits(first_order(centred(camera.lens), camera.lens.wavelength_nm).f_number) + model + " at " +
+    return "<realcam.Camera with " + name + " f/" + digits(nominal_first_order(camera.lens).f_number) + model + " at " +
            point_text(camera.pose.position_m) + ", looks at " + point_text(camera.pose.look_at_m) + ", " +
            time_text(camera.exposure_time_s) + ", ISO " + digits(camera.iso) + '>';
 }

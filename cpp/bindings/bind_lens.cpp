@@ -9,6 +9,7 @@
 #include "../optics/lens/best_focus.hpp"
 #include "../optics/lens/focus.hpp"
 #include "../optics/lens/lens_changes.hpp"
+#include "../optics/lens/parabasal.hpp"
 #include "../optics/lens/zoom.hpp"
 #include "../optics/prescription/clearance.hpp"
 #include "bindings.hpp"
@@ -222,12 +223,11 @@ LensSystem make_lens(std::vector<Surface> surfaces, const std::string& name, std
     }
     validate(lens);
     lens.stop_semi_diameter = lens.stop().clear_semi_diameter;
-    if (!film_distance && !lens.is_rotational())
-        throw LensFileError("film_distance_mm is wanted, because " + lens.asymmetry());
-    lens.film_distance = film_distance ? *film_distance : best_focus_distance(lens, wavelength_nm, kInfinity);
-    if (!film_distance && !(lens.film_distance > 0))
+    if (!film_distance) film_distance = film_distance_at_infinity(lens);
+    if (!film_distance)
         throw LensFileError(
             "the lens makes no real image of infinity behind its last surface; film_distance_mm is wanted");
+    lens.film_distance = *film_distance;
     if (const std::string why = film_distance_error(lens); !why.empty()) throw LensFileError(why);
     return lens;
 }
@@ -254,10 +254,10 @@ std::string text_of(const LensSystem& lens) {
     const std::string name = lens.name.empty() ? "" : ' ' + shortened(lens.name) + ',';
     const std::string focus = std::isinf(lens.focus_distance) ? "infinity" : digits(lens.focus_distance / 1000) + " m";
     const std::string begin = "<realcam.Lens" + name + ' ' + counted(lens.surfaces.size(), "surface") + ", ";
-    if (const std::string why = lens.asymmetry(); !why.empty()) return begin + why + ", focused at " + focus + '>';
-    const FirstOrder data = first_order(lens, lens.wavelength_nm);
-    return begin + digits(data.effective_focal_length) + " mm f/" + digits(data.f_number) + ", focused at " + focus +
-           '>';
+    const FirstOrder data = nominal_first_order(lens);
+    const std::string why = lens.asymmetry();
+    return begin + (why.empty() ? "" : why + ", ") + digits(data.effective_focal_length) + " mm f/" +
+           digits(data.f_number) + ", focused at " + focus + '>';
 }
 
 std::string text_of(const FirstOrder& data) {
@@ -462,6 +462,23 @@ void bind_first_order(py::module_& m) {
         .def_readonly("exit_pupil_position_mm", &FirstOrder::exit_pupil_position)
         .def_readonly("exit_pupil_diameter_mm", &FirstOrder::exit_pupil_diameter)
         .def("__repr__", [](const FirstOrder& d) { return text_of(d); });
+    py::class_<Meridian> meridian(
+        m, "Meridian",
+        "A lens in one of its two principal meridians: planes through the chief ray of the film's middle in which\n"
+        "light stays. mm; without power the focal length and the f-number are infinite.");
+    def_hashable_value(meridian);
+    meridian
+        .def_readonly("azimuth_deg", &Meridian::azimuth_deg,
+                      "Of the plane in front of the lens, from the x axis towards y; -90 to 90.")
+        .def_readonly("focal_length_mm", &Meridian::focal_length)
+        .def_readonly("back_focal_distance_mm", &Meridian::back_focal_distance,
+                      "Last vertex to the focus of distant light.")
+        .def_readonly("f_number", &Meridian::f_number)
+        .def_readonly("entrance_pupil_diameter_mm", &Meridian::entrance_pupil_diameter)
+        .def("__repr__", [](const Meridian& d) {
+            return "<realcam.Meridian at " + digits(d.azimuth_deg) + " deg, focal length " + digits(d.focal_length) +
+                   " mm, f/" + digits(d.f_number) + '>';
+        });
 }
 
 }  // namespace
@@ -518,7 +535,23 @@ void bind_lens(py::module_& m) {
             [](const LensSystem& lens, std::optional<double> nm) {
                 return first_order(lens, wavelength_or_design(lens, nm));
             },
-            "wavelength_nm"_a = py::none(), "Paraxial data; at the design wavelength where none is given.")
+            "wavelength_nm"_a = py::none(),
+            "At the design wavelength where none is given. Of a lens that is no centred one of revolution: about the\n"
+            "chief ray of the film's middle, the means of both meridians, so that the f-number is that of the "
+            "exposure.\n"
+            "How the whole lens is tilted or shifted before the film changes nothing. Raises InputError where the "
+            "film's\n"
+            "middle gets no light.")
+        .def(
+            "meridians",
+            [](const LensSystem& lens, std::optional<double> nm) {
+                const ParabasalData data = parabasal_data(lens, wavelength_or_design(lens, nm));
+                return std::pair(data.meridians[0], data.meridians[1]);
+            },
+            "wavelength_nm"_a = py::none(),
+            "First-order data in the two principal meridians, about the chief ray of the film's middle; that nearer "
+            "to\n"
+            "the x axis first. Raises InputError where there is no such ray.")
         .def(
             "focused", [](const LensSystem& lens, double metres) { return focused(lens, 1000 * metres); },
             "focus_distance_m"_a,

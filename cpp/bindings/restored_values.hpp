@@ -4,6 +4,7 @@
 
 #include "../camera/camera.hpp"
 #include "../camera/sensor.hpp"
+#include "../optics/lens/parabasal.hpp"
 #include "../optics/lens/paraxial.hpp"
 #include "../optics/prescription/coating_checks.hpp"
 #include "../optics/prescription/form_checks.hpp"
@@ -133,6 +134,8 @@ struct RestoredCheck<LensSystem> {
 };
 template <>
 struct RestoredCheck<FirstOrder> : AnyMembers {};
+template <>
+struct RestoredCheck<Meridian> : AnyMembers {};
 
 // A camera and what is behind it.
 

@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
-#include "../optics/analysis/bundle_quadrature.hpp"
 #include "../optics/analysis/film_chief_ray.hpp"
+#include "../optics/pupil/bundle_quadrature.hpp"
 #include "../optics/pupil/pupil_view.hpp"
 
 namespace REALCAM_NAMESPACE {

@@ -11,7 +11,7 @@
 #include "../camera/camera_setup.hpp"
 #include "../camera/ray_request.hpp"
 #include "../optics/analysis/aim_request.hpp"
-#include "../optics/analysis/bundle_quadrature.hpp"
+#include "../optics/pupil/bundle_quadrature.hpp"
 
 namespace realcam {
 namespace {

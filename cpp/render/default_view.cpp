@@ -43,7 +43,7 @@ double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d targ
                  tan_y = tangent(half(film.height_mm, film.shift_mm.y));
     const auto axes = axes_of(camera.pose);
     // This also keeps a scene without breadth, such as a plane seen edge on, in front of the camera.
-    const double pupil = first_order(centred(camera.lens), camera.lens.wavelength_nm).entrance_pupil_position;
+    const double pupil = nominal_first_order(camera.lens).entrance_pupil_position;
     const double least = std::max(0.1 * box.diagonal(), std::isfinite(pupil) ? 0.0012 * pupil : 0.0);
     double distance = 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -57,7 +57,7 @@ double filling_distance(const BoundingBox& box, const Camera& camera, Vec3d targ
 /// `pose.position_m` for an entrance pupil that far from look_at_m.
 void stand_back(Camera& camera, Vec3d backward, double pupil_to_target_m) {
     const LensSystem& lens = camera.lens;
-    const double pupil = first_order(centred(lens), lens.wavelength_nm).entrance_pupil_position;
+    const double pupil = nominal_first_order(lens).entrance_pupil_position;
     const double film_to_pupil_m = (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
     camera.pose.position_m = camera.pose.look_at_m + (pupil_to_target_m + film_to_pupil_m) * backward;
 }
@@ -105,7 +105,7 @@ const SceneCamera* chosen_camera(const Assembly& assembly, const ViewRequest& re
 /// Where a camera of the scene is: the entrance pupil of the lens in its place.
 Pose pose_of(const Affine<double>& scene_from_camera, const LensSystem& lens) {
     const Vec3d backward = normalized(scene_from_camera.z);
-    const double pupil = first_order(centred(lens), lens.wavelength_nm).entrance_pupil_position;
+    const double pupil = nominal_first_order(lens).entrance_pupil_position;
     const double film_to_pupil_m = (lens.film_position() - (std::isfinite(pupil) ? pupil : 0.0)) / 1000;
     const Vec3d position = scene_from_camera.origin + film_to_pupil_m * backward;
     return {position, position - backward, normalized(scene_from_camera.y)};

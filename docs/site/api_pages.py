@@ -11,7 +11,7 @@ from written import write_text
 GROUPS = {
     "Lenses": (
         "Lens", "Surface", "Stop", "Mirror", "Glass", "Coating", "CoatingLayer", "CoatingResponse", "FirstOrder",
-        "Ghost", "lens_names", "glass_names", "CrossSection", "cross_section",
+        "Meridian", "Ghost", "lens_names", "glass_names", "CrossSection", "cross_section",
     ),
     "Rays, wavefronts and spots": (
         "AimedRays", "PSF", "RayBundle", "RayStatus", "Seidel", "Spot", "TraceResult", "Wavefront",

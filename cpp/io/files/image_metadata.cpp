@@ -48,7 +48,7 @@ std::string name_of(LightTransport transport) {
 }
 
 ImageMetadata metadata_of(const Camera& camera, const RenderSettings& settings) {
-    const FirstOrder data = first_order(centred(camera.lens), camera.lens.wavelength_nm);
+    const FirstOrder data = nominal_first_order(camera.lens);
     ImageMetadata metadata;
     metadata.lens = camera.lens.name;
     metadata.model = name_of(camera.model);

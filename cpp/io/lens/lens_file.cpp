@@ -1,6 +1,5 @@
 #include "lens_file.hpp"
 
-#include "../../optics/lens/best_focus.hpp"
 #include "../../optics/lens/focus.hpp"
 #include "../../optics/prescription/lens_checks.hpp"
 #include "../../optics/prescription/lens_limits.hpp"
@@ -214,13 +213,12 @@ void set_film_distance(const TomlTable& file, LensSystem& lens) {
     if (!distance && zooms)
         lens.film_distance = lens.zoom.positions[static_cast<std::size_t>(lens.zoom.current)].film_distance;
     if (distance) lens.film_distance = *distance;
-    if (!distance && !lens.is_rotational())
-        file.fail("\"film_distance_mm\" is missing; it is wanted because " + lens.asymmetry());
     if (!distance && !zooms) {
-        lens.film_distance = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
-        if (!(lens.film_distance > 0))
+        const std::optional<double> found = film_distance_at_infinity(lens);
+        if (!found)
             file.fail(
                 "the lens makes no real image of infinity behind its last surface; \"film_distance_mm\" is wanted");
+        lens.film_distance = *found;
     }
     if (const std::string why = film_distance_error(lens); !why.empty()) file.fail(why, file.find("film_distance_mm"));
 }

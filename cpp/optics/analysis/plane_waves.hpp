@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "bundle_quadrature.hpp"
+#include "../pupil/bundle_quadrature.hpp"
 #include "point_bundle.hpp"
 
 namespace REALCAM_NAMESPACE {

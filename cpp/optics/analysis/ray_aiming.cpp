@@ -10,23 +10,6 @@
 
 namespace realcam {
 
-AimingPath AimingPath::open(const LensPath<double>& path) {
-    AimingPath result(path);
-    for (SurfaceView<double>& step : result.steps_) {
-        step.rim_squared = std::numeric_limits<double>::max();
-        step.hole_squared = -1;
-        step.has_blades = false;
-    }
-    return result;
-}
-
-AimingPath::AimingPath(const LensPath<double>& path) {
-    const LensView<double> view = path.view();
-    steps_.assign(view.surfaces, view.surfaces + view.count);
-    if (view.free.freeforms) freeforms_.assign(view.free.freeforms, view.free.freeforms + view.count);
-    iris_ = view.iris;
-}
-
 RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoint& field)
     : object(lens, wavelength_nm, field),
       path_(lens, LightDirection::to_film, wavelength_nm),

@@ -2,32 +2,11 @@
 #include <optional>
 
 #include "../../math/hypotenuse.hpp"
-#include "../trace/lens_path.hpp"
+#include "../trace/aiming_path.hpp"
 #include "aim_request.hpp"
 #include "object_point.hpp"
 
 namespace REALCAM_NAMESPACE {
-
-/// The path of a centred lens, with its rims changed for aiming.
-class AimingPath {
-public:
-    /// Without rims, blades and central obstructions: what a ray is aimed through. Whether the real lens lets it pass
-    /// is asked afterwards. Aspheres stay searched for within their rim.
-    static AimingPath open(const LensPath<double>& path);
-    /// The lens as it is.
-    static AimingPath real(const LensPath<double>& path) { return AimingPath(path); }
-    LensView<double> view() const {
-        const FreeParts<double> free{nullptr, freeforms_.empty() ? nullptr : freeforms_.data(), nullptr};
-        return {steps_.data(), static_cast<int>(steps_.size()),
-                freeforms_.empty() ? LensKind::rotational : LensKind::any, iris_, free};
-    }
-
-private:
-    explicit AimingPath(const LensPath<double>& path);
-    std::vector<SurfaceView<double>> steps_;
-    std::vector<FreeformView<double>> freeforms_;
-    Iris<double> iris_;
-};
 
 /// Finds the rays of one object point that meet given places on the real aperture stop.
 ///

@@ -2,7 +2,7 @@
 #include <array>
 #include <vector>
 
-#include "bundle_quadrature.hpp"
+#include "../pupil/bundle_quadrature.hpp"
 #include "point_bundle.hpp"
 
 namespace REALCAM_NAMESPACE {

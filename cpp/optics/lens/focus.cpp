@@ -9,6 +9,7 @@
 #include "../prescription/clearance.hpp"
 #include "../prescription/lens_checks.hpp"
 #include "best_focus.hpp"
+#include "focus_error.hpp"
 #include "paraxial.hpp"
 
 namespace realcam {
@@ -83,13 +84,28 @@ LensSystem moved_as_a_whole(LensSystem lens, double focus_distance) {
     return lens;
 }
 
+/// The film goes along the last axis to where the image is, which then moves a little. Secants find the place.
+LensSystem film_moved(LensSystem lens, double focus_distance) {
+    const double start = lens.film_distance, ahead = std::copysign(1.0, start);  // where the light goes there
+    const double tolerance = 1e-12 * std::max(std::fabs(lens.film_position()), 1.0);
+    double before = 0, at_before = std::numeric_limits<double>::quiet_NaN();
+    constexpr int kMost = 60;
+    for (int i = 0; i < kMost; ++i) {
+        const double error = focus_error(lens, focus_distance);
+        if (std::fabs(error) <= tolerance) return lens;
+        if (!std::isfinite(error)) break;
+        const double slope = ahead * (error - before) / (lens.film_distance - at_before);
+        before = error;
+        at_before = lens.film_distance;
+        // An image that goes ahead of the film, or stays behind it, is that of another plane or of none.
+        lens.film_distance += ahead * (slope < -0.1 && slope > -3 ? -error / slope : 0.5 * error);
+        if (!(std::fabs(lens.film_distance - start) < kLongest)) break;
+    }
+    fail(lens, focus_distance, "has no place of its film there at which the light of the film's middle is sharp");
+}
+
 LensSystem moved_by_group(const LensSystem& lens, double focus_distance) {
-    const auto error = [&](double shift) {
-        const LensSystem moved = with_group_moved(lens, shift);
-        const double object = focus_distance - moved.film_position();
-        if (object < 0) return std::numeric_limits<double>::quiet_NaN();  // inside the lens
-        return best_focus_distance(moved, lens.wavelength_nm, object) - moved.film_distance;
-    };
+    const auto error = [&](double shift) { return focus_error(with_group_moved(lens, shift), focus_distance); };
     const auto& s = lens.surfaces;
     const auto first = static_cast<std::size_t>(lens.focusing.group_first);
     const auto last = static_cast<std::size_t>(lens.focusing.group_last);
@@ -138,16 +154,32 @@ LensSystem focused(const LensSystem& lens, double focus_distance) {
         throw InputError("cannot focus lens \"" + lens.name + "\": it is afocal, parallel light leaves it parallel");
     LensSystem open = lens;
     open.stop_semi_diameter = lens.stop().clear_semi_diameter;
-    LensSystem result =
-        open.focusing.moves_group() ? moved_by_group(open, focus_distance) : moved_as_a_whole(open, focus_distance);
+    LensSystem result = open.focusing.moves_group() ? moved_by_group(open, focus_distance)
+                        : open.is_rotational()      ? moved_as_a_whole(open, focus_distance)
+                                                    : film_moved(open, focus_distance);
     result.stop_semi_diameter = lens.stop_semi_diameter;
     result.focus_distance = focus_distance;
     if (!std::isfinite(result.film_distance))
         throw InputError("cannot focus lens \"" + lens.name + "\": no ray from the object passes it");
-    if (!(result.film_distance > 0))
+    if (!(result.film_distance > 0) && lens.is_rotational())
         throw InputError("cannot focus lens \"" + lens.name + "\": it makes no real image behind its last surface");
     if (const std::string why = film_distance_error(result); !why.empty()) fail(lens, focus_distance, "cannot: " + why);
     return result;
+}
+
+std::optional<double> film_distance_at_infinity(LensSystem lens) {
+    if (lens.is_rotational()) {
+        const double distance = best_focus_distance(lens, lens.wavelength_nm, kInfinity);
+        return distance > 0 ? std::optional(distance) : std::nullopt;
+    }
+    // As if all stood on one axis, to begin with.
+    lens.film_distance = first_order(centred(lens), lens.wavelength_nm).back_focal_distance;
+    if (!std::isfinite(lens.film_distance) || lens.film_distance == 0) return {};
+    try {
+        return film_moved(lens, kInfinity).film_distance;
+    } catch (const InputError&) {
+        return {};
+    }
 }
 
 double f_number_at_infinity(const LensSystem& lens) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "../prescription/lens_system.hpp"
 
 namespace REALCAM_NAMESPACE {
@@ -9,6 +11,9 @@ namespace REALCAM_NAMESPACE {
 /// Throws InputError where the lens cannot, also because glass or film are in the way. The object plane lies within
 /// 1e-9 of its distance where it was asked for.
 LensSystem focused(const LensSystem& lens, double focus_distance);
+
+/// Last vertex to the film on which distant light makes its smallest spot; nothing where the lens makes no such image.
+std::optional<double> film_distance_at_infinity(LensSystem lens);
 
 /// The f-number as it is engraved: of the lens focused at infinity, with the diaphragm as it stands. A group that moves
 /// to focus changes focal length and pupil, and the ring of the diaphragm does not turn with it. A lens that cannot be

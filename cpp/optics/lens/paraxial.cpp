@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "parabasal.hpp"
+#include "tilt_shift.hpp"
+
 namespace realcam {
 
 double sum_or_zero(double a, double b) {
@@ -28,6 +31,10 @@ ParaxialRay trace_paraxial(const LensSystem& lens, double wavelength_nm, Paraxia
 }
 
 FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
+    if (!lens.is_rotational()) {
+        const LensSystem alone = without_move(lens);
+        return alone.is_rotational() ? first_order(alone, wavelength_nm) : parabasal_data(lens, wavelength_nm).mean;
+    }
     const int count = static_cast<int>(lens.surfaces.size()), stop = lens.stop_index();
     const ParaxialRay marginal = trace_paraxial(lens, wavelength_nm, {1, 0}, 0, count);
     const ParaxialRay inclined = trace_paraxial(lens, wavelength_nm, {0, 1}, 0, count);
@@ -54,6 +61,14 @@ FirstOrder first_order(const LensSystem& lens, double wavelength_nm) {
     data.exit_pupil_diameter = radius > 0 ? 2 * std::fabs(edge.height + edge.slope * from_last) : 0.0;
     data.film_distance = lens.film_distance;
     return data;
+}
+
+FirstOrder nominal_first_order(const LensSystem& lens) {
+    try {
+        return first_order(lens, lens.wavelength_nm);
+    } catch (const InputError&) {
+        return first_order(centred(lens), lens.wavelength_nm);
+    }
 }
 
 double paraxial_image_distance(const LensSystem& lens, double wavelength_nm, double object_distance) {

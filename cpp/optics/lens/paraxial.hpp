@@ -40,8 +40,14 @@ struct FirstOrder {
     bool is_afocal() const { return std::isinf(effective_focal_length); }
 };
 
-/// Throws InputError where the lens is no centred one of revolution.
+/// Of a centred lens of revolution by paraxial rays; how all of it is tilted or shifted before the film changes
+/// nothing. Of any other lens by rays close to the chief ray of the film's middle: the means of both meridians
+/// (parabasal.hpp). Throws InputError where there is no such ray.
 FirstOrder first_order(const LensSystem& lens, double wavelength_nm);
+
+/// For what only describes a lens, at its design wavelength: where it has no first-order data, those of the lens with
+/// all its surfaces in place on one axis.
+FirstOrder nominal_first_order(const LensSystem& lens);
 
 /// Last vertex to the paraxial image of an axial point `object_distance` mm in front of the front vertex.
 double paraxial_image_distance(const LensSystem& lens, double wavelength_nm, double object_distance);

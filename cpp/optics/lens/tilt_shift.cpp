@@ -33,4 +33,11 @@ LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move,
     return moved;
 }
 
+LensSystem without_move(LensSystem lens) {
+    SurfacePlacement& front = lens.surfaces.front().placement;
+    if (!front.returns) front = {};
+    lens.film_placement = {};
+    return lens;
+}
+
 }  // namespace realcam

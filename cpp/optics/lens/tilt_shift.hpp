@@ -10,4 +10,7 @@ namespace REALCAM_NAMESPACE {
 /// cannot be built.
 LensSystem with_lens_moved(const LensSystem& lens, const SurfacePlacement& move, double pivot = 0);
 
+/// The lens without what moves all of it before the film, and with the film in its place on the last axis.
+LensSystem without_move(LensSystem lens);
+
 }  // namespace REALCAM_NAMESPACE

@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+
+#include "../trace/aiming_path.hpp"
+#include "../trace/film_frame.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+/// Rays from the film of a lens of any kind to the scene, through the lens without its rims.
+///
+/// They begin in the frame of the film, whose vertex stands at `film_distance` on its z axis, and end in that of the
+/// camera (film_path_ends). The two are the frames of the last and of the front vertex where the lens is centred.
+class FilmRays {
+public:
+    FilmRays(const LensSystem& lens, double wavelength_nm);
+
+    double film_index() const { return path_.entry_index; }
+    double scene_index() const { return scene_index_; }
+    double film_distance() const { return film_distance_; }
+    /// The opening of the stop counts as round.
+    double stop_radius() const { return stop_radius_; }
+    Vec3d film_point(Vec2<double> film) const;
+    /// Of the last surface, in the frame of the film.
+    Vec3d last_vertex() const { return last_surface_.origin; }
+    /// A point of the last surface's vertex plane: shares of its clear semi-diameter.
+    Vec3d on_last_surface(Vec2<double> share) const;
+
+    /// To the plane of the stop, and into its frame.
+    template <int N>
+    void to_stop(LensRays<double, N>& rays) const {
+        trace_lens(open_.first(to_stop_), rays);
+    }
+    template <int N>
+    void to_scene(LensRays<double, N>& rays) const {
+        trace_lens(open_.view(), rays);
+    }
+
+private:
+    PathEnds ends_;
+    LensPath<double> path_;
+    AimingPath open_;
+    Affine<double> last_surface_;
+    double last_rim_, film_distance_, film_curvature_, scene_index_, stop_radius_;
+    int to_stop_;
+};
+
+/// The ray of a film point through the middle of the stop, whether or not a rim blocks it. Directions are unit vectors
+/// in the sense of the light, towards the film.
+struct ChiefRay {
+    Vec3d film, film_direction;    ///< where it meets the film; frame of the film, mm
+    Vec3d scene, scene_direction;  ///< where it meets the front surface; frame of the camera, mm
+};
+
+/// Nothing where no ray is found: Newton's method, begun with the ray that comes nearest to the stop's middle of those
+/// to places all over the last surface.
+std::optional<ChiefRay> chief_ray_of_film_point(const FilmRays& rays, Vec2<double> film);
+
+}  // namespace REALCAM_NAMESPACE

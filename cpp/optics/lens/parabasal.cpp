@@ -1,0 +1,197 @@
+#include "parabasal.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "../../math/hypotenuse.hpp"
+
+namespace realcam {
+
+namespace {
+
+/// Places and directions across a ray.
+struct Across {
+    Vec3d origin, x, y, z;
+
+    /// y lies in the plane of the frame's y axis and the ray.
+    Across(Vec3d origin, Vec3d direction) : origin(origin), z(direction) {
+        x = normalized(cross(std::fabs(z.y) < 0.9999999 ? Vec3d{0, 1, 0} : Vec3d{0, 0, -z.y}, z));
+        y = cross(z, x);
+    }
+
+    /// Of a ray: where it crosses the plane through the origin, and its direction across.
+    std::array<double, 4> of(Vec3d point, Vec3d direction) const {
+        const Vec3d at = point - (dot(point - origin, z) / dot(direction, z)) * direction - origin;
+        return {dot(at, x), dot(at, y), dot(direction, x), dot(direction, y)};
+    }
+};
+
+constexpr int kInputs = 4, kOffsets = 4;
+constexpr double kOffset[kOffsets] = {-2, -1, 1, 2};
+constexpr double kWeight[kOffsets] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+using FilmFan = LensRays<double, kInputs * kOffsets>;
+
+/// Rays beside the chief ray, in each input by steps: of the derivative by four of them the errors are of the fourth
+/// order of the step.
+FilmFan fan_of(const FilmRays& rays, const Across& film, const std::array<double, kInputs>& steps) {
+    const double n = rays.film_index();
+    FilmFan fan;
+    for (int i = 0; i < kInputs; ++i)
+        for (int k = 0; k < kOffsets; ++k) {
+            const double by = kOffset[k] * steps[static_cast<std::size_t>(i)];
+            const Vec3d place = (i == 0 ? by : 0.0) * film.x + (i == 1 ? by : 0.0) * film.y;
+            const double px = i == 2 ? by : 0.0, py = i == 3 ? by : 0.0;
+            const int lane = kOffsets * i + k;
+            fan.origin.set(lane, film.origin + place);
+            fan.direction.set(lane, -(px * film.x + py * film.y + std::sqrt(n * n - px * px - py * py) * film.z));
+            fan.status[lane] = 0;
+        }
+    return fan;
+}
+
+/// By a function of a fan's lane, its derivatives by the place and by the direction at the film.
+struct ByFilm {
+    Matrix2 place, direction;
+
+    template <class Value>
+    ByFilm(const std::array<double, kInputs>& steps, Value&& value) {
+        Vec2<double> columns[kInputs];
+        for (int i = 0; i < kInputs; ++i) {
+            columns[i] = {0, 0};
+            for (int k = 0; k < kOffsets; ++k) {
+                const Vec2<double> v = value(kOffsets * i + k);
+                const double weight = kWeight[k] / steps[static_cast<std::size_t>(i)];
+                columns[i] = {columns[i].x + weight * v.x, columns[i].y + weight * v.y};
+            }
+        }
+        place = {{columns[0].x, columns[1].x}, {columns[0].y, columns[1].y}};
+        direction = {{columns[2].x, columns[3].x}, {columns[2].y, columns[3].y}};
+    }
+};
+
+[[noreturn]] void fail(const LensSystem& lens) {
+    throw InputError(
+        "lens \"" + lens.name +
+        "\" has no first-order data: no ray is found from the middle of the film to the middle of the stop "
+        "and out of the lens");
+}
+
+double largest(const Matrix2& m) {
+    return std::max(hypotenuse(m.first.x, m.second.x), hypotenuse(m.first.y, m.second.y));
+}
+
+}  // namespace
+
+ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<double> film_point) {
+    const FilmRays rays(lens, wavelength_nm);
+    const std::optional<ChiefRay> chief = chief_ray_of_film_point(rays, film_point);
+    if (!chief) fail(lens);
+    const Across film(chief->film, chief->film_direction), scene(chief->scene, chief->scene_direction);
+    // First with tiny steps, which tell how far a ray moves on the stop. Then with such that it moves by a thousandth.
+    std::array<double, kInputs> steps{1e-6, 1e-6, 1e-6, 1e-6};
+    ParabasalRays found{*chief, {}, {}, {}, {}, {}, {}, {}, {}};
+    for (int pass = 0; pass < 2; ++pass) {
+        FilmFan at_stop = fan_of(rays, film, steps);
+        rays.to_stop(at_stop);
+        for (const int status : at_stop.status)
+            if (status != 0) fail(lens);
+        const ByFilm stop(steps,
+                          [&](int lane) { return Vec2<double>{at_stop.origin.x[lane], at_stop.origin.y[lane]}; });
+        found.stop_by_film_place = stop.place;
+        found.stop_by_film_direction = stop.direction;
+        const double reach = 1e-3 * lens.stop().clear_semi_diameter;
+        const double place = reach / largest(stop.place), direction = reach / largest(stop.direction);
+        if (pass == 0) steps = {std::min(place, 1.0), std::min(place, 1.0), direction, direction};
+    }
+    FilmFan in_scene = fan_of(rays, film, steps);
+    rays.to_scene(in_scene);
+    std::array<std::array<double, 4>, kInputs * kOffsets> seen;
+    for (int lane = 0; lane < kInputs * kOffsets; ++lane) {
+        if (in_scene.status[lane] != 0) fail(lens);
+        seen[static_cast<std::size_t>(lane)] = scene.of(in_scene.origin[lane], -in_scene.direction[lane]);
+    }
+    const auto part = [&](std::size_t first) {
+        return ByFilm(steps, [&](int lane) {
+            const auto& ray = seen[static_cast<std::size_t>(lane)];
+            return Vec2<double>{ray[first], ray[first + 1]};
+        });
+    };
+    // The way back by the inverse, which for light is a transposition: what it keeps is the area of place and
+    // direction.
+    const ByFilm place = part(0), direction = part(2);
+    found.place_by_place = direction.direction.transposed();
+    found.place_by_direction = -1 * place.direction.transposed();
+    found.direction_by_place = -1 * direction.place.transposed();
+    found.direction_by_direction = place.place.transposed();
+    found.stop_by_place =
+        found.stop_by_film_place * found.place_by_place + found.stop_by_film_direction * found.direction_by_place;
+    found.stop_by_direction = found.stop_by_film_place * found.place_by_direction +
+                              found.stop_by_film_direction * found.direction_by_direction;
+    return found;
+}
+
+ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
+    const ParabasalRays rays = parabasal_rays(lens, wavelength_nm);
+    const std::vector<double> index = lens.indices(wavelength_nm);
+    const double before = index.front(), behind = index.back();
+    const double radius = std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter);
+    const SingularValues power = singular_values(rays.direction_by_place);
+    // Of quotients of differences rounding leaves about so much, 1/mm: a smaller power is none.
+    const double none = std::max(1e-10 * power.larger, 1e-12);
+    const bool is_round = power.larger - std::fabs(power.smaller) < 1e-9 * power.larger;
+    const bool is_turned_over = power.smaller < 0;
+    const double sign = !is_turned_over && std::cos(power.left - power.right) > 0 ? -1 : 1;
+    const auto focal_length_of = [&](double p) {
+        return std::fabs(p) < none ? kInfinity : sign * behind / std::fabs(p);
+    };
+    const Matrix2 pupil = rays.stop_by_place.inverse();  // where parallel light enters, by its place on the stop
+
+    const auto meridian = [&](double angle, double image_angle, double p) {
+        const Vec2<double> v{std::cos(angle), std::sin(angle)}, u{std::cos(image_angle), std::sin(image_angle)};
+        const Vec2<double> width = pupil.transposed() * v;
+        Meridian m{};
+        m.azimuth_deg = std::remainder(angle * 180 / std::numbers::pi, 180) + 0.0;
+        if (m.azimuth_deg < -90 + 1e-9) m.azimuth_deg += 180;
+        m.focal_length = focal_length_of(p);
+        m.entrance_pupil_diameter = 2 * radius * hypotenuse(width.x, width.y);
+        m.f_number = std::fabs(m.focal_length) / m.entrance_pupil_diameter;
+        // Parallel light of this meridian: where its rays, a v apart in front of the lens, come together in u.
+        const Vec2<double> at = rays.place_by_place * v, way = rays.direction_by_place * v;
+        const double along =
+            std::isinf(m.focal_length) ? kInfinity : -behind * (at.x * u.x + at.y * u.y) / (way.x * u.x + way.y * u.y);
+        m.back_focal_distance = lens.film_distance + along;
+        return m;
+    };
+    const double right = is_round ? 0.0 : power.right, left = is_round ? power.left - power.right : power.left;
+    const double quarter = 0.5 * std::numbers::pi;
+    Meridian first = meridian(right, left, power.larger),
+             second = meridian(right + quarter, left + quarter, power.smaller);
+    if (std::fabs(first.azimuth_deg) > 45) std::swap(first, second);
+
+    FirstOrder mean{};
+    const double ratio = std::fabs(rays.stop_by_place.determinant());
+    mean.effective_focal_length = std::isinf(first.focal_length) || std::isinf(second.focal_length)
+                                      ? kInfinity
+                                      : sign * std::sqrt(std::fabs(first.focal_length * second.focal_length));
+    mean.back_focal_distance = 0.5 * (first.back_focal_distance + second.back_focal_distance);
+    mean.entrance_pupil_diameter = 2 * radius / std::sqrt(ratio);
+    mean.f_number = std::fabs(mean.effective_focal_length) / mean.entrance_pupil_diameter;
+    // Chief rays cross where their places in the reference plane and their directions cancel.
+    const double front = rays.chief.scene.z, at_film = lens.film_position();
+    mean.entrance_pupil_position =
+        front + rays.chief.scene_direction.z * before * 0.5 * (pupil * rays.stop_by_direction).trace();
+    const Matrix2 exit = rays.stop_by_film_place.inverse();
+    mean.exit_pupil_position =
+        at_film + rays.chief.film_direction.z * behind * 0.5 * (exit * rays.stop_by_film_direction).trace();
+    mean.exit_pupil_diameter = 2 * radius * std::sqrt(std::fabs(exit.determinant()));
+    // Rays that leave parallel: C q + D p = 0, and q + t p / n = 0 at the front focus.
+    mean.front_focal_distance =
+        std::isinf(mean.effective_focal_length)
+            ? -kInfinity
+            : front + rays.chief.scene_direction.z * before * 0.5 *
+                          (rays.direction_by_place.inverse() * rays.direction_by_direction).trace();
+    mean.film_distance = lens.film_distance;
+    return {{first, second}, second.focal_length / first.focal_length, mean};
+}
+
+}  // namespace realcam
