@@ -21,6 +21,8 @@ std::vector<PupilPoint> pattern_from(const std::string& pattern, int samples,
 inline constexpr const char* kFieldText =
     R"(field_deg: angle to the axis at which the light comes; positive: it rises towards +y and the film. Less than 180
   for an object at infinity; less than 90, seen from the middle of the paraxial entrance pupil, for one nearer.
+film_mm: (x, y), names the field by the film point, from the film's middle, at which the chief ray of the design
+  wavelength ends; in place of field_deg, and in both directions across the film.
 object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
 wavelength_nm: None is the design wavelength.
 )";

@@ -55,10 +55,10 @@ struct AimedRays {
 };
 
 AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std::optional<double> object_distance_m,
-              std::optional<double> wavelength_nm) {
+              const FilmPlace& film_mm, std::optional<double> wavelength_nm) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const std::vector<PupilPoint> pattern = pattern_from("", 1, pupil);
-    const RayAimer aimer(lens, wavelength, field_from(field_deg, object_distance_m));
+    const RayAimer aimer(lens, wavelength, field_from(field_deg, object_distance_m, film_mm));
     const auto count = static_cast<py::ssize_t>(pattern.size());
     AimedRays aimed{Array({count, py::ssize_t{3}}), Array({count, py::ssize_t{3}}), py::array_t<int>(count)};
     double* origins = aimed.origins_mm.mutable_data();
@@ -73,7 +73,8 @@ AimedRays aim(const LensSystem& lens, const Points& pupil, double field_deg, std
             const auto write = [](Vec3d v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; };
             for (std::size_t i = first; i < last; ++i) {
                 const bool passes = rays[i].status == RayStatus::ok;
-                write(passes ? aimer.object.at(rays[i].entry) : Vec3d{kNone, kNone, kNone}, origins + 3 * i);
+                write(passes ? aimer.in_lens_frame(aimer.object.at(rays[i].entry)) : Vec3d{kNone, kNone, kNone},
+                      origins + 3 * i);
                 write(passes ? aimer.object.direction(rays[i].entry) : Vec3d{kNone, kNone, kNone}, directions + 3 * i);
                 status[i] = static_cast<int>(rays[i].status);
             }
@@ -89,13 +90,13 @@ struct PythonWavefront {
 };
 
 PythonWavefront make_wavefront(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
-                               std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
-                               const std::string& reference, const std::string& exit_pupil,
-                               const std::optional<std::string>& remove, const std::string& pattern, int samples,
-                               const std::optional<Points>& pupil) {
+                               const FilmPlace& film_mm, std::optional<double> wavelength_nm,
+                               std::optional<double> film_distance_mm, const std::string& reference,
+                               const std::string& exit_pupil, const std::optional<std::string>& remove,
+                               const std::string& pattern, int samples, const std::optional<Points>& pupil) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const double distance = film_distance_from(lens, film_distance_mm);
-    const FieldPoint field = field_from(field_deg, object_distance_m);
+    const FieldPoint field = field_from(field_deg, object_distance_m, film_mm);
     std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
     if (reference != "chief" && reference != "centroid")
         throw InputError("unknown reference \"" + reference + "\"; chief or centroid is wanted");
@@ -124,14 +125,14 @@ Array map_of(const PythonWavefront& w) {
 }
 
 Spot make_spot(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
-               std::optional<double> wavelength_nm, std::optional<double> film_distance_mm, const std::string& pattern,
-               int samples, const std::optional<Points>& pupil) {
+               const FilmPlace& film_mm, std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
+               const std::string& pattern, int samples, const std::optional<Points>& pupil) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     const double distance = film_distance_from(lens, film_distance_mm);
     std::vector<PupilPoint> points = pattern_from(pattern, samples, pupil);
     const Unlocked unlocked;
     const RayLoop loop = parallel_ray_loop(heed_signals);
-    const FieldPoint field = field_from(field_deg, object_distance_m);
+    const FieldPoint field = field_from(field_deg, object_distance_m, film_mm);
     return spot_of(field_rays(lens, wavelength, field, std::move(points), loop), distance, loop);
 }
 
@@ -183,8 +184,10 @@ void bind_analysis(py::module_& m) {
         .def_readonly(
             "origins_mm", &AimedRays::origins_mm,
             "(N, 3): in the plane through the middle of the paraxial entrance pupil across the light, which "
-            "may lie\nbehind the front surface: the ray is that straight line, also in front of it. nan where "
-            "status is not OK.")
+            "may lie\nbehind the front surface: the ray is that straight line, also in front of it. Where film_mm "
+            "names "
+            "the field,\nor the lens is not of revolution: through where the chief ray meets the front surface. nan "
+            "where status is not OK.")
         .def_readonly("directions", &AimedRays::directions, "(N, 3), unit; nan where status is not OK.")
         .def_readonly("status", &AimedRays::status, kStatusText)
         .def("__repr__",
@@ -244,6 +247,16 @@ void bind_analysis(py::module_& m) {
             },
             "(N, 2): x and y; nan where no ray passes.")
         .def_property_readonly(
+            "directions",
+            [](const Spot& s) {
+                constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+                return table_of(s.points.size(), 3, [&](auto i, auto k) {
+                    const Vec3d d = normalized(s.rays.rays[i].direction);
+                    return !s.rays.passes(i) ? kNone : k == 0 ? d.x : k == 1 ? d.y : d.z;
+                });
+            },
+            "(N, 3), unit, of the rays where they meet the plane; nan where no ray passes.")
+        .def_property_readonly(
             "pupil", [](const Spot& s) { return pupil_of(s.rays); }, kPupilText)
         .def_property_readonly(
             "weights", [](const Spot& s) { return weights_of(s.rays); }, kWeightsText)
@@ -290,14 +303,14 @@ remove: None; "tilt" or "focus" (tilt and focus) are fitted in x, y, x^2 + y^2 o
         kPatternText + "Returns a Spot. Raises InputError where no ray passes.";
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("aim", &aim, "pupil"_a, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
-             "wavelength_nm"_a = py::none(), aim_text.c_str())
+             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), aim_text.c_str())
         .def("wavefront", &make_wavefront, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
-             "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "reference"_a = "chief",
-             "exit_pupil"_a = "real", "remove"_a = py::none(), "pattern"_a = "grid", "samples"_a = 64,
-             "pupil"_a = py::none(), wavefront_text.c_str())
+             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
+             "reference"_a = "chief", "exit_pupil"_a = "real", "remove"_a = py::none(), "pattern"_a = "grid",
+             "samples"_a = 64, "pupil"_a = py::none(), wavefront_text.c_str())
         .def("spot", &make_spot, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
-             "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "pattern"_a = "hexapolar",
-             "samples"_a = 6, "pupil"_a = py::none(), spot_text.c_str());
+             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
+             "pattern"_a = "hexapolar", "samples"_a = 6, "pupil"_a = py::none(), spot_text.c_str());
 }
 
 }  // namespace realcam::bindings

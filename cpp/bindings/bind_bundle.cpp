@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "../embree/lens_rays.hpp"
+#include "../optics/analysis/film_pupil.hpp"
 #include "../optics/analysis/traced_bundle.hpp"
 #include "analysis_arguments.hpp"
 #include "arrays.hpp"
@@ -45,15 +46,15 @@ Array edge_array(const std::vector<EdgePiece>& edge, Vec2<double> (*of)(const Ed
 }
 
 RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<double> object_distance_m,
-                      std::optional<double> wavelength_nm, std::optional<double> film_distance_mm, int spokes,
-                      int nodes) {
+                      const FilmPlace& film_mm, std::optional<double> wavelength_nm,
+                      std::optional<double> film_distance_mm, int spokes, int nodes) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     if (film_distance_mm && !std::isfinite(*film_distance_mm))
         throw InputError("film_distance_mm must be a finite length, or None for the film");
     if (!(spokes >= 4 && spokes <= 4096)) throw InputError("spokes must lie between 4 and 4096");
     if (!(nodes >= 1 && nodes <= 256)) throw InputError("nodes must lie between 1 and 256");
     const double distance = film_distance_mm.value_or(lens.film_distance);
-    const FieldPoint field = field_from(field_deg, object_distance_m);
+    const FieldPoint field = field_from(field_deg, object_distance_m, film_mm);
     const auto [bundle, traced] = [&] {
         const Unlocked unlocked;
         const RayLoop loop = parallel_ray_loop(heed_signals);
@@ -88,9 +89,9 @@ RayBundle make_bundle(const LensSystem& lens, double field_deg, std::optional<do
 
 /// (M, 2) float32: the rays of `count` that pass.
 py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_t count,
-                           std::optional<double> object_distance_m, std::optional<double> wavelength_nm,
-                           std::optional<double> film_distance_mm, const std::string& pattern,
-                           const py::object& dtype) {
+                           std::optional<double> object_distance_m, const FilmPlace& film_mm,
+                           std::optional<double> wavelength_nm, std::optional<double> film_distance_mm,
+                           const std::string& pattern, const py::object& dtype) {
     const double wavelength = wavelength_or_design(lens, wavelength_nm);
     if (film_distance_mm && !std::isfinite(*film_distance_mm))
         throw InputError("film_distance_mm must be a finite length, or None for the film");
@@ -100,7 +101,7 @@ py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_
     const py::dtype type = py::dtype::from_args(dtype);
     if (type.kind() != 'f' || (type.itemsize() != 4 && type.itemsize() != 8))
         throw InputError("dtype must be \"float64\" or \"float32\"");
-    const FieldPoint field = field_from(field_deg, object_distance_m);
+    const FieldPoint field = field_from(field_deg, object_distance_m, film_mm);
     const double distance = film_distance_mm.value_or(lens.film_distance);
     py::array_t<float> points({static_cast<py::ssize_t>(count), py::ssize_t{2}});
     float* to = points.mutable_data();
@@ -114,8 +115,37 @@ py::array make_film_points(const LensSystem& lens, double field_deg, std::int64_
     return points[py::slice(0, static_cast<py::ssize_t>(passed), 1)].cast<py::array>();
 }
 
+struct PythonFilmPupil {
+    double irradiance;
+    Array outline;
+};
+
+PythonFilmPupil make_film_pupil(const LensSystem& lens, std::pair<double, double> film_mm,
+                                std::optional<double> wavelength_nm) {
+    const double wavelength = wavelength_or_design(lens, wavelength_nm);
+    const FieldPoint field = field_from(0, std::nullopt, film_mm);
+    const FilmPupil pupil = [&] {
+        const Unlocked unlocked;
+        return film_pupil(lens, wavelength, *field.film, parallel_ray_loop(heed_signals));
+    }();
+    Array outline({static_cast<py::ssize_t>(pupil.outline.size()), py::ssize_t{2}, py::ssize_t{2}});
+    double* to = outline.mutable_data();
+    for (const auto& piece : pupil.outline)
+        for (const Vec2<double> end : piece) {
+            *to++ = end.x;
+            *to++ = end.y;
+        }
+    return {pupil.irradiance, outline};
+}
+
 }  // namespace
 
+template <>
+struct RestoredCheck<PythonFilmPupil> {
+    static void check(const PythonFilmPupil& p) {
+        check_restored_array(p.outline, {'f', {restored_length(p.outline), 2, 2}});
+    }
+};
 template <>
 struct RestoredCheck<ChiefRay> : AnyMembers {};
 template <>
@@ -192,13 +222,28 @@ dtype: of the trace. "float32" is right within 0.3 um for photographic lenses.
 Returns (M, 2) float32, x and y in mm from the axis, of the rays that pass. All stand for the same light, but for
 (1 + (q / D)^2)^1.5, q the distance from the ray that is even and D that of the object.
 Raises InputError where no light passes.)";
+    py::class_<PythonFilmPupil> film_pupil_class(
+        m, "FilmPupil",
+        "The pupil as a film point sees it, in direction cosines across the film's normal of light on its way to the "
+        "film,\ntimes the index in front of the film.");
+    def_result(film_pupil_class);
+    film_pupil_class
+        .def_readonly("irradiance", &PythonFilmPupil::irradiance,
+                      "Of the film point, for unit radiance of all that the lens sees: the pupil's area, in the middle "
+                      "of a lens\nof revolution pi sin^2 of the largest angle. 0 where no light arrives.")
+        .def_readonly("outline", &PythonFilmPupil::outline,
+                      "(M, 2, 2): pieces of the edge of what passes, each from (x, y) to (x, y).")
+        .def("__repr__",
+             [](const PythonFilmPupil& p) { return "<realcam.FilmPupil, irradiance " + digits(p.irradiance) + '>'; });
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("bundle", &make_bundle, "field_deg"_a = 0.0, py::kw_only(), "object_distance_m"_a = py::none(),
-             "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(), "spokes"_a = 64, "nodes"_a = 6,
-             text.c_str())
+             "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
+             "spokes"_a = 64, "nodes"_a = 6, text.c_str())
+        .def("film_pupil", &make_film_pupil, "film_mm"_a = std::pair(0.0, 0.0), "wavelength_nm"_a = py::none(),
+             "The pupil as a film point sees it, (x, y) from the film's middle, by real rays.")
         .def("film_points", &make_film_points, "field_deg"_a = 0.0, "count"_a = 1000000, py::kw_only(),
-             "object_distance_m"_a = py::none(), "wavelength_nm"_a = py::none(), "film_distance_mm"_a = py::none(),
-             "pattern"_a = "even", "dtype"_a = "float32", points_text.c_str());
+             "object_distance_m"_a = py::none(), "film_mm"_a = py::none(), "wavelength_nm"_a = py::none(),
+             "film_distance_mm"_a = py::none(), "pattern"_a = "even", "dtype"_a = "float32", points_text.c_str());
 }
 
 }  // namespace realcam::bindings

@@ -50,6 +50,17 @@ Glass glass_from(const py::object& material) {
     return glass;
 }
 
+FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPlace& film_mm) {
+    FieldPoint field{field_deg * std::numbers::pi / 180};
+    if (object_distance_m) field.object_distance = 1000 * *object_distance_m;
+    if (!film_mm) return field;
+    if (field_deg != 0) throw InputError("field_deg and film_mm both name a field; one of them is wanted");
+    if (!std::isfinite(film_mm->first) || !std::isfinite(film_mm->second))
+        throw InputError("film_mm must be a place on the film, (x, y) in mm from its middle");
+    field.film = Vec2<double>{film_mm->first, film_mm->second};
+    return field;
+}
+
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm) {
     if (nm && !(*nm >= 100 && *nm <= 20000)) throw InputError("the wavelength must lie between 100 and 20000 nm");
     return nm.value_or(lens.wavelength_nm);

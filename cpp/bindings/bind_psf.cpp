@@ -87,15 +87,16 @@ Psf psf_by_fft(const LensSystem& lens, const PsfRequest& request) {
 
 Psf make_psf(const LensSystem& lens, double field_deg, const std::optional<Wavelengths>& wavelength_nm,
              const std::string& method, int size, std::optional<double> pitch_um,
-             std::optional<double> object_distance_m, std::optional<double> film_distance_mm, const std::string& centre,
-             std::optional<std::int64_t> rays, const std::optional<std::vector<double>>& weights) {
+             std::optional<double> object_distance_m, const FilmPlace& film_mm, std::optional<double> film_distance_mm,
+             const std::string& centre, std::optional<std::int64_t> rays,
+             const std::optional<std::vector<double>>& weights) {
     if (centre != "chief" && centre != "centroid")
         throw InputError("unknown centre \"" + centre + "\"; chief or centroid is wanted");
     if (pitch_um && !(*pitch_um > 0)) throw InputError("psf: pitch_um must be a positive length");
     if (rays && *rays <= 0) throw InputError("psf: rays must be a positive number");
     if (film_distance_mm && !std::isfinite(*film_distance_mm))
         throw InputError("film_distance_mm must be a finite length, or None for the film");
-    const PsfRequest request{field_from(field_deg, object_distance_m),
+    const PsfRequest request{field_from(field_deg, object_distance_m, film_mm),
                              colours_from(lens, wavelength_nm, weights),
                              film_distance_mm.value_or(lens.film_distance),
                              method_from(method),
@@ -182,7 +183,7 @@ void bind_psf(py::module_& m) {
         });
     static const std::string text =
         R"(Point spread function: the light of one object point on the film, with diffraction, from the exact wavefront.
-field_deg, object_distance_m: as for wavefront.
+field_deg, film_mm, object_distance_m: as for wavefront.
 wavelength_nm: one or several, whose light is added; None is the design wavelength. weights: of several, None: equal.
 method: "direct", the sum of the rays as plane waves, for any wavefront; "fft", the same by a Fourier transform, where
   the wavefront is not too steep for one; "geometric", the rays themselves, without diffraction.
@@ -196,8 +197,8 @@ follow the wavefront.)";
     py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
         .def("psf", &make_psf, "field_deg"_a = 0.0, "wavelength_nm"_a = py::none(), py::kw_only(),
              "method"_a = "direct", "size"_a = 128, "pitch_um"_a = py::none(), "object_distance_m"_a = py::none(),
-             "film_distance_mm"_a = py::none(), "centre"_a = "chief", "rays"_a = py::none(), "weights"_a = py::none(),
-             text.c_str());
+             "film_mm"_a = py::none(), "film_distance_mm"_a = py::none(), "centre"_a = "chief", "rays"_a = py::none(),
+             "weights"_a = py::none(), text.c_str());
 }
 
 }  // namespace realcam::bindings

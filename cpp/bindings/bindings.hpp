@@ -100,11 +100,11 @@ Glass glass_from(const py::object& material);
 /// The design wavelength where none is given. Throws InputError outside the limits of Lens.trace.
 double wavelength_or_design(const LensSystem& lens, std::optional<double> nm);
 
-/// A place in the field as users write it; no distance: the plane in focus.
-inline FieldPoint field_from(double field_deg, std::optional<double> object_distance_m) {
-    const double angle_rad = field_deg * std::numbers::pi / 180;
-    if (!object_distance_m) return {angle_rad};
-    return {angle_rad, 1000 * *object_distance_m};
-}
+/// A film point as users write it: (x, y), mm from the film's middle; none: the field is named by its angle.
+using FilmPlace = std::optional<std::pair<double, double>>;
+
+/// A place in the field as users write it; no distance: the plane in focus. Throws InputError where both an angle and a
+/// film point are given.
+FieldPoint field_from(double field_deg, std::optional<double> object_distance_m, const FilmPlace& film_mm = {});
 
 }  // namespace realcam::bindings

@@ -49,11 +49,13 @@ template <class T>
 std::int64_t film_points_with(const LensSystem& lens, double wavelength_nm, const PointBundle& bundle,
                               const EntryRectangle& lit, EntryPattern pattern, std::int64_t count, double film_distance,
                               float* at, void (*kernel)(void*), const KeepGoing& keep_going) {
-    const LensPath<T> path(lens, LightDirection::to_film, wavelength_nm);
+    const LensPath<T> path(lens, LightDirection::to_film, wavelength_nm, film_path_ends(lens, LightDirection::to_film));
     const auto two = [](Vec2<double> v) { return Vec2<T>{static_cast<T>(v.x), static_cast<T>(v.y)}; };
     FilmPointsRequest<T> request{path.view(),
                                  static_cast<Vec3<T>>(bundle.object.centre - Vec3d{0, 0, path.entry_position}),
                                  static_cast<Vec3<T>>(bundle.object.towards),
+                                 static_cast<Vec3<T>>(bundle.object.across),
+                                 static_cast<Vec3<T>>(bundle.object.upwards),
                                  two(lit.middle),
                                  two(lit.reach),
                                  static_cast<T>(bundle.object.inverse_distance),

@@ -14,7 +14,7 @@ GROUPS = {
         "Meridian", "Ghost", "lens_names", "glass_names", "CrossSection", "cross_section",
     ),
     "Rays, wavefronts and spots": (
-        "AimedRays", "PSF", "RayBundle", "RayStatus", "Seidel", "Spot", "TraceResult", "Wavefront",
+        "AimedRays", "FilmPupil", "PSF", "RayBundle", "RayStatus", "Seidel", "Spot", "TraceResult", "Wavefront",
     ),
     "Changing a lens": ("Optimisation", "Targets", "Variable", "optimised"),
     "Photographers' figures": (

@@ -388,6 +388,13 @@ class Ghost(_Value):
     def share(self) -> float | None: ...
 
 @final
+class FilmPupil:
+    @property
+    def irradiance(self) -> float: ...
+    @property
+    def outline(self) -> NDArray[np.float64]: ...
+
+@final
 class AimedRays:
     @property
     def origins_mm(self) -> NDArray[np.float64]: ...
@@ -492,6 +499,8 @@ class RayBundle:
 class Spot(_LargeValue):
     @property
     def points_mm(self) -> NDArray[np.float64]: ...
+    @property
+    def directions(self) -> NDArray[np.float64]: ...
     @property
     def pupil(self) -> NDArray[np.float64]: ...
     @property
@@ -625,6 +634,7 @@ class Lens(_Value):
         field_deg: float = 0.0,
         *,
         object_distance_m: float | None = None,
+        film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
     ) -> AimedRays: ...
     def wavefront(
@@ -632,6 +642,7 @@ class Lens(_Value):
         field_deg: float = 0.0,
         *,
         object_distance_m: float | None = None,
+        film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
         reference: str = "chief",
@@ -646,6 +657,7 @@ class Lens(_Value):
         field_deg: float = 0.0,
         *,
         object_distance_m: float | None = None,
+        film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
         pattern: str = "hexapolar",
@@ -661,6 +673,7 @@ class Lens(_Value):
         size: int = 128,
         pitch_um: float | None = None,
         object_distance_m: float | None = None,
+        film_mm: tuple[float, float] | None = None,
         film_distance_mm: float | None = None,
         centre: str = "chief",
         rays: int | None = None,
@@ -671,17 +684,22 @@ class Lens(_Value):
         field_deg: float = 0.0,
         *,
         object_distance_m: float | None = None,
+        film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
         spokes: int = 64,
         nodes: int = 6,
     ) -> RayBundle: ...
+    def film_pupil(
+        self, film_mm: tuple[float, float] = (0.0, 0.0), wavelength_nm: float | None = None
+    ) -> FilmPupil: ...
     def film_points(
         self,
         field_deg: float = 0.0,
         count: int = 1000000,
         *,
         object_distance_m: float | None = None,
+        film_mm: tuple[float, float] | None = None,
         wavelength_nm: float | None = None,
         film_distance_mm: float | None = None,
         pattern: str = "even",

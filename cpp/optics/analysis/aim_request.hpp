@@ -30,6 +30,7 @@ struct AimRequest {
     LensView<double> lens;     ///< as it is
     Vec3d centre;              ///< of the entry plane, relative to the first vertex, mm
     Vec3d towards;             ///< unit: of the ray through the entry plane's middle
+    Vec3d across, upwards;     ///< the axes of the entry plane
     double inverse_distance;   ///< of the object from the entry plane's middle, 1/mm
     double index;              ///< of the medium from which the rays enter
     double miss;               ///< how far from its place a ray may meet the stop, mm
@@ -78,8 +79,7 @@ REALCAM_HD inline void start_rays(const AimRequest& request, const Vec2Lanes<dou
                                   LensRays<double, N>& rays) {
     REALCAM_LANES
     for (int k = 0; k < N; ++k) {
-        const double along = entries.y[k];
-        const Vec3d offset{entries.x[k], along * request.towards.z, -along * request.towards.y};
+        const Vec3d offset = entries.x[k] * request.across + entries.y[k] * request.upwards;
         const Vec3d way = request.towards + request.inverse_distance * offset;
         const double scale = request.index / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
         rays.origin.set(k, request.centre + offset);

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "../../platform.hpp"
 #include "../prescription/lens_system.hpp"
 #include "../pupil/pupil_pattern.hpp"
@@ -11,6 +13,9 @@ namespace REALCAM_NAMESPACE {
 /// points relative to the last vertex.
 struct FieldRays {
     double field_angle_rad;
+    /// From the exit pupil on the chief ray to the film, mm along the ray: the mean of both meridians. Only where the
+    /// field is named by its film point, or the lens is not of revolution.
+    std::optional<double> exit_pupil_distance;
     std::vector<PupilPoint> pattern;
     std::vector<AimedRay> rays;  ///< one for each point of the pattern; only those whose status is ok count
     AimedRay chief;  ///< through the middle of the stop, even where the lens blocks it

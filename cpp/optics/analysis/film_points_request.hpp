@@ -17,6 +17,7 @@ struct FilmPointsRequest {
     LensView<T> lens;
     Vec3<T> centre;  ///< of the rectangle, relative to the first vertex, mm
     Vec3<T> towards;  ///< unit: of the ray through the entry plane's middle
+    Vec3<T> across, upwards;  ///< the axes of the entry plane
     Vec2<T> middle, reach;  ///< of the rectangle: from the entry plane's middle, and half its sides, mm
     T inverse_distance;     ///< of the object from the entry plane's middle, 1/mm
     T index;                ///< of the medium from which the rays enter
@@ -67,7 +68,7 @@ inline void find_film_points(FilmPointsRequest<T>& request) {
         REALCAM_LANES
         for (int k = 0; k < N; ++k) {
             const T across = r.middle.x + r.reach.x * x[k], along = r.middle.y + r.reach.y * y[k];
-            const Vec3<T> offset = {across, along * r.towards.z, -along * r.towards.y};
+            const Vec3<T> offset = across * r.across + along * r.upwards;
             const Vec3<T> way = r.towards + r.inverse_distance * offset;
             const T scale = r.index / std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
             rays.origin.set(k, r.centre + offset);

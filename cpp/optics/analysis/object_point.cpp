@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "../lens/chief_ray.hpp"
 #include "../lens/paraxial.hpp"
 
 namespace realcam {
@@ -17,6 +18,13 @@ std::string degrees(double radians) {
 }
 
 }  // namespace object_point_detail
+
+std::string FieldPoint::text() const {
+    if (!film) return "at a field angle of " + object_point_detail::degrees(angle_rad);
+    char text[80];
+    std::snprintf(text, sizeof text, "at the film point (%.6g, %.6g) mm", film->x, film->y);
+    return text;
+}
 
 namespace {
 
@@ -42,6 +50,16 @@ double object_distance_of(const LensSystem& lens, const FieldPoint& field) {
 }
 
 ObjectPoint::ObjectPoint(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
+    if (field.film || !lens.is_rotational())
+        set_by_chief_ray(lens, field);
+    else
+        set_by_angle(lens, wavelength_nm, field);
+    across = {1, 0, 0};
+    if (towards.x != 0) across = normalized(cross(Vec3d{0, 1, 0}, towards));
+    upwards = cross(towards, across);
+}
+
+void ObjectPoint::set_by_angle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {
     const double object_distance = object_distance_of(lens, field);
     const double pupil = first_order(lens, wavelength_nm).entrance_pupil_position;
     if (!std::isfinite(pupil))
@@ -54,6 +72,23 @@ ObjectPoint::ObjectPoint(const LensSystem& lens, double wavelength_nm, const Fie
     inverse_distance = cosine / (object_distance + pupil);
     if (!std::isfinite(inverse_distance))
         throw InputError("the object lies in the entrance pupil of lens \"" + lens.name + "\"");
+}
+
+void ObjectPoint::set_by_chief_ray(const LensSystem& lens, const FieldPoint& field) {
+    // In the frame of the camera. It is the film, not the front surface, from which a lens is focused.
+    const double plane =
+        field.object_distance ? -object_distance_of(lens, field) : camera_film_position(lens) - lens.focus_distance;
+    const FilmRays rays(lens, lens.wavelength_nm);
+    const std::optional<ChiefRay> chief =
+        field.film ? chief_ray_of_film_point(rays, *field.film) : chief_ray_of_angle(rays, field.angle_rad);
+    if (!chief)
+        throw InputError("no ray " + field.text() + " reaches the middle of the stop of lens \"" + lens.name + "\"");
+    centre = chief->scene;
+    towards = chief->scene_direction;
+    inverse_distance = towards.z / (centre.z - plane);
+    if (!(inverse_distance >= 0))
+        throw InputError("the light " + field.text() + " does not come from the object plane of lens \"" + lens.name +
+                         "\"");
 }
 
 double ObjectPoint::path_difference(Entry entry) const {

@@ -6,13 +6,18 @@
 
 namespace REALCAM_NAMESPACE {
 
-/// A place in the field, as users name it. It lies in the y-z plane; an angle above 0 is light that rises towards +y on
-/// its way to the film, from below the axis.
+/// A place in the field, as users name it: by an angle, or by the film point at which its chief ray of the design
+/// wavelength ends. By an angle it lies in the y-z plane; an angle above 0 is light that rises towards +y on its way to
+/// the film, from below the axis.
 struct FieldPoint {
     double angle_rad = 0;  ///< at which the chief ray comes, to the axis; up to 180 degrees for an object at infinity
     /// mm from the object plane to the front vertex, infinity allowed; none: the plane in focus. The point of a finite
     /// plane is seen at the angle from the middle of the paraxial entrance pupil.
     std::optional<double> object_distance = std::nullopt;
+    std::optional<Vec2<double>> film = std::nullopt;  ///< mm from its middle; the angle is not read then
+
+    /// "at a field angle of 10 deg", for messages.
+    std::string text() const;
 };
 
 namespace object_point_detail {
@@ -29,12 +34,15 @@ double object_distance_of(const LensSystem& lens, const FieldPoint& field);
 /// the object's distance.
 class ObjectPoint {
 public:
-    /// Where a ray crosses the entry plane, the plane through `centre` across `towards`: mm along x, and along the
-    /// direction across x and `towards` that is y for a point on the axis.
+    /// Where a ray crosses the entry plane, the plane through `centre` across `towards`: mm along `across` and
+    /// `upwards`.
     using Entry = Vec2<double>;
 
-    Vec3d centre;  ///< the middle of the paraxial entrance pupil, lens frame
+    /// The middle of the paraxial entrance pupil, lens frame. Of a field that is named by its film point, and of a lens
+    /// that is not of revolution: where the chief ray meets the front surface, in the frame of film_path_ends.
+    Vec3d centre;
     Vec3d towards;  ///< unit: of the ray through the centre
+    Vec3d across, upwards;  ///< unit: the axes of the entry plane; for a point on the axis x and y
     double inverse_distance;  ///< 1 / distance of the object from the centre, 1/mm; 0: infinity
 
     ObjectPoint(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);
@@ -47,7 +55,10 @@ public:
     double path_difference(Entry entry) const;
 
 private:
-    Vec3d offset(Entry entry) const { return {entry.x, entry.y * towards.z, -entry.y * towards.y}; }
+    Vec3d offset(Entry entry) const { return entry.x * across + entry.y * upwards; }
+
+    void set_by_angle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);
+    void set_by_chief_ray(const LensSystem& lens, const FieldPoint& field);
 };
 
 }  // namespace REALCAM_NAMESPACE

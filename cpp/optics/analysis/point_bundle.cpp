@@ -12,9 +12,9 @@ namespace realcam {
 
 PointBundle::PointBundle(const LensSystem& lens, double wavelength_nm, const FieldPoint& field, double film_distance,
                          const RayLoop& loop, int look)
-    : mirrored(lens.iris.blades == 0 || lens.is_wide_open()),
+    : mirrored(lens.is_rotational() && !field.film && (lens.iris.blades == 0 || lens.is_wide_open())),
       object(in_known_glass(lens, wavelength_nm), wavelength_nm, field),
-      path_(lens, LightDirection::to_film, wavelength_nm),
+      path_(lens, LightDirection::to_film, wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       open_(AimingPath::open(path_)),
       real_(AimingPath::real(path_)),
       film_distance_(film_distance) {

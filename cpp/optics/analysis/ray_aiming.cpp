@@ -12,7 +12,7 @@ namespace realcam {
 
 RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoint& field)
     : object(lens, wavelength_nm, field),
-      path_(lens, LightDirection::to_film, wavelength_nm),
+      path_(lens, LightDirection::to_film, wavelength_nm, film_path_ends(lens, LightDirection::to_film)),
       stop_(lens.stop_index()),
       open_(AimingPath::open(path_)),
       real_(AimingPath::real(path_)),
@@ -20,7 +20,11 @@ RayAimer::RayAimer(const LensSystem& lens, double wavelength_nm, const FieldPoin
       stop_radius_(std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter)) {
     const FirstOrder data = first_order(lens, wavelength_nm);
     step_ = 1e-6 * data.entrance_pupil_diameter;
-    follow_chief_ray(lens, wavelength_nm, field);
+    if (const PathEnds ends = film_path_ends(lens, LightDirection::to_film); ends.entry) frame_ = ends.entry->origin;
+    if (field.film || !lens.is_rotational())
+        find_chief_ray(lens, field);  // it is that of the design wavelength, or close to it
+    else
+        follow_chief_ray(lens, wavelength_nm, field);
 }
 
 AimedRay RayAimer::operator()(Vec2<double> place) const {
@@ -39,12 +43,12 @@ Vec2<double> RayAimer::off_the_edge(Vec2<double> place) const {
 }
 
 AimRequest RayAimer::request(const StopMap& map) const {
-    LensView<double> to_stop = open_.view();
-    to_stop.count = stop_ + 1;
-    return {to_stop,
+    return {open_.first(stop_ + 1),
             real_.view(),
             object.centre - Vec3d{0, 0, path_.entry_position},
             object.towards,
+            object.across,
+            object.upwards,
             object.inverse_distance,
             path_.entry_index,
             kMiss * stop_radius_,
@@ -67,8 +71,7 @@ AimedRay RayAimer::through(LensView<double> view, Entry entry) const {
 }
 
 std::optional<RayAimer::Probe> RayAimer::probe(const ObjectPoint& from, Entry entry) const {
-    LensView<double> to_stop = open_.view();
-    to_stop.count = stop_ + 1;
+    const LensView<double> to_stop = open_.first(stop_ + 1);
     const Entry entries[3] = {entry, {entry.x + step_, entry.y}, {entry.x, entry.y + step_}};
     LensRays<double, 3> rays;
     for (int i = 0; i < 3; ++i) {
@@ -121,6 +124,13 @@ std::optional<RayAimer::Entry> RayAimer::aimed_from_chief(Vec2<double> place) co
         if (entry) return entry;
     }
     return {};
+}
+
+void RayAimer::find_chief_ray(const LensSystem& lens, const FieldPoint& field) {
+    const std::optional<Entry> entry = aimed(object, {0, 0}, chief_);
+    if (!entry)
+        throw InputError("no ray " + field.text() + " reaches the middle of the stop of lens \"" + lens.name + "\"");
+    chief_ = *entry;
 }
 
 void RayAimer::follow_chief_ray(const LensSystem& lens, double wavelength_nm, const FieldPoint& field) {

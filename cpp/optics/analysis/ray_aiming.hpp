@@ -3,6 +3,7 @@
 
 #include "../../math/hypotenuse.hpp"
 #include "../trace/aiming_path.hpp"
+#include "../trace/film_frame.hpp"
 #include "aim_request.hpp"
 #include "object_point.hpp"
 
@@ -38,6 +39,9 @@ public:
 
     ObjectPoint object;
 
+    /// A point of the object's frame, in the lens frame.
+    Vec3d in_lens_frame(Vec3d point) const { return point + frame_; }
+
 private:
     struct Probe {
         Vec2<double> at;  ///< on the stop
@@ -60,6 +64,7 @@ private:
     /// Starts from the chief ray at once. Where that fails, it goes outwards to the place in shorter and shorter steps.
     std::optional<Entry> aimed_from_chief(Vec2<double> place) const;
 
+    void find_chief_ray(const LensSystem& lens, const FieldPoint& field);
     void follow_chief_ray(const LensSystem& lens, double wavelength_nm, const FieldPoint& field);
 
     LensPath<double> path_;
@@ -68,6 +73,7 @@ private:
     double reach_;  ///< of the stop's opening, which may have blades
     double stop_radius_, step_;
     Entry chief_{0, 0};
+    Vec3d frame_{0, 0, 0};  ///< origin of the object's frame, in the lens frame
 };
 
 }  // namespace REALCAM_NAMESPACE

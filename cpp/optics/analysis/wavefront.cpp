@@ -18,6 +18,7 @@ double reference_curvature(const LensSystem& lens, double wavelength_nm, const F
                            ExitPupil exit_pupil) {
     const Vec3d direction = normalized(rays.chief.direction);
     const Vec3d image = crossing(rays.chief, z);
+    if (rays.exit_pupil_distance) return 1 / (*rays.exit_pupil_distance + (z - lens.film_distance) / direction.z);
     // A chief ray on the axis does not cross it; one at 1e-6 crosses it within 1e-12 of the paraxial place, which is
     // what rounding leaves of a quotient of two such numbers.
     if (exit_pupil == ExitPupil::paraxial || std::fabs(rays.field_angle_rad) < 1e-6) {

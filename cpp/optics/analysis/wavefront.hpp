@@ -11,9 +11,11 @@ enum class SphereCentre {
     centroid,  ///< the centroid of the spot there
 };
 
-/// How far the reference sphere is from its centre: to where the chief ray meets
+/// How far the reference sphere is from its centre: to where the chief ray meets what follows. Where the lens is not of
+/// revolution, or the field is named by its film point, there is but one: the image of the stop by rays close to the
+/// chief ray.
 enum class ExitPupil {
-    real,      ///< the axis, as in CODE V's listings; on the axis, as below
+    real,  ///< the axis, as in CODE V's listings; on the axis, as below
     paraxial,  ///< the plane of the paraxial exit pupil, as in OpticStudio
 };
 
@@ -21,7 +23,7 @@ enum class ExitPupil {
 /// and taken away.
 enum class Removed {
     nothing,
-    tilt,   ///< 1, x, y
+    tilt,  ///< 1, x, y
     focus,  ///< 1, x, y, x^2 + y^2
 };
 

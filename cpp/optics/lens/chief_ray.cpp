@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
 
 #include "../../math/hypotenuse.hpp"
 #include "../../math/matrix2.hpp"
@@ -14,13 +17,14 @@ FilmRays::FilmRays(const LensSystem& lens, double wavelength_nm)
     : ends_(film_path_ends(lens, LightDirection::to_scene)),
       path_(lens, LightDirection::to_scene, wavelength_nm, ends_),
       open_(AimingPath::open(path_)),
-      last_rim_(lens.surfaces.back().clear_semi_diameter),
+      within_rims_(AimingPath::with_open_stop(path_, lens.stop_index())),
+      last_(lens.surfaces.back()),
       film_distance_(lens.film_distance),
       film_curvature_(1 / lens.film_radius_of_curvature),
       scene_index_(lens.indices(wavelength_nm).front()),
       stop_radius_(std::min(lens.stop_semi_diameter, lens.stop().clear_semi_diameter)),
       to_stop_(static_cast<int>(lens.surfaces.size()) - lens.stop_index()) {
-    if (ends_.entry) last_surface_ = inverse_motion(*ends_.entry) * surface_frames(lens).surfaces.back();
+    if (ends_.entry) frame_of_last_ = inverse_motion(*ends_.entry) * surface_frames(lens).surfaces.back();
 }
 
 Vec3d FilmRays::film_point(Vec2<double> film) const {
@@ -28,7 +32,9 @@ Vec3d FilmRays::film_point(Vec2<double> film) const {
 }
 
 Vec3d FilmRays::on_last_surface(Vec2<double> share) const {
-    return last_surface_.point({last_rim_ * share.x, last_rim_ * share.y, 0});
+    const double x = last_.clear_semi_diameter * share.x, y = last_.clear_semi_diameter * share.y;
+    const double sag = last_.sag(x, y);
+    return frame_of_last_.point({x, y, std::isfinite(sag) ? sag : 0.0});
 }
 
 namespace {
@@ -72,67 +78,141 @@ public:
                       {(p.y[1] - p.y[0]) / kStep, (p.y[2] - p.y[0]) / kStep}}};
     }
 
-    /// The direction, of those to places all over the last surface, whose ray comes nearest to the stop's middle.
-    std::optional<Vec2<double>> nearest() const {
-        constexpr int kAcross = 15, kRays = kAcross * kAcross;
-        Vec2<double> cosines[kRays];
-        for (int i = 0; i < kRays; ++i) {
-            const auto share = [](int step) { return 2.0 * step / (kAcross - 1) - 1; };
-            const Vec3d to = rays_.on_last_surface({share(i % kAcross), share(i / kAcross)});
-            const Vec3d way = rays_.film_index() * normalized(to - film_);
-            cosines[i] = {way.x, way.y};
-        }
-        LensRays<double, kRays> rays = from_film(cosines);
-        rays_.to_stop(rays);
+    /// The direction whose ray comes nearest to the stop's middle: of an even grid of those to the last surface, then
+    /// of finer and finer ones about the best.
+    std::optional<Vec2<double>> nearest(bool within_rims) const {
+        constexpr int kAcross = 13, kRays = kAcross * kAcross, kLevels = 3;
         std::optional<Vec2<double>> best;
         double least = std::numeric_limits<double>::infinity();
-        for (int i = 0; i < kRays; ++i) {
-            const double miss = hypotenuse(rays.origin.x[i], rays.origin.y[i]);
-            if (rays.status[i] != 0 || !(miss < least)) continue;
-            least = miss;
-            best = cosines[i];
+        auto [low, high] = box_of_last_surface();
+        Vec2<double> middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
+        Vec2<double> half{0.5 * (high.x - low.x), 0.5 * (high.y - low.y)};
+        for (int level = 0; level < kLevels; ++level) {
+            Vec2<double> cosines[kRays];
+            for (int i = 0; i < kRays; ++i) {
+                const auto step = [](int k) { return 2.0 * k / (kAcross - 1) - 1; };
+                cosines[i] = {middle.x + half.x * step(i % kAcross), middle.y + half.y * step(i / kAcross)};
+            }
+            LensRays<double, kRays> rays = from_film(cosines);
+            within_rims ? rays_.to_stop_within_rims(rays) : rays_.to_stop(rays);
+            for (int i = 0; i < kRays; ++i) {
+                const double miss = hypotenuse(rays.origin.x[i], rays.origin.y[i]);
+                if (rays.status[i] != 0 || !(miss < least)) continue;
+                least = miss;
+                best = middle = cosines[i];
+            }
+            constexpr double kFiner = 2.0 / (kAcross - 1);
+            half = {kFiner * half.x, kFiner * half.y};
         }
         return best;
     }
 
 private:
+    std::pair<Vec2<double>, Vec2<double>> box_of_last_surface() const {
+        constexpr int kAround = 32;
+        Vec2<double> low{1e9, 1e9}, high{-1e9, -1e9};
+        for (int i = 0; i <= kAround; ++i) {
+            const double angle = 2 * std::numbers::pi * i / kAround, share = i == kAround ? 0 : 1;
+            const Vec3d to = rays_.on_last_surface({share * std::cos(angle), share * std::sin(angle)});
+            const Vec3d way = rays_.film_index() * normalized(to - film_);
+            low = {std::min(low.x, way.x), std::min(low.y, way.y)};
+            high = {std::max(high.x, way.x), std::max(high.y, way.y)};
+        }
+        return {low, high};
+    }
+
     const FilmRays& rays_;
     Vec3d film_;
 };
 
-}  // namespace
-
-std::optional<ChiefRay> chief_ray_of_film_point(const FilmRays& rays, Vec2<double> film) {
+/// From a direction on, by Newton's method; nothing where it leads to no ray that leaves the lens.
+std::optional<ChiefRay> followed(const FilmRays& rays, const StopAim& aim, Vec3d film, Vec2<double> at) {
     constexpr int kMostSteps = 40, kMostHalvings = 24;
-    const double close = 1e-11 * rays.stop_radius();
-    const Vec3d from = rays.film_point(film);
-    const StopAim aim(rays, from);
-    std::optional<Vec2<double>> at = aim.nearest();
-    if (!at) return {};
-    std::optional<StopAim::Probe> here = aim.probe(*at);
-    for (int step = 0; here && here->error() > close; ++step) {
-        if (step == kMostSteps) return {};
+    // Through aspheres rounding leaves more than through spheres; what is not near enough then is no ray.
+    const double close = 1e-11 * rays.stop_radius(), near_enough = 1e-7 * rays.stop_radius();
+    std::optional<StopAim::Probe> here = aim.probe(at);
+    for (int step = 0; here && here->error() > close && step < kMostSteps; ++step) {
         const Vec2<double> change = here->slope.inverse() * here->miss;
         std::optional<StopAim::Probe> next;
         Vec2<double> there{};
         for (int halving = 0; halving <= kMostHalvings; ++halving) {
             const double share = std::ldexp(1.0, -halving);
-            there = {at->x - share * change.x, at->y - share * change.y};
+            there = {at.x - share * change.x, at.y - share * change.y};
             next = aim.probe(there);
             if (next && next->error() < here->error()) break;
             next.reset();
         }
-        if (!next && here->error() < 100 * close) break;  // as near as rounding lets it come
+        if (!next) break;  // as near as rounding lets it come, or no way leads there
         here = next;
         at = there;
     }
-    if (!here) return {};
-    const Vec2<double> found[] = {*at};
+    if (!here || !(here->error() < near_enough)) return {};
+    const Vec2<double> found[] = {at};
     LensRays<double, 1> ray = aim.from_film(found);
     const Vec3d film_direction = (-1 / rays.film_index()) * ray.direction[0];
     rays.to_scene(ray);
     if (ray.status[0] != 0) return {};
-    return ChiefRay{from, film_direction, ray.origin[0], (-1 / rays.scene_index()) * ray.direction[0]};
+    return ChiefRay{film, film_direction, ray.origin[0], (-1 / rays.scene_index()) * ray.direction[0]};
+}
+
+}  // namespace
+
+std::optional<ChiefRay> chief_ray_of_film_point(const FilmRays& rays, Vec2<double> film) {
+    const Vec3d from = rays.film_point(film);
+    const StopAim aim(rays, from);
+    // Rays far beyond the rims may come to the middle of the stop by other ways than the lens's image.
+    for (const bool within_rims : {true, false})
+        if (const std::optional<Vec2<double>> start = aim.nearest(within_rims))
+            if (const std::optional<ChiefRay> found = followed(rays, aim, from, *start)) return found;
+    return {};
+}
+
+namespace {
+
+/// By which a chief ray misses the direction of an angle: across it in x, and upwards.
+Vec2<double> direction_error(const ChiefRay& ray, double angle_rad) {
+    const Vec3d d = ray.scene_direction;
+    return {d.x, d.y * std::cos(angle_rad) - d.z * std::sin(angle_rad)};
+}
+
+/// Newton's method in the film point, with differences.
+std::optional<ChiefRay> chief_ray_at(const FilmRays& rays, Vec2<double>& film, double angle_rad) {
+    constexpr int kMost = 20;
+    constexpr double kClose = 1e-13, kStep = 1e-5;
+    std::optional<ChiefRay> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kMost; ++i) {
+        const std::optional<ChiefRay> here = chief_ray_of_film_point(rays, film);
+        const std::optional<ChiefRay> x = chief_ray_of_film_point(rays, {film.x + kStep, film.y});
+        const std::optional<ChiefRay> y = chief_ray_of_film_point(rays, {film.x, film.y + kStep});
+        if (!here || !x || !y) return {};
+        const Vec2<double> error = direction_error(*here, angle_rad);
+        const double size = hypotenuse(error.x, error.y);
+        if (!(size < least)) return least < 1e-9 ? best : std::nullopt;  // as near as rounding lets it come
+        best = here;
+        least = size;
+        if (size < kClose) return best;
+        const Vec2<double> at_x = direction_error(*x, angle_rad), at_y = direction_error(*y, angle_rad);
+        const Matrix2 slope{{(at_x.x - error.x) / kStep, (at_y.x - error.x) / kStep},
+                            {(at_x.y - error.y) / kStep, (at_y.y - error.y) / kStep}};
+        const Vec2<double> change = slope.inverse() * error;
+        film = {film.x - change.x, film.y - change.y};
+    }
+    return {};
+}
+
+}  // namespace
+
+std::optional<ChiefRay> chief_ray_of_angle(const FilmRays& rays, double angle_rad) {
+    constexpr double kLargest = 0.09;  // rad
+    const int steps = std::max(1, static_cast<int>(std::ceil(std::fabs(angle_rad) / kLargest)));
+    Vec2<double> film{0, 0};
+    std::optional<ChiefRay> found;
+    for (int i = 1; i <= steps; ++i) {
+        found = chief_ray_at(rays, film, angle_rad * i / steps);
+        if (!found) return {};
+    }
+    return found;
 }
 
 }  // namespace realcam

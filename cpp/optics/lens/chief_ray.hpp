@@ -20,15 +20,18 @@ public:
     /// The opening of the stop counts as round.
     double stop_radius() const { return stop_radius_; }
     Vec3d film_point(Vec2<double> film) const;
-    /// Of the last surface, in the frame of the film.
-    Vec3d last_vertex() const { return last_surface_.origin; }
-    /// A point of the last surface's vertex plane: shares of its clear semi-diameter.
+    /// A point of the last surface: shares of its clear semi-diameter.
     Vec3d on_last_surface(Vec2<double> share) const;
 
     /// To the plane of the stop, and into its frame.
     template <int N>
     void to_stop(LensRays<double, N>& rays) const {
         trace_lens(open_.first(to_stop_), rays);
+    }
+    /// The same for rays that the rims on the way let pass.
+    template <int N>
+    void to_stop_within_rims(LensRays<double, N>& rays) const {
+        trace_lens(within_rims_.first(to_stop_), rays);
     }
     template <int N>
     void to_scene(LensRays<double, N>& rays) const {
@@ -38,9 +41,10 @@ public:
 private:
     PathEnds ends_;
     LensPath<double> path_;
-    AimingPath open_;
-    Affine<double> last_surface_;
-    double last_rim_, film_distance_, film_curvature_, scene_index_, stop_radius_;
+    AimingPath open_, within_rims_;
+    Affine<double> frame_of_last_;
+    Surface last_;
+    double film_distance_, film_curvature_, scene_index_, stop_radius_;
     int to_stop_;
 };
 
@@ -51,8 +55,12 @@ struct ChiefRay {
     Vec3d scene, scene_direction;  ///< where it meets the front surface; frame of the camera, mm
 };
 
-/// Nothing where no ray is found: Newton's method, begun with the ray that comes nearest to the stop's middle of those
-/// to places all over the last surface.
+/// Nothing where no ray is found: Newton's method, begun with the ray that comes nearest to the stop's middle of a grid
+/// of those to the last surface.
 std::optional<ChiefRay> chief_ray_of_film_point(const FilmRays& rays, Vec2<double> film);
+
+/// The chief ray that comes at an angle to the camera's axis, in its y-z plane: above 0 light rises towards +y. It is
+/// followed from the middle of the film in steps of at most 5 degrees.
+std::optional<ChiefRay> chief_ray_of_angle(const FilmRays& rays, double angle_rad);
 
 }  // namespace REALCAM_NAMESPACE

@@ -130,6 +130,12 @@ ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<
     return found;
 }
 
+double exit_pupil_distance(const LensSystem& lens, double wavelength_nm, Vec2<double> film) {
+    const ParabasalRays rays = parabasal_rays(lens, wavelength_nm, film);
+    return -0.5 * lens.indices(wavelength_nm).back() *
+           (rays.stop_by_film_place.inverse() * rays.stop_by_film_direction).trace();
+}
+
 ParabasalData parabasal_data(const LensSystem& lens, double wavelength_nm) {
     const ParabasalRays rays = parabasal_rays(lens, wavelength_nm);
     const std::vector<double> index = lens.indices(wavelength_nm);

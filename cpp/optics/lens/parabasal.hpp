@@ -20,6 +20,10 @@ struct ParabasalRays {
 /// Throws InputError where no chief ray of that film point is found.
 ParabasalRays parabasal_rays(const LensSystem& lens, double wavelength_nm, Vec2<double> film = {0, 0});
 
+/// From the exit pupil on the chief ray of a film point to that point, mm along the ray: where rays from the middle of
+/// the stop cross, the mean of both meridians. Throws InputError where no chief ray of the film point is found.
+double exit_pupil_distance(const LensSystem& lens, double wavelength_nm, Vec2<double> film);
+
 /// A lens in one of its two principal meridians: planes through the chief ray in which light stays, as far as focal
 /// lengths go. Lengths in mm; a power of 0 has an infinite focal length.
 struct Meridian {

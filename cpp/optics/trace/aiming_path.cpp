@@ -19,14 +19,27 @@ AimingPath::AimingPath(const LensPath<double>& path) {
     for (FrameChanges<double>& frame : frames_in_place_) frame.out = {};
 }
 
+namespace {
+
+void open_rim(SurfaceView<double>& step) {
+    step.rim_squared = std::numeric_limits<double>::max();
+    step.hole_squared = -1;
+    step.has_blades = false;
+}
+
+}  // namespace
+
 AimingPath AimingPath::open(const LensPath<double>& path) {
     AimingPath result(path);
-    for (SurfaceView<double>& step : result.steps_) {
-        step.rim_squared = std::numeric_limits<double>::max();
-        step.hole_squared = -1;
-        step.has_blades = false;
-    }
+    for (SurfaceView<double>& step : result.steps_) open_rim(step);
     result.apertures_.clear();
+    return result;
+}
+
+AimingPath AimingPath::with_open_stop(const LensPath<double>& path, int stop) {
+    AimingPath result(path);
+    for (SurfaceView<double>& step : result.steps_)
+        if (step.surface_index == stop) open_rim(step);
     return result;
 }
 

@@ -11,6 +11,8 @@ public:
     /// Without rims, blades, obstructions and apertures: what a ray is aimed through. Whether the real lens lets it
     /// pass is asked afterwards. Aspheres stay searched for within their rim.
     static AimingPath open(const LensPath<double>& path);
+    /// As it is, but for the stop, the surface of that index in the lens: its plane is open.
+    static AimingPath with_open_stop(const LensPath<double>& path, int stop);
     /// The lens as it is.
     static AimingPath real(const LensPath<double>& path) { return AimingPath(path); }
 

@@ -25,6 +25,7 @@ from .distortion import (
     plot_distortion_grid,
 )
 from .field_curves import FieldCurves, field_curves, plot_field_curves
+from .field_map import FieldMap, field_map, plot_field_map
 from .fields import Bundles, default_frequencies_per_mm, field_angles_deg
 from .film_pupil import FilmPupils, film_pupils, plot_pupil_shapes, plot_relative_illumination
 from .kinds import KINDS, plot_figure
@@ -58,6 +59,7 @@ __all__ = [
     "Distortion",
     "DistortionGrid",
     "FieldCurves",
+    "FieldMap",
     "FilmPupils",
     "LateralColour",
     "LongitudinalAberration",
@@ -76,6 +78,7 @@ __all__ = [
     "distortion_grid",
     "field_angles_deg",
     "field_curves",
+    "field_map",
     "film_pupils",
     "fit_zernike",
     "lateral_colour",
@@ -89,6 +92,7 @@ __all__ = [
     "plot_distortion",
     "plot_distortion_grid",
     "plot_field_curves",
+    "plot_field_map",
     "plot_figure",
     "plot_lateral_colour",
     "plot_longitudinal_aberration",

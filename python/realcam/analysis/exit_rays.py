@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._core import Lens, RayStatus
+from .._core import Lens
 from ..short_text import ShortText
 from .fields import Doubles
 
@@ -37,19 +37,9 @@ def exit_rays(
     object_distance_m: float | None = None,
 ) -> ExitRays:
     """Rays through places of the stop, (N, 2) as shares of its radius, aimed at them through the real lens."""
-    aimed = lens.aim(pupil, field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m)
-    lost = np.isnan(aimed.directions[:, :1])  # where no ray meets the place: Lens.trace takes finite numbers only
-    out = lens.trace(
-        np.where(lost, 0.0, aimed.origins_mm),
-        np.where(lost, (0.0, 0.0, 1.0), aimed.directions),
-        wavelength_nm=wavelength_nm,
-        start="scene",
-    )
-    passes = (out.status == RayStatus.OK)[:, None] & ~lost
-    directions = np.where(passes, out.directions, np.nan)
-    slopes = directions[:, :2] / directions[:, 2:]
-    points = out.origins_mm[:, :2] + (lens.film_position_mm - out.origins_mm[:, 2:]) * slopes
-    return ExitRays(points, slopes, directions[:, :2])
+    spot = lens.spot(field_deg, wavelength_nm=wavelength_nm, object_distance_m=object_distance_m, pupil=pupil)
+    directions = spot.directions
+    return ExitRays(spot.points_mm, directions[:, :2] / directions[:, 2:], directions[:, :2])
 
 
 def hexapolar(rings: int) -> Doubles:

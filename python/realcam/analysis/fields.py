@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,7 +13,18 @@ from numpy.typing import ArrayLike, NDArray
 from .._core import InputError, Lens, RayBundle
 
 Doubles = NDArray[np.float64]
+FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's middle
 LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725
+
+
+def field_arguments(field: FieldPlace) -> dict[str, Any]:
+    """How Lens.spot and its like are told of a place in the field."""
+    return {"film_mm": field} if isinstance(field, tuple) else {"field_deg": float(field)}
+
+
+def field_text(field: FieldPlace) -> str:
+    """For messages."""
+    return f"the film point ({field[0]:.6g}, {field[1]:.6g}) mm" if isinstance(field, tuple) else f"{field:.6g} deg"
 
 
 class Bundles:
@@ -24,14 +36,14 @@ class Bundles:
     def __init__(self, lens: Lens, object_distance_m: float | None = None) -> None:
         self.lens = lens
         self.object_distance_m = object_distance_m
-        self._kept: dict[tuple[float, float, int, int], RayBundle] = {}
+        self._kept: dict[tuple[FieldPlace, float, int, int], RayBundle] = {}
 
-    def at(self, field_deg: float, wavelength_nm: float, spokes: int = 32, nodes: int = 6) -> RayBundle:
+    def at(self, field: FieldPlace, wavelength_nm: float, spokes: int = 32, nodes: int = 6) -> RayBundle:
         """Raises InputError where no light passes."""
-        key = (float(field_deg), float(wavelength_nm), spokes, nodes)
+        key = (field, float(wavelength_nm), spokes, nodes)
         if key not in self._kept:
             self._kept[key] = self.lens.bundle(
-                key[0],
+                **field_arguments(field),
                 wavelength_nm=key[1],
                 object_distance_m=self.object_distance_m,
                 spokes=spokes,

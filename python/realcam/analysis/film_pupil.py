@@ -8,12 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from .._core import Lens, RayStatus
+from .._core import Lens
 from ..short_text import ShortText
 from . import style
 from .fields import Bundles, Doubles, bundles_of, fields_of
-
-SPOKES, STEPS, HALVINGS = 96, 26, 26
 
 
 @dataclass(frozen=True, repr=False)
@@ -51,69 +49,11 @@ def film_pupils(
     source = bundles_of(lens, object_distance_m, bundles)
     nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
     fields = fields_of(lens, fields_deg, samples, source)
-    # The axis comes along, for what the others are relative to.
-    light = [source.at(float(field), nm) for field in (0.0, *fields)]
-    heights = np.array([b.chief_ray_mm[1] for b in light])
-    cosines = [b.directions[:, :2] for b in light]
-    low, high = (np.array([f(c, axis=0) for c in cosines]) for f in (np.min, np.max))
-    middle, reach = 0.5 * (low + high), 0.5 * (high - low)
-    angle = 2 * np.pi * (np.arange(SPOKES) + 0.5) / SPOKES
-    unit = np.column_stack([np.cos(angle), np.sin(angle)])
-    steps = np.linspace(0, 1.75, STEPS)
-
-    def passes(point: np.ndarray, spoke: np.ndarray, radius: Doubles) -> np.ndarray:
-        cosine = middle[point] + radius[:, None] * unit[spoke] * reach[point]
-        square = (cosine**2).sum(axis=1)
-        way_z = np.sqrt(np.maximum(1 - square, 0.0))
-        origins = np.column_stack([0 * radius, heights[point], np.full(len(radius), lens.film_position_mm)])
-        # Backwards: the light that comes with these cosines.
-        out = lens.trace(origins, -np.column_stack([cosine, np.maximum(way_z, 1e-9)]), wavelength_nm=nm, start="film")
-        passed: np.ndarray = (out.status == RayStatus.OK) & (square < 1)
-        return passed
-
-    point, spoke, step = (a.ravel() for a in np.indices((len(light), SPOKES, STEPS)))
-    open_ = passes(point, spoke, steps[step]).reshape(len(light), SPOKES, STEPS)
-    at_point, at_spoke, at_step = np.nonzero(open_[:, :, 1:] != open_[:, :, :-1])
-    begins = open_[at_point, at_spoke, at_step + 1]
-    inner, outer = steps[at_step], steps[at_step + 1]
-    for _ in range(HALVINGS):
-        half = 0.5 * (inner + outer)
-        like_outer = passes(at_point, at_spoke, half) == begins
-        inner, outer = np.where(like_outer, inner, half), np.where(like_outer, half, outer)
-    edge = 0.5 * (inner + outer)
-    signed = np.where(begins, -1.0, 1.0) * edge**2
-    sums = np.bincount(at_point, weights=signed, minlength=len(light))
-    area = sums * np.pi / SPOKES * reach[:, 0] * reach[:, 1]
-    outlines = tuple(
-        _outline(edge[at_point == k], begins[at_point == k], at_spoke[at_point == k], middle[k], unit * reach[k])
-        for k in range(1, len(light))
-    )
-    return FilmPupils(fields, heights[1:], outlines, area[1:], area[1:] / area[0])
-
-
-def _outline(edge: Doubles, begins: np.ndarray, spoke: np.ndarray, middle: Doubles, ways: Doubles) -> Doubles:
-    """Pieces between the edges of neighbouring spokes that follow each other on them in the same way; where the light
-    ends between two spokes, along the lit one."""
-    by_spoke = [
-        [(float(r), bool(b)) for r, b in zip(edge[spoke == s], begins[spoke == s], strict=True)]
-        for s in range(len(ways))
-    ]
-    stretches = []
-    for edges in by_spoke:
-        ends = edges if not edges or edges[0][1] else [(0.0, True), *edges]
-        stretches.append([(ends[i][0], ends[i + 1][0]) for i in range(0, len(ends) - 1, 2)])
-    pieces = []
-    for s, here in enumerate(stretches):
-        t = (s + 1) % len(stretches)
-        for i in range(max(len(here), len(stretches[t]))):
-            if i < len(here) and i < len(stretches[t]):
-                for end in (0, 1):
-                    if here[i][end] or stretches[t][i][end]:
-                        pieces.append((middle + here[i][end] * ways[s], middle + stretches[t][i][end] * ways[t]))
-            else:
-                lit, (a, b) = (s, here[i]) if i < len(here) else (t, stretches[t][i])
-                pieces.append((middle + a * ways[lit], middle + b * ways[lit]))
-    return np.array(pieces).reshape(-1, 2, 2)
+    places = np.array([source.at(float(field), nm).chief_ray_mm for field in fields])
+    pupils = [lens.film_pupil((x, y), nm) for x, y in places]
+    light = np.array([pupil.irradiance for pupil in pupils])
+    on_axis = lens.film_pupil((0.0, 0.0), nm).irradiance
+    return FilmPupils(fields, places[:, 1], tuple(pupil.outline for pupil in pupils), light, light / on_axis)
 
 
 def plot_relative_illumination(data: FilmPupils, axes: Axes) -> None:

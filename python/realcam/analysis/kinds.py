@@ -16,6 +16,7 @@ from .bokeh import Bokeh, bokeh, plot_bokeh
 from .depth_over_focus import DepthOverFocus, depth_over_focus, plot_depth_over_focus
 from .distortion import Distortion, DistortionGrid, distortion, distortion_grid, plot_distortion, plot_distortion_grid
 from .field_curves import FieldCurves, field_curves, plot_field_curves
+from .field_map import QUANTITIES, FieldMap, field_map, plot_field_map
 from .fields import Bundles, Doubles, field_angles_deg
 from .film_pupil import FilmPupils, film_pupils, plot_pupil_shapes, plot_relative_illumination
 from .lateral_colour import LateralColour, lateral_colour, plot_lateral_colour
@@ -149,6 +150,17 @@ def _design_only(asked: Asked) -> dict[str, Any]:
     }
 
 
+def _map_of(quantity: str) -> Kind:
+    def compute(asked: Asked) -> FieldMap:
+        frequencies = asked.frequencies_per_mm
+        if frequencies is not None and len(frequencies) != 1:
+            raise InputError(f"this plot is of one frequency; {len(frequencies)} are given")
+        frequency = None if frequencies is None else float(frequencies[0])
+        return field_map(asked.lens, quantity, frequency_per_mm=frequency, **_design_only(asked))
+
+    return Kind(f"{QUANTITIES[quantity].title}, over the film", FieldMap, compute, **_single(plot_field_map))
+
+
 KINDS_WITH_METHODS = ("mtf", "mtf-field", "mtf-focus", "psf")
 KINDS: dict[str, Kind] = {
     "ray-fan": Kind(
@@ -253,6 +265,7 @@ KINDS: dict[str, Kind] = {
         **_single(plot_pupil_shapes),
         height=0.5,
     ),
+    **{f"{quantity}-map": _map_of(quantity) for quantity in QUANTITIES},
     "bokeh": Kind(
         "points out of focus",
         Bokeh,

@@ -15,6 +15,7 @@ from . import style
 from .fields import (
     Bundles,
     Doubles,
+    FieldPlace,
     bundles_of,
     default_frequencies_per_mm,
     fields_of,
@@ -84,7 +85,7 @@ def mtf(
     planes = numbers_of(defocus_mm, "defocus_mm")
     result = np.zeros((2, len(planes), len(fields), len(frequencies)))
     limit = np.zeros((2, len(fields), len(frequencies)))
-    of_colour = _by_waves if method == "diffraction" else _by_rays
+    of_colour = by_waves if method == "diffraction" else _by_rays
     for f, field in enumerate(fields):
         light = [of_colour(source, float(field), float(colour), frequencies, planes) for colour in colours]
         # Colours add about one place: lateral colour shows.
@@ -96,7 +97,7 @@ def mtf(
 
 
 @dataclass(frozen=True)
-class _Transfer:
+class Transfer:
     """otf: (2, D, K), complex, tangential and sagittal, about the chief ray; limit: (2, K)."""
 
     otf: np.ndarray
@@ -112,10 +113,11 @@ def _shares(weights: ArrayLike | None, count: int) -> Doubles:
     return shares
 
 
-def _by_waves(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> _Transfer:
+def by_waves(source: Bundles, field: FieldPlace, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
+    """With diffraction, by the autocorrelation of the pupil."""
     pupil = pupil_function(source, field, colour)
     ways = [lines_of(pupil, tangential=tangential) for tangential in (True, False)]
-    return _Transfer(
+    return Transfer(
         np.stack([transfer(pupil, lines, frequencies, planes) for lines in ways]),
         np.stack([transfer_limit(pupil, lines, frequencies) for lines in ways]),
         pupil.chief_ray_mm,
@@ -127,7 +129,7 @@ _SPOKES, _NODES, _MOST_DOUBLINGS = 32, 6, 5
 _WANTED_ERROR, _TOLD_ERROR = 1e-4, 1e-2
 
 
-def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> _Transfer:
+def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles, planes: Doubles) -> Transfer:
     """As many rays as the frequencies ask for.
 
     A sum over M spokes is exact for waves of fewer than M periods around the light, one over n Gauss nodes for some n
@@ -150,7 +152,7 @@ def _by_rays(source: Bundles, field: float, colour: float, frequencies: Doubles,
             break
         before, doublings = otf, doublings + 1
     otf = np.where(error < _TOLD_ERROR, otf, np.nan)
-    return _Transfer(otf, np.ones((2, len(frequencies))), np.array(bundle(0).chief_ray_mm))
+    return Transfer(otf, np.ones((2, len(frequencies))), np.array(bundle(0).chief_ray_mm))
 
 
 def _places(bundle: RayBundle, planes: Doubles, rays: slice) -> Doubles:

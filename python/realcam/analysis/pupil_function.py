@@ -11,7 +11,7 @@ import scipy.linalg
 
 from .._core import InputError, RayBundle
 from ..short_text import ShortText
-from .fields import Bundles, Doubles
+from .fields import Bundles, Doubles, FieldPlace, field_text
 
 # Degrees of the polynomials that are tried, with the spokes and nodes of the rays that they are fitted to.
 FITS = ((10, 32, 6), (14, 48, 9), (20, 72, 13))
@@ -50,17 +50,17 @@ class PupilFunction(ShortText):
     mirrored: bool
 
 
-def pupil_function(bundles: Bundles, field_deg: float, wavelength_nm: float) -> PupilFunction:
+def pupil_function(bundles: Bundles, field: FieldPlace, wavelength_nm: float) -> PupilFunction:
     """Fits polynomials of the degree that the wavefront needs. Raises InputError where none follows it."""
     for degree, spokes, nodes in FITS:
-        fitted = fit_pupil(bundles.at(field_deg, wavelength_nm, spokes, nodes), degree)
+        fitted = fit_pupil(bundles.at(field, wavelength_nm, spokes, nodes), degree)
         if fitted.fit_error_waves < GOOD_FIT_WAVES:
             return fitted
     # A tenth of a wave changes the contrast of what is left of so strong aberrations by less than can be seen.
     if fitted.fit_error_waves < 0.1:
         return fitted
     raise UnevenWavefrontError(
-        f"the wavefront at {field_deg:.6g} deg is too uneven for a transfer function "
+        f"the wavefront at {field_text(field)} is too uneven for a transfer function "
         f"(a polynomial is {fitted.fit_error_waves:.2g} waves off); the method geometric takes rays alone"
     )
 

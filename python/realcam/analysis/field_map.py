@@ -1,0 +1,172 @@
+"""Maps over the whole film: spots, wavefronts, contrast, light and distortion in both directions, of any lens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from .._core import InputError, Lens
+from ..short_text import ShortText
+from . import style
+from .fields import Bundles, Doubles, bundles_of, default_frequencies_per_mm
+from .mtf import by_waves
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, repr=False)
+class FieldMap(ShortText):
+    """What the lens does at X x Y points of its film.
+
+    x_mm: (X,), y_mm: (Y,), from the film's middle. values: (Y, X), in `unit`; nan where no light arrives.
+    vectors_mm: (Y, X, 2), of "distortion": where the chief ray ends, from where a picture without distortion has it.
+    frequency_per_mm: of "mtf-x" and "mtf-y", periods per mm.
+    """
+
+    quantity: str
+    unit: str
+    x_mm: Doubles
+    y_mm: Doubles
+    values: Doubles
+    vectors_mm: Doubles | None
+    frequency_per_mm: float | None
+
+
+@dataclass(frozen=True)
+class _Quantity:
+    title: str
+    unit: str
+    of: Callable[[Bundles, Point, float, float], float]
+
+
+def _spot(source: Bundles, point: Point, nm: float, _: float) -> float:
+    spot = source.lens.spot(
+        film_mm=point, wavelength_nm=nm, object_distance_m=source.object_distance_m, pattern="rings", samples=8
+    )
+    return 1e3 * spot.rms_radius_mm
+
+
+def _wavefront(source: Bundles, point: Point, nm: float, _: float) -> float:
+    return source.lens.wavefront(
+        film_mm=point, wavelength_nm=nm, object_distance_m=source.object_distance_m, pattern="rings", samples=8
+    ).rms_waves
+
+
+def _illumination(source: Bundles, point: Point, nm: float, _: float) -> float:
+    return source.lens.film_pupil(point, nm).irradiance
+
+
+def _mtf_along(axis: int) -> Callable[[Bundles, Point, float, float], float]:
+    def mtf(source: Bundles, point: Point, nm: float, frequency: float) -> float:
+        return float(np.abs(by_waves(source, point, nm, np.array([frequency]), np.zeros(1)).otf[axis, 0, 0]))
+
+    return mtf
+
+
+QUANTITIES = {
+    "spot": _Quantity("RMS radius of the spot", "µm", _spot),
+    "wavefront": _Quantity("RMS of the wavefront", "waves", _wavefront),
+    "mtf-x": _Quantity("contrast of a pattern along x", "", _mtf_along(1)),
+    "mtf-y": _Quantity("contrast of a pattern along y", "", _mtf_along(0)),
+    "illumination": _Quantity("illumination, of that in the middle", "%", _illumination),
+    "distortion": _Quantity("distortion, of half the film's diagonal", "%", lambda *_: np.nan),
+}
+
+
+def field_map(
+    lens: Lens,
+    quantity: str = "spot",
+    *,
+    points: tuple[int, int] = (13, 9),
+    wavelength_nm: float | None = None,
+    frequency_per_mm: float | None = None,
+    object_distance_m: float | None = None,
+    bundles: Bundles | None = None,
+) -> FieldMap:
+    """A map of one of QUANTITIES over the film, whatever symmetry the lens has.
+
+    points: along x and y, up to the film's edges. frequency_per_mm: of mtf-x and mtf-y; None is 20 on a film of 43 mm,
+    and as fine in proportion on others. None of the others: the design wavelength; the plane in focus.
+    Distortion is against a perspective picture that agrees with the lens's own close to the film's middle, in both
+    directions: of an anamorphic lens, one that is squeezed as its first order says. Raises InputError.
+    """
+    if quantity not in QUANTITIES:
+        raise InputError(f'unknown quantity "{quantity}"; one of {", ".join(QUANTITIES)} is wanted')
+    if min(points) < 2:
+        raise InputError("points must be at least 2 along x and along y")
+    source = bundles_of(lens, object_distance_m, bundles)
+    nm = lens.wavelength_nm if wavelength_nm is None else wavelength_nm
+    frequency = float(default_frequencies_per_mm(lens)[1]) if frequency_per_mm is None else frequency_per_mm
+    x, y = (half * np.linspace(-1, 1, n) for half, n in zip(0.5 * np.array(lens.film_mm), points, strict=True))
+    what, vectors = QUANTITIES[quantity], None
+    if quantity == "distortion":
+        vectors = _distortion(lens, x, y)
+        values = 100 * np.hypot(*np.moveaxis(vectors, 2, 0)) / (0.5 * np.hypot(*lens.film_mm))
+    else:
+        values = np.array([[_or_nan(what.of, source, (float(a), float(b)), nm, frequency) for a in x] for b in y])
+    if quantity == "illumination":
+        values = 100 * values / lens.film_pupil((0.0, 0.0), nm).irradiance
+    if np.isnan(values).all():
+        raise InputError(f'no light reaches the points of the film of lens "{lens.name}"')
+    of_mtf = frequency if quantity.startswith("mtf") else None
+    return FieldMap(quantity, what.unit, x, y, values, vectors, of_mtf)
+
+
+def _or_nan(
+    value: Callable[[Bundles, Point, float, float], float], source: Bundles, point: Point, nm: float, frequency: float
+) -> float:
+    try:
+        return value(source, point, nm, frequency)
+    except InputError:  # the light ends before the film's corner
+        return np.nan
+
+
+def _tangents(lens: Lens, point: Point) -> Doubles:
+    """(2,): dx/dz and dy/dz, before the lens, of the chief ray of a film point; nan where there is none."""
+    try:
+        direction = lens.aim([[0.0, 0.0]], film_mm=point).directions[0]
+    except InputError:
+        return np.full(2, np.nan)
+    tangents: Doubles = direction[:2] / direction[2]
+    return tangents
+
+
+def _distortion(lens: Lens, x: Doubles, y: Doubles) -> Doubles:
+    step = 1e-4 * float(np.hypot(*lens.film_mm))
+    by_x, by_y = (
+        (_tangents(lens, (step * (1 - k), step * k)) - _tangents(lens, (-step * (1 - k), -step * k))) / (2 * step)
+        for k in (0, 1)
+    )
+    picture = np.linalg.inv(np.column_stack([by_x, by_y]))  # mm on the film for a change of the tangents
+    middle = _tangents(lens, (0.0, 0.0))
+    places = np.stack(np.meshgrid(x, y), axis=-1)
+    tangents = np.array([[_tangents(lens, (float(a), float(b))) for a in x] for b in y])
+    vectors: Doubles = places - (tangents - middle) @ picture.T
+    return vectors
+
+
+def plot_field_map(data: FieldMap, axes: Axes) -> None:
+    """Colours over the film as the lens throws the picture on it; of distortion, also the grid that is bent."""
+    title = QUANTITIES[data.quantity].title
+    if data.frequency_per_mm is not None:
+        title += f" at {data.frequency_per_mm:.4g}/mm"
+    mesh = axes.pcolormesh(data.x_mm, data.y_mm, data.values, shading="gouraud", cmap="viridis")
+    figure = axes.get_figure()
+    assert figure is not None
+    bar = figure.colorbar(mesh, ax=axes, shrink=0.8)
+    bar.set_label(data.unit)
+    if data.vectors_mm is not None:
+        bent = np.stack(np.meshgrid(data.x_mm, data.y_mm), axis=-1)
+        straight = bent - data.vectors_mm
+        for lines, colour in ((straight, style.GREY), (bent, "white")):
+            for way in (lines, lines.swapaxes(0, 1)):
+                for line in way:
+                    axes.plot(line[:, 0], line[:, 1], color=colour, linewidth=0.7)
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    axes.set_xlabel("x on the film / mm")
+    axes.set_ylabel("y on the film / mm")
+    axes.set_title(title)
