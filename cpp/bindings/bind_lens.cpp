@@ -12,6 +12,8 @@
 #include "../optics/lens/parabasal.hpp"
 #include "../optics/lens/zoom.hpp"
 #include "../optics/prescription/clearance.hpp"
+#include "../optics/prescription/surface_frames.hpp"
+#include "../optics/trace/film_frame.hpp"
 #include "bindings.hpp"
 #include "coating_from.hpp"
 #include "form_from.hpp"
@@ -269,6 +271,19 @@ std::string text_of(const LensSystem& lens) {
     const std::string why = lens.asymmetry();
     return begin + (why.empty() ? "" : why + ", ") + digits(data.effective_focal_length) + " mm f/" +
            digits(data.f_number) + ", focused at " + focus + '>';
+}
+
+/// (N, 4, 3).
+py::array_t<double> frames_array(const std::vector<Affine<double>>& frames) {
+    py::array_t<double> array({static_cast<py::ssize_t>(frames.size()), py::ssize_t{4}, py::ssize_t{3}});
+    double* to = array.mutable_data();
+    for (const Affine<double>& frame : frames)
+        for (const Vec3d& v : {frame.x, frame.y, frame.z, frame.origin}) {
+            *to++ = v.x;
+            *to++ = v.y;
+            *to++ = v.z;
+        }
+    return array;
 }
 
 std::string text_of(const FirstOrder& data) {
@@ -611,7 +626,14 @@ void bind_lens(py::module_& m) {
         .def_readonly("film_radius_of_curvature_mm", &LensSystem::film_radius_of_curvature)
         .def_property_readonly("film_position_mm", &LensSystem::film_position, "Front vertex to film.")
         .def_property_readonly("film_mm", [](const LensSystem& l) { return std::pair(l.film_width, l.film_height); })
-        .def_property_readonly("vertices_mm", &LensSystem::vertices, "z of each vertex.")
+        .def_property_readonly("vertices_mm", &LensSystem::vertices,
+                               "z of each vertex; of surfaces that are moved, along the axis that is unfolded.")
+        .def_property_readonly(
+            "surface_frames", [](const LensSystem& l) { return frames_array(surface_frames(l).surfaces); },
+            "(N, 4, 3): x, y and z axis of each surface and its vertex in mm, lens frame.")
+        .def_property_readonly(
+            "film_frame", [](const LensSystem& l) { return py::array(frames_array({film_frame(l)})[py::int_(0)]); },
+            "(4, 3): x, y and z axis of the film and its middle in mm, lens frame. Light comes with growing z.")
         .def_property_readonly("focus_distance_m", [](const LensSystem& l) { return l.focus_distance / 1000; })
         .def_property_readonly("nearest_focus_m", [](const LensSystem& l) { return l.focusing.nearest_mm / 1000; })
         .def_property_readonly("stop_index", &LensSystem::stop_index)

@@ -559,6 +559,7 @@ class Lens(_Value):
         self,
         rays: int = 7,
         *,
+        plane: str = "yz",
         rays_from: str = "object",
         fields: Sequence[float] = (0.0, 0.7, 1.0),
         fields_deg: Sequence[float] | None = None,
@@ -726,6 +727,10 @@ class Lens(_Value):
     def film_position_mm(self) -> float: ...
     @property
     def film_mm(self) -> tuple[float, float]: ...
+    @property
+    def surface_frames(self) -> NDArray[np.float64]: ...
+    @property
+    def film_frame(self) -> NDArray[np.float64]: ...
     @property
     def vertices_mm(self) -> list[float]: ...
     @property

@@ -33,6 +33,7 @@ def draw_cross_section(
     axes: Axes,
     rays: int = 7,
     *,
+    plane: str = "yz",
     rays_from: str = "object",
     fields: Sequence[float] = (0.0, 0.7, 1.0),
     fields_deg: Sequence[float] | None = None,
@@ -47,6 +48,7 @@ def draw_cross_section(
     style = Style(theme_named(theme), radius_colours, marks)
     section = cross_section(
         lens,
+        plane=plane,
         rays=rays,
         rays_from=rays_from,
         fields=fields,
@@ -54,8 +56,8 @@ def draw_cross_section(
         wavelengths_nm=wavelengths_nm,
         object_distance_m=object_distance_m,
     )
-    other = None if ghost is None else cross_section(ghost, rays=0)
-    prepare_axes(axes, extent_of(section, style), style)
+    other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
+    prepare_axes(axes, extent_of(section, style), style, plane)
     draw_section(section, axes, style, ghost=other)
     # Titles are text, and a dollar sign in one begins no formula.
     title = f"{lens.title or lens.name}   {data_of(lens, section)}"

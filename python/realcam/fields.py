@@ -5,14 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ._core import InputError, Lens, RayStatus, Spot
 from .roots import root_between
 
+FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's middle
 _LARGEST_STEP_DEG = 5.0
 _PROBES = np.column_stack([np.zeros(21), np.linspace(-1, 1, 21)])  # rays of the meridional plane, over the stop
+
+
+def field_arguments(field: FieldPlace) -> dict[str, Any]:
+    """How Lens.spot and its like are told of a place in the field."""
+    return {"film_mm": field} if isinstance(field, tuple) else {"field_deg": float(field)}
+
+
+def field_text(field: FieldPlace) -> str:
+    """For messages."""
+    return f"the film point ({field[0]:.6g}, {field[1]:.6g}) mm" if isinstance(field, tuple) else f"{field:.6g} deg"
 
 
 @dataclass(frozen=True)
@@ -43,6 +55,33 @@ def fields_at(lens: Lens, shares: Sequence[float], object_distance_m: float | No
         else:
             angle, height = angle_of_height(lens, abs(share) * edge[1], object_distance_m)
         fields.append(Field(math.copysign(angle, share), math.copysign(height, share), share))
+    return tuple(fields)
+
+
+def fields_along(lens: Lens, shares: Sequence[float], axis: int) -> tuple[Field, ...]:
+    """Places along x (axis 0) or y (1) of the film of any lens: shares of half its side, as far as light comes.
+
+    Their angle is that of the chief ray with the z axis. Raises InputError where no light passes the lens.
+    """
+    if not all(-1 <= share <= 1 for share in shares):
+        raise InputError("fields are shares of the film's side: numbers from -1 to 1 are wanted")
+    fields = []
+    for share in shares:
+        height = share * 0.5 * lens.film_mm[axis]
+        for _ in range(20):  # the light may end before the film's edge
+            place = (height, 0.0) if axis == 0 else (0.0, height)
+            try:
+                way = lens.aim([[0.0, 0.0]], film_mm=place).directions[0]
+            except InputError:
+                height *= 0.95
+                continue
+            if np.isfinite(way).all():
+                angle = math.degrees(math.atan2(way[axis], way[2]))
+                fields.append(Field(angle, height, share))
+                break
+            height *= 0.95
+    if not fields:
+        raise InputError(f'no light passes lens "{lens.name}"')
     return tuple(fields)
 
 

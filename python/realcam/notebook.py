@@ -25,6 +25,7 @@ def draw(
     self: Lens,
     rays: int = 7,
     *,
+    plane: str = "yz",
     rays_from: str = "object",
     fields: Sequence[float] = (0.0, 0.7, 1.0),
     fields_deg: Sequence[float] | None = None,
@@ -39,7 +40,8 @@ def draw(
 ) -> Figure:
     """The meridional section with rays, as a figure of matplotlib that a notebook shows; the film is on the right.
 
-    rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section takes them.
+    plane, rays, rays_from, fields, fields_deg, wavelengths_nm, object_distance_m: as realcam.drawing.cross_section
+      takes them.
     radius_colours: faces in blue where the radius of curvature is positive, in red where it is negative.
     marks: entrance and exit pupil (EP, XP), principal planes (H, H'), focal points (F, F').
     insets: the rays of each field where they meet the film, magnified.
@@ -52,6 +54,7 @@ def draw(
     style = Style(theme_named(theme), radius_colours, marks)
     section = cross_section(
         self,
+        plane=plane,
         rays=rays,
         rays_from=rays_from,
         fields=fields,
@@ -59,7 +62,7 @@ def draw(
         wavelengths_nm=wavelengths_nm,
         object_distance_m=object_distance_m,
     )
-    other = None if ghost is None else cross_section(ghost, rays=0)
+    other = None if ghost is None else cross_section(ghost, plane=plane, rays=0)
     row = Row(self.title or self.name, data_of(self, section), section, other)
     # Rays that were sent from one point of the film meet in it, whatever the lens does.
     return figure_of([row], style, width_px=width_px, insets=insets and rays_from == "object")

@@ -305,3 +305,51 @@ def test_what_makes_no_sense_is_refused() -> None:
         cross_section(GAUSS, rays_from="film", fields_deg=[1])
     with pytest.raises(rc.InputError, match="60"):
         cross_section(GAUSS, fields_deg=[60])
+
+
+def test_a_lens_that_is_tilted_is_drawn_where_it_stands() -> None:
+    """Rays meet the faces that are drawn, and the film where they do in a spot."""
+    lens = GAUSS.tilted(x_deg=6).shifted(y_mm=3)
+    section = cross_section(lens, rays=5, fields=[0, 0.5])
+    for face in section.faces:
+        outline = np.concatenate(face.parts)
+        for bundle in section.bundles:
+            met = section.drawn(bundle.paths_mm)[:, 1 + face.surface]
+            # Between 80 points of an outline an arc rises by less than the square of the step over 8 radii.
+            for point in met:
+                near = np.argsort(np.hypot(*(outline - point).T))[:2]
+                a, b = outline[near]
+                along = (b - a) / np.hypot(*(b - a))
+                assert abs(along[0] * (point - a)[1] - along[1] * (point - a)[0]) < 0.02
+    for bundle, field in zip(section.bundles, section.fields, strict=True):
+        spot = lens.spot(film_mm=(0.0, field.film_height_mm))
+        at = (bundle.paths_mm[:, -1] - lens.film_frame[3]) @ lens.film_frame[:3].T
+        assert at[:, 2] == pytest.approx(0, abs=1e-9)
+        assert at[len(at) // 2, 1] == pytest.approx(spot.chief_ray_mm[1], abs=0.5)
+
+
+def test_the_other_plane_of_an_anamorphic_lens() -> None:
+    flat = rc.Surface(
+        form="toroid", radius_of_curvature_x_mm=60, thickness_mm=8, material=1.5, clear_semi_diameter_mm=9
+    )
+    lens = rc.Lens(
+        surfaces=[flat, rc.Surface(thickness_mm=2, clear_semi_diameter_mm=9), rc.Stop(clear_semi_diameter_mm=5)],
+        film_distance_mm=100,
+    )
+    upright, across = (cross_section(lens, plane=plane, rays=0) for plane in ("yz", "xz"))
+    assert np.ptp(np.concatenate(upright.faces[0].parts)[:, 0]) == 0
+    assert np.ptp(np.concatenate(across.faces[0].parts)[:, 0]) == pytest.approx(60 - math.sqrt(60**2 - 9**2))
+    assert (upright.faces[0].radius_sign, across.faces[0].radius_sign) == (0, 1)
+    bundle = cross_section(lens, plane="xz", rays=3, fields=[0]).bundles[0]
+    assert np.abs(bundle.paths_mm[:, :, 1]).max() < 1e-12  # rays stay in the plane
+    with pytest.raises(rc.InputError, match="yz or xz is wanted"):
+        cross_section(lens, plane="xy")
+
+
+def test_a_curved_film_is_drawn_as_an_arc_on_which_rays_end() -> None:
+    lens = GAUSS.with_film_radius(-60)
+    section = cross_section(lens, rays=3)
+    centre = np.array([lens.film_position_mm - 60, 0])
+    assert np.hypot(*(section.film - centre).T) == pytest.approx(60)
+    for bundle in section.bundles:
+        assert np.hypot(*(section.drawn(bundle.paths_mm)[:, -1] - centre).T) == pytest.approx(60)

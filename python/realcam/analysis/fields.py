@@ -5,26 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import InputError, Lens, RayBundle
+from ..fields import FieldPlace, field_arguments
 
 Doubles = NDArray[np.float64]
-FieldPlace = float | tuple[float, float]  #: an angle in degrees, or a film point (x, y) in mm from the film's middle
 LINE_F_NM, LINE_D_NM, LINE_C_NM = 486.1327, 587.5618, 656.2725
-
-
-def field_arguments(field: FieldPlace) -> dict[str, Any]:
-    """How Lens.spot and its like are told of a place in the field."""
-    return {"film_mm": field} if isinstance(field, tuple) else {"field_deg": float(field)}
-
-
-def field_text(field: FieldPlace) -> str:
-    """For messages."""
-    return f"the film point ({field[0]:.6g}, {field[1]:.6g}) mm" if isinstance(field, tuple) else f"{field:.6g} deg"
 
 
 class Bundles:

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from .._core import InputError, Lens, RayBundle
+from ..fields import FieldPlace
 from ..short_text import ShortText
 from . import style
 from .fields import (
     Bundles,
     Doubles,
-    FieldPlace,
     bundles_of,
     default_frequencies_per_mm,
     fields_of,

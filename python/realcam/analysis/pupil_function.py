@@ -10,8 +10,9 @@ import numpy as np
 import scipy.linalg
 
 from .._core import InputError, RayBundle
+from ..fields import FieldPlace, field_text
 from ..short_text import ShortText
-from .fields import Bundles, Doubles, FieldPlace, field_text
+from .fields import Bundles, Doubles
 
 # Degrees of the polynomials that are tried, with the spokes and nodes of the rays that they are fitted to.
 FITS = ((10, 32, 6), (14, 48, 9), (20, 72, 13))

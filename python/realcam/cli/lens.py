@@ -38,6 +38,9 @@ def draw(
     ] = None,
     f_number: lens_options.FNumber = None,
     focus: lens_options.Focus = None,
+    plane: Annotated[
+        str, typer.Option(metavar="PLANE", help="yz or xz, in which lenses that are not of revolution are others")
+    ] = "yz",
     rays: lens_options.Rays = 7,
     rays_from: lens_options.RaysFrom = "object",
     fields: lens_options.Fields = "0,0.7,1",
@@ -101,6 +104,7 @@ def draw(
             lens,
             target,
             rays,
+            plane=plane,
             rays_from=rays_from,
             fields=places,
             fields_deg=lens_options.numbers(fields_deg, "--fields-deg"),

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 
+from .cut import Points
 from .notes import draw_crossings, draw_focus_group, draw_marks
-from .outlines import Element, Face, Points
+from .outlines import Element, Face
 from .section import CrossSection
 from .style import Style, ray_colour
 from .themes import Theme
@@ -36,10 +37,9 @@ def extent_of(section: CrossSection, style: Style) -> Extent:
     """The bounds of a section, with some air around it."""
     points: list[Points] = [polygon for element in section.elements for polygon in element.polygons]
     points += [part for face in section.faces for part in face.parts]
-    points += [np.array([[b.z_mm, b.outer_mm], [b.z_mm, -b.outer_mm]]) for b in section.blockers]
-    points += [bundle.paths_mm[:, :, [2, 1]].reshape(-1, 2) for bundle in section.bundles]
-    semi = section.film_semi_diagonal_mm
-    points.append(np.array([[section.film_z_mm, semi], [section.film_z_mm, -semi]]))
+    points += [line for blocker in section.blockers for line in blocker.lines]
+    points += [section.drawn(bundle.paths_mm).reshape(-1, 2) for bundle in section.bundles]
+    points.append(section.film)
     every = np.concatenate(points)
     (z_low, y_low), (z_high, y_high) = every.min(axis=0), every.max(axis=0)
     if style.marks:
@@ -81,15 +81,14 @@ def draw_section(
         _draw_ghost(section, ghost, axes, theme, shift_mm)
     _draw_blockers(section, axes, theme, shift_mm)
     _draw_rays(section, axes, theme, shift_mm)
-    semi = section.film_semi_diagonal_mm
-    axes.plot([section.film_z_mm + shift_mm] * 2, [-semi, semi], color=theme.text, linewidth=2, zorder=4)
+    axes.plot(*_moved(section.film, shift_mm), color=theme.text, linewidth=2, zorder=4)
     if style.marks:
         draw_marks(section, axes, style, shift_mm)
     draw_focus_group(section, axes, style, shift_mm)
     draw_crossings(section, axes, style, shift_mm)
 
 
-def prepare_axes(axes: Axes, extent: Extent, style: Style, z_label: str = "z / mm") -> None:
+def prepare_axes(axes: Axes, extent: Extent, style: Style, plane: str = "yz", z_label: str = "z / mm") -> None:
     """Limits, labels and colours."""
     theme = style.theme
     axes.set_xlim(extent.z_low, extent.z_high)
@@ -97,7 +96,7 @@ def prepare_axes(axes: Axes, extent: Extent, style: Style, z_label: str = "z / m
     axes.set_aspect("equal")
     axes.set_facecolor("none")
     axes.set_xlabel(z_label, color=theme.text, fontsize=style.font_pt)
-    axes.set_ylabel("y / mm", color=theme.text, fontsize=style.font_pt)
+    axes.set_ylabel(f"{plane[0]} / mm", color=theme.text, fontsize=style.font_pt)
     axes.tick_params(colors=theme.text, labelsize=style.font_pt)
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(theme.text)
@@ -136,19 +135,15 @@ def _is_moved(element: Element, other: Element | None, shift: float) -> bool:
 
 def _draw_blockers(section: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
     for blocker in section.blockers:
-        z = blocker.z_mm + shift
-        width, colour = (2.4, theme.text) if blocker.is_stop else (1.6, theme.faint)
-        for side in (-1, 1):
-            if blocker.outer_mm > blocker.opening_mm:
-                axes.plot([z] * 2, [side * blocker.opening_mm, side * blocker.outer_mm], color=colour,
-                          linewidth=width, solid_capstyle="butt", zorder=4)  # fmt: skip
-        if blocker.obstruction_mm > 0:
-            axes.plot([z] * 2, [-blocker.obstruction_mm, blocker.obstruction_mm], color=theme.faint, linewidth=1.6,
-                      solid_capstyle="butt", zorder=4)  # fmt: skip
+        around = len(blocker.lines) - (blocker.obstruction_mm > 0)
+        for k, line in enumerate(blocker.lines):
+            is_stop = blocker.is_stop and k < around
+            width, colour = (2.4, theme.text) if is_stop else (1.6, theme.faint)
+            axes.plot(*_moved(line, shift), color=colour, linewidth=width, solid_capstyle="butt", zorder=4)
 
 
 def _draw_rays(section: CrossSection, axes: Axes, theme: Theme, shift: float) -> None:
     for bundle in section.bundles:
         colour = ray_colour(section, bundle, theme)
-        for path in bundle.paths_mm:
-            axes.plot(path[:, 2] + shift, path[:, 1], color=colour, linewidth=0.7, zorder=5, alpha=0.85, gid="ray")
+        for path in section.drawn_paths(bundle):
+            axes.plot(*_moved(path, shift), color=colour, linewidth=0.7, zorder=5, alpha=0.85, gid="ray")

@@ -49,7 +49,7 @@ def figure_of(
         axes = figure.add_axes(layout.share(layout.left, bottom, layout.plot_width, height))
         last = index == len(rows) - 1
         label = "z from the film / mm" if align == "film" else "z / mm"
-        prepare_axes(axes, extent, layout.style, label if last else "")
+        prepare_axes(axes, extent, layout.style, row.section.plane, label if last else "")
         draw_section(row.section, axes, layout.style, shift_mm=shift, ghost=row.ghost)
         _write_titles(figure, layout, index, top)
         fields = shown_in_insets(row.section) if insets else []

@@ -34,7 +34,7 @@ def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, in
     """
     theme = style.theme
     bundles = [bundle for bundle in section.bundles if bundle.field == field and len(bundle.paths_mm)]
-    heights = np.concatenate([bundle.paths_mm[:, -1, 1] for bundle in bundles])
+    heights = np.concatenate([section.drawn(bundle.paths_mm)[:, -1, 1] for bundle in bundles])
     middle, size = 0.5 * (heights.min() + heights.max()), float(np.ptp(heights))
     box = axes.get_window_extent()
     width, height = box.width / axes.figure.dpi, box.height / axes.figure.dpi
@@ -42,8 +42,9 @@ def draw_inset(axes: Axes, section: CrossSection, field: Field, style: Style, in
     magnification = min(max(magnification, 1.0), 1e5)
     half_z, half_y = (0.5 * inches / (inches_per_mm * magnification) for inches in (width, height))
     for bundle in bundles:
-        slopes = bundle.directions_at_film[:, 1] / bundle.directions_at_film[:, 2]
-        for y, slope in zip(bundle.paths_mm[:, -1, 1] - middle, slopes, strict=True):
+        z_part, y_part = section.drawn(bundle.directions_at_film).T
+        places = section.drawn(bundle.paths_mm)[:, -1, 1]
+        for y, slope in zip(places - middle, y_part / z_part, strict=True):
             # Cut at the frame here, because not every viewer of SVG clips.
             z = np.clip((np.array([-half_y, half_y]) - y) / slope, -half_z, half_z) if slope else [-half_z, half_z]
             axes.plot(z, y + slope * np.asarray(z), color=ray_colour(section, bundle, theme), linewidth=0.7)

@@ -8,12 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._core import Lens, Surface
 from ..short_text import ShortText
-
-Points = NDArray[np.float64]
+from .cut import Cut, Points
 
 _HALF_PROFILE = 40  # points from the axis to the rim, denser towards it, where a steep face turns most
 
@@ -38,8 +36,8 @@ class Element(ShortText):
     polygons: tuple[Points, ...]  #: closed; the first point is not repeated
 
 
-@dataclass(frozen=True)
-class Blocker:
+@dataclass(frozen=True, repr=False)
+class Blocker(ShortText):
     """What a stop or an aperture keeps from passing, as lines from `inner` to `outer` distances from the axis."""
 
     surface: int
@@ -48,6 +46,7 @@ class Blocker:
     opening_mm: float  #: semi-diameter that is open
     outer_mm: float  #: to where the line around the opening is drawn
     obstruction_mm: float  #: semi-diameter that is blocked in the middle; 0: none
+    lines: tuple[Points, ...]  #: (2, 2) each: around the opening, and the obstruction
 
 
 @dataclass(frozen=True, repr=False)
@@ -66,36 +65,43 @@ def is_glass(lens: Lens, surface: int) -> bool:
     return lens.surfaces[surface].material.index(lens.wavelength_nm) != 1
 
 
-def faces_of(lens: Lens) -> tuple[Face, ...]:
+def faces_of(cut: Cut) -> tuple[Face, ...]:
     """All faces that bend light, in the order of the light."""
-    holes = _holes(lens)
+    holes = _holes(cut.lens)
     return tuple(
         Face(
             i,
             surface.type == "mirror",
             surface.conic != 0 or any(surface.aspheric_coefficients.values()),
-            int(np.sign(surface.curvature_per_mm)),
-            _parts(surface, z, holes[i]),
+            int(np.sign(_curvature(cut, i))),
+            _parts(cut, i, holes[i]),
         )
-        for i, (surface, z) in enumerate(zip(lens.surfaces, lens.vertices_mm, strict=True))
+        for i, surface in enumerate(cut.lens.surfaces)
         if _bends(surface)
     )
 
 
-def elements_of(lens: Lens) -> tuple[Element, ...]:
+def _curvature(cut: Cut, surface: int) -> float:
+    """At the vertex, in the plane of the drawing."""
+    shape = cut.lens.surfaces[surface]
+    is_x = cut.axis == 0 and shape.form is not None
+    return 1 / shape.radius_of_curvature_x_mm if is_x else shape.curvature_per_mm
+
+
+def elements_of(cut: Cut) -> tuple[Element, ...]:
     """The pieces of glass. Glass that light passes twice, before and behind a mirror, is one piece."""
-    z = lens.vertices_mm
+    lens = cut.lens
     elements: dict[frozenset[tuple[float, float]], Element] = {}
     for i, j, direction in _glass(lens):
-        front, back = lens.surfaces[i], lens.surfaces[j]
-        shape = frozenset({(z[i], front.curvature_per_mm), (z[j], back.curvature_per_mm)})
-        polygons = _polygons((front, z[i]), (back, z[j]), direction, _hole_between(front, back))
+        shape = frozenset({(lens.vertices_mm[k], lens.surfaces[k].curvature_per_mm) for k in (i, j)})
+        polygons = _polygons(cut, i, j, direction, _hole_between(lens.surfaces[i], lens.surfaces[j]))
         elements.setdefault(shape, Element(i, j, polygons))
     return tuple(elements.values())
 
 
-def blockers_of(lens: Lens) -> tuple[Blocker, ...]:
+def blockers_of(cut: Cut) -> tuple[Blocker, ...]:
     """Stop and apertures. Lines around an opening end a little beyond the rim of the surface."""
+    lens = cut.lens
     largest = max(surface.clear_semi_diameter_mm for surface in lens.surfaces)
     holes = _holes(lens)
     found = []
@@ -105,9 +111,16 @@ def blockers_of(lens: Lens) -> tuple[Blocker, ...]:
         opening = min(lens.stop_semi_diameter_mm, rim) if is_stop else rim
         blocked = surface.inner_semi_diameter_mm
         if not _bends(surface):
-            found.append(Blocker(i, is_stop, z, opening, rim + min(0.1 * largest, rim), blocked))
+            outer = rim + min(0.1 * largest, rim)
         elif blocked > holes[i]:
-            found.append(Blocker(i, False, z, rim, rim, blocked))
+            outer = opening = rim
+        else:
+            continue
+        ends = [] if outer == opening else [(-outer, -opening), (opening, outer)]
+        if blocked > 0:
+            ends.append((-blocked, blocked))
+        lines = tuple(cut.placed(i, (0.0, 0.0), pair) for pair in ends)
+        found.append(Blocker(i, is_stop, z, opening, outer, blocked, lines))
     return tuple(found)
 
 
@@ -151,53 +164,53 @@ def _holes(lens: Lens) -> list[float]:
     return holes
 
 
-def _half(surface: Surface, z: float, hole: float) -> Points:
-    """The outline from the hole, or the axis, to the upper rim."""
-    rim = surface.clear_semi_diameter_mm
+def _half(cut: Cut, surface: int, hole: float, side: int = 1) -> Points:
+    """The outline from the hole, or the axis, to the upper rim, or the lower one."""
+    rim = cut.lens.surfaces[surface].clear_semi_diameter_mm
     angle = np.linspace(math.asin(min(hole / rim, 1)), 0.5 * math.pi, _HALF_PROFILE + 1)
     y = rim * np.sin(angle)
     y[0], y[-1] = hole, rim
-    return np.column_stack([[z + surface.sag_mm(v) for v in y], y])
+    return cut.placed(surface, cut.sag(surface, side * y), side * y)
 
 
-def _mirrored(points: Points) -> Points:
-    return points[::-1] * (1.0, -1.0)
-
-
-def _parts(surface: Surface, z: float, hole: float) -> tuple[Points, ...]:
-    upper = _half(surface, z, hole)
+def _parts(cut: Cut, surface: int, hole: float) -> tuple[Points, ...]:
+    lower, upper = _half(cut, surface, hole, -1)[::-1], _half(cut, surface, hole)
     if hole > 0:
-        return _mirrored(upper), upper
-    return (np.concatenate([_mirrored(upper)[:-1], upper]),)
+        return lower, upper
+    return (np.concatenate([lower[:-1], upper]),)
 
 
-def _polygons(
-    front: tuple[Surface, float], back: tuple[Surface, float], direction: int, hole: float
-) -> tuple[Points, ...]:
-    a, b = _half(*front, hole), _half(*back, hole)
-    edge = _edge(front, back, direction)
+def _polygons(cut: Cut, front: int, back: int, direction: int, hole: float) -> tuple[Points, ...]:
+    halves = []
+    for side in (1, -1):
+        a, b = _half(cut, front, hole, side), _half(cut, back, hole, side)
+        halves.append((a, _edge(cut, front, back, direction, side), b))
+    (a, edge, b), (lower_a, lower_edge, lower_b) = halves
     upper = np.concatenate([a, edge, b[::-1]])
     if hole > 0:
-        return upper, _mirrored(upper)
-    lower = np.concatenate([b, edge[::-1], a[::-1]])[:-1] * (1.0, -1.0)
+        return upper, np.concatenate([lower_a, lower_edge, lower_b[::-1]])[::-1]
+    lower = np.concatenate([lower_b, lower_edge[::-1], lower_a[::-1]])[:-1]
     return (np.concatenate([upper, lower[1:]]),)
 
 
-def _edge(front: tuple[Surface, float], back: tuple[Surface, float], direction: int) -> Points:
-    """The corner between the two upper rims, (0 or 1, 2): the smaller face is carried on flat to the larger rim.
+def _edge(cut: Cut, front: int, back: int, direction: int, side: int) -> Points:
+    """The corner between the two rims on one side, (0 or 1, 2): the smaller face is carried on flat to the larger rim.
 
     Where the larger face is in the way of that flat, because the smaller one is sunk into the glass, the edge goes
-    straight from rim to rim instead.
+    straight from rim to rim instead; so it does where the two do not stand upright on one axis.
     """
-    is_back = back[0].clear_semi_diameter_mm < front[0].clear_semi_diameter_mm
-    (small, z_small), (large, z_large) = (back, front) if is_back else (front, back)
-    r, rim = small.clear_semi_diameter_mm, large.clear_semi_diameter_mm
-    if r == rim:
+    rims = [cut.lens.surfaces[i].clear_semi_diameter_mm for i in (front, back)]
+    if rims[0] == rims[1] or not cut.is_in_place:
         return np.empty((0, 2))
-    flat = z_small + small.sag_mm(r)
+    is_back = rims[1] < rims[0]
+    small, large = (back, front) if is_back else (front, back)
+    r, rim = min(rims), max(rims)
+    z = cut.lens.vertices_mm
+    flat = z[small] + cut.sag(small, [side * r])[0]
     ahead = direction if is_back else -direction
-    is_free = all(ahead * (flat - z_large - large.sag_mm(y)) > 0 for y in np.linspace(r, rim, 17))
-    return np.array([[flat, rim]]) if is_free else np.empty((0, 2))
+    beyond = side * np.linspace(r, rim, 17)
+    is_free = np.all(ahead * (flat - z[large] - cut.sag(large, beyond)) > 0)
+    return np.array([[flat, side * rim]]) if is_free else np.empty((0, 2))
 
 
 def _zones(lens: Lens, first: int, second: int, radius: float) -> tuple[Points, ...]:
@@ -220,4 +233,4 @@ def _zones(lens: Lens, first: int, second: int, radius: float) -> tuple[Points, 
         end += 1
     part = slice(start, end + 1)
     upper = np.concatenate([np.column_stack([z1, y])[part], np.column_stack([z2, y])[part][::-1]])
-    return upper, _mirrored(upper)
+    return upper, upper[::-1] * (1.0, -1.0)

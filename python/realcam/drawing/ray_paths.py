@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Lens, RayStatus
-from ..fields import Field
+from ..fields import Field, FieldPlace, field_arguments
 from ..short_text import ShortText
+from .cut import Cut, on_film
 
 Array = NDArray[np.float64]
 
-_PUPIL = np.column_stack([np.zeros(401), np.linspace(-1, 1, 401)])
+_FAN = np.linspace(-1, 1, 401)
 
 
 @dataclass(frozen=True, repr=False)
@@ -29,7 +30,7 @@ class RayBundle(ShortText):
 
 
 def bundles_from_object(
-    lens: Lens,
+    cut: Cut,
     fields: Sequence[Field],
     wavelengths_nm: Sequence[float],
     count: int,
@@ -41,14 +42,13 @@ def bundles_from_object(
     Paths begin on one plane across the light of each bundle, `reach_mm` before its first surface, or at the object if
     that is nearer. Raises InputError.
     """
-    bundles = []
+    lens, bundles = cut.lens, []
     for wavelength in wavelengths_nm:
-        aimed = [_aimed(lens, field, wavelength, count, object_distance_m) for field in fields]
+        aimed = [_aimed(cut, field, wavelength, count, object_distance_m) for field in fields]
         for field, (origins, directions) in zip(fields, aimed, strict=True):
             points, out = _points(lens, origins, directions, wavelength, "scene")
             start = _start(lens, points[:, 0], directions, reach_mm, object_distance_m)
-            last = points[:, -1]
-            film = last + out * ((lens.film_position_mm - last[:, 2]) / out[:, 2])[:, None]
+            film = on_film(cut, points[:, -1], out)
             paths = np.concatenate([start[:, None], points, film[:, None]], axis=1)
             bundles.append(RayBundle(field, wavelength, paths, out))
     return tuple(bundles)
@@ -81,9 +81,15 @@ def _spread(passing: int, count: int) -> NDArray[np.intp]:
 
 
 def _aimed(
-    lens: Lens, field: Field, wavelength_nm: float, count: int, object_distance_m: float | None
+    cut: Cut, field: Field, wavelength_nm: float, count: int, object_distance_m: float | None
 ) -> tuple[Array, Array]:
-    rays = lens.aim(_PUPIL, field.angle_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm)
+    pupil = np.zeros((len(_FAN), 2))
+    pupil[:, cut.axis] = _FAN
+    place: FieldPlace = field.angle_deg
+    if not cut.lens.is_rotational or cut.axis == 0:
+        place = (field.film_height_mm, 0.0) if cut.axis == 0 else (0.0, field.film_height_mm)
+    named = field_arguments(place)
+    rays = cut.lens.aim(pupil, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm, **named)
     passing = np.flatnonzero(rays.status == RayStatus.OK)
     chosen = passing[_spread(len(passing), count)]
     return rays.origins_mm[chosen], rays.directions[chosen]

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .._core import InputError, Lens
-from ..fields import Field, fields_at, fields_of_angles
+from ..fields import Field, fields_along, fields_at, fields_of_angles
 from ..short_text import ShortText
+from .cut import Cut, Points
 from .marks import FocusGroup, Mark, focus_group_of, marks_of
 from .outlines import Blocker, Crossing, Element, Face, blockers_of, crossings_of, elements_of, faces_of
 from .ray_paths import RayBundle, bundles_from_film, bundles_from_object
@@ -16,7 +17,8 @@ from .ray_paths import RayBundle, bundles_from_film, bundles_from_object
 
 @dataclass(frozen=True, repr=False)
 class CrossSection(ShortText):
-    """A lens cut along its axis. Outlines are (N, 2) arrays of (z, y), paths (N, 3) of (x, y, z); mm, lens frame."""
+    """A lens cut along its axis. Outlines are (N, 2) arrays of (z, y), of plane "xz" of (z, x); paths (N, 3) of
+    (x, y, z); mm, lens frame."""
 
     lens: Lens
     elements: tuple[Element, ...]
@@ -27,8 +29,22 @@ class CrossSection(ShortText):
     focus_group: FocusGroup | None
     film_z_mm: float
     film_semi_diagonal_mm: float
+    film: Points  #: the film's outline
+    plane: str
     fields: tuple[Field, ...]
     bundles: tuple[RayBundle, ...]  #: by wavelength, then by field
+
+    def drawn_paths(self, bundle: RayBundle) -> Points:
+        """(rays, points, 2): the paths of a bundle as the drawing has them. Where surfaces are moved, without what only
+        blocks: such a plane may stand in a mirror, so that a path would come to it on its way back."""
+        if Cut(self.lens).is_in_place:
+            return self.drawn(bundle.paths_mm)
+        bending = [1 + i for i, surface in enumerate(self.lens.surfaces) if surface.type in ("refracting", "mirror")]
+        return self.drawn(bundle.paths_mm[:, [0, *bending, -1]])
+
+    def drawn(self, paths_mm: Points) -> Points:
+        """(..., 2): points of the lens frame, (..., 3), as the drawing has them."""
+        return paths_mm[..., [2, 1 if self.plane == "yz" else 0]]
 
     @property
     def wavelengths_nm(self) -> tuple[float, ...]:
@@ -39,6 +55,7 @@ class CrossSection(ShortText):
 def cross_section(
     lens: Lens,
     *,
+    plane: str = "yz",
     rays: int = 7,
     rays_from: str = "object",
     fields: Sequence[float] = (0.0, 0.7, 1.0),
@@ -46,8 +63,9 @@ def cross_section(
     wavelengths_nm: Sequence[float] | None = None,
     object_distance_m: float | None = None,
 ) -> CrossSection:
-    """The section of a lens in the plane x = 0, with its rays.
+    """The section of a lens in the plane x = 0, with its rays; or in the plane y = 0.
 
+    plane: "yz", or "xz", in which lenses that are not of revolution are others.
     rays: how many of each bundle; 0 for none.
     rays_from: "object", bundles of an object point each, so that the lens's aberrations show at the film; or "film",
       the rays that film points send through the lens, as the camera samples them.
@@ -58,6 +76,7 @@ def cross_section(
     object_distance_m: object plane to front vertex, inf allowed; None is the plane in focus.
     Raises InputError where no light passes the lens, or what is asked makes no sense.
     """
+    cut = Cut(lens, plane)
     if rays_from not in ("object", "film"):
         raise InputError(f'rays_from is "{rays_from}"; object or film is wanted')
     if rays < 0:
@@ -69,24 +88,33 @@ def cross_section(
     bundles: tuple[RayBundle, ...] = ()
     if rays > 0:
         span = lens.film_position_mm - min(lens.vertices_mm)
-        if fields_deg is not None:
+        if not lens.is_rotational or plane == "xz":
+            if rays_from == "film" or fields_deg is not None:
+                raise InputError(
+                    "rays from the film and field angles are drawn of a centred lens of revolution, in the plane yz; "
+                    "rays from the object to shares of the film's corner are wanted"
+                )
+            places = fields_along(lens, fields, cut.axis)
+        elif fields_deg is not None:
             places = fields_of_angles(lens, fields_deg, object_distance_m)
         else:
             places = fields_at(lens, fields, object_distance_m)
         if rays_from == "object":
-            bundles = bundles_from_object(lens, places, wavelengths, rays, 0.25 * span, object_distance_m)
+            bundles = bundles_from_object(cut, places, wavelengths, rays, 0.25 * span, object_distance_m)
         else:
             bundles = bundles_from_film(lens, places, wavelengths, rays, 0.25 * span)
     return CrossSection(
         lens,
-        elements_of(lens),
-        faces_of(lens),
-        blockers_of(lens),
-        crossings_of(lens),
-        marks_of(lens),
+        elements_of(cut),
+        faces_of(cut),
+        blockers_of(cut),
+        crossings_of(lens) if cut.is_in_place else (),
+        marks_of(lens) if cut.is_in_place else (),
         focus_group_of(lens),
         lens.film_position_mm,
         0.5 * math.hypot(*lens.film_mm),
+        cut.film,
+        plane,
         places,
         bundles,
     )

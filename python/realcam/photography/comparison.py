@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import Lens
+from ..drawing.cut import Cut
 from ..drawing.outlines import elements_of
 from ..fields import Field, fields_at
 from ..short_text import ShortText
@@ -61,7 +62,7 @@ def lens_summary(
         lens,
         photographic_figures(lens, circle_of_confusion_mm=circle_of_confusion_mm),
         lens.film_position_mm - min(lens.vertices_mm),
-        len(elements_of(lens)),
+        len(elements_of(Cut(lens))),
         tuple(places),
         frequencies,
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._core import Film, InputError, Lens
 from ..drawing import CrossSection, cross_section
-from ..drawing.outlines import Points
+from ..drawing.cut import Points
 from ..fields import angle_of_height
 
 _RAYS = 9
@@ -52,7 +52,7 @@ def ray_view(lens: Lens, heights_mm: Sequence[float]) -> dict[str, Any]:
     except InputError as error:
         return {"bundles": [], "note": str(error)}
     return {
-        "bundles": [[_points(path[:, [2, 1]]) for path in bundle.paths_mm] for bundle in section.bundles],
+        "bundles": [[_points(path) for path in section.drawn_paths(bundle)] for bundle in section.bundles],
         "note": "",
     }
 

@@ -1,0 +1,85 @@
+"""The plane in which a lens is cut for a drawing, and what stands where in it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import InputError, Lens
+
+Points = NDArray[np.float64]
+PLANES = ("yz", "xz")
+
+
+class Cut:
+    """A lens cut by the plane x = 0 ("yz") or y = 0 ("xz") of its frame. Points are (z, height) in mm, lens frame.
+
+    What is turned out of the plane is drawn by its own cut, projected on it. Raises InputError for another plane.
+    """
+
+    def __init__(self, lens: Lens, plane: str = "yz") -> None:
+        if plane not in PLANES:
+            raise InputError(f'the plane of a drawing is "{plane}"; yz or xz is wanted')
+        self.lens, self.plane = lens, plane
+        self.axis = 1 if plane == "yz" else 0  #: of heights, in points of the lens frame
+
+    @cached_property
+    def is_in_place(self) -> bool:
+        """Whether all surfaces stand upright on one axis."""
+        return all(
+            not any(surface.decentre_mm) and not any(surface.tilt_deg) for surface in self.lens.surfaces
+        ) and bool(np.allclose(self.lens.film_frame[:3], np.eye(3), atol=1e-12))
+
+    def sag(self, surface: int, heights: ArrayLike) -> Points:
+        """Of points of a face, beside its vertex."""
+        shape = self.lens.surfaces[surface]
+        at = np.asarray(heights, float)
+        return np.array([shape.sag_at_mm(0.0, v) if self.axis == 1 else shape.sag_at_mm(v, 0.0) for v in at])
+
+    def placed(self, surface: int, sags: ArrayLike, heights: ArrayLike) -> Points:
+        """(N, 2): points of a surface's own frame."""
+        z, height = np.asarray(sags, float), np.asarray(heights, float)
+        if self.is_in_place:
+            return np.column_stack([self.lens.vertices_mm[surface] + z, height])
+        return self._seen(self.lens.surface_frames[surface], z, height)
+
+    def _seen(self, frame: Points, z: Points, height: Points) -> Points:
+        points: Points = frame[3] + height[:, None] * frame[self.axis] + z[:, None] * frame[2]
+        return points[:, [2, self.axis]]
+
+    @cached_property
+    def film(self) -> Points:
+        """(N, 2): the film, by half its diagonal to either side."""
+        semi = 0.5 * float(np.hypot(*self.lens.film_mm))
+        height = np.linspace(-semi, semi, 2 if np.isinf(self.lens.film_radius_of_curvature_mm) else 61)
+        sag = film_sag(self.lens, height)
+        if self.is_in_place:
+            return np.column_stack([self.lens.film_position_mm + sag, height])
+        return self._seen(self.lens.film_frame, sag, height)
+
+
+def film_sag(lens: Lens, distance_mm: Points) -> Points:
+    """Of a film's points at a distance from its middle, beside the plane there."""
+    radius = lens.film_radius_of_curvature_mm
+    root = np.sqrt(np.maximum(1 - (distance_mm / radius) ** 2, 0.0))
+    sag: Points = distance_mm**2 / radius / (1 + root)
+    return sag
+
+
+def on_film(cut: Cut, points: Points, directions: Points) -> Points:
+    """(N, 3): where rays, as straight lines, meet the film; lens frame."""
+    lens = cut.lens
+    is_flat = np.isinf(lens.film_radius_of_curvature_mm)
+    if cut.is_in_place and is_flat:
+        plane: Points = points + directions * ((lens.film_position_mm - points[:, 2]) / directions[:, 2])[:, None]
+        return plane
+    frame = lens.film_frame
+    local, way = (points - frame[3]) @ frame[:3].T, directions @ frame[:3].T
+    at = local - (local[:, 2] / way[:, 2])[:, None] * way
+    for _ in range(0 if is_flat else 8):
+        miss = film_sag(lens, np.hypot(at[:, 0], at[:, 1])) - at[:, 2]
+        at = at + (miss / way[:, 2])[:, None] * way
+    found: Points = frame[3] + at @ frame[:3]
+    return found
