@@ -50,11 +50,12 @@ REALCAM_INLINE std::int32_t node_at(const DiffractionView& view, Vec2f film, flo
 }
 
 /// A frequency along a straight edge, in periods over its length, with the density sinc^2: a fit to the inverse of its
-/// cumulative probability, which is right within 3%, and in its tails exactly.
+/// cumulative probability, which is right within 3%, and in its tails exactly. They reach across the film and fall with
+/// 1 / f only, so that u needs all its bits: the largest that it has are one frequency, which shows as an image.
 REALCAM_INLINE float frequency_along_edge(float u) {
     const float share = std::fabs(2.0f * u - 1.0f);
     const float size = share * (0.5f + share * (-0.34473f + share * (-0.44109f + share * 0.38714f)));
-    const float frequency = quotient(size, select(share < 0.9999f, 1.0f - share, 0.0001f));
+    const float frequency = quotient(size, select(share < 1.0f, 1.0f - share, 0x1p-24f));
     return select(u < 0.5f, -frequency, frequency);
 }
 
@@ -62,6 +63,12 @@ REALCAM_INLINE float frequency_along_edge(float u) {
 REALCAM_INLINE float behind_bits(float u, float scale) {
     const float scaled = scale * u;
     return scaled - static_cast<float>(static_cast<std::int32_t>(scaled));
+}
+
+/// For the frequency along an edge: eight bits that node_at has left, and finer ones that matter to no place on a piece
+/// of edge.
+REALCAM_INLINE float along_number(Vec2f u, Vec2f v) {
+    return behind_bits(u.y, 0x1p16f) + 0x1p-8f * behind_bits(v.y, 0x1p9f);
 }
 
 REALCAM_INLINE float ring_edge_squared(std::int32_t ring) {
@@ -120,7 +127,7 @@ REALCAM_INLINE DiffractionKick draw_kick(const DiffractionView& view, Vec2f film
     const float side = select(v.y < 0.5f, 1.0f, -1.0f), place = behind_bits(v.y, 2.0f);
     const Vec2f in_cell = cell_frequency(select(is_edge, 0, drawn), {v.x, place});
     const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + select(is_edge, drawn, 0)],
-                                           quotient(kDiffractionReach, 1.0f - v.x), place, behind_bits(u.y, 0x1p16f));
+                                           quotient(kDiffractionReach, 1.0f - v.x), place, along_number(u, v));
     const float scale = side * node.mm_per_nm;
     const Vec2f kick = {scale * select(is_edge, from_edge.x, in_cell.x),
                         scale * select(is_edge, from_edge.y, in_cell.y)};
@@ -143,7 +150,7 @@ REALCAM_INLINE EdgeKick draw_edge_kick(const DiffractionView& view, Vec2f film, 
     const float ratio = std::exp(v.x * range);
     const float side = select(v.y < 0.5f, 1.0f, -1.0f), scale = side * node.mm_per_nm;
     const Vec2f from_edge = edge_frequency(view.edges[at * kDiffractionEdges + edge], kDiffractionReach * ratio,
-                                           behind_bits(v.y, 2.0f), behind_bits(u.y, 0x1p16f));
+                                           behind_bits(v.y, 2.0f), along_number(u, v));
     return {turned_with(film, view.azimuths, {scale * from_edge.x, scale * from_edge.y}),
             node.edge_share * range / ratio};
 }

@@ -15,7 +15,6 @@ from io import BytesIO
 from pathlib import Path
 
 import pytest
-from realcam import _core
 
 elffile = pytest.importorskip("elftools.elf.elffile", reason="pyelftools comes with realcam[wheel]")
 
@@ -56,11 +55,13 @@ def test_it_needs_the_system_alone_and_shows_two_functions() -> None:
 def test_its_stamp_is_of_this_version(library: Path) -> None:
     stamp = ctypes.CDLL(str(library)).realcam_cuda_stamp
     stamp.restype = ctypes.c_char_p
-    assert re.fullmatch(rf"{re.escape(_core.__version__)} \(build [0-9a-f]{{12}}\)", stamp().decode())
+    version = WHEEL.name.split("-")[1]
+    assert re.fullmatch(rf"{re.escape(version)} \(build [0-9a-f]{{12}}\)", stamp().decode())
 
 
 def test_without_a_driver_the_cpu_goes_on(library: Path) -> None:
     """No GPU is visible, whether or not this machine has one."""
+    pytest.importorskip("realcam", reason="realcam is not built here", exc_type=ImportError)
     environment = {**os.environ, "REALCAM_CUDA_PLUGIN": str(library), "CUDA_VISIBLE_DEVICES": ""}
     command = [sys.executable, "-m", "realcam", "devices"]
     done = subprocess.run(command, capture_output=True, text=True, env=environment)

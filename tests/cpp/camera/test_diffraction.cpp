@@ -195,3 +195,25 @@ TEST_CASE("edge draws have the light that all draws have beyond the cells") {
     hold({"Effects", "light beyond the cells, by two ways of drawing", "262144 draws of each", "core", "float32",
           std::max(std::fabs(all - weighted), std::fabs(beyond_all - beyond_weighted)) / kCount, 0.0012, "of all"});
 }
+
+TEST_CASE("draws from straight edges thin out to the margins of a film") {
+    // One aperture of one straight edge across x, as long as the aperture is wide, which has all light.
+    const std::vector<DiffractionEdge> edges(kDiffractionEdges, {0, 0, 1});
+    const std::vector<AliasEntry> entries(kDiffractionEntries, {1, 0});
+    const DiffractionNode node{1, 1};
+    const DiffractionView view{&node, entries.data(), edges.data(), 1, 1, 0, 1e6f, 1};
+    constexpr std::uint32_t kCount = 1 << 20;
+    for (const double far : {10.0, 100.0, 1000.0}) {
+        int kicks = 0, edge_kicks = 0;
+        for (std::uint32_t i = 0; i < kCount; ++i) {
+            const Vec2f u = sample_2d(7, i, 0), v = sample_2d(7, i, 1);
+            kicks += std::fabs(static_cast<double>(draw_kick(view, {0, 0}, u, v).mm_per_nm.y)) > far;
+            edge_kicks += std::fabs(static_cast<double>(draw_edge_kick(view, {0, 0}, 550, u, v).mm_per_nm.y)) > far;
+        }
+        // What sinc^2 has beyond: sin^2 counts as a half. 3% is the fit's, and five times the noise of a count.
+        const double wanted = kCount / (kPi * kPi * far), tolerance = 0.03 * wanted + 5 * std::sqrt(wanted);
+        CAPTURE(far);
+        CHECK(std::fabs(kicks - wanted) < tolerance);
+        CHECK(std::fabs(edge_kicks - wanted) < tolerance);
+    }
+}
