@@ -35,6 +35,7 @@ def test_other_errors_stay() -> None:
     assert advised(error) is error
 
 
+VIEW = ["nicegui", "simplejpeg", "tomlkit"]
 COMMAND = "from realcam_command.main import main; main()"
 
 
@@ -50,3 +51,25 @@ def test_a_package_without_its_extension_says_so(tmp_path: Path, words: list[str
     if COMMAND in words:
         assert (done.returncode, trace) == (2, [])
         assert last.startswith("realcam: error: ")
+
+
+@pytest.mark.parametrize(
+    ("missing", "words", "wanted"),
+    [
+        *((name, ["view"], f"the lens bench needs {name}; pip install realcam[view] brings it") for name in VIEW),
+        ("OpenImageIO", ["render", "scene.obj", "--lens", "double-gauss-50mm", "--spp", "1", "-o", "a.png"],
+         "picture files need the package OpenImageIO; pip install OpenImageIO brings it"),
+    ],
+)  # fmt: skip
+def test_a_missing_package_is_told_with_what_brings_it(
+    tmp_path: Path, missing: str, words: list[str], wanted: str
+) -> None:
+    """Those of realcam[denoise] and realcam[raw]: test_denoiser.py, test_sensor_hard.py."""
+    (tmp_path / "scene.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    code = f"import sys; sys.modules[{missing!r}] = None; {COMMAND}"
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, cwd=tmp_path)
+    *_, last = done.stderr.splitlines()
+    assert done.returncode == 2
+    assert last.startswith("realcam: error: ")
+    assert wanted in last
+    assert not (tmp_path / "a.png").exists()

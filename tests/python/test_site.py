@@ -38,11 +38,11 @@ def entries(index: str) -> list[str]:
 
 
 def test_every_page_is_reached() -> None:
-    listed = subprocess.run(
-        ["git", "-C", ROOT, "ls-files", "-co", "--exclude-standard", "*.md"], capture_output=True, text=True
-    )
-    if listed.returncode != 0:
+    if not (ROOT / ".git").exists():
         pytest.skip("only a clone knows which pages are the repository's")
+    listed = subprocess.run(
+        ["git", "-C", ROOT, "ls-files", "-co", "--exclude-standard", "*.md"], capture_output=True, text=True, check=True
+    )
     pages = {name.removesuffix(".md") for name in listed.stdout.splitlines() if (ROOT / name).is_file()}
     pages = {page for page in pages if not page.startswith((".github/", "docs/site/", "benchmarks/", "cuda13/"))}
     reached = entries((SITE / "index.md").read_text(encoding="utf-8"))
@@ -131,6 +131,7 @@ def test_headers_of_cpp_are_read_as_they_stand(monkeypatch: pytest.MonkeyPatch) 
     assert (film.name, film.declaration) == ("kFilm", "inline constexpr double kFilm[] = {36, 24};")
 
 
+@pytest.mark.skipif(not (ROOT / "cpp").is_dir(), reason="wants the C++ sources")
 def test_the_api_of_cpp_has_all_folders_of_the_core(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     cpp_pages = module_of("cpp_pages", monkeypatch)
     cpp_pages.write(tmp_path)

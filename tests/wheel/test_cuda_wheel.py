@@ -1,6 +1,6 @@
 """The wheel of the plug-in for GPUs: what is in it, what it asks of the system, and whose stamp it has.
 
-`./run wheel cuda` makes it and names it in REALCAM_CUDA_WHEEL.
+`./run wheel cuda` makes it and names it in REALCAM_CUDA_WHEEL; so does `./run wheel test`, where realcam is its wheel.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from pathlib import Path
 
 import pytest
 
-elffile = pytest.importorskip("elftools.elf.elffile", reason="pyelftools comes with realcam[wheel]")
-
 if "REALCAM_CUDA_WHEEL" not in os.environ:
     pytest.skip("REALCAM_CUDA_WHEEL names no wheel", allow_module_level=True)
 WHEEL = Path(os.environ["REALCAM_CUDA_WHEEL"])
+VERSION = WHEEL.name.split("-")[1]
 FILES = zipfile.ZipFile(WHEEL)
 LIBRARY = "realcam_cuda13/librealcam_cuda13.so"
 
@@ -43,6 +42,7 @@ def test_it_is_one_library_with_its_licences() -> None:
 
 def test_it_needs_the_system_alone_and_shows_two_functions() -> None:
     """The CUDA runtime is inside; the driver is looked for when the first GPU is asked for."""
+    elffile = pytest.importorskip("elftools.elf.elffile", reason="pyelftools comes with realcam[wheel]")
     elf = elffile.ELFFile(BytesIO(FILES.read(LIBRARY)))
     needed = {tag.needed for tag in elf.get_section_by_name(".dynamic").iter_tags("DT_NEEDED")}
     system = {"libstdc++.so.6", "libm.so.6", "libgcc_s.so.1", "libc.so.6", "ld-linux-x86-64.so.2"}
@@ -52,11 +52,15 @@ def test_it_needs_the_system_alone_and_shows_two_functions() -> None:
     assert shown == {"realcam_cuda_stamp", "realcam_cuda_backend"}
 
 
+def test_it_asks_for_realcam_of_its_version() -> None:
+    lines = FILES.read(f"realcam_cuda13-{VERSION}.dist-info/METADATA").decode().splitlines()
+    assert f"Requires-Dist: realcam=={VERSION}" in lines
+
+
 def test_its_stamp_is_of_this_version(library: Path) -> None:
     stamp = ctypes.CDLL(str(library)).realcam_cuda_stamp
     stamp.restype = ctypes.c_char_p
-    version = WHEEL.name.split("-")[1]
-    assert re.fullmatch(rf"{re.escape(version)} \(build [0-9a-f]{{12}}\)", stamp().decode())
+    assert re.fullmatch(rf"{re.escape(VERSION)} \(build [0-9a-f]{{12}}\)", stamp().decode())
 
 
 def test_without_a_driver_the_cpu_goes_on(library: Path) -> None:
