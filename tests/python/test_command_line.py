@@ -22,6 +22,8 @@ from realcam.cli.help_texts import finish
 
 from .programs import PROGRAM, wants_executable
 
+BENCHMARKS = Path(rc.__file__).resolve().parents[2] / "benchmarks"
+wants_benchmarks = pytest.mark.skipif(not BENCHMARKS.is_dir(), reason="a wheel comes without the benchmarks")
 # As the script that pip installs calls it.
 PYTHON_COMMAND = [sys.executable, "-c", "from realcam_command.main import main; main()"]
 
@@ -115,7 +117,7 @@ def test_examples_are_command_lines(name: str, example: str) -> None:
         ("lens draw", r"LENS is required \(realcam lens draw --help lists the options"),
         ("bench --threads many", '--threads: "many" is not a whole number'),
         ("lens plot mtf-feild tessar-50mm", r'unknown plot "mtf-feild" \(did you mean "mtf" or "mtf-field"'),
-        ("bench lens-ray", 'or "lens-rays"'),
+        pytest.param("bench lens-ray", 'or "lens-rays"', marks=wants_benchmarks),
         ("lens photo tessar-50mm --iso -3", "--iso: a positive number is wanted"),
         ("lens plot mtf tessar-50mm -o mtf.txt", r"\.json or \.csv is wanted"),
     ],
