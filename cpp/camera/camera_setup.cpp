@@ -82,6 +82,7 @@ CameraSetup::CameraSetup(const Camera& camera, PupilTracer tracer, const CameraS
         if (camera.model == CameraModel::mapped_lens) set_map(tracer, last);
         return;
     }
+    if (camera.model == CameraModel::polynomial_lens) require_radial_pupil(camera.lens, "the camera model polynomial");
     set_pupil(tracer, last);
     check_light();
     if (camera.model == CameraModel::polynomial_lens)

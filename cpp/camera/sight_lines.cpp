@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "../optics/analysis/film_bundle.hpp"
+#include "../optics/pupil/pupil_grid.hpp"
 #include "camera_setup.hpp"
 #include "generate_rays.hpp"
 #include "mean_ray.hpp"
@@ -15,6 +16,7 @@ namespace realcam {
 SightLines::SightLines(const CameraSetup& setup, SightRay ray, const RayLoop& loop) : lines_(kSteps + 1) {
     const Camera& camera = setup.camera();
     const LensSystem& lens = camera.lens;
+    require_radial_pupil(lens, "projection");
     const FirstOrder data = first_order(lens, lens.wavelength_nm);
     const double pupil = data.entrance_pupil_position;
     constexpr double kFar = 1e6;

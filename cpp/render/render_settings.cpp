@@ -47,10 +47,8 @@ void validate_effects(const RenderSettings& settings, const Camera& camera) {
     if (settings.pupil_sampling == PupilSampling::pixel && static_cast<const Effects&>(effects) != kNoEffects)
         throw InputError("pupil_sampling: pixels learn where light passes only without " +
                          effects_that(&EffectInfo::is_compiled));
-    if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_round_lens);
-        effect && !has_radial_pupil(camera.lens))
-        throw InputError(std::string(effect->name) + " needs a centred lens of revolution before a flat film; " +
-                         (camera.lens.is_rotational() ? "its film is curved" : camera.lens.asymmetry()));
+    if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_round_lens))
+        require_radial_pupil(camera.lens, std::string(effect->name));
     if (camera.model == CameraModel::full_lens) return;
     if (const EffectInfo* effect = first_that(effects, &EffectInfo::needs_full_lens))
         throw InputError(std::string(effect->name) + ": the camera's model must be full");

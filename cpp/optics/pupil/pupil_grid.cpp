@@ -12,6 +12,12 @@ bool has_radial_pupil(const LensSystem& lens) {
     return lens.is_rotational() && std::isinf(lens.film_radius_of_curvature);
 }
 
+void require_radial_pupil(const LensSystem& lens, const std::string& what) {
+    if (!has_radial_pupil(lens))
+        throw InputError(what + " needs a centred lens of revolution before a flat film; " +
+                         (lens.is_rotational() ? "its film is curved" : lens.asymmetry()));
+}
+
 MirrorPlanes mirror_planes(const LensSystem& lens) {
     MirrorPlanes planes{true, true};
     const auto heed = [&](const SurfacePlacement& placement) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "direction_search.hpp"
@@ -22,6 +23,10 @@ struct MirrorPlanes {
 /// Whether the pupil of a film point depends on its distance from the axis alone, and lies in one plane's frame for
 /// all: that of a centred lens of revolution before a flat film. It is found and sampled in less time (Pupil).
 bool has_radial_pupil(const LensSystem& lens);
+
+/// For `what` wants such a pupil. Throws InputError for other lenses: "`what` needs a centred lens of revolution before
+/// a flat film; surface 3 is tilted".
+void require_radial_pupil(const LensSystem& lens, const std::string& what);
 
 MirrorPlanes mirror_planes(const LensSystem& lens);
 
