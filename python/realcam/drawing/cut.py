@@ -78,8 +78,11 @@ def on_film(cut: Cut, points: Points, directions: Points) -> Points:
     frame = lens.film_frame
     local, way = (points - frame[3]) @ frame[:3].T, directions @ frame[:3].T
     at = local - (local[:, 2] / way[:, 2])[:, None] * way
-    for _ in range(0 if is_flat else 8):
-        miss = film_sag(lens, np.hypot(at[:, 0], at[:, 1])) - at[:, 2]
-        at = at + (miss / way[:, 2])[:, None] * way
+    if not is_flat:  # a sphere about a centre on its axis: the crossing that is nearer to the plane
+        from_centre = at - [0, 0, lens.film_radius_of_curvature_mm]
+        half = (from_centre * way).sum(axis=1)
+        inside = half**2 - (from_centre**2).sum(axis=1) + lens.film_radius_of_curvature_mm**2
+        root = np.sqrt(np.maximum(inside, 0.0))
+        at = at + np.where(half > 0, root - half, -root - half)[:, None] * way
     found: Points = frame[3] + at @ frame[:3]
     return found
