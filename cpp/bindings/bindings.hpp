@@ -30,6 +30,7 @@ void bind_lens(py::module_& m);
 void bind_lens_edits(py::module_& m);
 void bind_device_array(py::module_& m);
 void bind_trace(py::module_& m);
+void bind_derivatives(py::module_& m);
 void bind_seidel(py::module_& m);
 void bind_ghosts(py::module_& m);
 void bind_analysis(py::module_& m);

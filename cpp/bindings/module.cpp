@@ -12,6 +12,7 @@ PYBIND11_MODULE(_core, m) {
     bind_lens_edits(m);
     bind_device_array(m);
     bind_trace(m);
+    bind_derivatives(m);
     bind_seidel(m);
     bind_ghosts(m);
     bind_analysis(m);

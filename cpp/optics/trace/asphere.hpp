@@ -18,6 +18,7 @@ struct Sag {
 /// negative number or a polynomial run wild.
 template <class T>
 REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_squared) {
+    using std::fabs;  // dual numbers have a function of this name of their own
     const T r2 = select(radius_squared < surface.search_squared, radius_squared, surface.search_squared);
     const T root = sqrt_or_zero(T(1) - surface.conic_factor * surface.curvature * surface.curvature * r2);
     const T u = r2 * surface.inverse_search_squared, from_middle = u - T(0.5);
@@ -27,12 +28,12 @@ REALCAM_INLINE Sag<T> asphere_sag(const SurfaceView<T>& surface, T radius_square
     for (int i = kMaxAsphericTerms - 1; i >= 0; --i) {
         slope = slope * from_middle + polynomial;
         polynomial = polynomial * from_middle + surface.aspheric[i];
-        sizes = sizes * T(0.5) + std::fabs(surface.aspheric[i]);  // at the axis and the rim; the same for all rays
+        sizes = sizes * T(0.5) + fabs(surface.aspheric[i]);  // at the axis and the rim; the same for all rays
     }
     const T base = quotient(surface.curvature * r2, T(1) + root), departure = u * u * polynomial;
     const T derivative =
         surface.curvature / (T(2) * root) + surface.inverse_search_squared * u * (T(2) * polynomial + u * slope);
-    return {base + departure, std::fabs(base) + u * u * sizes,
+    return {base + departure, fabs(base) + u * u * sizes,
             select(radius_squared <= surface.search_squared, derivative, T(0))};
 }
 

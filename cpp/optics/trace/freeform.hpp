@@ -39,6 +39,10 @@ struct FreeformSags {
 
 namespace freeform_detail {
 
+// Dual numbers have functions of these names of their own.
+using std::fabs;
+using std::sqrt;
+
 /// A point inside the region, for one that may lie outside, and what moving there does to the derivatives.
 template <class T>
 struct InsidePoint {
@@ -54,7 +58,7 @@ REALCAM_INLINE InsidePoint<T> inside_point(const FreeformView<T>& form, T x, T y
     const T in_y = select(dy > form.half_y, form.half_y, select(dy < -form.half_y, -form.half_y, dy));
     const T cx = select(in_x == dx, x, form.middle_x + in_x), cy = select(in_y == dy, y, form.middle_y + in_y);
     const T r2 = cx * cx + cy * cy, limit = form.reach * form.reach;
-    const T across = select(r2 > limit, form.reach / std::sqrt(select(r2 > limit, r2, T(1))), T(1));
+    const T across = select(r2 > limit, form.reach / sqrt(select(r2 > limit, r2, T(1))), T(1));
     return {across * cx, across * cy, select(in_x == dx, T(1), T(0)), select(in_y == dy, T(1), T(0)), across};
 }
 
@@ -62,7 +66,7 @@ REALCAM_INLINE InsidePoint<T> inside_point(const FreeformView<T>& form, T x, T y
 template <class T>
 REALCAM_INLINE T root_of(T radicand) {
     const T least = std::numeric_limits<T>::epsilon();
-    return std::sqrt(select(radicand > least, radicand, least));
+    return sqrt(select(radicand > least, radicand, least));
 }
 
 template <class T, int N>
@@ -78,7 +82,7 @@ REALCAM_HD inline void set_base(const FreeformView<T>& form, const T* x, const T
             out.height[i] = base;
             out.slope_x[i] = x[i] * (quotient(T(2) * cx, over) + bend * qx);
             out.slope_y[i] = y[i] * (quotient(T(2) * cy, over) + bend * qy);
-            out.size[i] = std::fabs(base) + form.term_size;
+            out.size[i] = fabs(base) + form.term_size;
         }
         return;
     }
@@ -107,7 +111,7 @@ REALCAM_HD inline void set_base(const FreeformView<T>& form, const T* x, const T
         out.height[i] = base;
         out.slope_x[i] = quotient(cx * x[i], ring);
         out.slope_y[i] = quotient(rest * along, ring);
-        out.size[i] = std::fabs(base) + std::fabs(section) + form.term_size;
+        out.size[i] = fabs(base) + fabs(section) + form.term_size;
     }
 }
 
@@ -116,7 +120,7 @@ REALCAM_HD inline void add_radial(const FreeformView<T>& form, const T* x, const
     Lanes<T, N> u, sum, slope;
     REALCAM_LANES
     for (int i = 0; i < N; ++i) {
-        u[i] = form.inverse_reach * std::sqrt(x[i] * x[i] + y[i] * y[i]);
+        u[i] = form.inverse_reach * sqrt(x[i] * x[i] + y[i] * y[i]);
         sum[i] = slope[i] = T(0);
     }
     for (int k = form.radial_terms - 1; k >= 0; --k) {

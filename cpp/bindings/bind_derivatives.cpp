@@ -1,0 +1,153 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "../embree/lens_rays.hpp"
+#include "../optics/derivatives/dual_path.hpp"
+#include "../optics/trace/lens_entry.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace realcam::bindings {
+
+using namespace py::literals;
+
+namespace {
+
+using Variables = std::vector<std::tuple<std::string, int, int, int>>;
+
+const std::map<std::string, LensQuantity>& quantities() {
+    static const std::map<std::string, LensQuantity> names = {
+        {"curvature", LensQuantity::curvature},
+        {"conic", LensQuantity::conic},
+        {"aspheric", LensQuantity::aspheric},
+        {"thickness", LensQuantity::thickness},
+        {"index", LensQuantity::index},
+        {"decentre", LensQuantity::decentre},
+        {"tilt", LensQuantity::tilt},
+        {"curvature_x", LensQuantity::curvature_x},
+        {"conic_x", LensQuantity::conic_x},
+        {"radial", LensQuantity::radial},
+        {"xy", LensQuantity::xy},
+        {"zernike", LensQuantity::zernike},
+        {"forbes", LensQuantity::forbes},
+        {"film_distance", LensQuantity::film_distance},
+    };
+    return names;
+}
+
+std::vector<LensVariable> variables_from(const Variables& variables) {
+    std::vector<LensVariable> list;
+    for (const auto& [name, surface, number, number_y] : variables) {
+        const auto found = quantities().find(name);
+        if (found == quantities().end()) {
+            std::string all;
+            for (const auto& [known, quantity] : quantities()) all += (all.empty() ? "" : ", ") + known;
+            throw InputError("unknown quantity \"" + name + "\"; one of " + all + " is wanted");
+        }
+        list.push_back({found->second, surface, number, number_y});
+    }
+    return list;
+}
+
+/// Derivatives by the caller's origin and direction, for those by a start on the same line with an optical direction.
+void write_by_ray(const RayDerivatives& ray, Vec3d given, const LensEntry& entry, double index, Vec3d from,
+                  double* out) {
+    const double size = length(given);
+    const Vec3d unit = (1 / size) * given;
+    const double way = dot(entry.origin - from, unit) / size;  // entry.origin = from + way given
+    for (int row = 0; row < RayDerivatives::kNumbers; ++row) {
+        const double* by = ray.by_start[row];
+        const Vec3d by_origin{by[0], by[1], by[2]}, by_optical{by[3], by[4], by[5]};
+        Vec3d by_direction = (index / size) * (by_optical - dot(by_optical, unit) * unit) + way * by_origin;
+        if (row == 6) by_direction = by_direction + index * way * unit;
+        const double numbers[6] = {by_origin.x,    by_origin.y,    by_origin.z,
+                                   by_direction.x, by_direction.y, by_direction.z};
+        std::copy(numbers, numbers + 6, out + 6 * row);
+    }
+}
+
+py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& origins,
+                          const InputArray<double>& directions, const Variables& variables,
+                          std::optional<double> wavelength_nm, const std::string& start, const std::string& frame,
+                          std::optional<int> surface_count, bool rims) {
+    const bool fits = origins.ndim() == 2 && origins.shape(1) == 3 && directions.ndim() == 2 &&
+                      directions.shape(1) == 3 && origins.shape(0) == directions.shape(0);
+    if (!fits) throw InputError("origins_mm and directions must both be arrays of shape (N, 3)");
+    if (start != "film" && start != "scene") throw InputError("start must be \"film\" or \"scene\"");
+    const DualPath path(lens, start == "film" ? LightDirection::to_scene : LightDirection::to_film,
+                        wavelength_or_design(lens, wavelength_nm), variables_from(variables),
+                        frame == "lens" ? ExitFrame::lens : ExitFrame::last_axis, rims);
+    const int all = path.surface_count(), surfaces = surface_count.value_or(all);
+    if (surfaces < 1 || surfaces > all) throw InputError("surface_count must lie between 1 and " + std::to_string(all));
+    constexpr py::ssize_t kNumbers = RayDerivatives::kNumbers;
+    const py::ssize_t count = origins.shape(0), width = static_cast<py::ssize_t>(path.variable_count());
+    py::array_t<int> status(count);
+    py::array_t<double> numbers({count, kNumbers}), by_variable({count, kNumbers, width}),
+        by_ray({count, kNumbers, py::ssize_t{6}});
+    int* to_status = status.mutable_data();
+    double *to_numbers = numbers.mutable_data(), *to_variables = by_variable.mutable_data(),
+           *to_ray = by_ray.mutable_data();
+    {
+        const Unlocked unlocked;
+        parallel_ray_loop(heed_signals)
+            .for_all(static_cast<std::size_t>(count), [&](std::size_t first, std::size_t last) {
+                constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+                DualPath::Tape tape;
+                RayDerivatives ray;
+                for (std::size_t i = first; i < last; ++i) {
+                    const double *o = origins.data() + 3 * i, *d = directions.data() + 3 * i;
+                    const Vec3d from{o[0], o[1], o[2] - path.entry_position()}, given{d[0], d[1], d[2]};
+                    const LensEntry entry = enter_lens(from, given, path.entry_index(), path.entry_reach());
+                    RayStatus end = entry.status;
+                    if (end == RayStatus::ok) end = path.trace(entry.origin, entry.direction, tape, surfaces);
+                    to_status[i] = static_cast<int>(end);
+                    const std::size_t seven = kNumbers, many = seven * path.variable_count();
+                    if (end != RayStatus::ok) {
+                        std::fill_n(to_numbers + seven * i, seven, kNone);
+                        std::fill_n(to_variables + many * i, many, kNone);
+                        std::fill_n(to_ray + 6 * seven * i, 6 * seven, kNone);
+                        continue;
+                    }
+                    if (surfaces == all)
+                        path.derivatives(tape, ray);
+                    else
+                        path.derivatives_behind(tape, surfaces, ray);
+                    const double seven_numbers[] = {ray.origin.x,
+                                                    ray.origin.y,
+                                                    ray.origin.z,
+                                                    ray.direction.x,
+                                                    ray.direction.y,
+                                                    ray.direction.z,
+                                                    ray.path + entry.optical_path};
+                    std::copy(seven_numbers, seven_numbers + seven, to_numbers + seven * i);
+                    std::copy(ray.by_variable.begin(), ray.by_variable.end(), to_variables + many * i);
+                    write_by_ray(ray, given, entry, path.entry_index(), from, to_ray + 6 * seven * i);
+                }
+            });
+    }
+    return py::make_tuple(status, numbers, by_variable, by_ray);
+}
+
+}  // namespace
+
+void bind_derivatives(py::module_& m) {
+    py::reinterpret_borrow<py::class_<LensSystem>>(m.attr("Lens"))
+        .def("_ray_derivatives", &ray_derivatives, "origins_mm"_a, "directions"_a, "variables"_a, py::kw_only(),
+             "wavelength_nm"_a = py::none(), "start"_a = "film", "frame"_a = "lens", "surface_count"_a = py::none(),
+             "rims"_a = true,
+             "For realcam.derivatives, which says more. variables: tuples of a quantity, a surface from 0, and two "
+             "numbers.\n"
+             "frame: \"lens\", or \"axis\" for that of the axis behind the last surface. With surface_count the frame "
+             "of the\n"
+             "last surface crossed. Returns status (N,); origin, optical direction and optical path (N, 7); their\n"
+             "derivatives by the variables (N, 7, V), and by the given origin and direction (N, 7, 6).");
+}
+
+}  // namespace realcam::bindings

@@ -1,0 +1,297 @@
+#include "dual_path.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace realcam {
+
+namespace {
+
+constexpr int kRayLanes = 6;
+
+template <class F>
+void over_ray(Vec3<Dual8>& o, Vec3<Dual8>& p, F&& f) {
+    f(o.x, 0), f(o.y, 1), f(o.z, 2), f(p.x, 3), f(p.y, 4), f(p.z, 5);
+}
+
+Vec3d value(const Vec3<Dual8>& v) {
+    return {v.x.value, v.y.value, v.z.value};
+}
+
+struct SagWithSlopes {
+    Dual8 height, slope_x, slope_y;
+};
+
+SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8>& at) {
+    if (surface.view.kind == SurfaceShape::asphere) {
+        const Dual8 r2 = at.x * at.x + at.y * at.y;
+        Sag<Dual8> sag = asphere_sag(surface.view, r2);
+        for (std::size_t lane = 0; lane < kDualLanes; ++lane) {
+            if (surface.powers[lane] == 0) continue;
+            const int half = surface.powers[lane] / 2;
+            const double power = std::pow(r2.value, half - 1);
+            sag.height.by[lane] += power * r2.value;
+            sag.derivative.by[lane] += half * power;
+        }
+        const Dual8 slope = 2.0 * sag.derivative;
+        return {sag.height, slope * at.x, slope * at.y};
+    }
+    const Lanes<Dual8, 1> x = {at.x}, y = {at.y};
+    FreeformSags<Dual8, 1> sag;
+    freeform_sags<Dual8, 1>(surface.form, x, y, sag);
+    return {sag.height[0], sag.slope_x[0], sag.slope_y[0]};
+}
+
+/// Where a ray meets a surface, given where that is in double.
+SurfaceHit<Dual8> hit_of(const DualSurface& surface, const Vec3<Dual8>& o, const Vec3<Dual8>& p, Vec3d at) {
+    const SurfaceView<Dual8>& view = surface.view;
+    if (view.kind == SurfaceShape::sphere) return intersect_sphere(o, p, view.curvature, view.direction_sign_in);
+    if (view.kind == SurfaceShape::conic) {
+        const Dual8 approach = to_vertex_plane(o, p);
+        SurfaceHit<Dual8> hit =
+            intersect_conic(o + approach * p, p, view.curvature, view.conic_factor, view.direction_sign_in);
+        hit.parameter += approach;
+        return hit;
+    }
+    const Vec3d from = value(o), way = value(p);
+    const Dual8 known = dot(at - from, way) / dot(way, way);
+    const Vec3<Dual8> near = o + known * p;
+    const SagWithSlopes there = sag_at(surface, near);
+    const double rise = way.z - there.slope_x.value * way.x - there.slope_y.value * way.y;
+    const Dual8 parameter = known - (near.z - there.height) / Dual8(rise);
+    const SagWithSlopes sag = sag_at(surface, o + parameter * p);
+    return freeform_hit(view.direction_sign_in, p, parameter, sag.slope_x, sag.slope_y, Dual8(1));
+}
+
+}  // namespace
+
+DualPath::DualPath(const LensSystem& lens, LightDirection direction, double wavelength_nm,
+                   std::vector<LensVariable> variables, ExitFrame exit, bool has_rims)
+    : variables_(std::move(variables)) {
+    check_variables(lens, variables_);
+    const LensPath<double> path(lens, direction, wavelength_nm);
+    const LensView<double> view = path.view();
+    views_.assign(view.surfaces, view.surfaces + view.count);
+    kind_ = view.kind;
+    iris_ = view.iris;
+    if (view.free.frames) frames_.assign(view.free.frames, view.free.frames + view.count);
+    if (view.free.freeforms) freeforms_.assign(view.free.freeforms, view.free.freeforms + view.count);
+    if (view.free.apertures && has_rims) apertures_.assign(view.free.apertures, view.free.apertures + view.count);
+    for (FrameChanges<double>& change : frames_) change.out.changes = 0;
+    if (!has_rims)
+        for (SurfaceView<double>& surface : views_) {
+            surface.rim_squared = std::numeric_limits<double>::max();
+            surface.hole_squared = -1;
+            surface.has_blades = 0;
+        }
+    if (kind_ == LensKind::plain) kind_ = LensKind::rotational;
+    entry_index_ = path.entry_index, entry_position_ = path.entry_position, entry_reach_ = path.entry_reach;
+    const bool to_film = direction == LightDirection::to_film;
+    add_surfaces(lens, wavelength_nm, to_film);
+    const int last = views_.back().surface_index;
+    for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes) {
+        const DualLens dual(lens, wavelength_nm, variables_, first);
+        exits_.push_back(exit == ExitFrame::lens ? dual.frame(lens, last) : dual.last_axis(lens));
+        entry_positions_.push_back(to_film ? Dual8(0) : dual.vertices[lens.surfaces.size() - 1]);
+        entry_indices_.push_back(to_film ? dual.indices.front() : dual.indices.back());
+    }
+}
+
+void DualPath::add_surfaces(const LensSystem& lens, double wavelength_nm, bool to_film) {
+    bool is_placed = path_frames_detail::has_placements(lens);
+    for (const LensVariable& v : variables_)
+        is_placed |= v.quantity == LensQuantity::tilt || v.quantity == LensQuantity::decentre;
+    const auto surface = [&](std::size_t k) { return views_[k].surface_index; };
+    std::vector<DualSurface> plain;
+    for (std::size_t k = 0; k < views_.size(); ++k) {
+        std::vector<LensVariable> own;
+        for (const LensVariable& v : variables_)
+            if (v.surface == surface(k)) own.push_back(v);
+        plain.emplace_back(views_[k], lens.surfaces[static_cast<std::size_t>(surface(k))], own);
+        duals_.push_back({plain.back()});
+    }
+    std::vector<int> taken(views_.size(), kRayLanes);  // lanes of the last dual surface
+    for (std::size_t first = 0; first < variables_.size() || first == 0; first += kDualLanes) {
+        const DualLens dual(lens, wavelength_nm, variables_, first);
+        for (std::size_t k = 0; k < views_.size(); ++k) {
+            const int here = surface(k), before = k == 0 ? here : surface(k - 1);
+            DualSurface seeded = plain[k];
+            for (int lane = 0; lane < kDualLanes && first + static_cast<std::size_t>(lane) < variables_.size();
+                 ++lane) {
+                const std::size_t v = first + static_cast<std::size_t>(lane);
+                seeded.variables[static_cast<std::size_t>(lane)] = static_cast<int>(v);
+                if (variables_[v].surface == here)
+                    seed_shape(seeded, lens.surfaces[static_cast<std::size_t>(here)], variables_[v], lane);
+            }
+            const auto at = static_cast<std::size_t>(here);
+            const Dual8 n = dual.indices[to_film ? at : at + 1], behind = dual.indices[to_film ? at + 1 : at];
+            seeded.view.squared_index_change = (behind - n) * (behind + n) / (n * n);
+            seeded.view.index_squared = n * n;
+            if (is_placed) {
+                Affine<Dual8> to = k > 0 ? dual.neighbour(lens, before, here) : dual.frame(lens, here);
+                if (k == 0 && !to_film) to.origin.z -= dual.vertices[at];
+                seeded.before = path_frames_detail::change_to<Dual8>({});
+                seeded.before = {to.origin, to.x, to.y, to.z, 1};
+                seeded.view.shift = 0;
+            } else if (k > 0) {
+                seeded.view.shift = dual.vertices[at] - dual.vertices[static_cast<std::size_t>(before)];
+            }
+            if (first == 0) {
+                // The numbers themselves, which all share.
+                plain[k] = seeded;
+                for (int lane = 0; lane < kDualLanes; ++lane) plain[k].take_lane(lane, DualSurface(), 0);
+                plain[k].variables.assign(kDualLanes, -1);
+                duals_[k] = {plain[k]};
+            }
+            for (const int lane : seeded.lanes()) {
+                if (taken[k] == kDualLanes) {
+                    duals_[k].push_back(plain[k]);
+                    taken[k] = 0;
+                }
+                duals_[k].back().take_lane(taken[k]++, seeded, lane);
+            }
+        }
+    }
+}
+
+RayStatus DualPath::trace(Vec3d origin, Vec3d direction, Tape& tape, int surfaces) const {
+    LensRays<double, 1> ray;
+    ray.origin.set(0, origin);
+    ray.direction.set(0, direction);
+    ray.status[0] = 0;
+    PathRecord<double, 1> record{};
+    tape.start_direction_ = direction;
+    tape.steps_.resize(views_.size());
+    const auto data = [](const auto& list) { return list.empty() ? nullptr : list.data(); };
+    const FreeParts<double> free{data(frames_), data(freeforms_), data(apertures_)};
+    const std::size_t count = surfaces < 0 ? views_.size() : static_cast<std::size_t>(surfaces);
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec3d o = ray.origin[0], p = ray.direction[0];
+        const LensView<double> one{&views_[k], 1, kind_, iris_, free.from(static_cast<int>(k))};
+        trace_lens(one, ray, record);
+        tape.status_ = static_cast<RayStatus>(ray.status[0]);
+        if (tape.status_ != RayStatus::ok) break;
+        Tape::Step& step = tape.steps_[k];
+        step.origin = ray.origin[0];
+        step.direction = ray.direction[0];
+        step.path = record.optical_path[0];
+        std::size_t first_variable = 0;
+        std::size_t variables = 0;
+        for (const DualSurface& dual : duals_[k])
+            for (const int v : dual.variables) variables += v >= 0;
+        step.by_variable.resize(RayDerivatives::kNumbers * variables);
+        for (const DualSurface& dual : duals_[k]) {
+            write(dual, &dual == duals_[k].data(), o, p, step.origin, step, first_variable);
+            for (const int v : dual.variables) first_variable += v >= 0;
+        }
+    }
+    return tape.status_;
+}
+
+void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d along, Vec3d at, Tape::Step& step,
+                     std::size_t first_variable) const {
+    Vec3<Dual8> o = static_cast<Vec3<Dual8>>(from), p = static_cast<Vec3<Dual8>>(along);
+    if (has_ray) over_ray(o, p, [](Dual8& number, int lane) { number.by[lane] = 1; });
+    if (surface.before.changes) {
+        o = surface.before.point(o);
+        p = surface.before.direction(p);
+    } else {
+        o.z -= surface.view.shift;
+    }
+    const SurfaceHit<Dual8> hit = hit_of(surface, o, p, at);
+    const Refraction<Dual8> refracted =
+        refract(p, hit.normal, hit.along_normal, surface.view.squared_index_change, surface.view.direction_sign_out);
+    Vec3<Dual8> end = o + hit.parameter * p, way = refracted.direction;
+    const Dual8 path = surface.view.index_squared * hit.parameter;
+    const auto put = [&](const Dual8& number, int row) {
+        if (has_ray)
+            for (int lane = 0; lane < kRayLanes; ++lane) step.by_ray[row][lane] = number.by[lane];
+        std::size_t variable = first_variable;
+        for (int lane = 0; lane < kDualLanes; ++lane)
+            if (surface.variables[static_cast<std::size_t>(lane)] >= 0)
+                step.by_variable[RayDerivatives::kNumbers * variable++ + static_cast<std::size_t>(row)] =
+                    number.by[lane];
+    };
+    over_ray(end, way, put);
+    put(path, 6);
+}
+
+void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const {
+    constexpr int kNumbers = RayDerivatives::kNumbers;
+    const std::size_t count = variables_.size();
+    const Tape::Step& last = tape.steps_[static_cast<std::size_t>(surfaces) - 1];
+    ray.status = RayStatus::ok;
+    ray.origin = last.origin, ray.direction = last.direction, ray.path = last.path;
+    ray.by_variable.assign(kNumbers * count, 0);
+    // Derivatives of what leaves by what leaves surface k.
+    double by[kNumbers][kRayLanes] = {};
+    for (int i = 0; i < kRayLanes; ++i) by[i][i] = 1;
+    for (int k = surfaces - 1; k >= 0; --k) {
+        const Tape::Step& step = tape.steps_[static_cast<std::size_t>(k)];
+        std::size_t local = 0;
+        for (const DualSurface& dual : duals_[static_cast<std::size_t>(k)])
+            for (const int v : dual.variables) {
+                if (v < 0) continue;
+                const double* change = &step.by_variable[kNumbers * local++];
+                for (std::size_t row = 0; row < kNumbers; ++row) {
+                    double sum = row == 6 ? change[6] : 0;
+                    for (int i = 0; i < kRayLanes; ++i) sum += by[row][i] * change[i];
+                    ray.by_variable[row * count + static_cast<std::size_t>(v)] += sum;
+                }
+            }
+        for (int row = 0; row < kNumbers; ++row) {
+            double next[kRayLanes];
+            for (int j = 0; j < kRayLanes; ++j) {
+                next[j] = row == 6 ? step.by_ray[6][j] : 0;
+                for (int i = 0; i < kRayLanes; ++i) next[j] += by[row][i] * step.by_ray[i][j];
+            }
+            for (int j = 0; j < kRayLanes; ++j) by[row][j] = next[j];
+        }
+    }
+    for (int row = 0; row < kNumbers; ++row)
+        for (int j = 0; j < kRayLanes; ++j) ray.by_start[row][j] = by[row][j];
+    // The start is relative to a vertex that may move, and as long as an index that may change.
+    const Vec3d p = tape.start_direction_;
+    for (std::size_t v = 0; v < count; ++v) {
+        const double moves = entry_positions_[v / kDualLanes].by[v % kDualLanes];
+        const double grows = entry_indices_[v / kDualLanes].by[v % kDualLanes] / entry_index_;
+        for (std::size_t row = 0; row < kNumbers; ++row)
+            ray.by_variable[row * count + v] +=
+                grows * (by[row][3] * p.x + by[row][4] * p.y + by[row][5] * p.z) - moves * by[row][2];
+    }
+}
+
+void DualPath::derivatives(const Tape& tape, RayDerivatives& ray) const {
+    const std::size_t count = variables_.size();
+    derivatives_behind(tape, surface_count(), ray);
+    RayDerivatives turned = ray;
+    for (std::size_t first = 0; first < count || first == 0; first += kDualLanes) {
+        const Affine<Dual8>& frame = exits_[first / kDualLanes];
+        Vec3<Dual8> o = static_cast<Vec3<Dual8>>(ray.origin), p = static_cast<Vec3<Dual8>>(ray.direction);
+        const std::size_t lanes = std::min<std::size_t>(count - first, kDualLanes);
+        over_ray(o, p, [&](Dual8& number, int row) {
+            for (std::size_t lane = 0; lane < lanes; ++lane)
+                number.by[lane] = ray.by_variable[static_cast<std::size_t>(row) * count + first + lane];
+        });
+        o = frame.point(o);
+        p = frame.direction(p);
+        turned.origin = value(o), turned.direction = value(p);
+        over_ray(o, p, [&](const Dual8& number, int row) {
+            for (std::size_t lane = 0; lane < lanes; ++lane)
+                turned.by_variable[static_cast<std::size_t>(row) * count + first + lane] = number.by[lane];
+        });
+    }
+    const Affine<Dual8>& frame = exits_.front();
+    const Vec3d x = value(frame.x), y = value(frame.y), z = value(frame.z);
+    for (int j = 0; j < kRayLanes; ++j)
+        for (int half : {0, 3}) {
+            const Vec3d turn =
+                ray.by_start[half][j] * x + ray.by_start[half + 1][j] * y + ray.by_start[half + 2][j] * z;
+            turned.by_start[half][j] = turn.x, turned.by_start[half + 1][j] = turn.y;
+            turned.by_start[half + 2][j] = turn.z;
+        }
+    ray = std::move(turned);
+}
+
+}  // namespace realcam

@@ -1,0 +1,276 @@
+#include "dual_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "../prescription/form_terms.hpp"
+
+namespace realcam {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// f(a's number, b's number) for all numbers of two surfaces that have derivatives.
+template <class A, class B, class F>
+void over_numbers(A& a, B& b, F&& f) {
+    f(a.shift, b.shift);
+    f(a.curvature, b.curvature);
+    f(a.direction_sign_in, b.direction_sign_in);
+    f(a.direction_sign_out, b.direction_sign_out);
+    f(a.squared_index_change, b.squared_index_change);
+    f(a.index_squared, b.index_squared);
+    f(a.conic_factor, b.conic_factor);
+    f(a.search_squared, b.search_squared);
+    f(a.inverse_search_squared, b.inverse_search_squared);
+    for (int i = 0; i < kMaxAsphericTerms; ++i) f(a.aspheric[i], b.aspheric[i]);
+}
+
+template <class A, class B, class F>
+void over_form_numbers(A& a, B& b, F&& f) {
+    f(a.middle_x, b.middle_x), f(a.middle_y, b.middle_y), f(a.half_x, b.half_x), f(a.half_y, b.half_y);
+    f(a.reach, b.reach), f(a.inverse_reach, b.inverse_reach), f(a.term_size, b.term_size);
+    f(a.curvature_x, b.curvature_x), f(a.curvature_y, b.curvature_y);
+    f(a.conic_factor_x, b.conic_factor_x), f(a.conic_factor_y, b.conic_factor_y);
+    for (int i = 0; i < kMaxAsphericTerms; ++i) f(a.section[i], b.section[i]);
+    for (int i = 0; i < kMaxRadialTerms; ++i) f(a.radial[i], b.radial[i]);
+    for (int i = 0; i < kMaxForbesTerms; ++i) f(a.forbes[i], b.forbes[i]);
+    f(a.forbes_scale, b.forbes_scale), f(a.forbes_curvature_squared, b.forbes_curvature_squared);
+    f(a.is_bfs, b.is_bfs);
+    for (int i = 0; i < kXyCoefficients; ++i) f(a.xy[i], b.xy[i]);
+}
+
+template <class A, class B, class F>
+void over_vector_numbers(A& a, B& b, F&& f) {
+    f(a.x, b.x), f(a.y, b.y), f(a.z, b.z);
+}
+
+template <class A, class B, class F>
+void over_all_numbers(A& a, B& b, F&& f) {
+    over_numbers(a.view, b.view, f);
+    over_form_numbers(a.form, b.form, f);
+    over_vector_numbers(a.before.origin, b.before.origin, f);
+    over_vector_numbers(a.before.x, b.before.x, f);
+    over_vector_numbers(a.before.y, b.before.y, f);
+    over_vector_numbers(a.before.z, b.before.z, f);
+}
+
+Affine<Dual8> along_axis(const Dual8& distance) {
+    Affine<Dual8> frame;
+    frame.origin.z = distance;
+    return frame;
+}
+
+Affine<Dual8> inverse(const Affine<Dual8>& motion) {
+    const Vec3<Dual8>&x = motion.x, &y = motion.y, &z = motion.z;
+    Affine<Dual8> inverse{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}, {0.0, 0.0, 0.0}};
+    inverse.origin = -inverse.direction(motion.origin);
+    return inverse;
+}
+
+/// As SurfacePlacement::frame, whose cosines and sines are exact for right angles.
+Affine<Dual8> frame_of(const Vec3<Dual8>& decentre, const Vec3<Dual8>& tilt_deg) {
+    struct Turn {
+        Dual8 cos, sin;
+    };
+    const auto turn = [](const Dual8& degrees) -> Turn {
+        const Vec3d y = SurfacePlacement{{0, 0, 0}, {degrees.value, 0, 0}, false}.frame().y;
+        return {degrees.mapped(y.y, -y.z * kDegree), degrees.mapped(y.z, y.y * kDegree)};
+    };
+    const Turn a = turn(tilt_deg.x), b = turn(tilt_deg.y), c = turn(tilt_deg.z);
+    const Affine<Dual8> about_x{{1.0, 0.0, 0.0}, {0.0, a.cos, a.sin}, {0.0, -a.sin, a.cos}, decentre},
+        about_y{{b.cos, 0.0, -b.sin}, {0.0, 1.0, 0.0}, {b.sin, 0.0, b.cos}, {0.0, 0.0, 0.0}},
+        about_z{{c.cos, c.sin, 0.0}, {-c.sin, c.cos, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
+    return about_x * about_y * about_z;
+}
+
+Dual8& component(Vec3<Dual8>& v, int axis) {
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+/// With one coefficient, which is 1.
+ForbesTerms unit_forbes(const ForbesTerms& terms, int number) {
+    ForbesTerms unit{terms.kind, terms.radius, std::vector<double>(terms.coefficients.size(), 0.0)};
+    unit.coefficients[static_cast<std::size_t>(number)] = 1;
+    return unit;
+}
+
+}  // namespace
+
+DualLens::DualLens(const LensSystem& lens, double wavelength_nm, const std::vector<LensVariable>& variables,
+                   std::size_t first) {
+    std::vector<Dual8> thickness;
+    std::vector<Vec3<Dual8>> decentre, tilt;
+    for (const double n : lens.indices(wavelength_nm)) indices.emplace_back(n);
+    for (const Surface& surface : lens.surfaces) {
+        thickness.emplace_back(surface.thickness);
+        decentre.push_back(static_cast<Vec3<Dual8>>(surface.placement.decentre));
+        tilt.push_back(static_cast<Vec3<Dual8>>(surface.placement.tilt_deg));
+    }
+    film_distance = lens.film_distance;
+    for (int lane = 0; lane < kDualLanes && first + static_cast<std::size_t>(lane) < variables.size(); ++lane) {
+        const LensVariable& v = variables[first + static_cast<std::size_t>(lane)];
+        const auto s = static_cast<std::size_t>(v.surface);
+        switch (v.quantity) {
+            case LensQuantity::thickness: thickness[s].by[lane] = 1; break;
+            case LensQuantity::film_distance: film_distance.by[lane] = 1; break;
+            case LensQuantity::index:
+                indices[s + 1].by[lane] = 1;
+                // The same medium goes on behind mirrors and stops.
+                for (std::size_t k = s + 1; k < lens.surfaces.size(); ++k) {
+                    if (lens.surfaces[k].type == SurfaceType::refracting) break;
+                    indices[k + 1].by[lane] = 1;
+                }
+                break;
+            case LensQuantity::decentre: component(decentre[s], v.number).by[lane] = 1; break;
+            case LensQuantity::tilt: component(tilt[s], v.number).by[lane] = 1; break;
+            default: break;
+        }
+    }
+    vertices.emplace_back(0);
+    for (std::size_t i = 0; i < thickness.size(); ++i) {
+        placements.push_back(frame_of(decentre[i], tilt[i]));
+        const bool is_last = i + 1 == thickness.size();
+        vertices.push_back(vertices.back() + (is_last ? film_distance : thickness[i]));
+    }
+}
+
+Affine<Dual8> DualLens::neighbour(const LensSystem& lens, int from, int to) const {
+    if (to < from) return inverse(neighbour(lens, to, from));
+    const auto here = static_cast<std::size_t>(from);
+    const Affine<Dual8> to_next = along_axis(vertices[here + 1] - vertices[here]) * placements[here + 1];
+    return moves_alone(lens.surfaces[here]) ? inverse(placements[here]) * to_next : to_next;
+}
+
+Affine<Dual8> DualLens::frame(const LensSystem& lens, int surface) const {
+    Affine<Dual8> frame = placements.front();
+    for (int i = 0; i < surface; ++i) frame = frame * neighbour(lens, i, i + 1);
+    return frame;
+}
+
+Affine<Dual8> DualLens::last_axis(const LensSystem& lens) const {
+    return moves_alone(lens.surfaces.back()) ? inverse(placements.back()) : Affine<Dual8>{};
+}
+
+DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface,
+                         const std::vector<LensVariable>& shape)
+    : DualSurface() {
+    SurfaceView<double> wide = from;
+    std::vector<int> powers;
+    for (const LensVariable& v : shape)
+        if (v.quantity == LensQuantity::aspheric) powers.push_back(v.number);
+    if (wide.kind == SurfaceShape::sphere || wide.kind == SurfaceShape::conic) {
+        const auto is_conic = [](const LensVariable& v) { return v.quantity == LensQuantity::conic; };
+        if (std::any_of(shape.begin(), shape.end(), is_conic)) wide.kind = SurfaceShape::conic;
+        if (!powers.empty()) {
+            const double reach = 1.02 * surface.clear_semi_diameter;
+            wide.kind = SurfaceShape::asphere;
+            wide.search_squared = reach * reach;
+            wide.inverse_search_squared = 1 / wide.search_squared;
+        }
+    }
+    over_numbers(view, wide, [](Dual8& to, double number) { to = number; });
+    view.kind = wide.kind;
+    view.surface_index = wide.surface_index;
+    before = path_frames_detail::change_to<Dual8>({});
+    before.changes = 0;
+    if (wide.kind != SurfaceShape::freeform) return;
+    Surface with_terms = surface;
+    for (const LensVariable& v : shape)
+        if (v.quantity == LensQuantity::xy) with_terms.form.xy.push_back({v.number, v.number_y, 0});
+    const FreeformView<double> freeform = freeform_view<double>(with_terms);
+    over_form_numbers(form, freeform, [](Dual8& to, double number) { to = number; });
+    form.is_toroid = freeform.is_toroid;
+    form.section_terms = freeform.section_terms, form.radial_terms = freeform.radial_terms;
+    form.forbes_terms = freeform.forbes_terms, form.xy_degree = freeform.xy_degree;
+    for (const int power : powers) {
+        if (form.is_toroid)
+            form.section_terms = std::max(form.section_terms, power / 2 - 1);
+        else
+            form.radial_terms = std::max(form.radial_terms, power);
+    }
+    for (const LensVariable& v : shape)
+        if (v.quantity == LensQuantity::radial) form.radial_terms = std::max(form.radial_terms, v.number);
+}
+
+std::vector<int> DualSurface::lanes() const {
+    bool used[kDualLanes] = {};
+    over_all_numbers(*this, *this, [&](const Dual8& number, const Dual8&) {
+        for (int lane = 0; lane < kDualLanes; ++lane) used[lane] |= number.by[lane] != 0;
+    });
+    std::vector<int> list;
+    for (int lane = 0; lane < kDualLanes; ++lane)
+        if (used[lane] || powers[static_cast<std::size_t>(lane)] != 0) list.push_back(lane);
+    return list;
+}
+
+void DualSurface::take_lane(int lane, const DualSurface& from, int from_lane) {
+    over_all_numbers(*this, from, [&](Dual8& to, const Dual8& number) { to.by[lane] = number.by[from_lane]; });
+    const auto to = static_cast<std::size_t>(lane), other = static_cast<std::size_t>(from_lane);
+    variables[to] = from.variables[other];
+    powers[to] = from.powers[other];
+}
+
+void seed_shape(DualSurface& dual, const Surface& surface, const LensVariable& variable, int lane) {
+    const bool is_freeform = dual.view.kind == SurfaceShape::freeform;
+    FreeformView<Dual8>& form = dual.form;
+    const double reach = is_freeform ? 1 / form.inverse_reach.value : 0;
+    switch (variable.quantity) {
+        case LensQuantity::curvature:
+            if (!is_freeform) {
+                dual.view.curvature.by[lane] = 1;
+                return;
+            }
+            form.curvature_y.by[lane] = 1;
+            if (surface.form.base == BaseForm::conic) form.curvature_x.by[lane] = 1;
+            if (surface.form.forbes) form.forbes_curvature_squared.by[lane] = 2 * surface.curvature;
+            return;
+        case LensQuantity::conic:
+            if (!is_freeform) {
+                dual.view.conic_factor.by[lane] = 1;
+                return;
+            }
+            form.conic_factor_y.by[lane] = 1;
+            if (surface.form.base != BaseForm::biconic) form.conic_factor_x.by[lane] = 1;
+            return;
+        case LensQuantity::aspheric: {
+            const auto term = static_cast<std::size_t>(variable.number / 2 - 2);
+            if (is_freeform) {
+                Dual8& to = form.is_toroid ? form.section[term] : form.radial[variable.number - 1];
+                to.by[lane] = std::pow(reach, variable.number);
+                return;
+            }
+            dual.powers[static_cast<std::size_t>(lane)] = variable.number;
+            return;
+        }
+        case LensQuantity::curvature_x: form.curvature_x.by[lane] = 1; return;
+        case LensQuantity::conic_x: form.conic_factor_x.by[lane] = 1; return;
+        case LensQuantity::radial: form.radial[variable.number - 1].by[lane] = std::pow(reach, variable.number); return;
+        case LensQuantity::xy:
+        case LensQuantity::zernike: {
+            make_freeform_detail::XyTable table;
+            if (variable.quantity == LensQuantity::xy) {
+                table.add({{variable.number, variable.number_y, 1}}, reach);
+            } else {
+                ZernikeTerms unit{surface.form.zernike->order, surface.form.zernike->radius,
+                                  std::vector<double>(surface.form.zernike->coefficients.size(), 0.0)};
+                unit.coefficients[static_cast<std::size_t>(variable.number - 1)] = 1;
+                table.add(zernike_as_xy(unit), reach / unit.radius);
+            }
+            Dual8* next = form.xy;
+            for (int j = form.xy_degree; j >= 0; --j)
+                for (int i = form.xy_degree - j; i >= 0; --i) (next++)->by[lane] = table.at(i, j);
+            return;
+        }
+        case LensQuantity::forbes: {
+            Dual8* next = form.forbes;
+            for (const double c : forbes_polynomial(unit_forbes(*surface.form.forbes, variable.number)))
+                (next++)->by[lane] = c;
+            return;
+        }
+        default: return;
+    }
+}
+
+}  // namespace realcam

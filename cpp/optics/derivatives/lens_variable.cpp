@@ -1,0 +1,84 @@
+#include "lens_variable.hpp"
+
+#include <string>
+
+namespace realcam {
+
+namespace {
+
+[[noreturn]] void refuse(int surface, const std::string& why) {
+    throw InputError("surface " + std::to_string(surface) + " " + why);
+}
+
+void check_number(const LensVariable& v, int least, int most, const char* what) {
+    if (v.number < least || v.number > most)
+        refuse(v.surface, std::string(what) + " from " + std::to_string(least) + " to " + std::to_string(most) +
+                              ", and not " + std::to_string(v.number));
+}
+
+void check_form(const LensVariable& v, const SurfaceForm& form) {
+    switch (v.quantity) {
+        case LensQuantity::curvature_x:
+            if (form.base == BaseForm::conic) refuse(v.surface, "has one radius; a biconic or toroid has two");
+            break;
+        case LensQuantity::conic_x:
+            if (form.base != BaseForm::biconic) refuse(v.surface, "has one conic constant; a biconic has two");
+            if (form.curvature_x == 0) refuse(v.surface, "is straight along x: its conic there has no effect");
+            break;
+        case LensQuantity::radial:
+            if (form.is_none()) refuse(v.surface, "has no terms of r");
+            check_number(v, 1, kMaxRadialTerms, "has terms of r");
+            break;
+        case LensQuantity::xy:
+            if (form.is_none()) refuse(v.surface, "has no terms of x and y");
+            if (v.number < 0 || v.number_y < 0 || v.number + v.number_y < 1 || v.number + v.number_y > kMaxXyDegree)
+                refuse(v.surface, "has terms of x and y up to the degree " + std::to_string(kMaxXyDegree));
+            break;
+        case LensQuantity::zernike:
+            if (!form.zernike) refuse(v.surface, "has no Zernike terms");
+            check_number(v, 1, static_cast<int>(form.zernike->coefficients.size()), "has Zernike terms");
+            break;
+        case LensQuantity::forbes:
+            if (!form.forbes) refuse(v.surface, "has no Forbes terms");
+            check_number(v, 0, static_cast<int>(form.forbes->coefficients.size()) - 1, "has Forbes terms");
+            break;
+        default: break;
+    }
+}
+
+void check(const LensSystem& lens, const LensVariable& v) {
+    if (v.quantity == LensQuantity::film_distance) return;
+    const int count = static_cast<int>(lens.surfaces.size());
+    if (v.surface < 0 || v.surface >= count)
+        throw InputError("there is no surface " + std::to_string(v.surface) + "; the lens has " +
+                         std::to_string(count) + ", from 0");
+    const Surface& surface = lens.surfaces[static_cast<std::size_t>(v.surface)];
+    switch (v.quantity) {
+        case LensQuantity::thickness:
+            if (v.surface + 1 == count) refuse(v.surface, "is the last and has no thickness; the film follows it");
+            return;
+        case LensQuantity::decentre:
+        case LensQuantity::tilt: return check_number(v, 0, 2, "has axes");
+        case LensQuantity::index:
+            if (surface.type != SurfaceType::refracting)
+                refuse(v.surface, "has the same medium on both sides: name the index of the surface before it");
+            return;
+        default: break;
+    }
+    if (!surface.bends_light()) refuse(v.surface, "is a plane that only blocks light, and has no shape to change");
+    if (v.quantity == LensQuantity::conic && surface.curvature == 0)
+        refuse(v.surface, "is a plane: its conic has no effect");
+    if (v.quantity == LensQuantity::aspheric &&
+        (v.number % 2 != 0 || v.number < 4 || v.number > 2 + 2 * kMaxAsphericTerms))
+        refuse(v.surface, "has aspheric terms of the powers 4, 6, ..., " + std::to_string(2 + 2 * kMaxAsphericTerms) +
+                              ", and not " + std::to_string(v.number));
+    check_form(v, surface.form);
+}
+
+}  // namespace
+
+void check_variables(const LensSystem& lens, const std::vector<LensVariable>& variables) {
+    for (const LensVariable& variable : variables) check(lens, variable);
+}
+
+}  // namespace realcam

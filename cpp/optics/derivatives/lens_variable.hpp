@@ -1,0 +1,46 @@
+#pragma once
+#include <vector>
+
+#include "../prescription/lens_limits.hpp"
+#include "../prescription/lens_system.hpp"
+
+namespace REALCAM_NAMESPACE {
+
+enum class LensQuantity {
+    curvature,      ///< 1/mm
+    conic,
+    aspheric,       ///< coefficient of r^number, mm^(1 - number)
+    thickness,      ///< mm; what follows moves
+    index,          ///< of the medium behind the surface, by the same at all wavelengths
+    decentre,       ///< mm along x, y, z: number 0, 1, 2
+    tilt,           ///< degrees about x, y, z: number 0, 1, 2
+    curvature_x,    ///< of a biconic or toroid, 1/mm
+    conic_x,        ///< of a biconic
+    radial,         ///< coefficient of r^number, mm^(1 - number)
+    xy,             ///< coefficient of x^number y^number_y
+    zernike,        ///< coefficient of the term `number`, from 1, mm
+    forbes,         ///< coefficient a_number, from 0, mm
+    film_distance,  ///< last vertex to film, mm; of no surface
+};
+
+/// One number of a lens by which something is differentiated.
+///
+/// A surface that stands in its place is tilted and decentred alone, and one that does not as its placement says:
+/// SurfacePlacement::returns.
+struct LensVariable {
+    LensQuantity quantity = LensQuantity::curvature;
+    int surface = 0;  ///< from 0
+    int number = 0, number_y = 0;
+
+    bool operator==(const LensVariable&) const = default;
+};
+
+/// Whether a surface alone is moved by its placement, or by one that it is about to get.
+inline bool moves_alone(const Surface& surface) {
+    return surface.placement.returns || surface.placement.is_in_place();
+}
+
+/// Throws InputError for a surface or number that the lens has not, and for variables without an effect.
+void check_variables(const LensSystem& lens, const std::vector<LensVariable>& variables);
+
+}  // namespace REALCAM_NAMESPACE
