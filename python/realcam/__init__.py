@@ -75,13 +75,15 @@ from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
 from .live_view import LiveView
-from .optimisation import Optimisation, Targets, Variable, optimised
+from .derivatives import Gradient, RayDerivatives, ray_derivatives
+from .optimisation import Optimisation, Targets, optimised
 from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
 from .planning import plan
 from .raw_image import RawImage
 from .render import render
 from .session import ReachedNoise, Session
 from .shot import Shot
+from .variable import Variable
 from .vision import CameraModelFit, camera_json, fit_camera_model, save_camera_json, save_colmap
 
 if TYPE_CHECKING:
@@ -113,6 +115,7 @@ __all__ = [
     "FirstOrder",
     "Ghost",
     "Glass",
+    "Gradient",
     "Image",
     "ImageFileError",
     "InputError",
@@ -132,6 +135,7 @@ __all__ = [
     "RawImage",
     "RayBundle",
     "RayChunks",
+    "RayDerivatives",
     "RayStatus",
     "ReachedNoise",
     "RealcamError",
@@ -164,6 +168,7 @@ __all__ = [
     "optimised",
     "photographic_figures",
     "plan",
+    "ray_derivatives",
     "read_environment",
     "render",
     "save_camera_json",

@@ -10,8 +10,10 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 from typing_extensions import Self, TypeVar, Unpack
 
+from .derivatives import Gradient
 from .image import Image
 from .raw_image import RawImage
+from .variable import Variable
 
 __version__: str
 _STATE_FORMAT: int
@@ -629,6 +631,30 @@ class Lens(_Value):
     ) -> Seidel: ...
     def ghost(self, first: int, second: int, *, wavelength_nm: float | None = None) -> Ghost: ...
     def ghosts(self, *, film_reflectance: float = 0) -> list[Ghost]: ...
+    def gradient(
+        self,
+        quantity: str,
+        variables: Sequence[Variable],
+        *,
+        field_deg: float = 0.0,
+        object_distance_m: float | None = None,
+        wavelength_nm: float | None = None,
+        frequency_per_mm: float | None = None,
+        remove: str | None = None,
+        samples: int = 6,
+    ) -> Gradient: ...
+    def _ray_derivatives(
+        self,
+        origins_mm: ArrayLike,
+        directions: ArrayLike,
+        variables: Sequence[tuple[str, int, int, int]],
+        *,
+        wavelength_nm: float | None = None,
+        start: str = "film",
+        frame: str = "lens",
+        surface_count: int | None = None,
+        rims: bool = True,
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
     def aim(
         self,
         pupil: ArrayLike,

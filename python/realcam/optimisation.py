@@ -12,73 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ._core import InputError, Lens, LensFileError, Surface
+from ._core import InputError, Lens, LensFileError
+from .variable import Variable
 
 Progress = Callable[[int, float], bool | None]
-
-
-@dataclass(frozen=True)
-class Variable:
-    """One number of a lens that may change.
-
-    quantity: "curvature" (1/mm), "thickness" (mm), "conic", or "aspheric" (the coefficient of r^power, mm^(1-power)).
-    surface: its index, from 0. lower, upper: bounds, in the same unit.
-    """
-
-    quantity: str
-    surface: int
-    power: int = 0
-    lower: float = -math.inf
-    upper: float = math.inf
-
-    @staticmethod
-    def radius(surface: int, least_radius_mm: float = 0.0) -> Variable:
-        """The radius of curvature, of either sign and through the plane, but never smaller than this."""
-        most = 1 / least_radius_mm if least_radius_mm > 0 else math.inf
-        return Variable("curvature", surface, lower=-most, upper=most)
-
-    @staticmethod
-    def thickness(surface: int, lower_mm: float = 0.1, upper_mm: float = math.inf) -> Variable:
-        """The distance from this surface to the next."""
-        return Variable("thickness", surface, lower=lower_mm, upper=upper_mm)
-
-    @staticmethod
-    def conic(surface: int, lower: float = -math.inf, upper: float = math.inf) -> Variable:
-        return Variable("conic", surface, lower=lower, upper=upper)
-
-    @staticmethod
-    def aspheric(surface: int, power: int, lower: float = -math.inf, upper: float = math.inf) -> Variable:
-        return Variable("aspheric", surface, power, lower, upper)
-
-    def of(self, surface: Surface) -> float:
-        if self.quantity == "curvature":
-            return surface.curvature_per_mm
-        if self.quantity == "thickness":
-            return surface.thickness_mm
-        if self.quantity == "conic":
-            return surface.conic
-        return surface.aspheric_coefficients.get(self.power, 0.0)
-
-    def set(self, surface: Surface, value: float) -> Surface:
-        if self.quantity == "curvature":
-            return surface.replace(radius_of_curvature_mm=math.inf if value == 0 else 1 / value)
-        if self.quantity == "thickness":
-            return surface.replace(thickness_mm=value)
-        if self.quantity == "conic":
-            return surface.replace(conic=value)
-        return surface.replace(aspheric_coefficients={**surface.aspheric_coefficients, self.power: value})
-
-    def step(self, surface: Surface) -> float:
-        """A change that moves rays by some micrometres: what the search counts in."""
-        rim = surface.clear_semi_diameter_mm
-        sag = 1e-3  # mm at the rim
-        if self.quantity == "curvature":
-            return 2 * sag / rim**2
-        if self.quantity == "thickness":
-            return 10 * sag
-        if self.quantity == "conic":
-            return 8 * sag / max(abs(surface.curvature_per_mm) ** 3 * rim**4, 1e-12)
-        return sag / float(rim) ** self.power
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,84 @@
+"""Arrays of numbers with their derivatives: forward-mode differentiation of formulas of numpy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Doubles = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class DualArray:
+    """value: of any shape; by: the same shape and one axis more, of V variables. Shapes broadcast as numpy's do."""
+
+    value: Doubles
+    by: Doubles
+
+    # What numpy would do with `array * dual` is not meant.
+    __array_ufunc__ = None
+
+    @staticmethod
+    def constant(value: Doubles | float, count: int) -> DualArray:
+        at = np.asarray(value, float)
+        return DualArray(at, np.zeros((*at.shape, count)))
+
+    @property
+    def count(self) -> int:
+        return int(self.by.shape[-1])
+
+    def _other(self, other: Operand) -> DualArray:
+        return other if isinstance(other, DualArray) else DualArray.constant(other, self.count)
+
+    def mapped(self, value: Doubles, slope: Doubles) -> DualArray:
+        """f of this, where f has this slope."""
+        return DualArray(np.asarray(value), np.asarray(slope)[..., None] * self.by)
+
+    def __getitem__(self, index: object) -> DualArray:
+        """Of the axes of the value; an Ellipsis in it is not meant."""
+        return DualArray(self.value[index], self.by[index])  # type: ignore[index]
+
+    def __add__(self, other: Operand) -> DualArray:
+        b = self._other(other)
+        return DualArray(self.value + b.value, self.by + b.by)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> DualArray:
+        return DualArray(-self.value, -self.by)
+
+    def __sub__(self, other: Operand) -> DualArray:
+        return self + (-self._other(other))
+
+    def __rsub__(self, other: Operand) -> DualArray:
+        return self._other(other) + (-self)
+
+    def __mul__(self, other: Operand) -> DualArray:
+        if not isinstance(other, DualArray):
+            at = np.asarray(other, float)
+            return DualArray(self.value * at, self.by * at[..., None])
+        return DualArray(self.value * other.value, self.by * other.value[..., None] + self.value[..., None] * other.by)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Operand) -> DualArray:
+        b = self._other(other)
+        ratio = self.value / b.value
+        return DualArray(ratio, (self.by - ratio[..., None] * b.by) / b.value[..., None])
+
+    def __rtruediv__(self, other: Operand) -> DualArray:
+        return self._other(other) / self
+
+    def sqrt(self) -> DualArray:
+        root = np.sqrt(self.value)
+        with np.errstate(divide="ignore"):
+            return self.mapped(root, np.where(root > 0, 0.5 / root, 0.0))
+
+    def sum(self, weights: Doubles) -> DualArray:
+        """Of the first axis, with weights (N,)."""
+        return DualArray(np.tensordot(weights, self.value, 1), np.tensordot(weights, self.by, 1))
+
+
+Operand = DualArray | Doubles | float

@@ -1,0 +1,143 @@
+"""The rays of one object point that fill the real stop, with derivatives: the stop stays full while the lens changes.
+
+A ray is aimed at its place on the stop. Where a number of the lens changes, so does the point of the entrance pupil's
+plane that the ray has to cross: by the implicit function theorem, from the derivatives at the stop.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import InputError, Lens
+from ..variable import Variable
+from .dual_array import DualArray, Doubles
+from .first_order import FirstOrderDuals, first_order_duals
+
+
+@dataclass(frozen=True)
+class FieldLight:
+    """Rays behind the lens, relative to the last vertex, mm. The last of them is the chief ray.
+
+    weights: (N - 1,), shares of the stop's area, 0 where a ray does not pass. pupil: (N, 2), places on the stop.
+    origins, directions: (N, 3), optical; paths: (N,).
+    """
+
+    field_deg: float
+    first_order: FirstOrderDuals
+    weights: Doubles
+    pupil: Doubles
+    passes: NDArray[np.bool_]
+    origins: DualArray
+    directions: DualArray
+    paths: DualArray
+
+    def on_plane(self, film_distance: DualArray) -> DualArray:
+        """(N, 2): where the rays meet a plane behind the last vertex."""
+        o, p = self.origins, self.directions
+        way = (film_distance - o[:, 2]) / p[:, 2]
+        x, y = o[:, 0] + way * p[:, 0], o[:, 1] + way * p[:, 1]
+        return DualArray(np.stack([x.value, y.value], 1), np.stack([x.by, y.by], 1))
+
+
+def field_light(
+    lens: Lens,
+    variables: Sequence[Variable],
+    field_deg: float,
+    wavelength_nm: float,
+    *,
+    object_distance_m: float | None = None,
+    samples: int = 6,
+    pattern: str = "hexapolar",
+) -> FieldLight:
+    """Raises InputError where no light passes, or the middle of the stop is dark."""
+    count = len(variables)
+    spot = lens.spot(
+        field_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm, samples=samples, pattern=pattern
+    )
+    pupil = np.vstack([spot.pupil, [[0.0, 0.0]]])
+    aimed = lens.aim(pupil, field_deg, object_distance_m=object_distance_m, wavelength_nm=wavelength_nm)
+    passes = aimed.status == 0
+    if not passes[-1]:
+        raise InputError(f"the ray at {field_deg:.6g} deg through the middle of the stop is blocked")
+    weights = np.where(passes[:-1], spot.weights, 0.0)
+    first_order = first_order_duals(lens, variables, wavelength_nm)
+    start, path = _start(lens, first_order, aimed.origins_mm, field_deg, object_distance_m, count)
+    value = start.value
+    listed = [v.as_tuple() for v in variables]
+    _, _, at_stop, at_stop_by_ray = lens._ray_derivatives(
+        value[:, :3],
+        value[:, 3:],
+        listed,
+        wavelength_nm=wavelength_nm,
+        start="scene",
+        frame="axis",
+        surface_count=lens.stop_index + 1,
+        rims=False,
+    )
+    _, numbers, by, by_ray = lens._ray_derivatives(
+        value[:, :3], value[:, 3:], listed, wavelength_nm=wavelength_nm, start="scene", frame="axis"
+    )
+    at_stop_by = at_stop_by_ray[:, :2] @ start.by
+    at_stop_by[..., 2:] += at_stop[:, :2]
+    # Of a ray that does not pass there is nothing to solve.
+    entry_by = np.full((len(pupil), 2, count), np.nan)
+    good = np.isfinite(at_stop_by).all(axis=(1, 2))
+    entry_by[good] = -np.linalg.solve(at_stop_by[good][..., :2], at_stop_by[good][..., 2:])
+    all_by = by_ray @ start.by
+    all_by[..., 2:] += by
+    all_by[:, 6] += path.by
+    total = all_by[..., 2:] + all_by[..., :2] @ entry_by
+    return FieldLight(
+        field_deg,
+        first_order,
+        weights,
+        pupil,
+        passes,
+        DualArray(numbers[:, :3], total[:, :3]),
+        DualArray(numbers[:, 3:6], total[:, 3:6]),
+        DualArray(numbers[:, 6] + path.value, total[:, 6]),
+    )
+
+
+def _start(
+    lens: Lens,
+    first_order: FirstOrderDuals,
+    origins_mm: Doubles,
+    field_deg: float,
+    object_distance_m: float | None,
+    count: int,
+) -> tuple[DualArray, DualArray]:
+    """(N, 6) origins and unit directions in the plane of the entrance pupil's middle, as Lens.aim has them, and (N,)
+    their paths from the object less that of its middle. The first two derivatives are by the two coordinates in that
+    plane, mm."""
+    sine, cosine = math.sin(math.radians(field_deg)), math.cos(math.radians(field_deg))
+
+    def widened(number: DualArray) -> DualArray:
+        return DualArray(number.value, np.concatenate([[0.0, 0.0], number.by]))
+
+    pupil = widened(first_order.entrance_pupil_position_mm)
+    distance = 1000 * object_distance_m if object_distance_m is not None else None
+    if distance is None and math.isfinite(lens.focus_distance_m):
+        to_film = widened(first_order.last_vertex_mm) + widened(first_order.film_distance_mm)
+        inverse = cosine / (1000 * lens.focus_distance_m - to_film + pupil)
+    elif distance is not None and math.isfinite(distance):
+        inverse = cosine / (distance + pupil)
+    else:
+        inverse = DualArray.constant(0.0, count + 2)
+    x = origins_mm[:, 0]
+    along = origins_mm[:, 1] * cosine - (origins_mm[:, 2] - pupil.value) * sine
+    lanes = np.zeros((2, len(x), count + 2))
+    lanes[0, :, 0] = lanes[1, :, 1] = 1
+    ex, ey = DualArray(x, lanes[0]), DualArray(along, lanes[1])
+    square = ex * ex + ey * ey
+    root = (1.0 + square * inverse * inverse).sqrt()
+    # towards + inverse offset, of the length `root` because the offset is across.
+    parts = [ex, ey * cosine, pupil - ey * sine]
+    parts += [(ex * inverse) / root, (sine + ey * inverse * cosine) / root, (cosine - ey * inverse * sine) / root]
+    start = DualArray(np.stack([p.value for p in parts], 1), np.stack([p.by for p in parts], 1))
+    return start, square * inverse / (1.0 + root)

@@ -1,0 +1,97 @@
+"""First-order data of centred lenses with their derivatives: paraxial rays in dual numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._core import InputError, Lens
+from ..variable import Variable
+from .dual_array import DualArray
+
+
+@dataclass(frozen=True)
+class FirstOrderDuals:
+    """As FirstOrder, each a number with its derivatives; paraxial_height_mm: on the film, for each tangent of the
+    chief ray's angle before the lens."""
+
+    effective_focal_length_mm: DualArray
+    back_focal_distance_mm: DualArray
+    front_focal_distance_mm: DualArray
+    f_number: DualArray
+    entrance_pupil_position_mm: DualArray
+    exit_pupil_position_mm: DualArray  # from the last vertex
+    paraxial_height_mm: DualArray
+    last_vertex_mm: DualArray
+    film_distance_mm: DualArray
+    index_behind: DualArray
+
+
+def first_order_duals(lens: Lens, variables: Sequence[Variable], wavelength_nm: float) -> FirstOrderDuals:
+    lens.first_order(wavelength_nm)  # refuses what has none
+    count = len(variables)
+    surfaces = lens.surfaces
+
+    def dual(value: float, quantity: str, surface: int) -> DualArray:
+        by = [float(v.quantity == quantity and v.surface == surface) for v in variables]
+        return DualArray(np.array(value), np.array(by))
+
+    curvatures, thicknesses = [], []
+    indices = [DualArray.constant(1.0, count)]
+    sign = 1.0
+    for i, surface in enumerate(surfaces):
+        curvature = dual(surface.curvature_per_mm, "curvature", i)
+        if surface.forbes:
+            raise InputError(f"surface {i} has Forbes terms: first-order derivatives of such surfaces are not known")
+        if surface.radial_terms:
+            bend = [2.0 * (v.quantity == "radial" and v.surface == i and v.power == 2) for v in variables]
+            curvature = curvature + DualArray(np.array(2 * surface.radial_terms.get(2, 0.0)), np.array(bend))
+        curvatures.append(curvature)
+        thicknesses.append(dual(surface.thickness_mm, "thickness", i))
+        if surface.type == "mirror":
+            sign = -sign
+            indices.append(-indices[-1])
+        elif surface.type == "refracting":
+            indices.append(sign * dual(surface.material.index(wavelength_nm), "index", i))
+        else:
+            indices.append(indices[-1])
+
+    def traced(height: float, slope: float, first: int, last: int) -> tuple[DualArray, DualArray]:
+        y, u = DualArray.constant(height, count), DualArray.constant(slope, count)
+        for i in range(first, last):
+            before, behind = indices[i], indices[i + 1]
+            u = (before * u - y * curvatures[i] * (behind - before)) / behind
+            if i + 1 < last:
+                y = y + thicknesses[i] * u
+        return y, u
+
+    stop, end = lens.stop_index, len(surfaces)
+    (y, u), (_, inclined) = traced(1, 0, 0, end), traced(0, 1, 0, end)
+    level_at_stop, inclined_at_stop = traced(1, 0, 0, stop + 1)[0], traced(0, 1, 0, stop + 1)[0]
+    focal_length = -1.0 / u
+    radius = 0.5 * lens.first_order(wavelength_nm).entrance_pupil_diameter_mm * abs(float(level_at_stop.value))
+    pupil = inclined_at_stop / level_at_stop
+    diameter = 2 * radius / level_at_stop
+    chief_y, chief_u = traced(0, 1, stop, end)
+    film = dual(lens.film_distance_mm, "film_distance", -1)
+    # The ray through the middle of the entrance pupil with the slope 1 there.
+    at_end_y = -pupil * y + traced(0, 1, 0, end)[0]
+    at_end_u = -pupil * u + inclined
+    last_vertex = DualArray.constant(0.0, count)
+    for thickness in thicknesses[:-1]:
+        last_vertex = last_vertex + thickness
+    f_number = focal_length / diameter
+    return FirstOrderDuals(
+        focal_length,
+        -y / u,
+        inclined / u,
+        f_number if f_number.value > 0 else -f_number,
+        pupil,
+        -chief_y / chief_u,
+        at_end_y + film * at_end_u,
+        last_vertex,
+        film,
+        indices[-1] if indices[-1].value > 0 else -indices[-1],
+    )

@@ -1,0 +1,185 @@
+"""Derivatives of what a lens does by the numbers that it is made of: Lens.gradient."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._core import InputError, Lens
+from ..short_text import ShortText
+from ..variable import Variable, checked
+from .dual_array import DualArray, Doubles
+from .field_light import FieldLight, field_light
+from .first_order import first_order_duals
+
+FIRST_ORDER = (
+    "effective_focal_length_mm",
+    "back_focal_distance_mm",
+    "front_focal_distance_mm",
+    "f_number",
+    "entrance_pupil_position_mm",
+)
+QUANTITIES = (
+    "spot_mm",
+    "wavefront_waves",
+    "mtf_tangential",
+    "mtf_sagittal",
+    "chief_ray_height_mm",
+    "chief_ray_angle_deg",
+    "distortion_percent",
+    "length_mm",
+    *FIRST_ORDER,
+)
+
+
+@dataclass(frozen=True, repr=False)
+class Gradient(ShortText):
+    """A number and its derivatives.
+
+    value: in the unit that `quantity` ends with. variables: V of them. by: (V,), for each unit of its variable (1/mm
+    for curvatures: times -1/radius^2 by the radius).
+    """
+
+    quantity: str
+    value: float
+    variables: tuple[Variable, ...]
+    by: Doubles
+
+
+def gradient(
+    self: Lens,
+    quantity: str,
+    variables: Sequence[Variable],
+    *,
+    field_deg: float = 0.0,
+    object_distance_m: float | None = None,
+    wavelength_nm: float | None = None,
+    frequency_per_mm: float | None = None,
+    remove: str | None = None,
+    samples: int = 6,
+) -> Gradient:
+    """The exact derivatives of a number by variables of the lens, by rays in dual numbers.
+
+    quantity: "spot_mm" (RMS radius about the centroid), "wavefront_waves" (RMS), "mtf_tangential" and "mtf_sagittal"
+      (of rays alone, at frequency_per_mm), "chief_ray_height_mm", "chief_ray_angle_deg" (to the film's normal),
+      "distortion_percent" (against the paraxial height on the film), "length_mm" (front vertex to film), and of
+      first_order(): effective_focal_length_mm, back_focal_distance_mm, front_focal_distance_mm, f_number,
+      entrance_pupil_position_mm.
+    remove: None, "tilt" or "focus", of the wavefront. samples: hexapolar rings of rays.
+    The film stays at its distance from the last vertex, the stop keeps its size, and rays go on to fill it. What a rim
+    cuts off counts as if it stayed the same rays. Raises InputError for what the lens or its variables have not.
+    """
+    if quantity not in QUANTITIES:
+        raise InputError(f'unknown quantity "{quantity}"; one of {", ".join(QUANTITIES)} is wanted')
+    listed = checked(self, variables)
+    nm = self.wavelength_nm if wavelength_nm is None else wavelength_nm
+    first_order = first_order_duals(self, listed, nm) if quantity in (*FIRST_ORDER, "length_mm") else None
+    if first_order is not None:
+        # Refuses variables without an effect as rays do.
+        self._ray_derivatives(np.zeros((0, 3)), np.zeros((0, 3)), [v.as_tuple() for v in listed])
+        number = (
+            first_order.last_vertex_mm + first_order.film_distance_mm
+            if quantity == "length_mm"
+            else getattr(first_order, quantity)
+        )
+    else:
+        light = field_light(self, listed, field_deg, nm, object_distance_m=object_distance_m, samples=samples)
+        number = _of_light(quantity, light, nm, frequency_per_mm, remove)
+    return Gradient(quantity, float(number.value), tuple(listed), np.asarray(number.by))
+
+
+def _of_light(
+    quantity: str, light: FieldLight, wavelength_nm: float, frequency_per_mm: float | None, remove: str | None
+) -> DualArray:
+    if quantity == "wavefront_waves":
+        return wavefront_rms(light, wavelength_nm, remove)
+    at = light.on_plane(light.first_order.film_distance_mm)
+    if quantity == "spot_mm":
+        return spot_rms(light, at)
+    if quantity in ("mtf_tangential", "mtf_sagittal"):
+        if frequency_per_mm is None or not frequency_per_mm >= 0:
+            raise InputError("an MTF is that of a frequency: frequency_per_mm is wanted")
+        return transfer(light, at[:, 1 if quantity == "mtf_tangential" else 0], frequency_per_mm)
+    if quantity == "chief_ray_angle_deg":
+        return chief_ray_angle_deg(light)
+    height = at[-1, 1]
+    if quantity == "chief_ray_height_mm":
+        return height
+    if light.field_deg == 0:
+        raise InputError("there is no distortion on the axis")
+    if not abs(light.field_deg) < 90:
+        raise InputError("there is no paraxial height at 90 deg and beyond")
+    paraxial = math.tan(math.radians(light.field_deg)) * light.first_order.paraxial_height_mm
+    return 100 * (height / paraxial - 1.0)
+
+
+def of_passing(light: FieldLight, number: DualArray) -> tuple[Doubles, DualArray]:
+    """Shares of the light, and the numbers of those rays of the bundle that pass."""
+    passes = light.passes[:-1]
+    share = light.weights[passes]
+    return share / share.sum(), number[:-1][passes]
+
+
+def spot_rms(light: FieldLight, at: DualArray) -> DualArray:
+    share, points = of_passing(light, at)
+    middle = points.sum(share)
+    off = points - middle
+    square = off * off
+    return (square[:, 0] + square[:, 1]).sum(share).sqrt()
+
+
+def transfer(light: FieldLight, across: DualArray, frequency_per_mm: float) -> DualArray:
+    """|sum of exp(2 pi i f x)| over the rays."""
+    share, x = of_passing(light, across)
+    phase = 2 * np.pi * frequency_per_mm * x
+    real = phase.mapped(np.cos(phase.value), -np.sin(phase.value)).sum(share)
+    imaginary = phase.mapped(np.sin(phase.value), np.cos(phase.value)).sum(share)
+    return (real * real + imaginary * imaginary).sqrt()
+
+
+def chief_ray_angle_deg(light: FieldLight) -> DualArray:
+    p = light.directions[-1]
+    rise = p[1] / p[2]
+    return rise.mapped(np.degrees(np.arctan(rise.value)), np.degrees(1 / (1 + rise.value**2)))
+
+
+def wavefront_rms(light: FieldLight, wavelength_nm: float, remove: str | None) -> DualArray:
+    """As Lens.wavefront with the chief ray's point as the centre of its sphere and the real exit pupil."""
+    if remove not in (None, "tilt", "focus"):
+        raise InputError(f'cannot remove "{remove}"; tilt, focus or None is wanted')
+    share, waves = of_passing(light, opd_waves(light, wavelength_nm))
+    x, y = light.pupil[:-1][light.passes[:-1]].T
+    basis = [np.ones_like(x)]
+    if remove is not None:
+        basis += [x, y]
+    if remove == "focus":
+        basis.append(x * x + y * y)
+    # What is left of a least-squares fit is linear in the numbers.
+    f = np.array(basis).T
+    fit = np.linalg.solve(f.T @ (share[:, None] * f), f.T * share)
+    left = DualArray(waves.value - f @ (fit @ waves.value), waves.by - f @ (fit @ waves.by))
+    return (left * left).sum(share).sqrt()
+
+
+def opd_waves(light: FieldLight, wavelength_nm: float) -> DualArray:
+    """(N,) in waves, positive where the wavefront is ahead of the sphere."""
+    first_order, o = light.first_order, light.origins
+    film = first_order.film_distance_mm
+    n = first_order.index_behind
+    p = light.directions
+    size = (p[:, 0] * p[:, 0] + p[:, 1] * p[:, 1] + p[:, 2] * p[:, 2]).sqrt()
+    d = [p[:, i] / size for i in range(3)]
+    at = light.on_plane(film)[-1]
+    if abs(light.field_deg) < 1e-6 * 180 / math.pi:
+        curvature = d[2][-1] / (film - first_order.exit_pupil_position_mm)
+    else:
+        curvature = d[1][-1] / at[1]
+    b = [o[:, 0] - at[0], o[:, 1] - at[1], o[:, 2] - film]
+    off = [b[1] * d[2] - b[2] * d[1], b[2] * d[0] - b[0] * d[2], b[0] * d[1] - b[1] * d[0]]
+    square = (off[0] * off[0] + off[1] * off[1] + off[2] * off[2]) * curvature
+    along = b[0] * d[0] + b[1] * d[1] + b[2] * d[2]
+    path = light.paths + n * (square / (1.0 + (1.0 - square * curvature).sqrt()) - along)
+    return (path[-1] - path) * (1e6 / wavelength_nm)
