@@ -70,12 +70,13 @@ from ._core import (
 )
 from .accuracy import AccuracyCost, accuracy_cost
 from .cuda_plugin import path_of_plugin as _path_of_plugin
+from .derivatives import Gradient, RayDerivatives, ray_derivatives
 from .drawing import CrossSection, cross_section
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
 from .live_view import LiveView
-from .derivatives import Gradient, RayDerivatives, ray_derivatives
+from .operands import Operand
 from .optimisation import Optimisation, Targets, optimised
 from .photography import DepthOfField, PhotographicFigures, depth_of_field, photographic_figures
 from .planning import plan
@@ -127,6 +128,7 @@ __all__ = [
     "Meridian",
     "Mirror",
     "NothingToPlan",
+    "Operand",
     "Optimisation",
     "PhotographicFigures",
     "Plan",

@@ -1,7 +1,4 @@
-"""Least squares over the numbers of a lens: sharper spots, a focal length, within bounds.
-
-For a tinkerer, not for a designer: a local search from the lens as it is, with numbers that change continuously.
-"""
+"""Least squares over the numbers of a lens: sharper spots, a focal length, other operands, within bounds."""
 
 from __future__ import annotations
 
@@ -13,7 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._core import InputError, Lens, LensFileError
-from .variable import Variable
+from .derivatives.field_light import field_light
+from .derivatives.focus import film_distance_by
+from .operands import Operand
+from .variable import Variable, checked
 
 Progress = Callable[[int, float], bool | None]
 
@@ -23,11 +23,12 @@ class Targets:
     """What a lens is to become.
 
     fields_deg, field_weights: angles in the scene whose spots are to be small, and how much they count.
-    wavelengths_nm: all colours count alike, about one centroid, so that lateral colour counts, too. None: the design
-    wavelength.
+    wavelengths_nm, wavelength_weights: colours, about one centroid, so that lateral colour counts, too, and how much
+    they count. None: the design wavelength; all alike.
     object_distance_m: from the front vertex; None: the plane in focus. focal_length_mm: None: whatever comes.
     focal_length_weight: an error of the focal length counts as so many times that radius of all spots.
     refocuses: the film is where it is sharpest on the axis; else it stays.
+    operands: what else is wanted: MTF, distortion, angles, thicknesses, length.
     """
 
     fields_deg: Sequence[float] = (0.0,)
@@ -37,6 +38,8 @@ class Targets:
     focal_length_mm: float | None = None
     focal_length_weight: float = 1.0
     refocuses: bool = True
+    wavelength_weights: Sequence[float] | None = None
+    operands: Sequence[Operand] = ()
 
 
 @dataclass(frozen=True)
@@ -58,11 +61,18 @@ def optimised(
     most_steps: int = 50,
     samples: int = 6,
     progress: Progress | None = None,
+    global_looks: int = 0,
+    seed: int = 0,
+    answers_interrupt: bool = False,
 ) -> Optimisation:
     """Changes some numbers of a lens so that its spots become small (scipy's least_squares, trust region reflective).
 
-    most_steps: each step looks at the lens once for every variable. samples: rings of rays in the pupil.
+    Derivatives are exact (Lens.gradient), but for lenses that focus by a moving group, where they are differences.
+    most_steps: of the local search. samples: rings of rays in the pupil.
     progress: called after each look with its number and the RMS spot in mm; the search ends where it returns False.
+    global_looks: looks at lenses all over the bounds, which must be finite, before the local search begins at the best
+    of them (scipy's differential_evolution, from `seed`).
+    answers_interrupt: Ctrl-C ends the search with the best lens so far, in place of KeyboardInterrupt.
     A lens that cannot be built (faces that cross, rims beyond their surface) is never stepped to. Raises InputError for
     variables and targets that are none, and where the lens as it is cannot be judged.
     """
@@ -71,9 +81,10 @@ def optimised(
     search = _Search(lens, list(variables), targets or Targets(), samples, progress)
     before = search.rms_of(search.of_start)
     try:
+        start = search.look_around(global_looks, seed) if global_looks else np.zeros(len(search.variables))
         found = least_squares(
             search.residuals,
-            np.zeros(len(search.variables)),
+            start,
             jac=search.jacobian,
             bounds=search.bounds(),
             max_nfev=most_steps,
@@ -85,6 +96,10 @@ def optimised(
         message = str(found.message)
     except _Ended:
         message = "stopped by the progress function"
+    except KeyboardInterrupt:
+        if not answers_interrupt:
+            raise
+        message = "interrupted"
     return Optimisation(search.best, before, search.best_rms, search.evaluations, message)
 
 
@@ -99,6 +114,14 @@ class _Search:
         _check(lens, variables, targets)
         self.lens, self.variables, self.targets = lens, variables, targets
         self.samples, self.progress = samples, progress
+        self.field_weights = _shares(targets.field_weights, len(targets.fields_deg))
+        self.wavelengths = list(targets.wavelengths_nm or [lens.wavelength_nm])
+        self.wavelength_weights = _shares(targets.wavelength_weights, len(self.wavelengths))
+        self.operands = [operand.checked(lens) for operand in targets.operands]
+        if targets.focal_length_mm is not None:
+            self.operands.append(
+                Operand("effective_focal_length_mm", targets.focal_length_mm, targets.focal_length_weight)
+            )
         self.start = np.array([v.of(lens.surfaces[v.surface]) for v in variables])
         self.steps = np.array([v.step(lens.surfaces[v.surface]) for v in variables])
         self.evaluations = 0
@@ -108,6 +131,14 @@ class _Search:
         self.failed = 1e3 * (1 + float(np.abs(self.of_start).max()))
         if not np.isfinite(self.of_start).all():
             raise InputError(f'no light passes lens "{lens.name}" from one of the fields')
+        self.is_exact = not (targets.refocuses and _focuses_by_group(lens)) and self._has_chief_rays()
+
+    def _has_chief_rays(self) -> bool:
+        """Derivatives of a field begin with its chief ray, which a secondary mirror blocks."""
+        return all(
+            self.lens.aim([[0.0, 0.0]], field, object_distance_m=self.targets.object_distance_m).status[0] == 0
+            for field in (0.0, *self.targets.fields_deg)
+        )
 
     def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         lower, upper = (np.array([getattr(v, name) for v in self.variables]) for name in ("lower", "upper"))
@@ -137,7 +168,74 @@ class _Search:
             raise _Ended
         return residuals
 
+    def look_around(self, looks: int, seed: int) -> NDArray[np.float64]:
+        """Where the best lens of so many all over the bounds is, by differential evolution."""
+        from scipy.optimize import differential_evolution
+
+        lower, upper = self.bounds()
+        if not np.isfinite([lower, upper]).all():
+            raise InputError("a global search wants finite bounds of every variable")
+
+        def merit(x: NDArray[np.float64]) -> float:
+            residuals = self.residuals(x)
+            return float(residuals @ residuals)
+
+        members = 5 * len(self.variables)
+        found = differential_evolution(
+            merit,
+            list(zip(lower, upper, strict=True)),
+            maxiter=max(1, looks // members - 1),
+            popsize=5,
+            x0=np.zeros(len(self.variables)),
+            polish=False,
+            rng=seed,
+        )
+        # The local search may not begin on a bound.
+        inside = 1e-6 * (upper - lower)
+        return np.clip(np.asarray(found.x), lower + inside, upper - inside)
+
     def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self._exact_jacobian(self.lens_at(x)) * self.steps if self.is_exact else self._differences(x)
+
+    def _exact_jacobian(self, lens: Lens) -> NDArray[np.float64]:
+        targets, variables = self.targets, [*self.variables, Variable.film_distance()]
+        follows = film_distance_by(lens, self.variables) if targets.refocuses else np.zeros(len(self.variables))
+
+        def following(by: NDArray[np.float64]) -> NDArray[np.float64]:
+            """By the variables alone, while the film follows."""
+            return np.asarray(by[..., :-1] + by[..., -1:] * follows)
+
+        rows = []
+        for field, weight in zip(targets.fields_deg, self.field_weights, strict=True):
+            at, by, share, passes = [], [], [], []
+            for wavelength, part in zip(self.wavelengths, self.wavelength_weights, strict=True):
+                light = field_light(
+                    lens,
+                    variables,
+                    field,
+                    wavelength,
+                    object_distance_m=targets.object_distance_m,
+                    samples=self.samples,
+                )
+                points = light.on_plane(light.first_order.film_distance_mm)[:-1]
+                at.append(points.value)
+                by.append(following(points.by))
+                share.append(part * light.weights)
+                passes.append(light.passes[:-1])
+            passing = np.concatenate(passes)
+            shares = np.concatenate(share) / np.concatenate(share).sum()
+            changes = np.where(passing[:, None, None], np.concatenate(by), 0.0)
+            middle = np.tensordot(shares, changes, 1)
+            off = np.where(passing[:, None, None], changes - middle, 0.0) * np.sqrt(shares)[:, None, None]
+            scale = math.sqrt(weight / max(passing.mean(), 1e-9))
+            rows.append(scale * off.reshape(-1, len(self.variables)))
+        for operand in self.operands:
+            value, change = operand.gradient_of(lens, variables, self.samples)
+            slope = operand.weight if operand.residual(value) != 0 or operand.bound == "equal" else 0.0
+            rows.append(slope * following(change)[None])
+        return np.concatenate(rows)
+
+    def _differences(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Central differences: a focal length depends on curvatures so much more than a spot does that the error of
         one-sided ones would hide the spot. One-sided where a lens to one side cannot be built."""
         reach = 0.005
@@ -161,22 +259,17 @@ class _Search:
     def _judge(self, lens: Lens) -> NDArray[np.float64]:
         """Ray errors in mm whose squares sum to the mean square spot radius, and the focal length's; nan: dark."""
         targets = self.targets
-        weights = np.array(targets.field_weights or [1.0] * len(targets.fields_deg), float)
-        weights /= weights.sum()
         parts = []
-        for field, weight in zip(targets.fields_deg, weights, strict=True):
+        for field, weight in zip(targets.fields_deg, self.field_weights, strict=True):
             parts.append(math.sqrt(weight) * self._ray_errors(lens, field))
         spots = np.concatenate(parts)
         self.spot_count = len(spots)
-        if targets.focal_length_mm is None:
-            return spots
-        error = lens.first_order().effective_focal_length_mm - targets.focal_length_mm
-        return np.asarray(np.append(spots, targets.focal_length_weight * error))
+        others = [operand.residual(operand.value_of(lens, self.samples)) for operand in self.operands]
+        return np.asarray(np.append(spots, others))
 
     def _ray_errors(self, lens: Lens, field_deg: float) -> NDArray[np.float64]:
-        wavelengths = self.targets.wavelengths_nm or [lens.wavelength_nm]
         points, weights = [], []
-        for wavelength in wavelengths:
+        for wavelength, part in zip(self.wavelengths, self.wavelength_weights, strict=True):
             try:
                 spot = lens.spot(
                     field_deg,
@@ -187,7 +280,7 @@ class _Search:
             except InputError:
                 return np.full(1, np.nan)
             points.append(spot.points_mm)
-            weights.append(spot.weights / len(wavelengths))
+            weights.append(part * spot.weights)
         at, share = np.concatenate(points), np.concatenate(weights)
         passes = np.isfinite(at[:, 0])
         share = np.where(passes, share, 0.0)
@@ -198,13 +291,27 @@ class _Search:
         return np.asarray(errors.ravel() / math.sqrt(max(passes.mean(), 1e-9)))
 
 
+def _shares(weights: Sequence[float] | None, count: int) -> NDArray[np.float64]:
+    shares = np.array([1.0] * count if weights is None else weights, float)
+    return np.asarray(shares / shares.sum())
+
+
+def _focuses_by_group(lens: Lens) -> bool:
+    """Whether anything but the film moves when it is focused."""
+    near = 20 * abs(lens.first_order().effective_focal_length_mm) / 1000
+    try:
+        return lens.focused(near).surfaces != lens.focused(math.inf).surfaces
+    except InputError:
+        return True
+
+
 def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
-    if not variables:
-        raise InputError("there is nothing to change: at least one Variable is wanted")
-    for variable in variables:
-        if variable.quantity not in ("curvature", "thickness", "conic", "aspheric"):
+    known = ("curvature", "thickness", "conic", "aspheric", "index")
+    for variable in checked(lens, variables):
+        if variable.quantity not in known:
             raise InputError(
-                f'unknown quantity "{variable.quantity}"; curvature, thickness, conic or aspheric is wanted'
+                f'an optimisation changes {", ".join(known)}; "{variable.quantity}" would be no number of the centred '
+                "lens that it looks at"
             )
         if not 0 <= variable.surface < len(lens.surfaces):
             raise InputError(f"there is no surface {variable.surface}; the lens has {len(lens.surfaces)}, from 0")
@@ -219,10 +326,13 @@ def _check(lens: Lens, variables: list[Variable], targets: Targets) -> None:
                 f"the {variable.quantity} of surface {variable.surface} is {value:.6g} and does not lie between its "
                 f"bounds, {variable.lower:.6g} and {variable.upper:.6g}"
             )
-    if len({(v.quantity, v.surface, v.power) for v in variables}) < len(variables):
-        raise InputError("a variable is named twice")
     weights = targets.field_weights
     if not targets.fields_deg or (weights is not None and len(weights) != len(targets.fields_deg)):
         raise InputError("fields_deg must name at least one field, and field_weights as many")
     if weights is not None and not all(w > 0 and math.isfinite(w) for w in weights):
         raise InputError("field_weights must be positive numbers")
+    of_colours, colours = targets.wavelength_weights, targets.wavelengths_nm or [lens.wavelength_nm]
+    if of_colours is not None and (len(of_colours) != len(colours) or not all(w > 0 for w in of_colours)):
+        raise InputError(f"wavelength_weights must be {len(colours)} positive numbers, one for each wavelength")
+    # Refuses variables without an effect, as the conic of a plane.
+    lens._ray_derivatives(np.zeros((0, 3)), np.zeros((0, 3)), [v.as_tuple() for v in variables])

@@ -84,7 +84,7 @@ def test_it_stops_where_the_progress_function_says_so() -> None:
     ("variables", "targets", "message"),
     [
         ([], rc.Targets(), "nothing to change"),
-        ([rc.Variable("index", 0)], rc.Targets(), "unknown quantity"),
+        ([rc.Variable("colour", 0)], rc.Targets(), "unknown quantity"),
         ([rc.Variable.radius(99)], rc.Targets(), "no surface 99"),
         ([rc.Variable.radius(6)], rc.Targets(), "a plane, and has no curvature"),
         ([rc.Variable.thickness(7)], rc.Targets(), "last surface has no thickness"),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .._core import InputError, Lens
 from ..variable import Variable
-from .dual_array import DualArray, Doubles
+from .dual_array import Doubles, DualArray
 from .first_order import FirstOrderDuals, first_order_duals
 
 

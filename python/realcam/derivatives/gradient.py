@@ -11,7 +11,7 @@ import numpy as np
 from .._core import InputError, Lens
 from ..short_text import ShortText
 from ..variable import Variable, checked
-from .dual_array import DualArray, Doubles
+from .dual_array import Doubles, DualArray
 from .field_light import FieldLight, field_light
 from .first_order import first_order_duals
 
