@@ -1,0 +1,286 @@
+"""Lens.gradient and ray_derivatives: against central differences in 50 digits, and closed forms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+import realcam as rc
+from mpmath import mpf
+
+WAVELENGTH_NM = 587.5618
+NUMBERS = {"c0": 1 / 30, "k": -0.6, "a4": 2e-6, "t0": 4.0, "n": 1.6, "c1": -1 / 80, "t1": 6.0, "film": 41.0}
+VARIABLES = {
+    "c0": rc.Variable.radius(0),
+    "k": rc.Variable.conic(0),
+    "a4": rc.Variable.aspheric(0, 4),
+    "t0": rc.Variable.thickness(0),
+    "n": rc.Variable.index(0),
+    "c1": rc.Variable.radius(1),
+    "t1": rc.Variable.thickness(1),
+    "film": rc.Variable.film_distance(),
+}
+STOP = 4.0
+
+
+def singlet() -> rc.Lens:
+    """An aspheric singlet with its stop behind: rays have to be aimed, and the pupil moves with the lens."""
+    of = NUMBERS
+    return rc.Lens(
+        surfaces=[
+            rc.Surface(
+                radius_of_curvature_mm=1 / of["c0"],
+                conic=of["k"],
+                aspheric_coefficients={4: of["a4"]},
+                material=of["n"],
+                thickness_mm=of["t0"],
+                clear_semi_diameter_mm=12,
+            ),
+            rc.Surface(radius_of_curvature_mm=1 / of["c1"], thickness_mm=of["t1"], clear_semi_diameter_mm=12),
+            rc.Stop(clear_semi_diameter_mm=STOP),
+        ],
+        film_distance_mm=of["film"],
+        wavelength_nm=WAVELENGTH_NM,
+    )
+
+
+def traced(of: dict[str, Any], origin: list[Any], direction: list[Any]) -> tuple[list[Any], list[Any], Any]:
+    """On the stop: position, unit direction, optical path. By Newton's method on the sag, and Snell's law."""
+    o, d, path = list(origin), list(direction), mpf(0)
+    surfaces = [(of["c0"], of["k"], of["a4"], mpf(0), 1, of["n"]), (of["c1"], 0, 0, of["t0"], of["n"], 1)]
+    for c, k, a4, z0, before, after in surfaces:
+        t = (z0 - o[2]) / d[2]
+        for _ in range(9):
+            x, y, z = (o[i] + t * d[i] for i in range(3))
+            r2 = x * x + y * y
+            root = mpmath.sqrt(1 - (1 + k) * c * c * r2)
+            slope = c / root + 4 * a4 * r2  # d sag / dr over r
+            t -= (z - z0 - c * r2 / (1 + root) - a4 * r2 * r2) / (d[2] - slope * (x * d[0] + y * d[1]))
+        o = [o[i] + t * d[i] for i in range(3)]
+        path += before * t
+        normal = [-slope * o[0], -slope * o[1], mpf(1)]
+        size = mpmath.sqrt(sum(v * v for v in normal))
+        normal = [v / size for v in normal]
+        mu, cosine = mpf(before) / after, sum(a * b for a, b in zip(d, normal, strict=True))
+        turn = mpmath.sqrt(1 - mu * mu * (1 - cosine * cosine)) - mu * cosine
+        d = [mu * a + turn * b for a, b in zip(d, normal, strict=True)]
+    t = (of["t0"] + of["t1"] - o[2]) / d[2]
+    return [o[i] + t * d[i] for i in range(3)], d, path + t
+
+
+class Truth:
+    """The rays of one object point through given places on the stop."""
+
+    def __init__(self, of: dict[str, Any], field_deg: float, object_mm: float | None, pupil: np.ndarray) -> None:
+        self.of, field = of, mpmath.radians(mpf(field_deg))
+        self.field = field
+
+        # The middle of the paraxial entrance pupil: a ray from there with slope 1 meets the middle of the stop.
+        def at_stop(y: Any, u: Any) -> Any:
+            n = of["n"]
+            u = (u - y * of["c0"] * (n - 1)) / n
+            y += of["t0"] * u
+            u = n * u - y * of["c1"] * (1 - n)
+            return y + of["t1"] * u
+
+        pupil_z = at_stop(mpf(0), mpf(1)) / at_stop(mpf(1), mpf(0))
+        self.towards = [mpf(0), mpmath.sin(field), mpmath.cos(field)]
+        self.point = None
+        if object_mm is not None:
+            distance = object_mm + pupil_z
+            self.point = [mpf(0), -distance * mpmath.tan(field), pupil_z - distance]
+        self.rays = [self._aimed([STOP * (1 - mpf(5e-11)) * mpf(v) for v in place]) for place in pupil]
+        self.chief = self._aimed([mpf(0), mpf(0)])
+
+    def _ray(self, x: Any, y: Any) -> tuple[list[Any], list[Any], Any]:
+        """By where it crosses the plane z = 0, with the path from the wavefront through the origin, or the object."""
+        at = [x, y, mpf(0)]
+        if self.point is None:
+            d = self.towards
+            before = sum(a * b for a, b in zip(at, d, strict=True))
+        else:
+            d = [a - b for a, b in zip(at, self.point, strict=True)]
+            before = mpmath.sqrt(sum(v * v for v in d))
+            d = [v / before for v in d]
+        o, d, path = traced(self.of, at, d)
+        return o, d, path + before
+
+    def _aimed(self, place: list[Any]) -> tuple[list[Any], list[Any], Any]:
+        x, y, h = mpf(0), mpf(0), mpf(10) ** -20
+        for _ in range(7):
+            o = self._ray(x, y)[0]
+            ox, oy = self._ray(x + h, y)[0], self._ray(x, y + h)[0]
+            a, b = (ox[0] - o[0]) / h, (oy[0] - o[0]) / h
+            c, d = (ox[1] - o[1]) / h, (oy[1] - o[1]) / h
+            ex, ey = place[0] - o[0], place[1] - o[1]
+            x, y = x + (d * ex - b * ey) / (a * d - b * c), y + (a * ey - c * ex) / (a * d - b * c)
+        return self._ray(x, y)
+
+    def on_film(self, ray: tuple[list[Any], list[Any], Any]) -> tuple[Any, Any]:
+        o, d, _ = ray
+        return o[0] + self.of["film"] * d[0] / d[2], o[1] + self.of["film"] * d[1] / d[2]
+
+    def spot_mm(self) -> Any:
+        at = [self.on_film(ray) for ray in self.rays]
+        middle = [sum(p[i] for p in at) / len(at) for i in (0, 1)]
+        return mpmath.sqrt(sum((p[0] - middle[0]) ** 2 + (p[1] - middle[1]) ** 2 for p in at) / len(at))
+
+    def chief_ray_height_mm(self) -> Any:
+        return self.on_film(self.chief)[1]
+
+    def mtf_tangential(self) -> Any:
+        waves = [mpmath.expjpi(2 * 15 * self.on_film(ray)[1]) for ray in self.rays]
+        return abs(sum(waves) / len(waves))
+
+    def wavefront_waves(self) -> Any:
+        """Paths to the sphere about the chief ray's film point through the chief ray's point in the exit pupil, which
+        is the stop itself."""
+        stop = self.of["t0"] + self.of["t1"]
+        centre = [*self.on_film(self.chief), stop + self.of["film"]]
+        radius = mpmath.sqrt(sum((a - b) ** 2 for a, b in zip(centre, [0, 0, stop], strict=True)))
+        paths = []
+        for o, d, path in self.rays:
+            b = [p - q for p, q in zip(o, centre, strict=True)]
+            along = sum(p * q for p, q in zip(b, d, strict=True))
+            paths.append(path - along - mpmath.sqrt(along**2 - sum(p * p for p in b) + radius**2))
+        mean = sum(paths) / len(paths)
+        return mpmath.sqrt(sum((p - mean) ** 2 for p in paths) / len(paths)) * 1e6 / mpf(WAVELENGTH_NM)
+
+
+@pytest.mark.parametrize(("field_deg", "object_m"), [(6.0, np.inf), (4.0, 0.3)])
+def test_gradients_are_central_differences_in_fifty_digits(field_deg: float, object_m: float) -> None:
+    lens = singlet()
+    object_mm = None if np.isinf(object_m) else 1000 * object_m
+    options: dict[str, Any] = {"field_deg": field_deg, "object_distance_m": object_m, "samples": 1}
+    pupil = lens.spot(field_deg, object_distance_m=object_m, samples=1).pupil
+    quantities = ("spot_mm", "chief_ray_height_mm", "mtf_tangential", "wavefront_waves")
+    found = {q: lens.gradient(q, list(VARIABLES.values()), frequency_per_mm=15, **options) for q in quantities}
+    with mpmath.workdps(50):
+        numbers = {name: mpf(value) for name, value in NUMBERS.items()}
+        numbers |= {"c0": mpf(lens.surfaces[0].curvature_per_mm), "c1": mpf(lens.surfaces[1].curvature_per_mm)}
+
+        def truth(change: dict[str, Any]) -> dict[str, Any]:
+            rays = Truth(numbers | change, field_deg, object_mm, pupil)
+            return {q: getattr(rays, q)() for q in quantities}
+
+        here = truth({})
+        for q in quantities:
+            # Rays are aimed within 2.5e-11 of the stop's radius.
+            assert found[q].value == pytest.approx(float(here[q]), rel=1e-9)
+        wanted: dict[str, list[float]] = {q: [] for q in quantities}
+        for name in VARIABLES:
+            step = mpf(10) ** -16 * (abs(numbers[name]) or 1)
+            above, below = truth({name: numbers[name] + step}), truth({name: numbers[name] - step})
+            for q in quantities:
+                wanted[q].append(float((above[q] - below[q]) / (2 * step)))
+    for q in quantities:
+        for name, ours, true in zip(VARIABLES, found[q].by, wanted[q], strict=True):
+            assert ours == pytest.approx(true, rel=1e-9), f"{q} by {name}"
+
+
+def test_first_order_is_that_of_a_thick_lens() -> None:
+    """1/f = (n - 1) (c1 - c2 + (n - 1) d c1 c2 / n), and its derivatives by hand."""
+    n, d, c1, c2 = 1.6, 4.0, NUMBERS["c0"], NUMBERS["c1"]
+    variables = [VARIABLES[name] for name in ("c0", "c1", "t0", "n")]
+    found = singlet().gradient("effective_focal_length_mm", variables)
+    power = (n - 1) * (c1 - c2 + (n - 1) * d * c1 * c2 / n)
+    by_power = [
+        (n - 1) * (1 + (n - 1) * d * c2 / n),
+        (n - 1) * (-1 + (n - 1) * d * c1 / n),
+        (n - 1) ** 2 * c1 * c2 / n,
+        c1 - c2 + d * c1 * c2 * (1 - 1 / n**2),
+    ]
+    assert found.value == pytest.approx(1 / power, rel=1e-14)
+    assert found.by == pytest.approx(-np.array(by_power) / power**2, rel=1e-12)
+
+
+def test_values_are_those_of_the_analyses() -> None:
+    lens = rc.Lens.load("double-gauss-50mm").focused(1.5)
+    some = [rc.Variable.radius(0)]
+    for field in (0.0, 12.0):
+        spot = lens.spot(field)
+        of = lens.gradient("spot_mm", some, field_deg=field)
+        assert of.value == pytest.approx(spot.rms_radius_mm, rel=1e-10)
+        for remove in (None, "tilt", "focus"):
+            wavefront = lens.wavefront(field, remove=remove, pattern="hexapolar", samples=6)
+            waves = lens.gradient("wavefront_waves", some, field_deg=field, remove=remove)
+            assert waves.value == pytest.approx(wavefront.rms_waves, rel=1e-8)
+    percent = rc.analysis.distortion(lens, [12.0], projection="tangent").percent[0]
+    assert lens.gradient("distortion_percent", some, field_deg=12.0).value == pytest.approx(percent, rel=1e-9)
+    data = lens.first_order()
+    for quantity in ("f_number", "back_focal_distance_mm", "front_focal_distance_mm", "entrance_pupil_position_mm"):
+        assert lens.gradient(quantity, some).value == pytest.approx(getattr(data, quantity), rel=1e-12)
+
+
+def test_a_tilted_surface_of_a_centred_lens_throws_light_aside_as_a_prism_does() -> None:
+    """A thin plate of angle a deviates by (n - 1) a; a tilted face of a plane-parallel plate is such a wedge."""
+    plate = rc.Lens(
+        surfaces=[
+            rc.Stop(clear_semi_diameter_mm=5),
+            rc.Surface(material=1.5, thickness_mm=1e-6, clear_semi_diameter_mm=8),
+            rc.Surface(clear_semi_diameter_mm=8),
+        ],
+        film_distance_mm=10,
+        allow_crossing=True,
+    )
+    found = rc.ray_derivatives(
+        plate, [[0, 0, -1.0]], [[0, 0, 1.0]], [rc.Variable.tilt(1, "x"), rc.Variable.tilt(2, "y")], start="scene"
+    )
+    degree = np.pi / 180
+    # About x the normal turns to -y: glass is thicker below or above, and light goes there. Signs by Snell's law.
+    assert abs(found.directions_by[0, 1, 0]) == pytest.approx(0.5 * degree, rel=1e-12)
+    assert abs(found.directions_by[0, 0, 1]) == pytest.approx(0.5 * degree, rel=1e-12)
+
+
+def test_rays_keep_their_length_and_say_where_they_end() -> None:
+    lens = singlet()
+    origins = [[0, 1.0, -5], [0, 30.0, -5], [1, -2.0, -400]]
+    found = rc.ray_derivatives(
+        lens, origins, [[0, 0, 2.0], [0, 0, 1.0], [0, 0.01, 1.0]], [*VARIABLES.values()][:7], start="scene"
+    )
+    traced_rays = lens.trace(np.array(origins), np.array([[0, 0, 2.0], [0, 0, 1.0], [0, 0.01, 1.0]]), start="scene")
+    assert list(found.status) == list(traced_rays.status) == [0, 2, 0]
+    passes = found.status == 0
+    for name in ("origins_mm", "directions", "optical_path_mm"):
+        assert np.allclose(getattr(found, name)[passes], getattr(traced_rays, name)[passes], rtol=1e-13, atol=1e-13)
+    assert np.isnan(found.origins_by[1]).all()
+    # A unit vector changes across itself.
+    along = np.einsum("ni,niv->nv", found.directions, found.directions_by)[passes]
+    assert np.abs(along).max() < 1e-15
+    # A direction twice as long is the same ray.
+    assert np.abs(found.directions_by_start[0] @ np.array([0, 0, 0, 0, 0, 2.0])).max() < 1e-15
+    assert found.optical_path_by_start[0] @ np.array([0, 0, 1, 0, 0, 0]) == pytest.approx(-1, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda lens: lens.gradient("blur", [rc.Variable.radius(0)]), 'unknown quantity "blur"; one of spot_mm'),
+        (lambda lens: lens.gradient("spot_mm", []), "at least one Variable"),
+        (lambda lens: lens.gradient("spot_mm", [rc.Variable("colour", 0)]), 'unknown quantity "colour"'),
+        (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(7)]), "there is no surface 7; the lens has 3"),
+        (lambda lens: lens.gradient("f_number", [rc.Variable.radius(7)]), "there is no surface 7; the lens has 3"),
+        (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(2)]), "only blocks light"),
+        (lambda lens: lens.gradient("spot_mm", [rc.Variable.radius(0)] * 2), "named twice"),
+        (lambda lens: lens.gradient("mtf_tangential", [rc.Variable.radius(0)]), "frequency_per_mm is wanted"),
+        (lambda lens: lens.gradient("distortion_percent", [rc.Variable.radius(0)]), "no distortion on the axis"),
+        (
+            lambda lens: lens.gradient("wavefront_waves", [rc.Variable.radius(0)], remove="coma"),
+            "tilt, focus or None",
+        ),
+        (lambda lens: rc.Variable.tilt(0, "w"), "x, y or z is wanted"),
+        (
+            lambda lens: lens.with_surface(1, radius_of_curvature_mm=np.inf).gradient(
+                "spot_mm", [rc.Variable.conic(1)]
+            ),
+            "surface 1 is a plane: its conic has no effect",
+        ),
+    ],
+)
+def test_what_makes_no_sense_is_said_in_one_line(call: Callable[[rc.Lens], Any], message: str) -> None:
+    with pytest.raises(rc.InputError, match=message) as error:
+        call(singlet())
+    assert "\n" not in str(error.value)
