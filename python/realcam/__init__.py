@@ -72,6 +72,7 @@ from .accuracy import AccuracyCost, accuracy_cost
 from .cuda_plugin import path_of_plugin as _path_of_plugin
 from .derivatives import Gradient, RayDerivatives, ray_derivatives
 from .drawing import CrossSection, cross_section
+from .glass_search import GlassMatch, GlassSearch, nearest_glasses, with_better_glasses
 from .image import Image
 from .image_file import read_environment
 from .lens import Mirror, Stop
@@ -116,6 +117,8 @@ __all__ = [
     "FirstOrder",
     "Ghost",
     "Glass",
+    "GlassMatch",
+    "GlassSearch",
     "Gradient",
     "Image",
     "ImageFileError",
@@ -167,6 +170,7 @@ __all__ = [
     "fit_camera_model",
     "glass_names",
     "lens_names",
+    "nearest_glasses",
     "optimised",
     "photographic_figures",
     "plan",
@@ -176,6 +180,7 @@ __all__ = [
     "save_camera_json",
     "save_colmap",
     "sensor_names",
+    "with_better_glasses",
 ]
 
 

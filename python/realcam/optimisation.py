@@ -44,13 +44,17 @@ class Targets:
 
 @dataclass(frozen=True)
 class Optimisation:
-    """What came of it. rms_spot_mm: weighted over all fields and colours; message: why it ended."""
+    """What came of it. rms_spot_mm: weighted over all fields and colours; message: why it ended.
+
+    merit: the sum of squares that was made small, mm^2: of the spots and of the operands.
+    """
 
     lens: Lens
     rms_spot_before_mm: float
     rms_spot_mm: float
     evaluations: int
     message: str
+    merit: float
 
 
 def optimised(
@@ -100,7 +104,7 @@ def optimised(
         if not answers_interrupt:
             raise
         message = "interrupted"
-    return Optimisation(search.best, before, search.best_rms, search.evaluations, message)
+    return Optimisation(search.best, before, search.best_rms, search.evaluations, message, search.best_merit)
 
 
 class _Ended(Exception):  # noqa: N818

@@ -10,7 +10,7 @@ import typer
 
 from .._core import InputError
 from ..json_values import json_text
-from . import lens_figures, lens_options, lens_plots, options
+from . import lens_figures, lens_options, lens_plots, optimise, options
 from .commands_in_cpp import add_command_in_cpp
 from .completions import completion_of
 
@@ -28,6 +28,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON; what is infini
 add_command_in_cpp(app, "lens", "list")
 add_command_in_cpp(app, "lens", "info")
 lens_plots.register(app)
+app.command("optimise")(optimise.optimise)
 
 
 @app.command("draw")
