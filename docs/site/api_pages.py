@@ -16,7 +16,11 @@ GROUPS = {
     "Rays, wavefronts and spots": (
         "AimedRays", "FilmPupil", "PSF", "RayBundle", "RayStatus", "Seidel", "Spot", "TraceResult", "Wavefront",
     ),
-    "Changing a lens": ("Optimisation", "Targets", "Variable", "optimised"),
+    "Changing a lens": (
+        "Optimisation", "Targets", "Operand", "Variable", "optimised", "GlassMatch", "GlassSearch", "nearest_glasses",
+        "with_better_glasses",
+    ),
+    "Derivatives": ("Gradient", "RayDerivatives", "ray_derivatives"),
     "Photographers' figures": (
         "DepthOfField", "FieldOfView", "PhotographicFigures", "depth_of_field", "photographic_figures",
     ),

@@ -48,10 +48,11 @@ def _catalogue() -> tuple[tuple[str, tuple[float, float, float]], ...]:
     return tuple(rows)
 
 
-def nearest_glasses(glass: Glass | str, count: int = 5) -> list[GlassMatch]:
+def nearest_glasses(glass: Glass | str, count: int = 5, *, makers: Sequence[str] | None = None) -> list[GlassMatch]:
     """The glasses of the catalogue nearest by index, Abbe number and partial dispersion, the nearest first.
 
-    Prices are not known. Raises InputError for a name that no catalogue has, and for a glass without dispersion.
+    makers: whose glasses count, as they stand before the colon: ("schott", "ohara"); None: all. Prices are not known.
+    Raises InputError for a name that no catalogue has, and for a glass without dispersion.
     """
     n, v, p = _numbers(Glass.named(glass) if isinstance(glass, str) else glass)
     if not math.isfinite(v):
@@ -59,6 +60,7 @@ def nearest_glasses(glass: Glass | str, count: int = 5) -> list[GlassMatch]:
     matches = [
         GlassMatch(name, *numbers, math.hypot((numbers[0] - n) / 0.01, numbers[1] - v, (numbers[2] - p) / 0.005))
         for name, numbers in _catalogue()
+        if makers is None or name.split(":")[0] in makers
     ]
     return sorted(matches, key=lambda match: match.distance)[:count]
 
@@ -82,6 +84,7 @@ def with_better_glasses(
     *,
     surfaces: Sequence[int] | None = None,
     candidates: int = 5,
+    makers: Sequence[str] | None = None,
     most_steps: int = 8,
     rounds: int = 2,
     samples: int = 6,
@@ -91,8 +94,9 @@ def with_better_glasses(
     """Puts other glasses of the catalogue behind surfaces, one after the other, and optimises the lens with each.
 
     surfaces: whose glass may change; None: all glasses with dispersion. candidates: the nearest to the glass as it is,
-    of which the best is kept. It ends when a round changes nothing, or after `rounds`. most_steps: of each optimisation.
-    progress, answers_interrupt: as for optimised. Raises InputError for surfaces without such a glass.
+    of which the best is kept. makers: as for nearest_glasses. It ends when a round changes nothing, or after `rounds`.
+    most_steps: of each optimisation. progress, answers_interrupt: as for optimised. Raises InputError for surfaces
+    without such a glass.
     """
     chosen = _glass_surfaces(lens, surfaces)
     state = _State(0, progress)
@@ -106,7 +110,7 @@ def with_better_glasses(
             changed = False
             for surface in chosen:
                 start = best.lens
-                for match in nearest_glasses(start.surfaces[surface].material, candidates + 1):
+                for match in _other_glasses(start.surfaces[surface].material, candidates, makers):
                     if state.is_ended:
                         return GlassSearch(
                             best.lens,
@@ -116,8 +120,6 @@ def with_better_glasses(
                             state.looks,
                             "stopped by the progress function",
                         )
-                    if match.name.split(":")[-1] == start.surfaces[surface].material.label.split(":")[-1]:
-                        continue
                     try:
                         trial = start.with_surface(surface, material=match.name)
                         found = optimised(
@@ -137,6 +139,12 @@ def with_better_glasses(
             raise
         message = "interrupted"
     return GlassSearch(best.lens, glasses, before, best.rms_spot_mm, state.looks, message)
+
+
+def _other_glasses(glass: Glass, count: int, makers: Sequence[str] | None) -> list[GlassMatch]:
+    """Without those that are the same glass by another name."""
+    pool = nearest_glasses(glass, len(_catalogue()), makers=makers)
+    return [match for match in pool if match.distance > 1e-3][:count]
 
 
 class _State:

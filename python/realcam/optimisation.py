@@ -192,7 +192,7 @@ class _Search:
             popsize=5,
             x0=np.zeros(len(self.variables)),
             polish=False,
-            rng=seed,
+            seed=seed,
         )
         # The local search may not begin on a bound.
         inside = 1e-6 * (upper - lower)

@@ -102,3 +102,125 @@ def test_what_makes_no_sense_is_said(variables: list[rc.Variable], targets: rc.T
         variables = [rc.Variable.thickness(len(lens.surfaces) - 1)]
     with pytest.raises(rc.InputError, match=message):
         rc.optimised(lens, variables, targets)
+
+
+def triplet_search(**more: object) -> dict[str, object]:
+    lens = rc.Lens.load("cooke-triplet-50mm")
+    variables = [rc.Variable.radius(i) for i, s in enumerate(lens.surfaces) if s.type == "refracting"]
+    return {"lens": lens, "variables": variables, "samples": 3, **more}
+
+
+def test_the_jacobian_is_that_of_differences() -> None:
+    from realcam.optimisation import _Search
+
+    operands = [
+        rc.Operand("distortion_percent", weight=0.01, field_deg=14),
+        rc.Operand("edge_thickness_mm", 9.0, surface=0, bound="least"),
+        rc.Operand("mtf_tangential", 1.0, weight=0.1, frequency_per_mm=20, field_deg=9),
+        rc.Operand("centre_thickness_mm", 5.0, surface=2),
+    ]
+    lens = rc.Lens.load("cooke-triplet-50mm")
+    variables = [rc.Variable.radius(0), rc.Variable.radius(3), rc.Variable.thickness(1), rc.Variable.thickness(2)]
+    targets = rc.Targets(
+        fields_deg=(0, 14), wavelengths_nm=(486, 656), wavelength_weights=(1, 2), refocuses=False, operands=operands
+    )
+    search = _Search(lens, variables, targets, 3, None)
+    assert search.is_exact
+    here = np.zeros(len(variables))
+    exact = search.jacobian(here)
+    differences = search._differences(here)
+    # Rays are aimed within 2.5e-11 of the stop's radius, 1e-10 mm, and a difference is over 1e-2 of a step that moves
+    # rays by micrometres: 1e-5 of the largest.
+    size = np.abs(differences).max(axis=0)
+    assert (np.abs(exact - differences).max(axis=0) < 1e-4 * size).all()
+
+
+def test_the_film_follows_as_focusing_moves_it() -> None:
+    """Within a thousandth: Lens.focused fills the stop with paraxial heights, the derivative with real ones."""
+    from realcam.derivatives.focus import film_distance_by
+
+    for metres in (np.inf, 0.6):
+        lens = rc.Lens.load("cooke-triplet-50mm").focused(metres)
+        variable = rc.Variable.radius(2)
+        step = 1e-5
+        ends = [
+            lens.with_surface(2, radius_of_curvature_mm=1 / (lens.surfaces[2].curvature_per_mm + side * step))
+            .focused(metres)
+            .film_distance_mm
+            for side in (1, -1)
+        ]
+        assert film_distance_by(lens, [variable])[0] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=5e-3)
+
+
+def test_operands_are_met() -> None:
+    operands = [
+        rc.Operand("length_mm", 60.0),
+        rc.Operand("edge_thickness_mm", 2.0, bound="least", surface=0),
+        rc.Operand("distortion_percent", 0.5, 1.0, "most", 16.0),
+    ]
+    variables = [
+        rc.Variable.radius(0),
+        rc.Variable.radius(5),
+        rc.Variable.thickness(0),
+        rc.Variable.thickness(4, 0.1, 30),
+    ]
+    targets = rc.Targets(fields_deg=(0, 10), operands=operands)
+    found = rc.optimised(**triplet_search(variables=variables, targets=targets, most_steps=30))  # type: ignore[arg-type]
+    lens = found.lens
+    length = sum(s.thickness_mm for s in lens.surfaces[:-1]) + lens.film_distance_mm
+    # Weights of 1 against spots of hundredths of a millimetre.
+    assert length == pytest.approx(60, abs=0.02)
+    front, back = lens.surfaces[0], lens.surfaces[1]
+    rim = max(front.clear_semi_diameter_mm, back.clear_semi_diameter_mm)
+    assert front.thickness_mm + back.sag_mm(rim) - front.sag_mm(rim) >= 2 - 0.02
+
+
+def test_a_global_search_finds_a_bend_on_the_other_side() -> None:
+    """From a meniscus that is bent the wrong way, within bounds that hold the best bending."""
+    power = 0.02
+    lens = thin_lens(1.5, -0.01, -0.03).focused(np.inf)
+    bounds = {"lower": -0.035, "upper": 0.035}
+    variables = [rc.Variable("curvature", i, **bounds) for i in (1, 2)]
+    targets = rc.Targets(focal_length_mm=100.0, focal_length_weight=10.0)
+    found = rc.optimised(lens, variables, targets, global_looks=60)
+    c1, c2 = (found.lens.surfaces[i].curvature_per_mm for i in (1, 2))
+    assert c1 - c2 == pytest.approx(power, rel=1e-3)
+    # As in the test of thin lenses above.
+    assert (c1 + c2) / (c1 - c2) == pytest.approx(2 * (1.5**2 - 1) / 3.5, rel=0.02)
+    with pytest.raises(rc.InputError, match="finite bounds"):
+        rc.optimised(lens, [rc.Variable.radius(1)], targets, global_looks=10)
+
+
+def test_an_interruption_is_answered_where_that_is_asked_for() -> None:
+    def interrupt(count: int, _: float) -> None:
+        if count == 3:
+            raise KeyboardInterrupt
+
+    found = rc.optimised(**triplet_search(progress=interrupt, answers_interrupt=True))  # type: ignore[arg-type]
+    assert found.message == "interrupted"
+    assert found.rms_spot_mm <= found.rms_spot_before_mm
+    with pytest.raises(KeyboardInterrupt):
+        rc.optimised(**triplet_search(progress=interrupt))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("operand", "message"),
+    [
+        (rc.Operand("blur"), 'unknown operand "blur"'),
+        (rc.Operand("length_mm", bound="about"), "equal, least or most"),
+        (rc.Operand("length_mm", weight=0), "positive weight"),
+        (rc.Operand("edge_thickness_mm", surface=6), "nothing to measure from surface 6"),
+        (rc.Operand("mtf_sagittal"), "frequency_per_mm is wanted"),
+    ],
+)
+def test_operands_that_make_no_sense_are_refused(operand: rc.Operand, message: str) -> None:
+    with pytest.raises(rc.InputError, match=message):
+        rc.optimised(**triplet_search(targets=rc.Targets(operands=[operand])))  # type: ignore[arg-type]
+
+
+def test_what_has_no_effect_is_refused() -> None:
+    lens = rc.Lens.load("cooke-triplet-50mm").with_surface(1, radius_of_curvature_mm=np.inf)
+    with pytest.raises(rc.InputError, match="is a plane: its conic has no effect"):
+        rc.optimised(lens, [rc.Variable.conic(1)])
+    with pytest.raises(rc.InputError, match="wavelength_weights must be 1 positive"):
+        rc.optimised(lens, [rc.Variable.radius(0)], rc.Targets(wavelength_weights=(1, 2)))

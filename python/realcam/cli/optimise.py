@@ -24,8 +24,8 @@ def optimise(
         typer.Option(
             "--vary",
             metavar="WHAT",
-            help="radii, thicknesses, conics, or one of them: radius:2, thickness:3, conic:2, aspheric:2:4 (surface from "
-            "0, power); may be repeated [radii]",
+            help="radii, thicknesses, conics, or one of them: radius:2, thickness:3, conic:2, aspheric:2:4 (surface "
+            "from 0, power); may be repeated [radii]",
         ),
     ] = None,
     field_deg: Annotated[

@@ -1,0 +1,115 @@
+"""The gradient of a spot by all radii, thicknesses and indices of a lens: realcam, and reverse mode in PyTorch.
+
+    python benchmarks/gradients.py
+
+What PyTorch differentiates is a plain sequential trace of spheres in float64, written here: a stand-in for
+differentiable ray tracers such as DeepLens, which trace in the same way. Both get the same rays, in front of the lens.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import realcam as rc
+
+
+def variables_of(lens: rc.Lens) -> list[rc.Variable]:
+    count = len(lens.surfaces)
+    bends = [i for i in range(count) if lens.surfaces[i].type == "refracting"]
+    return [
+        *(rc.Variable.radius(i) for i in bends),
+        *(rc.Variable.thickness(i) for i in range(count - 1)),
+        *(rc.Variable.index(i) for i in bends if lens.surfaces[i].material.index(lens.wavelength_nm) > 1.1),
+    ]
+
+
+def by_realcam(lens: rc.Lens, variables: list[rc.Variable], origins: np.ndarray, towards: np.ndarray) -> np.ndarray:
+    rays = rc.ray_derivatives(lens, origins, towards, variables, start="scene")
+    film = sum(s.thickness_mm for s in lens.surfaces[:-1]) + lens.film_distance_mm
+    film_by = np.array([float(v.quantity == "thickness") for v in variables])  # the film follows the last vertex
+    slope = rays.directions[:, :2] / rays.directions[:, 2:]
+    slope_by = (rays.directions_by[:, :2] - slope[:, :, None] * rays.directions_by[:, 2:]) / rays.directions[
+        :, 2:, None
+    ]
+    way, way_by = film - rays.origins_mm[:, 2:], film_by - rays.origins_by[:, 2:]
+    at = rays.origins_mm[:, :2] + way * slope
+    at_by = rays.origins_by[:, :2] + way_by * slope[:, :, None] + way[:, :, None] * slope_by
+    off = at - at.mean(0)
+    rms = np.sqrt((off**2).sum(1).mean())
+    result: np.ndarray = np.einsum("ni,niv->v", off, at_by - at_by.mean(0)) / (len(at) * rms)
+    return result
+
+
+def by_torch(lens: rc.Lens, origins: np.ndarray, towards: np.ndarray) -> Callable[[], np.ndarray]:
+    import torch
+
+    surfaces = lens.surfaces
+    bends = [i for i, s in enumerate(surfaces) if s.type == "refracting"]
+    nm = lens.wavelength_nm
+    glass = [i for i in bends if surfaces[i].material.index(nm) > 1.1]
+    start, way = torch.from_numpy(origins), torch.from_numpy(towards)
+
+    def gradient() -> np.ndarray:
+        numbers = {
+            "c": torch.tensor([surfaces[i].curvature_per_mm for i in bends], dtype=torch.float64, requires_grad=True),
+            "t": torch.tensor([s.thickness_mm for s in surfaces[:-1]], dtype=torch.float64, requires_grad=True),
+            "n": torch.tensor([surfaces[i].material.index(nm) for i in glass], dtype=torch.float64, requires_grad=True),
+        }
+        o, d, before = start, way, torch.tensor(1.0, dtype=torch.float64)
+        for i, surface in enumerate(surfaces):
+            if i > 0:
+                o = torch.stack([o[:, 0], o[:, 1], o[:, 2] - numbers["t"][i - 1]], 1)
+            if surface.type != "refracting":
+                o = o - (o[:, 2:] / d[:, 2:]) * d
+                continue
+            c = numbers["c"][bends.index(i)]
+            f = c * (o * o).sum(1) - 2 * o[:, 2]
+            g = d[:, 2] - c * (o * d).sum(1)
+            t = f / (g + torch.sqrt(g * g - c * f))
+            o = o + t[:, None] * d
+            normal = torch.stack([-c * o[:, 0], -c * o[:, 1], 1 - c * o[:, 2]], 1)
+            after = numbers["n"][glass.index(i)] if i in glass else torch.tensor(1.0, dtype=torch.float64)
+            mu, cosine = before / after, (d * normal).sum(1)
+            d = mu * d + (torch.sqrt(1 - mu * mu * (1 - cosine * cosine)) - mu * cosine)[:, None] * normal
+            before = after
+        at = o[:, :2] + ((lens.film_distance_mm - o[:, 2]) / d[:, 2])[:, None] * d[:, :2]
+        rms = torch.sqrt(((at - at.mean(0)) ** 2).sum(1).mean())
+        rms.backward()
+        return np.concatenate([numbers[name].grad.numpy() for name in "ctn"])  # type: ignore[union-attr]
+
+    return gradient
+
+
+def best_ms(work: Callable[[], object], repeats: int = 15) -> float:
+    times = []
+    for _ in range(repeats):
+        begin = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - begin)
+    return 1e3 * min(times)
+
+
+def main() -> None:
+    lens = rc.Lens.load("double-gauss-50mm")
+    variables = variables_of(lens)
+    for count in (128, 1024, 16384):
+        angle, radius = 2.399963 * np.arange(count), 10 * np.sqrt((np.arange(count) + 0.5) / count)
+        origins = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(count)])
+        towards = np.tile([0.0, np.sin(0.03), np.cos(0.03)], (count, 1))
+        ours = by_realcam(lens, variables, origins, towards)
+        ms = best_ms(lambda: by_realcam(lens, variables, origins, towards))  # noqa: B023
+        line = f"{count} rays, {len(variables)} variables: realcam {ms:.2f} ms"
+        try:
+            theirs = by_torch(lens, origins, towards)
+        except ImportError:
+            print(line + "; PyTorch is not installed")
+            continue
+        difference = np.abs(theirs() - ours).max() / np.abs(ours).max()
+        torch_ms = best_ms(theirs)
+        print(line + f", PyTorch {torch_ms:.2f} ms ({torch_ms / ms:.1f} times), gradients differ by {difference:.1e}")
+
+
+if __name__ == "__main__":
+    main()
