@@ -89,7 +89,7 @@ py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& orig
     constexpr py::ssize_t kNumbers = RayDerivatives::kNumbers;
     const py::ssize_t count = origins.shape(0), width = static_cast<py::ssize_t>(path.variable_count());
     py::array_t<int> status(count);
-    py::array_t<double> numbers({count, kNumbers}), by_variable({count, kNumbers, width}),
+    py::array_t<double> numbers({count, kNumbers}), by_variable({count, width, kNumbers}),
         by_ray({count, kNumbers, py::ssize_t{6}});
     int* to_status = status.mutable_data();
     double *to_numbers = numbers.mutable_data(), *to_variables = by_variable.mutable_data(),
@@ -132,7 +132,7 @@ py::tuple ray_derivatives(const LensSystem& lens, const InputArray<double>& orig
                 }
             });
     }
-    return py::make_tuple(status, numbers, by_variable, by_ray);
+    return py::make_tuple(status, numbers, by_variable.attr("swapaxes")(1, 2), by_ray);
 }
 
 }  // namespace

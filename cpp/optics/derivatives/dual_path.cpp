@@ -4,6 +4,13 @@
 #include <limits>
 #include <utility>
 
+// Most of the time goes into two functions. They are built for several machines, of which the loader picks one.
+#if defined(__x86_64__) && defined(__linux__)
+#define DUAL_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define DUAL_CLONES
+#endif
+
 namespace realcam {
 
 namespace {
@@ -15,7 +22,7 @@ void over_ray(Vec3<Dual8>& o, Vec3<Dual8>& p, F&& f) {
     f(o.x, 0), f(o.y, 1), f(o.z, 2), f(p.x, 3), f(p.y, 4), f(p.z, 5);
 }
 
-Vec3d value(const Vec3<Dual8>& v) {
+REALCAM_INLINE Vec3d value(const Vec3<Dual8>& v) {
     return {v.x.value, v.y.value, v.z.value};
 }
 
@@ -23,7 +30,7 @@ struct SagWithSlopes {
     Dual8 height, slope_x, slope_y;
 };
 
-SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8>& at) {
+REALCAM_INLINE SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8>& at) {
     if (surface.view.kind == SurfaceShape::asphere) {
         const Dual8 r2 = at.x * at.x + at.y * at.y;
         Sag<Dual8> sag = asphere_sag(surface.view, r2);
@@ -44,7 +51,8 @@ SagWithSlopes sag_at(const DualSurface& surface, const Vec3<Dual8>& at) {
 }
 
 /// Where a ray meets a surface, given where that is in double.
-SurfaceHit<Dual8> hit_of(const DualSurface& surface, const Vec3<Dual8>& o, const Vec3<Dual8>& p, Vec3d at) {
+REALCAM_INLINE SurfaceHit<Dual8> hit_of(const DualSurface& surface, const Vec3<Dual8>& o, const Vec3<Dual8>& p,
+                                        Vec3d at) {
     const SurfaceView<Dual8>& view = surface.view;
     if (view.kind == SurfaceShape::sphere) return intersect_sphere(o, p, view.curvature, view.direction_sign_in);
     if (view.kind == SurfaceShape::conic) {
@@ -102,6 +110,7 @@ void DualPath::add_surfaces(const LensSystem& lens, double wavelength_nm, bool t
     bool is_placed = path_frames_detail::has_placements(lens);
     for (const LensVariable& v : variables_)
         is_placed |= v.quantity == LensQuantity::tilt || v.quantity == LensQuantity::decentre;
+    leaves_along_axis_ = !is_placed;
     const auto surface = [&](std::size_t k) { return views_[k].surface_index; };
     std::vector<DualSurface> plain;
     for (std::size_t k = 0; k < views_.size(); ++k) {
@@ -189,8 +198,8 @@ RayStatus DualPath::trace(Vec3d origin, Vec3d direction, Tape& tape, int surface
     return tape.status_;
 }
 
-void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d along, Vec3d at, Tape::Step& step,
-                     std::size_t first_variable) const {
+DUAL_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d along, Vec3d at,
+                                 Tape::Step& step, std::size_t first_variable) const {
     Vec3<Dual8> o = static_cast<Vec3<Dual8>>(from), p = static_cast<Vec3<Dual8>>(along);
     if (has_ray) over_ray(o, p, [](Dual8& number, int lane) { number.by[lane] = 1; });
     if (surface.before.changes) {
@@ -217,15 +226,17 @@ void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d from, Vec3d
     put(path, 6);
 }
 
-void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const {
-    constexpr int kNumbers = RayDerivatives::kNumbers;
+DUAL_CLONES void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives& ray) const {
+    constexpr std::size_t kNumbers = RayDerivatives::kNumbers;
+    // The seven numbers side by side, and one place that is left over.
+    using Numbers = Dual8::Derivatives;
     const std::size_t count = variables_.size();
     const Tape::Step& last = tape.steps_[static_cast<std::size_t>(surfaces) - 1];
     ray.status = RayStatus::ok;
     ray.origin = last.origin, ray.direction = last.direction, ray.path = last.path;
     ray.by_variable.assign(kNumbers * count, 0);
     // Derivatives of what leaves by what leaves surface k.
-    double by[kNumbers][kRayLanes] = {};
+    Numbers by[kRayLanes] = {};
     for (int i = 0; i < kRayLanes; ++i) by[i][i] = 1;
     for (int k = surfaces - 1; k >= 0; --k) {
         const Tape::Step& step = tape.steps_[static_cast<std::size_t>(k)];
@@ -234,37 +245,44 @@ void DualPath::derivatives_behind(const Tape& tape, int surfaces, RayDerivatives
             for (const int v : dual.variables) {
                 if (v < 0) continue;
                 const double* change = &step.by_variable[kNumbers * local++];
-                for (std::size_t row = 0; row < kNumbers; ++row) {
-                    double sum = row == 6 ? change[6] : 0;
-                    for (int i = 0; i < kRayLanes; ++i) sum += by[row][i] * change[i];
-                    ray.by_variable[row * count + static_cast<std::size_t>(v)] += sum;
-                }
+                Numbers sum = change[0] * by[0];
+                for (int i = 1; i < kRayLanes; ++i) sum += change[i] * by[i];
+                sum[6] += change[6];
+                double* to = &ray.by_variable[kNumbers * static_cast<std::size_t>(v)];
+                for (int row = 0; row < RayDerivatives::kNumbers; ++row) to[row] += sum[row];
             }
-        for (int row = 0; row < kNumbers; ++row) {
-            double next[kRayLanes];
-            for (int j = 0; j < kRayLanes; ++j) {
-                next[j] = row == 6 ? step.by_ray[6][j] : 0;
-                for (int i = 0; i < kRayLanes; ++i) next[j] += by[row][i] * step.by_ray[i][j];
-            }
-            for (int j = 0; j < kRayLanes; ++j) by[row][j] = next[j];
+        Numbers next[kRayLanes];
+        for (int j = 0; j < kRayLanes; ++j) {
+            next[j] = step.by_ray[0][j] * by[0];
+            for (int i = 1; i < kRayLanes; ++i) next[j] += step.by_ray[i][j] * by[i];
+            next[j][6] += step.by_ray[6][j];
         }
+        for (int j = 0; j < kRayLanes; ++j) by[j] = next[j];
     }
-    for (int row = 0; row < kNumbers; ++row)
-        for (int j = 0; j < kRayLanes; ++j) ray.by_start[row][j] = by[row][j];
+    for (int row = 0; row < RayDerivatives::kNumbers; ++row)
+        for (int j = 0; j < kRayLanes; ++j) ray.by_start[row][j] = by[j][row];
     // The start is relative to a vertex that may move, and as long as an index that may change.
     const Vec3d p = tape.start_direction_;
     for (std::size_t v = 0; v < count; ++v) {
         const double moves = entry_positions_[v / kDualLanes].by[v % kDualLanes];
         const double grows = entry_indices_[v / kDualLanes].by[v % kDualLanes] / entry_index_;
-        for (std::size_t row = 0; row < kNumbers; ++row)
-            ray.by_variable[row * count + v] +=
-                grows * (by[row][3] * p.x + by[row][4] * p.y + by[row][5] * p.z) - moves * by[row][2];
+        if (moves == 0 && grows == 0) continue;
+        const Numbers sum = grows * (p.x * by[3] + p.y * by[4] + p.z * by[5]) - moves * by[2];
+        double* to = &ray.by_variable[kNumbers * v];
+        for (int row = 0; row < RayDerivatives::kNumbers; ++row) to[row] += sum[row];
     }
 }
 
 void DualPath::derivatives(const Tape& tape, RayDerivatives& ray) const {
+    constexpr std::size_t kNumbers = RayDerivatives::kNumbers;
     const std::size_t count = variables_.size();
     derivatives_behind(tape, surface_count(), ray);
+    if (leaves_along_axis_) {
+        ray.origin.z += exits_.front().origin.z.value;
+        for (std::size_t v = 0; v < count; ++v)
+            ray.by_variable[kNumbers * v + 2] += exits_[v / kDualLanes].origin.z.by[v % kDualLanes];
+        return;
+    }
     RayDerivatives turned = ray;
     for (std::size_t first = 0; first < count || first == 0; first += kDualLanes) {
         const Affine<Dual8>& frame = exits_[first / kDualLanes];
@@ -272,14 +290,14 @@ void DualPath::derivatives(const Tape& tape, RayDerivatives& ray) const {
         const std::size_t lanes = std::min<std::size_t>(count - first, kDualLanes);
         over_ray(o, p, [&](Dual8& number, int row) {
             for (std::size_t lane = 0; lane < lanes; ++lane)
-                number.by[lane] = ray.by_variable[static_cast<std::size_t>(row) * count + first + lane];
+                number.by[lane] = ray.by_variable[kNumbers * (first + lane) + static_cast<std::size_t>(row)];
         });
         o = frame.point(o);
         p = frame.direction(p);
         turned.origin = value(o), turned.direction = value(p);
         over_ray(o, p, [&](const Dual8& number, int row) {
             for (std::size_t lane = 0; lane < lanes; ++lane)
-                turned.by_variable[static_cast<std::size_t>(row) * count + first + lane] = number.by[lane];
+                turned.by_variable[kNumbers * (first + lane) + static_cast<std::size_t>(row)] = number.by[lane];
         });
     }
     const Affine<Dual8>& frame = exits_.front();

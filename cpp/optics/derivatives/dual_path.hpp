@@ -19,7 +19,7 @@ struct RayDerivatives {
     Vec3d origin{}, direction{};
     double path = 0;
     double by_start[kNumbers][6] = {};  ///< by the origin and the optical direction at the start
-    std::vector<double> by_variable;    ///< by the variables: number after number
+    std::vector<double> by_variable;  ///< by the variables: seven numbers for each
 };
 
 /// The path of rays through a lens, with derivatives by some of its numbers.
@@ -78,6 +78,7 @@ private:
     LensKind kind_;
     // The same with derivatives. Of the first, lanes 0 to 5 are those of the ray; others have variables alone.
     std::vector<std::vector<DualSurface>> duals_;
+    bool leaves_along_axis_ = false;  ///< the exit frame is shifted along z alone, whatever the variables
     std::vector<Affine<Dual8>> exits_;  ///< from the last surface's frame to the exit frame, by eight variables each
     std::vector<Dual8> entry_positions_, entry_indices_;  ///< by eight variables each
     double entry_index_, entry_position_, entry_reach_;

@@ -118,9 +118,7 @@ void check_lens(const LensSystem& lens, LightDirection way, const std::vector<Le
                                below = traced(changed(lens, variables[v], -h), o, p);
             SevenNumbers wanted;
             for (std::size_t i = 0; i < 7; ++i) wanted[i] = (above[i] - below[i]) / (2 * Real(h));
-            CHECK(error_of(wanted, [&](int i) {
-                      return ray.by_variable[static_cast<std::size_t>(i) * variables.size() + v];
-                  }) < 1e-9);
+            CHECK(error_of(wanted, [&](int i) { return ray.by_variable[7 * v + static_cast<std::size_t>(i)]; }) < 1e-9);
         }
         for (int j = 0; j < 6; ++j) {
             CAPTURE(j);
