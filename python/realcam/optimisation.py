@@ -196,10 +196,10 @@ class _Search:
         )
         # The local search may not begin on a bound.
         inside = 1e-6 * (upper - lower)
-        return np.clip(np.asarray(found.x), lower + inside, upper - inside)
+        return np.asarray(np.clip(found.x, lower + inside, upper - inside))
 
     def jacobian(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self._exact_jacobian(self.lens_at(x)) * self.steps if self.is_exact else self._differences(x)
+        return np.asarray(self._exact_jacobian(self.lens_at(x)) * self.steps) if self.is_exact else self._differences(x)
 
     def _exact_jacobian(self, lens: Lens) -> NDArray[np.float64]:
         targets, variables = self.targets, [*self.variables, Variable.film_distance()]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._core import InputError, Lens
+from ._core import InputError, Lens, Surface
 from .derivatives.rays import ray_derivatives
 from .variable import Variable, checked
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def with_values(lens: Lens, variables: Sequence[Variable], values: Sequence[float]) -> Lens:
     """The lens with its variables set. Raises InputError for lenses that cannot be."""
-    surfaces = {}
+    surfaces: dict[int, Surface] = {}
     for variable, value in zip(variables, values, strict=True):
         surface = surfaces.get(variable.surface, lens.surfaces[variable.surface])
         surfaces[variable.surface] = variable.set(surface, float(value))
@@ -51,7 +51,7 @@ def trace_with_torch(
         if tensor.device.type != "cpu":
             raise InputError(f"rays with derivatives are traced on the host, and a tensor lies on {tensor.device}")
 
-    class Trace(torch.autograd.Function):
+    class Trace(torch.autograd.Function):  # type: ignore[misc]
         @staticmethod
         def forward(ctx: Any, o: torch.Tensor, d: torch.Tensor, v: torch.Tensor) -> Any:
             changed = with_values(lens, listed, v.detach().double().tolist())
@@ -78,7 +78,7 @@ def trace_with_torch(
             return tensor(found.origins_mm), tensor(found.directions), tensor(found.optical_path_mm), passes
 
         @staticmethod
-        @torch.autograd.function.once_differentiable
+        @torch.autograd.function.once_differentiable  # type: ignore[untyped-decorator]
         def backward(ctx: Any, of_origins: Any, of_directions: Any, of_paths: Any, _: Any) -> Any:
             by, by_start = ctx.saved_tensors
             change = torch.cat([of_origins, of_directions, of_paths[:, None]], dim=1)
@@ -87,4 +87,4 @@ def trace_with_torch(
             o, d, v = ctx.types
             return of_start[:, :3].to(o), of_start[:, 3:].to(d), of_values.to(v)
 
-    return Trace.apply(origins_mm, directions, values)  # type: ignore[no-any-return, no-untyped-call]
+    return Trace.apply(origins_mm, directions, values)  # type: ignore[no-any-return]

@@ -10,6 +10,7 @@ import typer
 from .._core import InputError, Lens
 from ..json_values import json_text
 from ..progress import progress_bar
+from ..variable import Variable
 from . import lens_options, options
 
 WAYS = ("radii", "thicknesses", "conics")
@@ -65,10 +66,9 @@ def optimise(
     quiet: options.Quiet = False,
 ) -> None:
     """Make the spots of a lens smaller, by least squares within bounds. Ctrl-C ends it with the best lens so far."""
-    from ..glass_search import with_better_glasses
+    from ..glass_search import GlassSearch, with_better_glasses
     from ..operands import Operand
-    from ..optimisation import Targets, optimised
-    from ..variable import Variable
+    from ..optimisation import Optimisation, Targets, optimised
 
     lens_options.check_not_the_lens(output, name)
     if output.suffix.lower() not in (".toml", ".zmx", ".seq"):
@@ -134,11 +134,12 @@ def optimise(
         def report(count: int, _: float) -> bool:
             return bar(min(1.0, count / expected))
 
+        found: Optimisation | GlassSearch
         if glasses:
-            found = with_better_glasses(
+            found = searched = with_better_glasses(
                 lens, variables, targets, most_steps=min(steps, 10), progress=report, answers_interrupt=True
             )
-            changed = dict(found.glasses)
+            changed = dict(searched.glasses)
         else:
             found = optimised(
                 lens,
@@ -149,7 +150,7 @@ def optimise(
                 global_looks=global_looks,
                 answers_interrupt=True,
             )
-            changed = {}
+            changed = dict[int, str]()
     found.lens.save(output)
     if as_json:
         typer.echo(
@@ -174,9 +175,7 @@ def optimise(
     options.say_written(output, quiet or as_json)
 
 
-def _all_of(lens: Lens, way: str, least_radius: float, least: float, most: float) -> list:  # type: ignore[type-arg]
-    from ..variable import Variable
-
+def _all_of(lens: Lens, way: str, least_radius: float, least: float, most: float) -> list[Variable]:
     chosen = []
     for i, surface in enumerate(lens.surfaces):
         bends = surface.type in ("refracting", "mirror") and surface.curvature_per_mm != 0

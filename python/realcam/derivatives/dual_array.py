@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,9 +37,9 @@ class DualArray:
         """f of this, where f has this slope."""
         return DualArray(np.asarray(value), np.asarray(slope)[..., None] * self.by)
 
-    def __getitem__(self, index: object) -> DualArray:
+    def __getitem__(self, index: Any) -> DualArray:
         """Of the axes of the value; an Ellipsis in it is not meant."""
-        return DualArray(self.value[index], self.by[index])  # type: ignore[index]
+        return DualArray(np.asarray(self.value[index]), self.by[index])
 
     def __add__(self, other: Operand) -> DualArray:
         b = self._other(other)
