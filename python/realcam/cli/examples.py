@@ -22,6 +22,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "realcam lens gallery -o lenses.png",
         "realcam lens gallery tessar-50mm sonnar-50mm --columns 2 -o two.svg",
     ),
+    "lens optimise": (
+        "realcam lens optimise tessar-50mm -o sharper.toml",
+        "realcam lens optimise mine.zmx -o better.zmx --vary radii --vary thickness:3 --field 0 --field 14 --glasses",
+    ),
     "sensor list": ("realcam sensor list",),
     "sensor info": ("realcam sensor info sony-imx071-color",),
     "expose": (

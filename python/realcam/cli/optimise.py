@@ -173,6 +173,8 @@ def optimise(
         for surface, glass_name in changed.items():
             typer.echo(f"surface {surface}: {glass_name}")
     options.say_written(output, quiet or as_json)
+    if found.message == "interrupted":
+        raise typer.Exit(130)
 
 
 def _all_of(lens: Lens, way: str, least_radius: float, least: float, most: float) -> list[Variable]:
