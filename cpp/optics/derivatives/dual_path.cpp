@@ -140,8 +140,7 @@ void DualPath::add_surfaces(const LensSystem& lens, double wavelength_nm, bool t
             if (is_placed) {
                 Affine<Dual8> to = k > 0 ? dual.neighbour(lens, before, here) : dual.frame(lens, here);
                 if (k == 0 && !to_film) to.origin.z -= dual.vertices[at];
-                seeded.before = path_frames_detail::change_to<Dual8>({});
-                seeded.before = {to.origin, to.x, to.y, to.z, 1};
+                seeded.before = {to.origin, to.x, to.y, to.z, true};
                 seeded.view.shift = 0;
             } else if (k > 0) {
                 seeded.view.shift = dual.vertices[at] - dual.vertices[static_cast<std::size_t>(before)];
@@ -203,8 +202,10 @@ DUAL_CLONES void DualPath::write(const DualSurface& surface, bool has_ray, Vec3d
     Vec3<Dual8> o = static_cast<Vec3<Dual8>>(from), p = static_cast<Vec3<Dual8>>(along);
     if (has_ray) over_ray(o, p, [](Dual8& number, int lane) { number.by[lane] = 1; });
     if (surface.before.changes) {
-        o = surface.before.point(o);
-        p = surface.before.direction(p);
+        const DualFrame& frame = surface.before;
+        o = o - frame.origin;
+        o = {dot(frame.x, o), dot(frame.y, o), dot(frame.z, o)};
+        p = {dot(frame.x, p), dot(frame.y, p), dot(frame.z, p)};
     } else {
         o.z -= surface.view.shift;
     }

@@ -173,8 +173,6 @@ DualSurface::DualSurface(const SurfaceView<double>& from, const Surface& surface
     over_numbers(view, wide, [](Dual8& to, double number) { to = number; });
     view.kind = wide.kind;
     view.surface_index = wide.surface_index;
-    before = path_frames_detail::change_to<Dual8>({});
-    before.changes = 0;
     if (wide.kind != SurfaceShape::freeform) return;
     Surface with_terms = surface;
     for (const LensVariable& v : shape)

@@ -30,17 +30,23 @@ public:
     Affine<Dual8> last_axis(const LensSystem& lens) const;
 };
 
+/// As FrameChange, which has code for devices.
+struct DualFrame {
+    Vec3<Dual8> origin = {0.0, 0.0, 0.0}, x = {1.0, 0.0, 0.0}, y = {0.0, 1.0, 0.0}, z = {0.0, 0.0, 1.0};
+    bool changes = false;
+};
+
 /// A surface on the path of a ray, with derivatives by eight numbers.
 struct DualSurface {
     SurfaceView<Dual8> view;
     FreeformView<Dual8> form;  ///< of a freeform
-    FrameChange<Dual8> before;  ///< where it changes, the view's shift is 0
+    DualFrame before;  ///< where it changes, the view's shift is 0
     std::vector<int> variables;  ///< those of the lanes; -1: none, and all derivatives of this lane are 0
     /// Of an asphere: the power of r whose coefficient a lane is that of; 0: none. Not in the view, whose terms about
     /// the middle of the search region cancel near the axis.
     std::vector<int> powers;
 
-    DualSurface() : view{}, form{}, before{}, variables(kDualLanes, -1), powers(kDualLanes, 0) {}
+    DualSurface() : view{}, form{}, variables(kDualLanes, -1), powers(kDualLanes, 0) {}
     /// Without derivatives, but ready for those by `variables` of its shape: a sphere that may become an asphere is
     /// one.
     DualSurface(const SurfaceView<double>& view, const Surface& surface, const std::vector<LensVariable>& variables);
