@@ -228,7 +228,7 @@ private:
 
     /// Sizes were found as if the lens were centred, in the yz planes of its surfaces.
     void set_free_parts() {
-        bool moves = false;
+        bool moves = !p_.image_placement.is_in_place();
         for (const PrescriptionSurface& row : p_.surfaces) moves |= is_moved(row);
         for (std::size_t i = 0; i < kept_.size(); ++i) {
             lens_.surfaces[i].aperture_shape = row_of(i).aperture_shape;
@@ -236,6 +236,7 @@ private:
         }
         if (moves && !p_.zoom_names.empty()) fail("zooms with surfaces that are tilted or decentred; none is wanted");
         if (moves) set_places(p_, kept_, lens_);
+        if (p_.zoom_names.empty()) set_film_place(p_, lens_);
         if (!lens_.is_rotational())
             warn("is no centred lens of revolution: " + lens_.asymmetry() +
                  ". Its stop and what else the file leaves open are found as if it were, in the yz plane");

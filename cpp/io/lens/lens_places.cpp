@@ -9,13 +9,28 @@ namespace realcam::io {
 namespace {
 
 /// Without what roundings leave of breaks that undo each other.
-SurfacePlacement placement_of(const Affine<double>& frame) {
-    SurfacePlacement placement = SurfacePlacement::of(frame);
+SurfacePlacement cleaned(SurfacePlacement placement) {
     constexpr double kRounding = 1e-12;
     for (Vec3d* of : {&placement.decentre, &placement.tilt_deg})
         for (double* value : {&of->x, &of->y, &of->z})
             if (std::fabs(*value) < kRounding) *value = 0;
     return placement;
+}
+
+SurfacePlacement placement_of(const Affine<double>& frame) {
+    return cleaned(SurfacePlacement::of(frame));
+}
+
+/// Adds a plane that blocks nothing at the end of the lens.
+void put_before_film(LensSystem& lens, const SurfacePlacement& placement, double thickness) {
+    Surface carrier;
+    carrier.type = SurfaceType::aperture;
+    double reach = hypotenuse(lens.film_width, lens.film_height);
+    for (const Surface& surface : lens.surfaces) reach = std::max(reach, surface.clear_semi_diameter);
+    carrier.clear_semi_diameter = 100 * (reach + std::fabs(lens.film_distance));
+    carrier.placement = placement;
+    lens.surfaces.back().thickness = thickness;
+    lens.surfaces.push_back(carrier);
 }
 
 bool is_alone(const std::vector<KeptRow>& kept, std::size_t index) {
@@ -56,15 +71,20 @@ void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSys
         way = way * along_axis(here.thickness);
         thickness += here.thickness;
     }
-    if (is_straight || placement_of(along_axis(-thickness) * way).is_in_place()) return;
-    Surface carrier;
-    carrier.type = SurfaceType::aperture;
-    double reach = hypotenuse(lens.film_width, lens.film_height);
-    for (const Surface& surface : lens.surfaces) reach = std::max(reach, surface.clear_semi_diameter);
-    carrier.clear_semi_diameter = 100 * (reach + std::fabs(lens.film_distance));
-    carrier.placement = placement_of(way * along_axis(-thickness));
-    lens.surfaces.back().thickness = 0;
-    lens.surfaces.push_back(carrier);
+    if (!is_straight && !placement_of(along_axis(-thickness) * way).is_in_place())
+        put_before_film(lens, placement_of(way * along_axis(-thickness)), 0);
+}
+
+void set_film_place(const Prescription& p, LensSystem& lens) {
+    // The film counts its height along the light, which behind a mirror goes against the axis.
+    const double direction = lens.film_distance < 0 ? -1 : 1;
+    if (p.image_curvature != 0) lens.film_radius_of_curvature = direction / p.image_curvature;
+    lens.film_placement = cleaned(p.image_placement);
+    if (lens.film_distance >= 0 || !lens.is_rotational()) return;
+    // Behind an odd number of mirrors a centred film lies before the last of them: the axis is turned round on the way.
+    const double way = 0.5 * lens.film_distance;
+    put_before_film(lens, {{0, 0, 0}, {0, 180, 0}, false}, way);
+    lens.film_distance = -way;
 }
 
 }  // namespace realcam::io

@@ -11,4 +11,8 @@ bool is_moved(const PrescriptionSurface& row);
 /// were not kept go to the next one; if the film is moved, a plane that blocks nothing is put before it.
 void set_places(const Prescription& prescription, const std::vector<KeptRow>& kept, LensSystem& lens);
 
+/// Gives the film the curvature, tilt and decentre of the image surface. Behind an odd number of mirrors a centred lens
+/// gets a plane that turns its axis round, so that the film lies behind it.
+void set_film_place(const Prescription& prescription, LensSystem& lens);
+
 }  // namespace realcam::io

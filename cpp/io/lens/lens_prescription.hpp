@@ -71,6 +71,8 @@ struct Prescription {
     FieldKind field_kind = FieldKind::angle_deg;
     std::vector<PrescriptionField> fields;
     double image_semi_diameter = 0;  ///< of the image surface; 0: not said
+    double image_curvature = 0;  ///< of the image surface
+    SurfacePlacement image_placement;  ///< as seen from the axis that leads to it
     double wavelength_nm = kLineD_nm;
 
     /// Zoom positions: their names, and what changes: by row (-1: the object's distance), a value for each.

@@ -14,10 +14,11 @@ namespace {
 /// Commands that say nothing about where light goes: names, solves and their control codes, weights, display.
 bool is_harmless(const std::string& word) {
     static const std::set<std::string> words{
-        "LEN", "INI", "WTW", "WTF", "TEM", "PRE", "CA",  "DER", "GO",  "SLB", "POL", "COM", "UID", "CCY", "THC", "GLC",
-        "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "CUC", "CCX", "CWL", "WTX", "WTY", "INC",
-        "MFL", "VER", "OUT", "SAV", "WRI", "FRZ", "TOL", "UNI", "DLF", "DLN", "DLR", "DLT", "DLA", "DLB", "DLG", "DLV",
-        "DLX", "DLY", "CMP", "ABF", "CBF", "SPC", "END", "EXI", "WID", "PUI", "PUX", "PUY", "PUD", "CRF", "SSI"};
+        "LEN", "INI", "WTW", "WTF", "TEM", "PRE", "CA",  "DER", "GO",  "SLB", "POL", "COM", "UID", "CCY",
+        "THC", "GLC", "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "CUC", "CCX",
+        "CWL", "WTX", "WTY", "INC", "MFL", "THM", "CUM", "CLS", "SCC", "VER", "OUT", "SAV", "WRI", "FRZ",
+        "TOL", "UNI", "DLF", "DLN", "DLR", "DLT", "DLA", "DLB", "DLG", "DLV", "DLX", "DLY", "CMP", "ABF",
+        "CBF", "SPC", "END", "EXI", "WID", "PUI", "PUX", "PUY", "PUD", "CRF", "SSI"};
     return words.contains(word);
 }
 
@@ -106,15 +107,17 @@ void CodeVReader::remark(const std::string& what) {
 bool CodeVReader::changes_lens(const std::string& command, const Words& words) {
     // The commands of CODE V that make another lens of the one so far. Each is refused by its name: without its effect,
     // the file would be read as a wrong lens.
-    static const std::set<std::string> changes{"DEL", "INS", "SCA", "FLY", "REV", "COP", "CPY", "MOV",
-                                               "MER", "REP", "EXC", "SWA", "INV", "FLI", "MIR", "AUT",
-                                               "RES", "RUN", "SPL", "ADD", "DZO", "DEZ"};
+    static const std::set<std::string> changes{"DEL", "INS", "SCA", "FLY", "COP", "CPY", "MOV",
+                                               "MER", "REP", "EXC", "SWA", "INV", "FLI", "MIR",
+                                               "AUT", "RES", "RUN", "SPL", "ADD", "DZO", "DEZ"};
     const std::string word = command.substr(0, 3);
+    // REV alone, or of one surface, is a decentre that is undone.
+    const bool reverses = word == "REV" && words.size() > 1 && words[1].text.find("..") != words[1].text.npos;
     const bool is_second_lens = word == "LEN" && !rows_.empty();
     // SET VIG and SET APE compute figures from rays; SET THI and the like change the lens.
     const std::string second = words.size() > 1 ? upper_case(words[1].text.substr(0, 3)) : "";
     const bool sets = word == "SET" && second != "VIG" && second != "APE";
-    if (!is_second_lens && !sets && command != "IN" && !changes.contains(word)) return false;
+    if (!is_second_lens && !sets && !reverses && command != "IN" && !changes.contains(word)) return false;
     std::string text = printable(command.substr(0, 20));
     for (std::size_t i = 1; i < words.size() && i < 4; ++i) text += ' ' + printable(words[i].text.substr(0, 20));
     const std::string what = "the command " + text + ", which makes another lens";
@@ -161,7 +164,6 @@ void CodeVReader::finish() {
     PrescriptionSurface& image = rows_.back();
     p_.object_distance = finite_or_infinite(object.thickness);
     p_.defocus = image.thickness;
-    if (image.curvature != 0) p_.foreign.push_back({"a curved image surface", image.line, image.number});
     if (object.curvature != 0 && std::isfinite(p_.object_distance))
         p_.foreign.push_back({"a curved object", object.line, 0});
     p_.image_semi_diameter = image.clear_semi_diameter;
@@ -169,18 +171,15 @@ void CodeVReader::finish() {
         if (std::isinf(rows_[i].thickness))
             throw LensFileError("the thickness is infinite; only the object may be as far away", p_.file, rows_[i].line,
                                 rows_[i].number);
-    if (!(image.before == Affine<double>{}))
-        p_.foreign.push_back({"a tilted or decentred image", image.line, image.number});
-    for (PrescriptionSurface& row : rows_) {
-        ApertureShape& shape = row.aperture_shape;
-        if (shape.is_plain()) continue;
-        // Of the two sides one may be left open.
-        const double open = 10 * std::max({shape.half.x, shape.half.y, row.clear_semi_diameter});
-        for (double* half : {&shape.half.x, &shape.half.y})
-            if (*half == 0) *half = open;
-        row.clear_semi_diameter = shape.reach();
-        row.is_open_outside = false;
+    if (std::none_of(rows_.begin(), rows_.end(), [](const auto& row) { return row.is_stop; }) && rows_.size() > 2) {
+        rows_[1].is_stop = true;
+        p_.remarks.push_back("it names no aperture stop (STO): surface 1 is taken");
     }
+    for (PrescriptionSurface& row : rows_) {
+        finish_aperture(row);
+        finish_shape(row);
+    }
+    finish_image(image);
     p_.surfaces.assign(rows_.begin() + 1, rows_.end() - 1);
     if (rows_.size() < 3) fail_file("has no surface between object and image");
     if (p_.aperture_kind == ApertureKind::entrance_pupil_diameter) p_.aperture *= unit_;
@@ -188,6 +187,14 @@ void CodeVReader::finish() {
     finish_wavelength();
     finish_zoom();
     if (!unknown_.empty()) p_.remarks.push_back("commands that are not known were left out: " + short_list(unknown_));
+}
+
+void CodeVReader::finish_image(PrescriptionSurface& image) {
+    const SurfaceForm& form = image.form;
+    if (image.conic != 0 || !image.aspheric.empty() || !form.is_none())
+        p_.foreign.push_back({"an image surface that is no sphere", image.line, image.number});
+    p_.image_curvature = image.curvature;
+    p_.image_placement = SurfacePlacement::of(image.before);
 }
 
 void CodeVReader::finish_fields() {

@@ -46,11 +46,14 @@ private:
     PrescriptionSurface& row_of(Words& words);
     /// False where the command is none of a surface.
     bool read_surface_command(const std::string& word, Words words);
-    void read_circle(Words& words);
-    /// A rectangle or an ellipse, or where its middle is.
+    /// A circle, a side of a rectangle or an ellipse, or where its middle is and how it is turned.
     void read_aperture(const std::string& word, Words& words);
-    /// A coefficient of SPS XYP.
-    void read_xy_term(Words& words);
+    /// SPS and the kind of special surface.
+    void read_special_kind(Words& words);
+    /// SCO and a coefficient of it.
+    void read_special_term(Words& words);
+    /// AR to DR and AP to DP, of an anamorphic asphere (AAS).
+    void read_anamorphic_term(const std::string& word, Words& words);
     /// Of XDE, YDE, ZDE, ADE, BDE and CDE; -1: another word.
     static int place_number(const std::string& word);
     /// From what is known of it so far.
@@ -68,9 +71,31 @@ private:
     std::vector<double> zoom_values(const Words& words, std::size_t from, const std::string& what) const;
 
     void finish();
+    void finish_image(PrescriptionSurface& image);
+    /// What a row's commands make of it, once all of them are known.
+    void finish_aperture(PrescriptionSurface& row);
+    void finish_shape(PrescriptionSurface& row);
+    void finish_special(PrescriptionSurface& row);
+    void finish_anamorphic(PrescriptionSurface& row);
     void finish_fields();
     void finish_wavelength();
     void finish_zoom();
+
+    /// An aperture of a surface, or what blocks in it.
+    struct Aperture {
+        std::string label;
+        char shape = 'C';  ///< C, R or E: circle, rectangle, ellipse
+        bool blocks = false;
+        Vec2d half = {0, 0}, offset = {0, 0};
+        double angle_deg = 0;
+    };
+    /// A special surface: its kind (XYP, ODD), its normalization radius in the file's unit, and its coefficients by
+    /// number, the conic's aside.
+    struct Special {
+        std::string kind;
+        double radius = 1;
+        std::map<int, double> terms;
+    };
 
     LensLines lines_;
     LensGlasses& glasses_;
@@ -91,6 +116,10 @@ private:
     std::set<std::pair<std::string, int>> shaped_, foreign_;
     std::map<int, std::array<double, 6>> places_;  ///< decentres and tilts, by the number of the surface
     std::map<int, std::string> place_kinds_;  ///< DAR, BEN or REV
+    std::map<int, std::vector<Aperture>> apertures_;
+    std::map<int, Special> specials_;
+    std::map<int, std::map<std::string, double>> anamorphic_;
+    std::map<int, std::string> toroids_;  ///< CYL, XTO, YTO or AAS
 };
 
 /// Whether a word is digits alone.

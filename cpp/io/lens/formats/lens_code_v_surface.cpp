@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
 
 namespace realcam::io {
@@ -75,12 +74,10 @@ PrescriptionSurface& CodeVReader::row_of(Words& words) {
 }
 
 bool CodeVReader::read_surface_command(const std::string& word, Words words) {
-    static const std::set<std::string> shapes{
-        "CYL", "XTO", "DIF", "GRT", "DOE", "HOE", "HWL", "HOR", "HCT", "HCO", "GRO", "GRS", "TOR", "ANA", "UD1", "SCO",
-        "THM", "LNS", "MOD", "NSS", "INT", "ARR", "GRI", "AR",  "BR",  "CR",  "DR",  "AP",  "BP",  "CP",  "DP"};
-    static const std::set<std::string> tilts{"XOD", "YOD", "ZOD", "ARO", "GLB", "XGR",
-                                             "YGR", "ZGR", "AGR", "BGR", "CGR"};
-    static const std::set<std::string> rectangles{"REC", "ELL", "POL", "CIG", "REG", "ELG"};
+    static const std::set<std::string> shapes{"DIF", "GRT", "DOE", "HOE", "HWL", "HOR", "HCT", "HCO", "GRO", "GRS",
+                                              "TOR", "ANA", "UD1", "LNS", "MOD", "NSS", "INT", "ARR", "GRI"};
+    static const std::set<std::string> tilts{"XOD", "YOD", "ZOD", "GLB", "XGR", "YGR", "ZGR", "AGR", "BGR", "CGR"};
+    static const std::set<std::string> rectangles{"REC", "ELL", "CIG", "REG", "ELG"};
     if (word == "STO") {
         PrescriptionSurface& row = row_of(words);
         for (PrescriptionSurface& other : rows_) other.is_stop = false;  // a lens has one, and this moves it
@@ -100,8 +97,6 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
     } else if (word == "CUF") {
         row_of(words);
         if (number(words, 1, "CUF") != 0) foreign("a Fresnel surface (CUF)");
-    } else if (word == "CIR") {
-        read_circle(words);
     } else if (word == "THI") {
         PrescriptionSurface& row = row_of(words);
         row.thickness = unit_ * number_or_infinity(words, 1, "the thickness");
@@ -118,8 +113,8 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
         remark("the values in the file are taken for those of its solves and pickups (" + word + ")");
     } else if (word == "COA" || word == "MLT") {
         remark("coatings are left out (" + word + ")");
-    } else if (word == "YTO" || word == "AAS") {
-        row_of(words).form.base = word == "YTO" ? BaseForm::toroid : BaseForm::biconic;
+    } else if (word == "YTO" || word == "XTO" || word == "CYL" || word == "AAS") {
+        toroids_[row_of(words).number] = word;
     } else if (word == "RDX" || word == "CUX") {
         PrescriptionSurface& row = row_of(words);
         const double value =
@@ -128,12 +123,11 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
     } else if (word == "KX") {
         row_of(words).form.conic_x = number(words, 1, "the conic");
     } else if (word == "SPS") {
-        row_of(words);
-        if (words.size() < 2 || upper_case(words[1].text) != "XYP")
-            foreign("a special surface (SPS" + (words.size() < 2 ? "" : ' ' + printable(words[1].text.substr(0, 10))) +
-                    ')');
+        read_special_kind(words);
     } else if (word == "SCO") {
-        read_xy_term(words);
+        read_special_term(words);
+    } else if (word.size() == 2 && word[0] >= 'A' && word[0] <= 'D' && (word[1] == 'R' || word[1] == 'P')) {
+        read_anamorphic_term(word, words);
     } else if (place_number(word) >= 0) {
         PrescriptionSurface& row = row_of(words);
         const int place = place_number(word);
@@ -145,7 +139,8 @@ bool CodeVReader::read_surface_command(const std::string& word, Words words) {
         PrescriptionSurface& row = row_of(words);
         place_kinds_[row.number] = word;
         set_place(row);
-    } else if (word == "REX" || word == "REY" || word == "ELX" || word == "ELY" || word == "ADX" || word == "ADY") {
+    } else if (word == "CIR" || word == "REX" || word == "REY" || word == "ELX" || word == "ELY" || word == "ADX" ||
+               word == "ADY" || word == "ARO") {
         read_aperture(word, words);
     } else if (shapes.contains(word)) {
         row_of(words);
@@ -186,54 +181,4 @@ void CodeVReader::set_place(PrescriptionSurface& row) {
     if (kind == "BEN") row.behind = SurfacePlacement{{}, placement.tilt_deg, false}.frame();
 }
 
-void CodeVReader::read_xy_term(Words& words) {
-    PrescriptionSurface& row = row_of(words);
-    if (words.size() < 3) lines_.fail("SCO needs the coefficient's name and its value");
-    const std::string name = upper_case(words[1].text);
-    const double value = lines_.number_of(words[2].text, "the coefficient");
-    if (name == "K" || name == "C1") {
-        row.conic = value;
-        return;
-    }
-    if (name[0] != 'C')
-        return foreign("a coefficient of a special surface (SCO " + printable(name.substr(0, 10)) + ')');
-    // j = ((i + k)^2 + i + 3 k) / 2 + 1 of x^i y^k.
-    int left = lines_.whole_number_of(name.substr(1), "the number of the coefficient", 2, 1000) - 1, degree = 0;
-    while (left > degree) left -= ++degree;
-    if (value == 0) return;
-    if (degree > kMaxXyDegree)
-        return foreign("a term of x and y of more than the power " + std::to_string(kMaxXyDegree));
-    row.form.xy.push_back({degree - left, left, value * std::pow(unit_, 1 - degree)});
-}
-
-void CodeVReader::read_aperture(const std::string& word, Words& words) {
-    PrescriptionSurface& row = row_of(words);
-    const std::string kind = words.size() > 2 ? upper_case(words[1].text) : "CLR";
-    if (kind == "EDG") return;  // where the glass ends
-    if (kind != "CLR" && kind[0] != 'L') return foreign("an aperture that is no circle (" + word + ' ' + kind + ')');
-    const double value = unit_ * number(words, words.size() - 1, "the aperture");
-    ApertureShape& shape = row.aperture_shape;
-    if (word[0] == 'A') {
-        (word == "ADX" ? shape.offset.x : shape.offset.y) = value;
-    } else {
-        if (!(value > 0)) lines_.fail("the half width of the aperture must be positive");
-        shape.kind = word[0] == 'R' ? ApertureOutline::rectangle : ApertureOutline::ellipse;
-        (word[2] == 'X' ? shape.half.x : shape.half.y) = value;
-        row.blocks = true;
-    }
-}
-
-void CodeVReader::read_circle(Words& words) {
-    PrescriptionSurface& row = row_of(words);
-    const std::string kind = words.size() > 2 ? upper_case(words[1].text) : "CLR";
-    if (kind != "CLR" && kind != "EDG" && kind != "OBS" && kind != "HOL" && kind[0] != 'L')
-        lines_.fail("CIR: " + in_quotes(words[1].text) + ": CLR, EDG, OBS or HOL is wanted");
-    const double radius = unit_ * number(words, words.size() - 1, "the radius of the aperture");
-    if (!(radius > 0)) lines_.fail("the radius of the aperture must be positive");
-    if (kind == "EDG") return;  // where the glass ends, and not the light
-    if (kind == "HOL") return foreign("a hole through which light passes unbent (CIR HOL)");
-    row.blocks = true;
-    (kind == "OBS" ? row.inner_semi_diameter : row.clear_semi_diameter) = radius;
-    row.is_open_outside = row.clear_semi_diameter == 0;
-}
 }  // namespace realcam::io

@@ -36,7 +36,7 @@ public:
         json_.set_surface(static_cast<int>(surfaces.size()) - 1);
         const Json& image = surfaces[surfaces.size() - 1];
         check_place(image, "image");
-        if (curvature_of(image["geometry"]) != 0) foreign("a curved image surface");
+        p_.image_curvature = curvature_of(image["geometry"]);
         json_.set_surface(0);
         read_aperture(root["aperture"]);
         read_fields(root["fields"]);

@@ -197,8 +197,7 @@ void OsloReader::finish() {
     p_.object_distance = object >= kFarAway ? kInfinity : unit_ * object;
     if (rows_.front().curvature != 0 && std::isfinite(p_.object_distance))
         p_.foreign.push_back({"a curved object", rows_.front().line, 0});
-    if (rows_.back().curvature != 0)
-        p_.foreign.push_back({"a curved image surface", rows_.back().line, rows_.back().number});
+    p_.image_curvature = rows_.back().curvature;
     if (!media_.front().is_air()) p_.foreign.push_back({"an object inside a glass", rows_.front().line, 0});
     p_.defocus = unit_ * rows_.back().thickness;
     bool has_stop = false;

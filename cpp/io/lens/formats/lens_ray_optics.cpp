@@ -54,7 +54,7 @@ public:
         json_.set_surface(surface_ = static_cast<int>(interfaces.size()) - 1);
         PrescriptionSurface image;
         read_profile(interfaces[interfaces.size() - 1], image);
-        if (image.curvature != 0) foreign("a curved image surface");
+        p_.image_curvature = image.curvature;
         json_.set_surface(surface_ = 0);
         read_specification(attributes(model["optical_spec"]));
         return std::move(p_);

@@ -53,7 +53,9 @@ private:
         if (!s.has_thickness) fail("the surface has no thickness (DISZ)");
         if (s.at_infinity && !is_object) fail("the thickness is infinite; only the object may be as far away");
         if (is_image) {
-            if (s.row.curvature != 0) add_foreign("a curved image surface");
+            p_.image_curvature = s.row.curvature;
+            if (s.row.curvature != 0 && (s.row.conic != 0 || s.type != "STANDARD"))
+                add_foreign("an image surface that is no sphere");
             if (s.row.is_stop) fail("the image is the aperture stop");
             if (s.type == "COORDBRK") fail("the image is a coordinate break");
             p_.image_semi_diameter = s.diameter;
