@@ -544,9 +544,9 @@ void bind_lens(py::module_& m) {
             "Raises LensFileError with file, line and surface, and InputError where glass names one that the\n"
             "file does not have. What a file leaves out and is computed or assumed is a UserWarning.")
         .def("save", &save_lens, "path"_a,
-             "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx or .seq, with a\n"
-             "UserWarning for all that these cannot say. Raises InputError, and ImageFileError where no file can be "
-             "made.")
+             "Writes a lens file by its suffix: .toml, from which Lens.load makes an equal lens; .zmx, .seq, .json\n"
+             "(Optiland) or .roa (ray-optics), with a UserWarning for all that these cannot say. Raises InputError,\n"
+             "and ImageFileError where no file can be made.")
         .def_static("_load_with_notes", &read_lens_with_notes, "path"_a)
         .def("_file_content", &file_content, "path"_a)
         .def_property_readonly("zoom_positions", &zoom_position_names,

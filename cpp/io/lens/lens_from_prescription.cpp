@@ -236,7 +236,7 @@ private:
         }
         if (moves && !p_.zoom_names.empty()) fail("zooms with surfaces that are tilted or decentred; none is wanted");
         if (moves) set_places(p_, kept_, lens_);
-        if (p_.zoom_names.empty()) set_film_place(p_, lens_);
+        if (p_.zoom_names.empty()) set_film(p_, lens_);
         if (!lens_.is_rotational())
             warn("is no centred lens of revolution: " + lens_.asymmetry() +
                  ". Its stop and what else the file leaves open are found as if it were, in the yz plane");

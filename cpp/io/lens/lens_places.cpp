@@ -9,16 +9,13 @@ namespace realcam::io {
 namespace {
 
 /// Without what roundings leave of breaks that undo each other.
-SurfacePlacement cleaned(SurfacePlacement placement) {
+SurfacePlacement placement_of(const Affine<double>& frame) {
+    SurfacePlacement placement = SurfacePlacement::of(frame);
     constexpr double kRounding = 1e-12;
     for (Vec3d* of : {&placement.decentre, &placement.tilt_deg})
         for (double* value : {&of->x, &of->y, &of->z})
             if (std::fabs(*value) < kRounding) *value = 0;
     return placement;
-}
-
-SurfacePlacement placement_of(const Affine<double>& frame) {
-    return cleaned(SurfacePlacement::of(frame));
 }
 
 /// Adds a plane that blocks nothing at the end of the lens.
@@ -42,6 +39,30 @@ bool is_alone(const std::vector<KeptRow>& kept, std::size_t index) {
 
 bool is_moved(const PrescriptionSurface& row) {
     return !(row.before == Affine<double>{}) || !(row.behind == Affine<double>{});
+}
+
+void set_decentre(const SurfacePlacement& placement, DecentreKind kind, PrescriptionSurface& row) {
+    row.before = row.behind = {};
+    if (placement.is_in_place()) return;
+    const Affine<double> frame = placement.frame();
+    if (kind != DecentreKind::reverse) row.before = frame;
+    if (kind == DecentreKind::and_return || kind == DecentreKind::reverse) row.behind = inverse_motion(frame);
+    if (kind == DecentreKind::bend) row.behind = SurfacePlacement{{}, placement.tilt_deg, false}.frame();
+}
+
+void turn_about_axis(PrescriptionSurface& row) {
+    const Affine<double> turn = SurfacePlacement{{}, {0, 0, 90}, false}.frame();
+    row.before = row.before * turn;
+    row.behind = inverse_motion(turn) * row.behind;
+    ApertureShape& shape = row.aperture_shape;
+    const auto turned = [](Vec2d v) { return Vec2d{v.y, -v.x}; };
+    std::swap(shape.half.x, shape.half.y);
+    shape.offset = turned(shape.offset);
+    for (Vec2d& corner : shape.corners) corner = turned(corner);
+    for (Obscuration& piece : shape.obscurations) {
+        piece.offset = turned(piece.offset);
+        piece.angle_deg -= 90;
+    }
 }
 
 void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSystem& lens) {
@@ -71,15 +92,18 @@ void set_places(const Prescription& p, const std::vector<KeptRow>& kept, LensSys
         way = way * along_axis(here.thickness);
         thickness += here.thickness;
     }
-    if (!is_straight && !placement_of(along_axis(-thickness) * way).is_in_place())
+    way = way * p.image_placement.frame();
+    constexpr double kSteepest = 0.5;  // cosine of 60 degrees
+    if (way.z.z > kSteepest)
+        lens.film_placement = placement_of(along_axis(-thickness) * way);
+    else
         put_before_film(lens, placement_of(way * along_axis(-thickness)), 0);
 }
 
-void set_film_place(const Prescription& p, LensSystem& lens) {
+void set_film(const Prescription& p, LensSystem& lens) {
     // The film counts its height along the light, which behind a mirror goes against the axis.
     const double direction = lens.film_distance < 0 ? -1 : 1;
     if (p.image_curvature != 0) lens.film_radius_of_curvature = direction / p.image_curvature;
-    lens.film_placement = cleaned(p.image_placement);
     if (lens.film_distance >= 0 || !lens.is_rotational()) return;
     // Behind an odd number of mirrors a centred film lies before the last of them: the axis is turned round on the way.
     const double way = 0.5 * lens.film_distance;

@@ -48,6 +48,13 @@ JsonWriter& JsonWriter::number(double value) {
     return *this;
 }
 
+JsonWriter& JsonWriter::number_or_infinity(double value) {
+    if (!std::isinf(value)) return number(value);
+    before_value();
+    text_ += value > 0 ? "Infinity" : "-Infinity";
+    return *this;
+}
+
 JsonWriter& JsonWriter::truth(bool value) {
     before_value();
     text_ += value ? "true" : "false";

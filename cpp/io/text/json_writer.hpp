@@ -14,6 +14,8 @@ public:
     JsonWriter& text(const std::string& value);
     /// null where the number is infinite or NaN: JSON has neither.
     JsonWriter& number(double value);
+    /// Infinity, as Python writes and reads it, where the number is infinite.
+    JsonWriter& number_or_infinity(double value);
     JsonWriter& truth(bool value);
     JsonWriter& null();
 

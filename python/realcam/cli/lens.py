@@ -224,7 +224,9 @@ def compare(
 @app.command("convert")
 def convert(
     name: lens_options.LensName,
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx or .seq file")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="A .toml, .zmx, .seq, .json or .roa file")
+    ],
     zoom: lens_options.Zoom = None,
     glass: lens_options.Glasses = None,
     force: lens_options.Force = False,

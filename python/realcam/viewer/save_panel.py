@@ -12,7 +12,7 @@ from nicegui import ui
 from .._core import InputError, RealcamError
 from ..files import check_target, write_whole
 from .access import Folders
-from .saving import PICTURE_SUFFIXES, check_suffix, lens_content, picture_content, shot_contents
+from .saving import SUFFIXES, check_suffix, lens_content, picture_content, shot_contents
 from .shot_source import ShotSource
 from .window import Window
 
@@ -26,7 +26,8 @@ class SavePanel:
         self._window, self._bench, self._folders, self._source, self._say = window, window.bench, folders, source, say
         with ui.row().classes("items-end w-full"):
             self._name = ui.input("Save as", value="picture.png").classes("grow").props('data-testid="save-name"')
-            self._name.tooltip(f"A picture is {', '.join(PICTURE_SUFFIXES)}; a shot .toml; a lens .toml, .zmx or .seq")
+            kinds = {what: ", ".join(suffixes) for what, suffixes in SUFFIXES.items()}
+            self._name.tooltip(f"A picture is {kinds['picture']}; a shot {kinds['shot']}; a lens {kinds['lens']}")
             self._what = ui.select(list(_PROPOSED), value="picture").props('data-testid="save-what"')
             self._what.on("update:model-value", self._propose)
             self._denoised = ui.checkbox("Denoised").props('data-testid="save-denoised"')

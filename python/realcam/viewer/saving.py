@@ -17,7 +17,7 @@ from .camera_controls import CameraControls, opened
 from .shot_source import ShotSource
 
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr", ".dng")
-SUFFIXES = {"picture": PICTURE_SUFFIXES, "shot": (".toml",), "lens": (".toml", ".zmx", ".seq")}
+SUFFIXES = {"picture": PICTURE_SUFFIXES, "shot": (".toml",), "lens": (".toml", ".zmx", ".seq", ".json", ".roa")}
 _FILES_OF_A_SHOT = ("scene", "environment", "texture")  # keys that name files beside it
 _JPEG_QUALITY = 95
 
@@ -56,7 +56,7 @@ def _with_comment(jpeg: bytes, text: str) -> bytes:
 
 
 def lens_content(lens: Lens, name: str) -> tuple[bytes, list[str]]:
-    """The content of a .toml, .zmx or .seq, and what such a file cannot say. Raises InputError."""
+    """The content of a lens file, by its suffix, and what such a file cannot say. Raises InputError."""
     check_suffix("lens", name)
     return lens._file_content(name)
 

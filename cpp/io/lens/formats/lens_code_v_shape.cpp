@@ -5,6 +5,7 @@
 
 #include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
+#include "../lens_places.hpp"
 #include "lens_code_v_reader.hpp"
 
 namespace realcam::io {
@@ -100,21 +101,8 @@ void CodeVReader::finish_shape(PrescriptionSurface& row) {
     form.base = BaseForm::toroid;
     form.conic_x = 0;
     if (kind == "YTO" || (kind == "CYL" && form.curvature_x == 0)) return;
-    // The section with conic and terms lies in the xz plane: a toroid that is turned about its axis by 90 degrees, and
-    // its aperture the other way.
     std::swap(row.curvature, form.curvature_x);
-    const Affine<double> turn = SurfacePlacement{{}, {0, 0, 90}, false}.frame();
-    row.before = row.before * turn;
-    row.behind = inverse_motion(turn) * row.behind;
-    ApertureShape& shape = row.aperture_shape;
-    const auto turned = [](Vec2d v) { return Vec2d{v.y, -v.x}; };
-    std::swap(shape.half.x, shape.half.y);
-    shape.offset = turned(shape.offset);
-    for (Vec2d& corner : shape.corners) corner = turned(corner);
-    for (Obscuration& piece : shape.obscurations) {
-        piece.offset = turned(piece.offset);
-        piece.angle_deg -= 90;
-    }
+    turn_about_axis(row);
 }
 
 }  // namespace realcam::io

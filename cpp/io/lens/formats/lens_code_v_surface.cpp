@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "../../text/printable.hpp"
+#include "../lens_places.hpp"
 
 namespace realcam::io {
 
@@ -172,13 +173,10 @@ int CodeVReader::place_number(const std::string& word) {
 void CodeVReader::set_place(PrescriptionSurface& row) {
     const std::array<double, 6>& v = places_[row.number];
     const SurfacePlacement placement{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, false};
-    const std::string kind = place_kinds_.contains(row.number) ? place_kinds_[row.number] : "";
-    row.before = row.behind = {};
-    if (placement.is_in_place()) return;
-    const Affine<double> frame = placement.frame();
-    if (kind != "REV") row.before = frame;
-    if (kind == "DAR" || kind == "REV") row.behind = inverse_motion(frame);
-    if (kind == "BEN") row.behind = SurfacePlacement{{}, placement.tilt_deg, false}.frame();
+    static const std::map<std::string, DecentreKind> kinds{
+        {"DAR", DecentreKind::and_return}, {"BEN", DecentreKind::bend}, {"REV", DecentreKind::reverse}};
+    const auto kind = place_kinds_.find(row.number);
+    set_decentre(placement, kind == place_kinds_.end() ? DecentreKind::ordinary : kinds.at(kind->second), row);
 }
 
 }  // namespace realcam::io

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <set>
 
 #include "../../../math/hypotenuse.hpp"
 #include "../../../optics/lens/paraxial.hpp"
@@ -6,6 +7,7 @@
 #include "../lens_glass.hpp"
 #include "../lens_text.hpp"
 #include "../lens_writers.hpp"
+#include "lens_code_v_shape.hpp"
 
 namespace realcam::io {
 namespace {
@@ -15,16 +17,10 @@ public:
     explicit Writer(const LensSystem& lens) : lens_(lens) {}
 
     LensText write() {
-        for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) {
-            const Surface& s = lens_.surfaces[i];
-            if (!s.form.is_none() || !s.aperture_shape.is_plain() || !s.placement.is_in_place())
-                throw InputError("surface " + std::to_string(i + 1) +
-                                 " is tilted, decentred, or of a form or an aperture that realcam does not write to "
-                                 ".seq files; a .toml or a .zmx file is wanted");
-        }
         result_.warnings = left_out_of_foreign_files(lens_, "CODE V");
         for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_surface(i);
-        const FirstOrder data = first_order(lens_, lens_.wavelength_nm);
+        // Of a lens that is not centred, the stop is found again as if it were.
+        const FirstOrder data = first_order(centred(lens_), lens_.wavelength_nm);
         if (!std::isfinite(data.entrance_pupil_diameter))
             throw InputError("lens \"" + lens_.name +
                              "\" has its entrance pupil at infinity, and no aperture that a .seq file states");
@@ -37,7 +33,7 @@ public:
         text += private_glasses();
         const double object = lens_.focus_distance - lens_.film_position();
         text += "SO 0.0 " + (std::isfinite(object) ? exact_number(object) : std::string("0.1e14")) + '\n';
-        result_.text = text + surfaces_ + "SI 0.0 0.0\n" + zoom() + "GO\n";
+        result_.text = text + surfaces_ + image() + zoom() + "GO\n";
         return std::move(result_);
     }
 
@@ -53,23 +49,31 @@ private:
         const Surface& s = lens_.surfaces[i];
         const bool is_last = i + 1 == lens_.surfaces.size();
         if (s.type == SurfaceType::refracting) medium_ = &s.material;
+        const CodeVShape shape = code_v_shape_of(s);
+        SurfacePlacement place = s.placement;
+        if (shape.constant != 0) {
+            // CODE V's polynomials have none: the surface alone is moved.
+            place = SurfacePlacement::of(place.frame() * along_axis(shape.constant));
+            place.returns = s.placement.returns || s.placement.is_in_place();
+        }
+        const double thickness = is_last ? lens_.film_distance : s.thickness;
         surfaces_ += "S " + exact_number(s.bends_light() ? s.curvature : 0.0) + ' ' +
-                     exact_number(is_last ? lens_.film_distance : s.thickness);
+                     exact_number(place.returns ? thickness : thickness - shape.constant);
         if (s.type == SurfaceType::mirror)
             surfaces_ += " REFL";
         else if (!medium_->is_air())
             surfaces_ += ' ' + glass(*medium_);
         surfaces_ += '\n';
         if (s.type == SurfaceType::stop) surfaces_ += "  STO\n";
-        if (s.bends_light() && (s.is_asphere() || s.conic != 0)) {
-            surfaces_ += s.is_asphere() ? "  ASP\n" : "  CON\n";
-            surfaces_ += "  K " + exact_number(s.conic) + '\n';
-            for (std::size_t k = 0; k < s.aspheric.size(); ++k)
-                if (s.aspheric[k] != 0)
-                    surfaces_ += std::string("  ") + "ABCDEFGH"[k] + ' ' + exact_number(s.aspheric[k]) + '\n';
-        }
-        if (s.type != SurfaceType::stop) surfaces_ += "  CIR " + exact_number(s.clear_semi_diameter) + '\n';
-        if (s.inner_semi_diameter > 0) surfaces_ += "  CIR OBS " + exact_number(s.inner_semi_diameter) + '\n';
+        surfaces_ += shape.commands + code_v_placement(place);
+        for (const std::string& what : shape.left_out)
+            result_.warnings.push_back("surface " + std::to_string(i + 1) + ' ' + what);
+    }
+
+    std::string image() const {
+        // The film counts its height along the light, the file along the axis.
+        const double curvature = (lens_.film_distance < 0 ? -1 : 1) / lens_.film_radius_of_curvature;
+        return "SI " + exact_number(curvature) + " 0.0\n" + code_v_placement(lens_.film_placement);
     }
 
     std::string glass(const Glass& glass) {
@@ -85,17 +89,14 @@ private:
     /// Glasses of no catalogue, by their indices at lines of the spectrum, among them the lens's own wavelength.
     std::string private_glasses() const {
         if (private_.empty()) return {};
-        std::vector<double> lines{365.0146,  404.6561,  435.8343, kLineF_nm, 546.0740,
-                                  kLineD_nm, kLineC_nm, 706.5188, 852.11};
-        bool has_design = false;
-        for (const double nm : lines) has_design |= nm == lens_.wavelength_nm;
-        if (!has_design) lines.push_back(lens_.wavelength_nm);
         std::string text = "PRV\n  PWL";
-        for (const double nm : lines) text += ' ' + exact_number(nm);
+        for (const auto& point : indices_at_lines(private_.front(), lens_.wavelength_nm))
+            text += ' ' + exact_number(point.wavelength_nm);
         text += '\n';
         for (std::size_t i = 0; i < private_.size(); ++i) {
             text += "  " + private_name(i);
-            for (const double nm : lines) text += ' ' + exact_number(private_[i].index(nm));
+            for (const auto& point : indices_at_lines(private_[i], lens_.wavelength_nm))
+                text += ' ' + exact_number(point.index);
             text += '\n';
         }
         return text + "END\n";
@@ -104,6 +105,10 @@ private:
     std::string zoom() {
         const ZoomRange& zoom = lens_.zoom;
         if (zoom.positions.empty()) return {};
+        if (!lens_.is_rotational()) {
+            result_.warnings.push_back("zoom positions, because the lens is not centred");
+            return {};
+        }
         if (zoom.current != 0)
             result_.warnings.push_back("the position of the zoom ring: a .seq file is read in its first position");
         std::string text = "ZOO " + std::to_string(zoom.positions.size()) + "\nZOO TIT";
@@ -136,6 +141,14 @@ private:
 };
 
 }  // namespace
+
+std::vector<Glass::TablePoint> indices_at_lines(const Glass& glass, double wavelength_nm) {
+    std::set<double> lines{365.0146,  404.6561,  435.8343, kLineF_nm, 546.0740,
+                           kLineD_nm, kLineC_nm, 706.5188, 852.11,    wavelength_nm};
+    std::vector<Glass::TablePoint> points;
+    for (const double nm : lines) points.push_back({nm, glass.index(nm)});
+    return points;
+}
 
 LensText lens_as_code_v(const LensSystem& lens) {
     return Writer(lens).write();

@@ -22,9 +22,12 @@ Prescription read_pbrt_lens(std::string_view text, const std::string& file, Lens
 }
 
 constexpr LensFormat kFormats[] = {
-    {".zmx", read<read_zemax>, lens_as_zemax}, {".seq", read<read_code_v>, lens_as_code_v},
-    {".len", read<read_oslo>, nullptr},        {".dat", read_pbrt_lens, nullptr},
-    {".json", read<read_optiland>, nullptr},   {".roa", read<read_ray_optics>, nullptr},
+    {".zmx", read<read_zemax>, lens_as_zemax},
+    {".seq", read<read_code_v>, lens_as_code_v},
+    {".len", read<read_oslo>, nullptr},
+    {".dat", read_pbrt_lens, nullptr},
+    {".json", read<read_optiland>, lens_as_optiland},
+    {".roa", read<read_ray_optics>, lens_as_ray_optics},
 };
 
 }  // namespace

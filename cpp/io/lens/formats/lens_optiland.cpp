@@ -6,6 +6,8 @@
 #include <numbers>
 #include <set>
 
+#include "../../../math/hypotenuse.hpp"
+#include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
 #include "../lens_readers.hpp"
 #include "../lens_text.hpp"
@@ -33,11 +35,12 @@ public:
         const double first = json_.number(surfaces[1]["geometry"]["cs"]["z"], "z of the first surface");
         read_object(surfaces[std::size_t{0}], first);
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) read_surface(surfaces[i], surfaces[i + 1], i);
-        json_.set_surface(static_cast<int>(surfaces.size()) - 1);
+        json_.set_surface(surface_ = static_cast<int>(surfaces.size()) - 1);
         const Json& image = surfaces[surfaces.size() - 1];
-        check_place(image, "image");
+        frames_.push_back(frame_of(image));
         p_.image_curvature = curvature_of(image["geometry"]);
-        json_.set_surface(0);
+        set_places();
+        json_.set_surface(surface_ = 0);
         read_aperture(root["aperture"]);
         read_fields(root["fields"]);
         read_wavelengths(root["wavelengths"]["wavelengths"]);
@@ -59,26 +62,57 @@ private:
         return value == 0 ? 0 : 1 / value;
     }
 
-    /// Its systems of coordinates count from one origin, and turn about fixed axes: about x first, then y, then z. Here
-    /// each surface alone is moved from its place on the z axis.
-    void read_place(const Json& surface, PrescriptionSurface& row) {
+    /// Its systems of coordinates count from one origin, and turn about fixed axes: about x first, then y, then z.
+    Affine<double> frame_of(const Json& surface) {
         const Json& cs = surface["geometry"]["cs"];
-        if (!cs["reference_cs"].is_null()) return foreign("a system of coordinates within another");
+        if (!cs["reference_cs"].is_null()) foreign("a system of coordinates within another");
         const auto value = [&](const char* key) { return json_.number_or(cs[key], key, 0); };
         constexpr double kDegrees = 180 / std::numbers::pi;
         const auto turn = [](Vec3d tilt) { return SurfacePlacement{{}, tilt, false}.frame(); };
-        const SurfacePlacement shift{{value("x"), value("y"), 0}, {}, false};
-        row.before = shift.frame() * turn({0, 0, kDegrees * value("rz")}) * turn({0, kDegrees * value("ry"), 0}) *
-                     turn({kDegrees * value("rx"), 0, 0});
-        if (!(row.before == Affine<double>{})) row.behind = inverse_motion(row.before);
+        const SurfacePlacement shift{{value("x"), value("y"), value("z")}, {}, false};
+        return shift.frame() * turn({0, 0, kDegrees * value("rz")}) * turn({0, kDegrees * value("ry"), 0}) *
+               turn({kDegrees * value("rx"), 0, 0});
     }
 
-    /// Tilts and decentres of a coordinate system.
-    void check_place(const Json& surface, const std::string& what) {
-        const Json& cs = surface["geometry"]["cs"];
-        for (const char* key : {"x", "y", "rx", "ry", "rz"})
-            if (json_.number_or(cs[key], key, 0) != 0 || !cs["reference_cs"].is_null())
-                return foreign("a tilt or decentre of the " + what);
+    void set_places() {
+        // Where all surfaces look along the z axis, each alone is moved from its place on it. Else the axis goes from
+        // each to the next.
+        constexpr double kSteepest = 0.5;  // cosine of 60 degrees
+        const bool is_straight = std::all_of(frames_.begin(), frames_.end(),
+                                             [](const Affine<double>& frame) { return frame.z.z > kSteepest; });
+        const auto without_z = [](Affine<double> frame) {
+            frame.origin.z = 0;
+            return frame;
+        };
+        if (!is_straight) return set_places_one_by_one();
+        for (std::size_t i = 0; i < p_.surfaces.size(); ++i) {
+            PrescriptionSurface& row = p_.surfaces[i];
+            row.before = without_z(frames_[i]);
+            if (!(row.before == Affine<double>{})) row.behind = inverse_motion(row.before);
+        }
+        p_.image_placement = SurfacePlacement::of(without_z(frames_.back()));
+    }
+
+    void set_places_one_by_one() {
+        Affine<double> here = along_axis(frames_.front().origin.z);
+        for (std::size_t i = 0; i < p_.surfaces.size(); ++i) {
+            p_.surfaces[i].before = inverse_motion(here) * frames_[i];
+            const Vec3d way = frames_[i + 1].origin - frames_[i].origin;
+            const double side = dot(way, frames_[i].z) < 0 ? -1 : 1;
+            p_.surfaces[i].thickness = side * std::sqrt(dot(way, way));
+            here = frames_[i] * along_axis(p_.surfaces[i].thickness);
+        }
+        // The film stands across the axis of a plane on the way to it that blocks nothing.
+        PrescriptionSurface plane;
+        plane.number = surface_;
+        plane.blocks = true;
+        plane.thickness = 0.5 * std::fabs(p_.surfaces.back().thickness);
+        p_.surfaces.back().thickness *= 0.5;
+        plane.clear_semi_diameter = 100 * (100 + plane.thickness);
+        plane.material = p_.surfaces.back().material;
+        plane.before = inverse_motion(frames_[frames_.size() - 2] * along_axis(p_.surfaces.back().thickness)) *
+                       frames_.back() * along_axis(-plane.thickness);
+        p_.surfaces.push_back(plane);
     }
 
     void read_object(const Json& object, double first) {
@@ -95,7 +129,7 @@ private:
         PrescriptionSurface row;
         row.number = surface_;
         row.is_stop = surface["is_stop"].is_true();
-        read_place(surface, row);
+        frames_.push_back(frame_of(surface));
         const auto z = [&](const Json& s) { return json_.number(s["geometry"]["cs"]["z"], "z of the surface"); };
         row.thickness = z(next) - z(surface);
         read_thickness(surface["thickness"], row);
@@ -125,6 +159,8 @@ private:
         row.conic = json_.number_or(geometry["conic"], "the conic", 0);
         const bool even = type == "EvenAsphere", odd = type == "OddAsphere";
         if (type == "ToroidalGeometry") return read_toroid(geometry, row);
+        if (type == "ForbesQNormalSlopeGeometry" || type == "ForbesQbfsGeometry")
+            return read_forbes(geometry["surface_config"], row);
         if (type == "PolynomialGeometry") return read_xy_terms(geometry["coefficients"], row);
         if (type == "ZernikePolynomialGeometry") return read_zernike_terms(geometry, row);
         if (!even && !odd && type != "StandardGeometry" && type != "Plane")
@@ -151,6 +187,20 @@ private:
         for (std::size_t i = 0; i < list.size() && i < 100; ++i)
             if (const double value = json_.number(list[i], "a coefficient of y"); value != 0)
                 row.aspheric[2 * (static_cast<int>(i) + 1)] = value;
+    }
+
+    void read_forbes(const Json& config, PrescriptionSurface& row) const {
+        row.curvature = curvature_of(config);
+        row.conic = json_.number_or(config["conic"], "the conic", 0);
+        const Json& terms = config["terms"];
+        ForbesTerms forbes{ForbesKind::bfs, 1, {}};
+        for (int k = 0; k < kMaxForbesTerms; ++k)
+            forbes.coefficients.push_back(
+                json_.number_or(terms[std::to_string(k)], "the term " + std::to_string(k), 0));
+        while (!forbes.coefficients.empty() && forbes.coefficients.back() == 0) forbes.coefficients.pop_back();
+        if (forbes.coefficients.empty()) return;
+        forbes.radius = json_.number(config["norm_radius"], "the radius of the Forbes terms");
+        row.form.forbes = forbes;
     }
 
     /// A table whose row is the power of x, and its column that of y.
@@ -216,32 +266,100 @@ private:
 
     void read_rim(const Json& aperture, PrescriptionSurface& row) {
         if (aperture.is_null()) return;
-        const std::string type = aperture["type"].text();
-        if (type == "EllipticalAperture" || type == "RectangularAperture") return read_shaped(type, aperture, row);
-        if (type != "RadialAperture")
-            return foreign("an aperture that is no circle (" + printable(type).substr(0, 40) + ")");
-        const Json& outer = aperture["r_max"];
-        if (!(outer.is_number() && std::isinf(outer.number(0)))) row.clear_semi_diameter = json_.number(outer, "r_max");
-        row.inner_semi_diameter = json_.number_or(aperture["r_min"], "r_min", 0);
         row.blocks = true;
+        read_outline(aperture, row, 0);
+        if (const double reach = row.aperture_shape.reach(); reach > 0)
+            row.clear_semi_diameter = row.clear_semi_diameter > 0 ? std::min(row.clear_semi_diameter, reach) : reach;
         row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
     }
 
-    void read_shaped(const std::string& type, const Json& aperture, PrescriptionSurface& row) const {
+    /// A shape, what two shapes share, or the first without the second.
+    void read_outline(const Json& aperture, PrescriptionSurface& row, int depth) {
+        const std::string type = aperture["type"].text();
         const auto value = [&](const char* key) { return json_.number(aperture[key], key); };
         ApertureShape& shape = row.aperture_shape;
-        if (type == "EllipticalAperture") {
+        const bool has_shape = shape.half.x > 0 || shape.kind == ApertureOutline::polygon;
+        if (type == "RadialAperture") {
+            const Json& outer = aperture["r_max"];
+            if (!(outer.is_number() && std::isinf(outer.number(0)))) row.clear_semi_diameter = value("r_max");
+            row.inner_semi_diameter = json_.number_or(aperture["r_min"], "r_min", 0);
+        } else if (type == "IntersectionAperture" && depth < kMaxObscurations) {
+            read_outline(aperture["a"], row, depth + 1);
+            read_outline(aperture["b"], row, depth + 1);
+        } else if (type == "DifferenceAperture" && depth < kMaxObscurations) {
+            read_outline(aperture["a"], row, depth + 1);
+            read_piece(aperture["b"], shape);
+        } else if (has_shape) {
+            foreign("several apertures that are no circles");
+        } else if (type == "EllipticalAperture") {
             shape.kind = ApertureOutline::ellipse;
             shape.half = {value("a"), value("b")};
+            if (shape.half.x == shape.half.y) shape.kind = ApertureOutline::circle;
             shape.offset = {value("offset_x"), value("offset_y")};
-        } else {
+        } else if (type == "OffsetRadialAperture" && value("r_min") == 0) {
+            shape.half = {value("r_max"), value("r_max")};
+            shape.offset = {value("offset_x"), value("offset_y")};
+        } else if (type == "RectangularAperture") {
             shape.kind = ApertureOutline::rectangle;
-            const double x0 = value("x_min"), x1 = value("x_max"), y0 = value("y_min"), y1 = value("y_max");
-            shape.half = {0.5 * (x1 - x0), 0.5 * (y1 - y0)};
-            shape.offset = {0.5 * (x0 + x1), 0.5 * (y0 + y1)};
+            read_rectangle(aperture, shape.half, shape.offset);
+        } else if (type == "PolygonAperture") {
+            shape.kind = ApertureOutline::polygon;
+            shape.corners = corners_of(aperture);
+        } else {
+            foreign("an aperture that is no circle (" + printable(type).substr(0, 40) + ")");
         }
-        row.clear_semi_diameter = shape.reach();
-        row.blocks = true;
+    }
+
+    void read_rectangle(const Json& aperture, Vec2d& half, Vec2d& offset) const {
+        const auto value = [&](const char* key) { return json_.number(aperture[key], key); };
+        const double x0 = value("x_min"), x1 = value("x_max"), y0 = value("y_min"), y1 = value("y_max");
+        half = {0.5 * (x1 - x0), 0.5 * (y1 - y0)};
+        offset = {0.5 * (x0 + x1), 0.5 * (y0 + y1)};
+    }
+
+    std::vector<Vec2d> corners_of(const Json& aperture) const {
+        const Json &x = aperture["x"], &y = aperture["y"];
+        if (x.size() != y.size()) json_.fail("a polygon needs as many x as y");
+        std::vector<Vec2d> corners;
+        for (std::size_t i = 0; i < x.size() && i <= kMaxApertureCorners; ++i)
+            corners.push_back({json_.number(x[i], "x of a corner"), json_.number(y[i], "y of a corner")});
+        return corners;
+    }
+
+    void read_piece(const Json& aperture, ApertureShape& shape) {
+        const std::string type = aperture["type"].text();
+        const auto value = [&](const char* key) { return json_.number(aperture[key], key); };
+        Obscuration piece;
+        if (type == "EllipticalAperture") {
+            piece.half = {value("a"), value("b")};
+            piece.offset = {value("offset_x"), value("offset_y")};
+        } else if (type == "RectangularAperture") {
+            piece.is_rectangle = true;
+            read_rectangle(aperture, piece.half, piece.offset);
+        } else if (type == "PolygonAperture" && set_rectangle(corners_of(aperture), piece)) {
+            piece.is_rectangle = true;
+        } else {
+            return foreign("an obscuration that is no ellipse or rectangle (" + printable(type).substr(0, 40) + ")");
+        }
+        shape.obscurations.push_back(piece);
+    }
+
+    /// False where the four corners are none of a rectangle.
+    static bool set_rectangle(const std::vector<Vec2d>& corners, Obscuration& piece) {
+        if (corners.size() != 4) return false;
+        const auto between = [&](std::size_t a, std::size_t b) {
+            return Vec2d{corners[b].x - corners[a].x, corners[b].y - corners[a].y};
+        };
+        const Vec2d one = between(1, 0), other = between(3, 0), same = between(2, 3);
+        const double length = hypotenuse(one.x, one.y), width = hypotenuse(other.x, other.y);
+        const double rounding = 1e-9 * (length + width);
+        if (!(std::fabs(one.x * other.x + one.y * other.y) <= rounding * (length + width)) ||
+            !(std::fabs(one.x - same.x) + std::fabs(one.y - same.y) <= rounding))
+            return false;
+        piece.half = {0.5 * length, 0.5 * width};
+        piece.offset = {0.5 * (corners[0].x + corners[2].x), 0.5 * (corners[0].y + corners[2].y)};
+        piece.angle_deg = std::atan2(one.y, one.x) * 180 / std::numbers::pi;
+        return true;
     }
 
     void read_aperture(const Json& aperture) {
@@ -294,6 +412,7 @@ private:
     LensJson json_;
     LensGlasses& glasses_;
     Prescription p_;
+    std::vector<Affine<double>> frames_;  ///< of the surfaces and of the image, in one frame
     int surface_ = 0;
 };
 

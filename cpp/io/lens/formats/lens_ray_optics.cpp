@@ -2,9 +2,12 @@
 // optical_spec aperture, fields and wavelengths. Each object is {"__instance_type__": [module, class], "attributes"}.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "../../text/printable.hpp"
+#include "../lens_places.hpp"
 #include "../lens_readers.hpp"
 #include "../lens_text.hpp"
 #include "lens_json.hpp"
@@ -44,7 +47,11 @@ public:
         set_unit(system);
         profiles_ = &model["profile_dict"];
         const Json& stop = sequence["stop_surface"];
-        const std::size_t stop_index = stop.index(0);
+        std::size_t stop_index = stop.index(0);
+        if (stop.is_null()) {
+            stop_index = 1;
+            p_.remarks.push_back("it names no aperture stop: surface 1 is taken");
+        }
         const Json& gap = attributes(gaps[std::size_t{0}])["thi"];
         const bool is_infinite = gap.is_number() && std::isinf(gap.number(0));
         const double object = is_infinite ? kInfinity : json_.number(gap, "the distance of the object");
@@ -54,7 +61,9 @@ public:
         json_.set_surface(surface_ = static_cast<int>(interfaces.size()) - 1);
         PrescriptionSurface image;
         read_profile(interfaces[interfaces.size() - 1], image);
+        read_place(attributes(interfaces[interfaces.size() - 1])["decenter"], image);
         p_.image_curvature = image.curvature;
+        p_.image_placement = SurfacePlacement::of(image.before);
         json_.set_surface(surface_ = 0);
         read_specification(attributes(model["optical_spec"]));
         return std::move(p_);
@@ -89,13 +98,44 @@ private:
         if (class_of(interface) != "Surface")
             foreign("a surface of the class " + printable(class_of(interface)).substr(0, 40));
         if (!a["phase_element"].is_null()) foreign("a diffractive surface");
-        if (!a["decenter"].is_null()) foreign("a tilt or decentre");
+        read_place(a["decenter"], row);
         row.is_mirror = a["interact_mode"].text() == "reflect";
         row.thickness = unit_ * json_.number(attributes(gap)["thi"], "the thickness");
+        read_rims(a, row);
         read_profile(interface, row);
         if (!row.is_mirror) row.material = material_of(attributes(gap)["medium"]);
-        read_rims(a, row);
         p_.surfaces.push_back(std::move(row));
+    }
+
+    static const Json& list_of(const Json& array) {
+        return array["__ndarray__"].is_null() ? array : array["__ndarray__"];
+    }
+
+    /// As CODE V's: its first two angles count clockwise.
+    void read_place(const Json& decentre, PrescriptionSurface& row) {
+        if (decentre.is_null()) return;
+        const Json& a = attributes(decentre);
+        static const std::map<std::string, DecentreKind> kinds{{"decenter", DecentreKind::ordinary},
+                                                               {"dec and return", DecentreKind::and_return},
+                                                               {"bend", DecentreKind::bend},
+                                                               {"reverse", DecentreKind::reverse}};
+        // Files of earlier versions number them.
+        static const std::array<DecentreKind, 4> numbered{DecentreKind::ordinary, DecentreKind::reverse,
+                                                          DecentreKind::and_return, DecentreKind::bend};
+        const Json& dtype = a["_dtype"].is_null() ? a["dtype"] : a["_dtype"];
+        const auto found = kinds.find(dtype.text());
+        if (found == kinds.end() && !(dtype.is_number() && dtype.index(9) < numbered.size()))
+            return foreign("a decentre of the kind " + in_quotes(printable(dtype.text()).substr(0, 20)));
+        const DecentreKind kind = found != kinds.end() ? found->second : numbered[dtype.index(0)];
+        const auto value = [&](const char* key, std::size_t i) {
+            return json_.number_or(list_of(a[key])[i], std::string("a decentre or tilt (") + key + ')', 0);
+        };
+        const SurfacePlacement placement{{unit_ * value("dec", 0), unit_ * value("dec", 1), unit_ * value("dec", 2)},
+                                         {-value("euler", 0), -value("euler", 1), value("euler", 2)},
+                                         false};
+        for (std::size_t i = 0; i < 3; ++i)
+            if (value("rot_pt", i) != 0) foreign("a point about which a surface is turned (rot_pt)");
+        set_decentre(placement, kind, row);
     }
 
     void read_profile(const Json& interface, PrescriptionSurface& row) {
@@ -107,9 +147,15 @@ private:
         row.conic =
             !shape["ec"].is_null() ? json_.number(shape["ec"], "ec") - 1 : json_.number_or(shape["cc"], "cc", 0);
         if (profile.is_null() || type == "Spherical" || type == "Conic") return;
-        const bool even = type == "EvenPolynomial";
+        const bool turns = type == "XToroid";
+        const bool even = type == "EvenPolynomial" || type == "YToroid" || turns;
+        if (type == "YToroid" || turns) {
+            row.form.base = BaseForm::toroid;
+            row.form.curvature_x = json_.number_or(shape["cR"], "the curvature of the sweep", 0) / unit_;
+            if (turns) turn_about_axis(row);
+        }
         if (!even && type != "RadialPolynomial") return foreign("a surface of type " + printable(type).substr(0, 40));
-        const Json& list = shape["coefs"]["__ndarray__"].is_null() ? shape["coefs"] : shape["coefs"]["__ndarray__"];
+        const Json& list = list_of(shape["coefs"]);
         for (std::size_t i = 0; i < list.size() && i < 100; ++i) {
             const double value = json_.number(list[i], "an aspheric coefficient");
             const int power = (even ? 2 : 1) * (static_cast<int>(i) + 1);
@@ -135,8 +181,8 @@ private:
     }
 
     Glass table_of(const Json& a) const {
-        const Json& wavelengths = a["wvls"]["__ndarray__"].is_null() ? a["wvls"] : a["wvls"]["__ndarray__"];
-        const Json& indices = a["rndx"]["__ndarray__"].is_null() ? a["rndx"] : a["rndx"]["__ndarray__"];
+        const Json& wavelengths = list_of(a["wvls"]);
+        const Json& indices = list_of(a["rndx"]);
         if (wavelengths.size() == 0 || wavelengths.size() != indices.size() || indices.size() > 10000)
             json_.fail("the table of its medium needs as many indices as wavelengths");
         std::vector<Glass::TablePoint> points;
@@ -153,16 +199,30 @@ private:
         for (std::size_t i = 0; i < list.size() && i < 100; ++i) {
             const Json& shape = attributes(list[i]);
             const auto value = [&](const char* key) { return json_.number_or(shape[key], key, 0); };
-            if (class_of(list[i]) != "Circular")
-                foreign("an aperture that is no circle (" + printable(class_of(list[i])).substr(0, 40) + ")");
-            else if (value("x_offset") != 0 || value("y_offset") != 0)
-                foreign("a decentred aperture");
-            else if (shape["is_obscuration"].is_true())
-                row.inner_semi_diameter = unit_ * value("radius");
-            else
-                row.clear_semi_diameter = unit_ * value("radius");
+            const std::string& kind = class_of(list[i]);
+            const bool is_circle = kind == "Circular", blocks = shape["is_obscuration"].is_true();
+            if (!is_circle && kind != "Rectangular" && kind != "Elliptical") {
+                foreign("an aperture that is no circle (" + printable(kind).substr(0, 40) + ")");
+                continue;
+            }
+            const Vec2d offset{unit_ * value("x_offset"), unit_ * value("y_offset")};
+            const Vec2d half = is_circle ? Vec2d{unit_ * value("radius"), unit_ * value("radius")}
+                                         : Vec2d{unit_ * value("x_half_width"), unit_ * value("y_half_width")};
+            if (is_circle && offset == Vec2d{0, 0}) {
+                (blocks ? row.inner_semi_diameter : row.clear_semi_diameter) = half.x;
+            } else if (blocks) {
+                row.aperture_shape.obscurations.push_back({kind == "Rectangular", half, offset, 0});
+            } else {
+                row.aperture_shape.kind = is_circle               ? ApertureOutline::circle
+                                          : kind == "Rectangular" ? ApertureOutline::rectangle
+                                                                  : ApertureOutline::ellipse;
+                row.aperture_shape.half = half;
+                row.aperture_shape.offset = offset;
+            }
             row.blocks = true;
         }
+        if (const double reach = row.aperture_shape.reach(); reach > 0)
+            row.clear_semi_diameter = row.clear_semi_diameter > 0 ? std::min(row.clear_semi_diameter, reach) : reach;
         row.is_open_outside = row.inner_semi_diameter > 0 && row.clear_semi_diameter == 0;
         if (row.clear_semi_diameter == 0)
             row.clear_semi_diameter = unit_ * json_.number_or(a["max_aperture"], "max_aperture", 0);
@@ -170,8 +230,7 @@ private:
 
     void read_specification(const Json& spec) {
         const Json& region = attributes(spec["spectral_region"]);
-        const Json& wavelengths = region["wavelengths"]["__ndarray__"].is_null() ? region["wavelengths"]
-                                                                                 : region["wavelengths"]["__ndarray__"];
+        const Json& wavelengths = list_of(region["wavelengths"]);
         const std::size_t reference = region["reference_wvl"].index(0);
         if (reference >= wavelengths.size()) json_.fail("the reference wavelength is none of the list");
         p_.wavelength_nm = json_.number(wavelengths[reference], "the wavelength");

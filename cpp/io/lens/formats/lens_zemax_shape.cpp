@@ -129,7 +129,8 @@ void set_zemax_aperture(ZemaxSurface& s) {
         if (shape.kind == ApertureOutline::circle && s.row.inner_semi_diameter > 0)
             shape.obscurations.push_back({false, {s.row.inner_semi_diameter, s.row.inner_semi_diameter}, {0, 0}, 0});
         s.row.inner_semi_diameter = 0;
-        if (shape.kind == ApertureOutline::circle && !s.row.is_open_outside && s.row.blocks)
+        if (shape.kind == ApertureOutline::circle && !s.row.is_open_outside && s.row.blocks &&
+            shape.obscurations.empty())
             shape.half = {s.row.clear_semi_diameter, s.row.clear_semi_diameter};
         shape.offset = shape.half.x > 0 ? offset : Vec2d{0, 0};
         for (Obscuration& piece : shape.obscurations) piece.offset = offset;

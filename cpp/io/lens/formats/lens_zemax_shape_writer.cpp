@@ -1,3 +1,4 @@
+#include "../lens_form_terms.hpp"
 #include "../lens_writers.hpp"
 #include "lens_zemax_shape.hpp"
 
@@ -35,10 +36,13 @@ std::vector<double> in_order(const std::vector<XyTerm>& terms, ZemaxShape& shape
 
 void set_type(ZemaxShape& shape, const Surface& s) {
     const SurfaceForm& form = s.form;
-    const bool has_radial = !form.radial.empty();
+    const bool is_bfs = form.forbes && form.forbes->kind == ForbesKind::bfs;
+    const bool has_radial = !form.radial.empty() || (form.forbes && !is_bfs);
     const int parts = (form.base != BaseForm::conic ? 1 : 0) + (has_radial ? 1 : 0) + (form.xy.empty() ? 0 : 1) +
                       (form.zernike ? 1 : 0);
-    if (form.forbes) shape.left_out.push_back("has Forbes terms, which realcam does not write to .zmx files");
+    if (is_bfs)
+        shape.left_out.push_back(
+            "has Forbes terms of a departure from a sphere, which realcam does not write to .zmx files");
     if (parts > 1)
         shape.left_out.push_back("has terms of several kinds, of which one type of Zemax has the first alone");
     const double radius_x = form.curvature_x == 0 ? 0 : 1 / form.curvature_x;
@@ -59,10 +63,10 @@ void set_type(ZemaxShape& shape, const Surface& s) {
     }
     if (has_radial) {
         shape.type = "XOSPHERE";
-        std::vector<double> terms = form.radial;
-        for (std::size_t k = 0; k < s.aspheric.size(); ++k) {
-            if (terms.size() < 2 * k + 4) terms.resize(2 * k + 4, 0.0);
-            terms[2 * k + 3] += s.aspheric[k];
+        std::vector<double> terms;
+        for (const auto& [power, value] : radial_terms_of(s)) {
+            terms.resize(static_cast<std::size_t>(power), 0.0);
+            terms.back() = value;
         }
         add_extra(shape, 1, terms);
         return;
@@ -100,6 +104,9 @@ void set_aperture(ZemaxShape& shape, const Surface& s) {
     } else if (!aperture.obscurations.empty()) {
         shape.left_out.push_back("has obscurations that Zemax's one aperture of a surface does not say");
     }
+    const bool is_ring = aperture.kind == ApertureOutline::circle && !is_open;
+    if (s.inner_semi_diameter > 0 && !is_ring && !shape.aperture.empty())
+        shape.left_out.push_back("has a disc in its aperture, which Zemax's one aperture of a surface does not say");
     if (offset != Vec2d{0, 0}) shape.aperture.push_back(half_widths("OBDC", offset));
 }
 

@@ -18,6 +18,7 @@ public:
     LensText write() {
         result_.warnings = left_out_of_foreign_files(lens_, "Zemax");
         for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) write_surface(i);
+        if (!lens_.film_placement.is_in_place()) write_break(lens_.film_placement);
         write_zoom();
         std::string head = "VERS 180000 0 0\nMODE SEQ\nNAME " +
                            printable(lens_.title.empty() ? lens_.name : lens_.title) + "\nUNIT MM X W X CM MR CPMM\n";
@@ -40,9 +41,9 @@ public:
         const double object = lens_.focus_distance - lens_.film_position();
         head += "SURF 0\n  TYPE STANDARD\n  CURV 0\n  DISZ " +
                 (std::isfinite(object) ? exact_number(object) : std::string("INFINITY")) + "\n  DIAM 0 0 0 0 1 \"\"\n";
-        const std::string image = "SURF " + std::to_string(count_ + 1) +
-                                  "\n  TYPE STANDARD\n  CURV 0\n  DISZ 0\n  DIAM " + exact_number(corner) +
-                                  " 0 0 0 1 \"\"\n";
+        const std::string image = "SURF " + std::to_string(count_ + 1) + "\n  TYPE STANDARD\n  CURV " +
+                                  exact_number((lens_.film_distance < 0 ? -1 : 1) / lens_.film_radius_of_curvature) +
+                                  "\n  DISZ 0\n  DIAM " + exact_number(corner) + " 0 0 0 1 \"\"\n";
         result_.text = head + surfaces_ + image + zoom_;
         return std::move(result_);
     }
