@@ -43,7 +43,7 @@ FORMS: dict[str, tuple[dict, tuple[str, ...]]] = {
     "fringe Zernike terms": ({"zernike": FRINGE, "conic": -0.2}, (".roa",)),
     "Zernike and even terms": ({"zernike": NOLL, "aspheric_coefficients": EVEN}, (".roa",)),
     "Forbes terms of a conic": ({"forbes": CON}, ()),
-    "Forbes terms of a sphere": ({"forbes": BFS}, (".zmx", ".seq", ".roa")),
+    "Forbes terms of a sphere": ({"forbes": BFS}, (".zmx", ".seq", ".json", ".roa")),
 }
 
 # Apertures of one surface.

@@ -141,10 +141,9 @@ private:
             write_list("coefficients", form.zernike->coefficients);
             json_.key("zernike_type").text(form.zernike->order == ZernikeOrder::noll ? "noll" : "fringe");
             json_.key("norm_radius").number(form.zernike->radius);
-        } else if (is_bfs && !has_xy && radial.empty()) {
-            write_forbes(s, frame);
         } else {
-            if (is_bfs) leave_out(i, "has Forbes terms beside others, which Optiland's geometries lack");
+            if (is_bfs)
+                leave_out(i, "has Forbes terms of a departure from a sphere, which Optiland writes, and does not read");
             write_polynomials(i, s, radial, frame);
         }
         if (s.bends_light() && form.base == BaseForm::biconic)
@@ -160,16 +159,6 @@ private:
         std::vector<double> terms(s.aspheric.empty() ? 0 : s.aspheric.size() + 1, 0.0);
         for (std::size_t k = 0; k < s.aspheric.size(); ++k) terms[k + 1] = s.aspheric[k];
         write_list("coeffs_poly_y", terms);
-    }
-
-    void write_forbes(const Surface& s, const Affine<double>& frame) {
-        begin_geometry("ForbesQNormalSlopeGeometry", frame);
-        json_.key("surface_config").begin_object();
-        write_conic(s);
-        json_.key("norm_radius").number(s.form.forbes->radius).key("terms").begin_object();
-        for (std::size_t k = 0; k < s.form.forbes->coefficients.size(); ++k)
-            json_.key(std::to_string(k)).number(s.form.forbes->coefficients[k]);
-        json_.end().end();
     }
 
     void write_polynomials(std::size_t i, const Surface& s, const std::map<int, double>& radial,

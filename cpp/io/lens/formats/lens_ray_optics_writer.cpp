@@ -270,7 +270,7 @@ private:
                              "\" has its entrance pupil at infinity, and no aperture that a .roa file states");
         json_.key("pupil");
         begin("rayoptics.raytr.opticalspec", "PupilSpec");
-        json_.key("key").begin_array().text("object").text("epd").end();
+        json_.key("_key").begin_array().text("aperture").text("object").text("epd").end();
         json_.key("value").number(data.entrance_pupil_diameter);
         json_.key("pupil_rays").begin_array();
         for (const auto& [x, y] : {Vec2d{0, 0}, Vec2d{1, 0}, Vec2d{-1, 0}, Vec2d{0, 1}, Vec2d{0, -1}})
@@ -291,7 +291,7 @@ private:
         const double corner = 0.5 * hypotenuse(lens_.film_width, lens_.film_height);
         json_.key("field_of_view");
         begin("rayoptics.raytr.opticalspec", "FieldSpec");
-        json_.key("key").begin_array().text("image").text("real height").end();
+        json_.key("key").begin_array().text("field").text("image").text("real height").end();
         json_.key("value").number(corner).key("is_relative").truth(false).key("is_wide_angle").truth(false);
         json_.key("index_labels").begin_array().text("axis").text("corner").end();
         json_.key("index_label_type").text("auto").key("fields").begin_array();
