@@ -1,6 +1,7 @@
 // Fuzz target: a lens file, realcam's or another program's, mutated from one that can be read, becomes a lens that
 // validate() accepts or a LensFileError whose message is one line; nothing else.
 
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -90,6 +91,71 @@ film_distance_mm = 61.0
 stop_semi_diameter_mm = 5.0
 )";
 
+/// Tilts, forms and apertures, a film that is tilted and curved.
+constexpr const char* kFree = R"(format = 1
+name = "free"
+film_mm = [12.0, 8.0]
+film_distance_mm = 40.0
+film_radius_of_curvature_mm = -90.0
+film_tilt_deg = [3.0, -1.0, 0.0]
+film_decentre_mm = [0.0, 1.0, 0.2]
+[[surface]]
+type = "stop"
+thickness_mm = 2.0
+clear_semi_diameter_mm = 5.0
+[[surface]]
+form = "toroid"
+radius_of_curvature_mm = 50.0
+radius_of_curvature_x_mm = 80.0
+conic = -0.2
+aspheric_coefficients = {4 = 1e-6}
+thickness_mm = 4.0
+material = [1.6, 40.0]
+clear_semi_diameter_mm = 15.0
+tilt_deg = [2.0, -3.0, 10.0]
+decentre_mm = [0.2, -0.3, 0.1]
+returns = true
+aperture = {ellipse_mm = [9.0, 7.0], offset_mm = [0.5, 0.0]}
+[[surface]]
+form = "biconic"
+radius_of_curvature_mm = -80.0
+radius_of_curvature_x_mm = -60.0
+conic_x = 0.3
+thickness_mm = 2.0
+material = [1.7, 30.0]
+clear_semi_diameter_mm = 15.0
+aperture = {rectangle_mm = [9.0, 7.0]}
+obscurations = [{spider_arms = 3, width_mm = 0.5}, {circle_mm = 1.0, offset_mm = [1.0, 2.0]}]
+[[surface]]
+radius_of_curvature_mm = 300.0
+thickness_mm = 3.0
+material = 1.5
+clear_semi_diameter_mm = 12.0
+xy_terms = [[1, 1, 1e-4], [0, 3, 1e-6]]
+zernike = {order = "noll", radius_mm = 12.0, coefficients_mm = [0.0, 0.01, 0.02, 0.03]}
+tilt_deg = [5.0, 0.0, 0.0]
+[[surface]]
+radius_of_curvature_mm = -300.0
+thickness_mm = 20.0
+clear_semi_diameter_mm = 12.0
+radial_terms = {2 = 1e-4, 3 = 1e-5}
+[[surface]]
+type = "mirror"
+radius_of_curvature_mm = -200.0
+thickness_mm = 0.0
+clear_semi_diameter_mm = 20.0
+tilt_deg = [45.0, 0.0, 0.0]
+forbes = {kind = "con", radius_mm = 22.0, coefficients_mm = [0.05, -0.02]}
+[[surface]]
+thickness_mm = -5.0
+material = 1.5
+clear_semi_diameter_mm = 20.0
+tilt_deg = [45.0, 0.0, 0.0]
+aperture = {polygon_mm = [[9.0, -6.0], [0.0, 9.0], [-9.0, -6.0]]}
+[[surface]]
+clear_semi_diameter_mm = 20.0
+)";
+
 /// One lens in the formats that are only read.
 constexpr const char* kPbrt = R"(# probe
 29.475 3.76 1.67 25.2
@@ -161,6 +227,11 @@ CFG NEW
 std::string seed(Bytes& in, std::string& name) {
     const std::span<const io::BundledFile> files = io::bundled_lens_files();
     const std::string bundled(files[static_cast<std::size_t>(in.byte()) % files.size()].name);
+    if (in.chance(80)) {
+        constexpr const char* kNames[] = {"fuzz.toml", "fuzz.zmx", "fuzz.seq", "fuzz.json", "fuzz.roa"};
+        name = kNames[in.below(5)];
+        return io::lens_text_for(io::parse_lens(kFree, "seed.toml"), name).text;
+    }
     switch (in.below(9)) {
         case 0: return name = "fuzz.dat", kPbrt;
         case 1: return name = "fuzz.json", kOptiland;
@@ -199,7 +270,8 @@ int fuzz_lens_file(const std::uint8_t* data, std::size_t size) {
         const LensSystem lens = io::parse_lens_file(text, name, options);
         ++findings().files_read;
         validate(lens);
-        const bool sound = lens.film_distance > 0 && std::isfinite(lens.film_distance) && lens.wavelength_nm >= 100 &&
+        const double film = lens.is_rotational() ? lens.film_distance : std::fabs(lens.film_distance);
+        const bool sound = film > 0 && std::isfinite(film) && lens.wavelength_nm >= 100 &&
                            lens.stop_semi_diameter > 0 && lens.focusing.nearest_mm >= 0;
         if (!sound) report("a lens file becomes a lens that is none", "%s", start_of(text).c_str());
     } catch (const LensFileError& error) {

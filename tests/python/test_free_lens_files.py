@@ -86,6 +86,20 @@ def test_a_break_with_order_1_undoes_one_with_order_0(tmp_path):
     )
 
 
+def test_tilts_of_a_surface_itself(tmp_path):
+    """SCBD: before the surface, and behind it as stated, repeated or undone."""
+    row = f"4; CURV 0.02; {GLASS}; DIAM 10"
+    place = "0.5 -0.3 4 -3 20"
+    alone = zemax(tmp_path, STOP, f"{row}; SCBD 1 0 0 {place}; SCBD 2 1 2 0 0 0 0 0", BACK)
+    assert alone.surfaces[1].tilt_deg == pytest.approx((4, -3, 20)) and alone.surfaces[1].returns
+    there = "TYPE COORDBRK; PARM 1 0.5; PARM 2 -0.3; PARM 3 4; PARM 4 -3; PARM 5 20"
+    onward = zemax(tmp_path, STOP, f"{row}; SCBD 1 0 0 {place}", BACK)
+    assert onward.surfaces == zemax(tmp_path, STOP, f"0; {there}", row, BACK).surfaces
+    # Order 1 undoes order 0, here stated in figures.
+    stated = zemax(tmp_path, STOP, f"{row}; SCBD 1 0 0 {place}; SCBD 2 1 0 -0.5 0.3 -4 3 -20", BACK)
+    assert_same_rays(stated, alone)
+
+
 def test_forms_of_zemax(tmp_path):
     def first(*lines: str) -> rc.Surface:
         shaped = f"4; CURV 0.02; {GLASS}; DIAM 10; " + "; ".join(lines)

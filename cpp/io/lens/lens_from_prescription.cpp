@@ -242,6 +242,9 @@ private:
                  ". Its stop and what else the file leaves open are found as if it were, in the yz plane");
     }
 
+    /// Of its radius of curvature, to which a curved film may go.
+    static constexpr double kReachOfFilm = 0.95;
+
     void set_film_size() {
         // A film of 3:2, as 36 x 24 mm is, whose corners lie at the largest image height.
         double height = 0;
@@ -252,6 +255,11 @@ private:
         if (!(height > 0) || !std::isfinite(height)) {
             height = std::isfinite(focal) ? 0.5 * focal : hypotenuse(18.0, 12.0);
             warn("states no field: the film's diagonal is taken to be the focal length");
+        }
+        const double reach = p_.image_curvature == 0 ? kInfinity : kReachOfFilm / std::fabs(p_.image_curvature);
+        if (height > reach) {
+            height = reach;
+            warn("has fields beyond the edge of its curved image surface: the film ends there");
         }
         for (auto& [state, distance] : states_) {
             state.film_width = 2 * height * 3 / std::sqrt(13.0);

@@ -98,6 +98,8 @@ std::vector<FaceCrossing> find_crossings(const LensSystem& lens, std::size_t mos
             append_crossings(lens, run, in_glass, direction, most, crossings);
             run.clear();
             in_glass.clear();
+            // Behind an axis that is turned round, light goes the other way along it.
+            if (i > 0 && surface.placement.frame().z.z < 0) direction = -direction;
         }
         if (surface.bends_light() && alone) {
             if (surface.type == SurfaceType::mirror) direction = -direction;

@@ -226,6 +226,20 @@ private:
         if (!terms.coefficients.empty()) row.form.zernike = terms;
     }
 
+    /// Optiland looks a name up in all of its folders, and keeps the one where it found it.
+    Glass glass_named(const std::string& name, const std::string& maker) {
+        if (maker.empty()) return glasses_.find(name, {});
+        try {
+            return glasses_.find(name, {maker});
+        } catch (const UnknownGlass&) {
+            const std::optional<Glass> other = glasses_.in_catalogue(name, {});
+            if (!other) throw;
+            p_.remarks.push_back("the catalogue of " + in_quotes(maker) + " has no glass " + in_quotes(name) +
+                                 ": another maker's is taken");
+            return *other;
+        }
+    }
+
     Glass material_of(const Json& material) {
         const std::string type = material["type"].text();
         if (json_.number_or(material["absorp"], "the absorption", 0) != 0)
@@ -254,8 +268,7 @@ private:
                     for (const char* shelf : {"/main/", "/organic/", "/other/", "/3d/"})
                         if (path.find(shelf) != path.npos) maker = "misc";
                 }
-                return glasses_.find(material["name"].text(),
-                                     maker.empty() ? std::vector<std::string>{} : std::vector{maker});
+                return glass_named(material["name"].text(), maker);
             }
         } catch (const InputError& error) {
             json_.fail(error);

@@ -28,6 +28,7 @@ private:
 
     /// False where the keyword is not known.
     bool read_surface_line(const std::string& word, std::string_view rest);
+    void read_tilt(ZemaxSurface& s, const Words& words);
     void read_glass(ZemaxSurface& s, const Words& words);
 
     /// False where the keyword is not known.

@@ -67,21 +67,22 @@ std::string set_zernike_terms(ZemaxSurface& s, double unit, ZernikeOrder order) 
     return any_parameter(s, 9, 300) ? "a decentre of Zernike terms" : "";
 }
 
-/// Decentre, then tilts about x, y and z; or with the order 1 all of it the other way round.
 void set_break(ZemaxSurface& s, double unit) {
     const auto parameter = [&](int number) { return at(s.parameters, number); };
-    const Vec3d decentre{unit * parameter(1), unit * parameter(2), 0};
-    const double x = parameter(3), y = parameter(4), z = parameter(5);
-    s.row.before =
-        parameter(6) == 0
-            ? SurfacePlacement{decentre, {x, y, z}, false}.frame()
-            : SurfacePlacement{{}, {0, 0, z}, false}.frame() * SurfacePlacement{{}, {0, y, 0}, false}.frame() *
-                  SurfacePlacement{{}, {x, 0, 0}, false}.frame() * SurfacePlacement{decentre, {}, false}.frame();
+    s.row.before = zemax_break({unit * parameter(1), unit * parameter(2), 0},
+                               {parameter(3), parameter(4), parameter(5)}, parameter(6) != 0);
     s.row.curvature = 0;
     s.glass.clear();
 }
 
 }  // namespace
+
+Affine<double> zemax_break(Vec3d decentre, Vec3d tilt_deg, bool is_reversed) {
+    if (!is_reversed) return SurfacePlacement{decentre, tilt_deg, false}.frame();
+    const auto turn = [](Vec3d tilt) { return SurfacePlacement{{}, tilt, false}.frame(); };
+    return turn({0, 0, tilt_deg.z}) * turn({0, tilt_deg.y, 0}) * turn({tilt_deg.x, 0, 0}) *
+           SurfacePlacement{decentre, {}, false}.frame();
+}
 
 std::string set_zemax_shape(ZemaxSurface& s, double unit) {
     SurfaceForm& form = s.row.form;

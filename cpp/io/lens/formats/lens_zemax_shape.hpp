@@ -21,4 +21,8 @@ struct ZemaxShape {
 };
 ZemaxShape zemax_shape_of(const Surface& surface);
 
+/// The frame behind a coordinate break: decentre, then tilts about x, y and z; with the other order all of it the other
+/// way round.
+Affine<double> zemax_break(Vec3d decentre, Vec3d tilt_deg, bool is_reversed);
+
 }  // namespace realcam::io

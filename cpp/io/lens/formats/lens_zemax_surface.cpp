@@ -6,6 +6,7 @@
 #include "../../../optics/prescription/lens_limits.hpp"
 #include "../../text/printable.hpp"
 #include "lens_zemax_reader.hpp"
+#include "lens_zemax_shape.hpp"
 
 namespace realcam::io {
 
@@ -73,7 +74,9 @@ bool ZemaxReader::read_surface_line(const std::string& word, std::string_view re
         s.arms = lines_.whole_number_of(words[1].text, "the number of arms", 1, kMaxObscurations);
     } else if (word == "UDAD" || word == "USAP" || word == "UDOB") {
         foreign("an aperture that is no circle (" + word + ")");
-    } else if (word == "SCBD" || word == "TILT" || word == "SDEC") {
+    } else if (word == "SCBD") {
+        read_tilt(s, words);
+    } else if (word == "TILT" || word == "SDEC") {
         foreign("a tilted or decentred surface (" + word + ")");
     } else if (word == "GLAS") {
         read_glass(s, words);
@@ -87,6 +90,22 @@ bool ZemaxReader::read_surface_line(const std::string& word, std::string_view re
         out_.coatings.insert(words.empty() ? std::string() : printable(words[0].text.substr(0, 40)));
     }
     return true;
+}
+
+/// Tilt and decentre of the surface itself: 1 before or 2 behind it, their order, where they come from, and five
+/// figures.
+void ZemaxReader::read_tilt(ZemaxSurface& s, const Words& words) {
+    const int side = whole(words, "the side of the tilt", 1, 2);
+    const auto at = [&](std::size_t i) { return number_or(words, i, "the tilt or decentre", 0); };
+    const Affine<double> frame = zemax_break({length(words, 3, "the decentre"), length(words, 4, "the decentre"), 0},
+                                             {at(5), at(6), at(7)}, at(1) != 0);
+    // Behind the surface: 1 repeats what stands before it, 2 undoes that.
+    const double source = at(2);
+    if (side == 1)
+        s.row.before = frame;
+    else
+        s.row.behind = source == 1 ? s.row.before : source == 2 ? inverse_motion(s.row.before) : frame;
+    if (source != 0 && (side == 1 || source > 2)) foreign("a tilt that is picked up (SCBD)");
 }
 
 void ZemaxReader::read_glass(ZemaxSurface& s, const Words& words) {
